@@ -1,0 +1,32 @@
+// The joints by name: what the generated registry holds, as data that a reader of scenes can list and look up.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "runtime/kernel.hpp"
+
+namespace cdot {
+
+struct CoordinateInfo {
+  std::string_view name;  // "angle", "slide"
+  std::string_view unit;  // "rad", "m"
+};
+
+struct JointType {
+  std::string_view name;
+  int bodies;
+  std::vector<RowKind> row_kinds;
+  std::vector<ParameterInfo> parameters;
+  std::vector<CoordinateInfo> coordinates;
+  int parameter_size;  // numbers in Parameters<T>
+  bool explicit_time;
+};
+
+// Every registered joint, in the order of the registry.
+std::span<const JointType> joint_types();
+// nullptr if there is none of that name.
+const JointType* find_joint_type(std::string_view name);
+
+}  // namespace cdot

@@ -1,0 +1,127 @@
+// A World: bodies, joints by name, and step(). What a scene asks for beyond joints (limits, motors, ...) is added by
+// runtime/effects.hpp, so that a program which never asks does not even link it.
+//
+//   cdot::World<double> world(settings);
+//   int rod = world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
+//   world.add_joint({.type = "revolute", .bodies = {world.ground(), rod}, .parameters = {{"pa", {0, 0}},
+//   {"pb", {-1, 0}}}, .soft = {}});
+//   world.step(1.0 / 60);
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/joints.hpp"
+#include "runtime/kernel.hpp"
+#include "runtime/settings.hpp"
+
+namespace cdot {
+
+template <class T>
+struct WorldState;
+
+// The largest entry of C or Cdot over all joints; joint is -1 in a World without joints.
+struct WorstError {
+  double value = 0;  // its absolute value
+  int joint = -1;
+  int row = -1;
+};
+
+// One row that the state violates (an inequality only if C < 0).
+struct Inconsistency {
+  int joint;
+  int row;
+  bool velocity;  // false: C is off; true: Cdot is off
+  double value;
+};
+
+// The force [N] and the torque about the centre of mass [N m] that a joint exerted on a body in the last step.
+struct Reaction {
+  double force_x, force_y, torque;
+};
+
+// T is double or float.
+template <class T>
+class World {
+ public:
+  explicit World(const Settings& settings = {});
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  // --- setting up: throws cdot::Error, may allocate ---------------------------------------------------------------
+
+  int add_body(const BodyDefinition& definition);  // returns its index: 0, 1, ...
+  int ground();  // the index of one static body at the origin, made when first asked for
+  int add_joint(const JointDefinition& definition);
+  int add_spring(const SpringDefinition& definition);
+  void set_force(int body, double force_x, double force_y, double torque);
+
+  // Rows of joints that the present pose or velocity violates by more than the tolerance ([m] or [rad], and /s).
+  std::vector<Inconsistency> inconsistencies(double tolerance) const;
+  // Moves the bodies onto C = 0 and their velocities onto Cdot = 0 by the least mass-weighted change.
+  // False if that did not succeed: the joints contradict each other.
+  bool project(double tolerance);
+  // Sentences about what was accepted but does nothing (a joint between static bodies).
+  const std::vector<std::string>& notes() const;
+  // Analyses islands and patterns now rather than in the next step(), which then does not allocate.
+  void prepare();
+
+  // --- running: never throws, never allocates ----------------------------------------------------------------------
+
+  void step(double h);
+
+  // Each of these wakes the body's island.
+  void set_pose(int body, double x, double y, double angle);
+  void set_velocity(int body, double vx, double vy, double w);
+  void apply_impulse(int body, double impulse_x, double impulse_y, double angular_impulse);
+
+  // --- looking -----------------------------------------------------------------------------------------------------
+
+  double time() const;
+  const Settings& settings() const;
+
+  int body_count() const;
+  planar::Pose<T> pose(int body) const;
+  planar::Velocity<T> velocity(int body) const;
+  planar::InverseMass<T> inverse_mass(int body) const;
+  bool is_static(int body) const;
+  bool asleep(int body) const;
+
+  int joint_count() const;
+  const JointType& joint_type(int joint) const;
+  std::vector<int> joint_bodies(int joint) const;
+  // All numbers of Parameters<T>, given or defaulted, units normalised, laid out by ParameterInfo::offset.
+  std::vector<double> joint_parameters(int joint) const;
+  bool broken(int joint) const;
+  std::vector<double> position_error(int joint) const;  // C
+  std::vector<double> velocity_error(int joint) const;  // Cdot = J v + dC/dt
+  std::vector<double> impulse(int joint) const;         // lambda of the last (sub)step [N s, N m s]
+  Reaction reaction(int joint, int body) const;
+  double coordinate(int joint, std::string_view name) const;       // value of a free coordinate [m, rad]
+  double coordinate_rate(int joint, std::string_view name) const;  // and its rate
+
+  WorstError worst_position_error() const;  // over all joints that are not soft, an inequality counts where C < 0
+  WorstError worst_velocity_error() const;  // at the present pose; inequality rows do not count
+  // Kinetic energy + gravity and constant forces (zero where each body was added) + springs, soft joints included.
+  double energy() const;
+  // Rows that the direct solver found to depend on others in its last factorisation.
+  int redundant_rows() const;
+  int island_count() const;
+  int sleeping_islands() const;
+  std::uint64_t hash() const;  // of every bit of poses and velocities
+
+  // For runtime/effects.hpp.
+  WorldState<T>& state() { return *state_; }
+
+ private:
+  std::unique_ptr<WorldState<T>> state_;
+};
+
+extern template class World<float>;
+extern template class World<double>;
+
+}  // namespace cdot
