@@ -1,0 +1,164 @@
+// The generator's own expressions: interned nodes over scalars and vectors, in an order that depends on names only.
+//
+// Every stage after the reader works on these. Equal expressions are the same node, so comparing is one pointer
+// comparison and shared work is shared by construction. The builders below apply the identities that hold whatever
+// the operands are (dot(t, t) = 1 for a unit vector, dot(perp u, v) = cross(u, v), ...) and nothing else.
+// A name given by the author (`let u = ...`) sticks to the node, and sums do not flatten through it.
+#pragma once
+
+#include <deque>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "derive/rational.hpp"
+
+namespace cdot::derive {
+
+enum class Kind {
+  number,    // value
+  symbol,    // a leaf, scalar or vector
+  sum,       // coefs[0] args[0] + coefs[1] args[1] + ..., scalars or vectors; a constant term is a number 1
+  product,   // args[0]^exponents[0] args[1]^exponents[1] ...; scalars; no number among them
+  function,  // fn(args...), scalars
+  scale,     // args[0] args[1]: scalar times vector
+  dot,       // of two vectors
+  cross,     // of two vectors; in the plane the scalar u_x v_y - u_y v_x
+  perp,      // (-u_y, u_x)
+  norm,      // length of a vector
+  unit       // direction of a vector; (1, 0) for the zero vector
+};
+
+// `inverse` and `select` arise only when vectors are written out in components (canonical.hpp):
+// inverse(x) is 1/x, and 0 at x = 0; select(l, x, y) is x where l > 0, else y.
+enum class Fn { sqrt, sin, cos, tan, exp, log, abs, sign, atan2, inverse, select };
+std::string_view name_of(Fn fn);
+
+// What a leaf stands for; decides its time derivative and where a kernel reads it.
+enum class Role {
+  position,         // vector x_a: the centre of mass of a body
+  world_vector,     // vector fixed in the world: a parameter as it is, or the world's x axis
+  body_vector,      // vector fixed in a body: an arm, a direction, an axis
+  angle,            // scalar theta_a
+  parameter,        // scalar parameter
+  time,             // scalar
+  constant,         // scalar pi
+  velocity,         // vector v_a
+  spin,             // scalar w_a
+  inverse_mass,     // scalar
+  inverse_inertia,  // scalar
+  multiplier,       // scalar lambda of a row
+  given             // any other known quantity: an entry of J handed to K, a free symbol of a hand derivation
+};
+
+class Pool;
+struct Node;
+
+// A handle to an interned node. Copy freely; valid as long as its pool.
+class Expr {
+ public:
+  Expr() = default;
+  explicit Expr(const Node* node) : node_(node) {}
+  const Node* operator->() const { return node_; }
+  const Node& operator*() const { return *node_; }
+  explicit operator bool() const { return node_ != nullptr; }
+  friend bool operator==(Expr a, Expr b) = default;
+
+ private:
+  const Node* node_ = nullptr;
+};
+
+struct Node {
+  Pool* pool = nullptr;
+  int id = 0;  // in order of creation; never decides what is printed
+  Kind kind = Kind::number;
+  bool vector = false;
+  bool unit_length = false;  // known to have length 1
+  Rational value;            // number
+  std::string symbol;        // symbol: its name
+  Role role = Role::given;   // symbol
+  int body = -1;             // symbol: index of its body, -1 for none or the world
+  Fn fn = Fn::sqrt;          // function
+  std::vector<Expr> args;
+  std::vector<Rational> coefs;       // sum
+  std::vector<int> exponents;        // product
+  mutable std::string name;          // given by `let`, or derived from the names of its parts; may be empty
+  mutable bool named_by_let = false;
+};
+
+// Owns the nodes of one joint.
+class Pool {
+ public:
+  Pool() = default;
+  Pool(const Pool&) = delete;
+  Pool& operator=(const Pool&) = delete;
+
+  Expr number(Rational value);
+  // The same name always gives the same symbol; its other properties must agree.
+  Expr symbol(std::string_view name, Role role, int body = -1);
+  Expr vector_symbol(std::string_view name, Role role, int body = -1, bool unit_length = false);
+  Expr find(std::string_view name) const;  // empty if there is no such symbol
+
+  // Attaches a name to a node that has none; a let's name wins over one derived from parts.
+  void name(Expr e, std::string_view name, bool by_let);
+
+  Expr intern(Node node);  // for the builders below
+
+ private:
+  std::deque<Node> nodes_;
+  std::map<std::string, const Node*, std::less<>> by_key_;
+  std::map<std::string, const Node*, std::less<>> symbols_;
+};
+
+// A total order from kinds, roles and names only: the order in which terms are kept and printed.
+std::strong_ordering compare(Expr a, Expr b);
+
+bool is_number(Expr e, Rational value);
+inline bool is_zero(Expr e) { return is_number(e, 0); }  // also the zero vector: an empty sum
+inline bool is_one(Expr e) { return is_number(e, 1); }
+
+struct Term {
+  Rational coef;
+  Expr e;
+};
+// e as coef * rest, rest without a numeric factor.
+Term split_coefficient(Expr e);
+// e as a sum: its terms, or itself as the only one.
+std::vector<Term> terms_of(Expr e);
+
+// Builders. Scalars and vectors must fit (asserted); the reader has checked the author's types before.
+Expr sum(Pool& pool, std::span<const Term> terms, bool vector);
+Expr product(Pool& pool, std::span<const Expr> factors, std::span<const int> exponents);
+Expr zero_vector(Pool& pool);
+Expr operator+(Expr a, Expr b);
+Expr operator-(Expr a, Expr b);
+Expr operator-(Expr a);
+Expr operator*(Expr a, Expr b);  // scalar * scalar, scalar * vector, vector * scalar
+Expr operator*(Rational c, Expr e);
+Expr pow(Expr base, int exponent);  // negative: guarded inverse
+Expr operator/(Expr a, Expr b);     // a scalar or vector, b scalar
+Expr dot(Expr u, Expr v);
+Expr cross(Expr u, Expr v);  // two vectors: scalar; scalar and vector: w x v = w perp(v)
+Expr perp(Expr u);
+Expr norm(Expr u);
+Expr unit(Expr u);
+Expr call(Fn fn, std::span<const Expr> args);
+inline Expr call(Fn fn, Expr a) { return call(fn, std::span<const Expr>(&a, 1)); }
+Expr world_x(Pool& pool);  // the world's x axis (1, 0), a unit vector; perp of it is the y axis
+
+// Same kind of node with other operands: the builders decide anew. `args` has as many entries as e->args.
+Expr rebuild(Expr e, std::span<const Expr> args);
+// Replaces leaves (or any nodes) bottom-up; names of rebuilt nodes are kept where they still say the truth.
+Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements);
+
+// Every node that e depends on, operands before users, in an order fixed by structure.
+std::vector<Expr> topological(std::span<const Expr> roots);
+bool depends_on_velocity(Expr e);
+
+// Infix text in the spec language's notation; a named node prints as its name unless it is e itself.
+std::string text(Expr e);
+std::string text_unnamed(Expr e);  // names inside e ignored
+
+}  // namespace cdot::derive

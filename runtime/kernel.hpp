@@ -1,0 +1,115 @@
+// The contract between generated kernels and everything that runs them.
+//
+// A kernel is a struct of static function templates, one struct per joint (`cdot::planar::line`), written by
+// `cdot derive`. A solver sees a *row block*: some rows of C(q, t) over some bodies. Three kinds of struct are row
+// blocks and have the same members: a joint, one of its coordinates (`line::slide`, always one row), and a joint or
+// coordinate with one body immovable (`line::a_immovable`: that body's terms are gone from J, K and the impulse).
+//
+//   members of a row block B                                                                 shapes
+//   B::bodies, B::rows                                             number of bodies, of rows
+//   B::explicit_time                                               true if C depends on t explicitly
+//   B::Jacobian<T>                                                 the nonzeros of J as named scalars of type T
+//   B::position        (q, p, t, C)                                C                                    [rows]
+//   B::jacobian        (q, p, t, C, J)                             C and J together
+//   B::effective_mass  (J, m, K)                                   K = J M^-1 J^T, lower triangle, row by row
+//   B::factor          (K, F)                                      K = L D L^T, guarded; F: D^-1 on the diagonal
+//   B::solve           (F, b, lambda)                              lambda = K^-1 b                      [rows]
+//   B::velocity        (J, v, Jv)                                  J v, without dC/dt                   [rows]
+//   B::apply           (J, m, lambda, v)                           v += M^-1 J^T lambda
+//   B::dense           (J, D)                                      J with its zeros, D[row][3 body + {x, y, w}]
+//   B::inverse_mass_jacobian (J, m, D)                             (M^-1 J^T)^T, laid out like dense
+//   B::gamma           (q, v, p, t, g)                             -Jdot v - d/dt(dC/dt)                [rows]
+//   B::time_derivative (q, p, t, C_t)                              dC/dt at fixed q (zero unless explicit_time)
+//   B::stiffness       (q, p, t, lambda, H)                        d(J^T lambda)/dq, lower triangle, n = 3 bodies
+//
+//   q: Pose<T>[bodies]   v: Velocity<T>[bodies]   m: InverseMass<T>[bodies]   p: Parameters<T>   t: time [s]
+//
+// A joint has besides: Parameters<T>, `parameters` (their names, kinds and units), `row_kinds`, `default_value`,
+// `Coordinates` and `Immovable` (tuples of its coordinates and of its variants).
+// T is float, double, cdot::Pack, or any type with + - * /, comparison, select and the functions used.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string_view>
+#include <tuple>
+
+namespace cdot {
+
+// Raised when the members above change; every kernel asserts the number it was written for.
+inline constexpr int kernel_contract = 1;
+
+enum class RowKind {
+  equality,    // C = 0
+  inequality,  // C >= 0, its impulse is >= 0
+  velocity     // J v = 0 only: C has no position form and is reported as 0 (rolling, a knife edge)
+};
+
+enum class ParameterKind {
+  point,   // a point fixed on a body, in that body's frame; 2 numbers in the plane [m]
+  vector,  // a vector fixed in a body, in that body's frame; 2 numbers
+  unit,    // the same of length 1; the runtime normalises what a scene gives and refuses a zero vector
+  frame,   // a triad fixed in a body: its x axis in the body's frame; 2 numbers, length 1
+  scalar   // 1 number
+};
+
+struct ParameterInfo {
+  std::string_view name;
+  ParameterKind kind;
+  int body;               // index of the body that it is fixed in; -1: fixed in the world, or a scalar
+  std::string_view unit;  // "m", "rad", "1", "m/s", ...
+  int offset;             // of its first number in Parameters<T>, in units of T
+  int size;
+  bool has_default;  // default_value(index, ...) computes it from the initial pose and the parameters before it
+};
+
+inline float abs(float x) { return std::fabs(x); }
+inline double abs(double x) { return std::fabs(x); }
+
+// The number type inside T: T itself, or the lane type of a pack (which specialises this).
+template <class T>
+struct ScalarOf {
+  using type = T;
+};
+
+// The smallest positive normal number of T: what a kernel's guards compare with.
+template <class T>
+inline T smallest() {
+  return T(std::numeric_limits<typename ScalarOf<T>::type>::min());
+}
+
+// a where the condition holds, else b, without a branch on data.
+template <class T>
+inline T select(bool condition, T a, T b) {
+  return condition ? a : b;
+}
+
+// 1/x, and 0 where |x| is below the smallest normal number: what every division in a kernel does.
+template <class T>
+inline T inverse(T x) {
+  return select(abs(x) >= smallest<T>(), T(1) / x, T(0));
+}
+
+namespace planar {
+
+// Centre of mass [m], rotation R = [c -s; s c] and the unwrapped angle [rad] that c and s belong to.
+template <class T>
+struct Pose {
+  T x, y, c, s, angle;
+};
+
+// Velocity of the centre of mass [m/s] and angular velocity [rad/s], both in world axes.
+template <class T>
+struct Velocity {
+  T x, y, w;
+};
+
+// Inverse mass [1/kg] and inverse inertia about the centre of mass [1/(kg m^2)]; both 0 for an immovable body.
+template <class T>
+struct InverseMass {
+  T m, I;
+};
+
+}  // namespace planar
+}  // namespace cdot
