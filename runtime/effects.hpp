@@ -1,6 +1,7 @@
-// What a scene may ask of a joint's free coordinates. Each effect is one row of the coordinate with its own bias,
-// softness and bounds; a World in which nobody calls these functions has no trace of them in step().
-// `coordinate` is a name from the joint's spec ("angle", "slide"). All throw cdot::Error on misuse.
+// What a scene may ask of a joint's free coordinates. Each effect is one row of the coordinate with
+// its own bias, softness and bounds; a World in which nobody calls these functions has no trace of
+// them in step(). `coordinate` is a name from the joint's spec ("angle", "slide"). All throw
+// cdot::Error on misuse.
 #pragma once
 
 #include <limits>
@@ -36,10 +37,13 @@ void add_limit(World<T>& world, int joint, std::string_view coordinate, const Li
 template <class T>
 void add_motor(World<T>& world, int joint, std::string_view coordinate, const Motor& motor);
 template <class T>
-void add_spring(World<T>& world, int joint, std::string_view coordinate, const CoordinateSpring& spring);
+void add_spring(World<T>& world, int joint, std::string_view coordinate,
+                const CoordinateSpring& spring);
 template <class T>
-void add_friction(World<T>& world, int joint, std::string_view coordinate, const DryFriction& friction);
-// The joint disappears after the first step in which the norm of its row forces exceeds the load [N, N m].
+void add_friction(World<T>& world, int joint, std::string_view coordinate,
+                  const DryFriction& friction);
+// The joint disappears after the first step in which the norm of its row forces exceeds the load
+// [N, N m].
 template <class T>
 void set_breaking_load(World<T>& world, int joint, double load);
 

@@ -1,4 +1,5 @@
-// The joints by name: what the generated registry holds, as data that a reader of scenes can list and look up.
+// The joints by name: what the generated registry holds, as data that a reader of scenes can list
+// and look up.
 #pragma once
 
 #include <span>

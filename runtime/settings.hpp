@@ -1,5 +1,5 @@
-// What a scene says to a World: plain data with its defaults, in doubles whatever the World computes in. Apart from
-// world.hpp so that a reader of scenes can fill it without seeing a World.
+// What a scene says to a World: plain data with its defaults, in doubles whatever the World
+// computes in. Apart from world.hpp so that a reader of scenes can fill it without seeing a World.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace cdot {
 
-// Thrown by everything that sets a World up, with a sentence that says what is wrong and what would be right.
-// step() never throws.
+// Thrown by everything that sets a World up, with a sentence that says what is wrong and what would
+// be right. step() never throws.
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -33,11 +33,12 @@ struct Settings {
   int substeps = 1;        // step(h) takes this many steps of h / substeps
   double baumgarte = 0.2;  // share of C removed per step, 0 to 1
   bool warm_start = true;  // the iterative solver starts from the impulses of the step before
-  // Adds to the inertias what the joints' tension stiffens (h r.lambda): heavy loads on light chains stay quiet.
+  // Adds to the inertias what the joints' tension stiffens (h r.lambda): heavy loads on light
+  // chains stay quiet.
   bool geometric_stiffness = false;
   double gravity_x = 0;  // [m/s^2]
   double gravity_y = 0;
-  double sleep_after = 0;     // [s] that an island must rest before it sleeps; 0: nothing ever sleeps
+  double sleep_after = 0;  // [s] that an island must rest before it sleeps; 0: nothing ever sleeps
   double sleep_speed = 1e-3;  // [m/s] and [rad/s] below which a body counts as resting
 };
 
@@ -45,9 +46,10 @@ struct BodyDefinition {
   double x = 0, y = 0, angle = 0;  // centre of mass [m], [rad]
   double vx = 0, vy = 0, w = 0;    // [m/s], [rad/s]
   double mass = 0;                 // [kg]; must be > 0 unless is_static
-  double inertia = 0;              // about the centre of mass [kg m^2]; must be > 0 unless static or fixed_rotation
-  bool is_static = false;          // immovable: inverse mass and inertia exactly 0
-  bool fixed_rotation = false;     // inverse inertia exactly 0
+  double inertia =
+      0;  // about the centre of mass [kg m^2]; must be > 0 unless static or fixed_rotation
+  bool is_static = false;           // immovable: inverse mass and inertia exactly 0
+  bool fixed_rotation = false;      // inverse inertia exactly 0
   double force_x = 0, force_y = 0;  // constant, at the centre of mass [N]
   double torque = 0;                // constant [N m]
   double linear_damping = 0;        // [1/s]: force = -mass * linear_damping * v
@@ -59,8 +61,9 @@ struct NamedValue {
   std::vector<double> numbers;  // 2 for a point, vector, unit or frame, 1 for a scalar
 };
 
-// How stiff something soft is: either a frequency [Hz] with a damping ratio, referred to the effective mass that
-// the row sees, or a stiffness [N/m, N m/rad] with a damping [N s/m, N m s/rad]. Which one is told by `by_frequency`.
+// How stiff something soft is: either a frequency [Hz] with a damping ratio, referred to the
+// effective mass that the row sees, or a stiffness [N/m, N m/rad] with a damping [N s/m, N m
+// s/rad]. Which one is told by `by_frequency`.
 struct Softness {
   bool by_frequency = true;
   double frequency = 0, damping_ratio = 0;
@@ -68,14 +71,14 @@ struct Softness {
 };
 
 struct JointDefinition {
-  std::string type;                     // as in the specs: "revolute", "distance", ...
-  std::vector<int> bodies;              // in the order of the spec: a, b, ...
-  std::vector<NamedValue> parameters;   // the others take the spec's default from the present pose
-  std::optional<Softness> soft;         // the joint's own equality rows as springs
+  std::string type;                    // as in the specs: "revolute", "distance", ...
+  std::vector<int> bodies;             // in the order of the spec: a, b, ...
+  std::vector<NamedValue> parameters;  // the others take the spec's default from the present pose
+  std::optional<Softness> soft;        // the joint's own equality rows as springs
 };
 
-// A spring with damping between a point of one body and a point of another: tension = stiffness * (length - rest) +
-// damping * d(length)/dt.
+// A spring with damping between a point of one body and a point of another: tension = stiffness *
+// (length - rest) + damping * d(length)/dt.
 struct SpringDefinition {
   int body_a = 0, body_b = 0;
   double ax = 0, ay = 0, bx = 0, by = 0;  // in the frames of the bodies [m]

@@ -1,9 +1,10 @@
-// A World: bodies, joints by name, and step(). What a scene asks for beyond joints (limits, motors, ...) is added by
-// runtime/effects.hpp, so that a program which never asks does not even link it.
+// A World: bodies, joints by name, and step(). What a scene asks for beyond joints (limits, motors,
+// ...) is added by runtime/effects.hpp, so that a program which never asks does not even link it.
 //
 //   cdot::World<double> world(settings);
 //   int rod = world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
-//   world.add_joint({.type = "revolute", .bodies = {world.ground(), rod}, .parameters = {{"pa", {0, 0}},
+//   world.add_joint({.type = "revolute", .bodies = {world.ground(), rod}, .parameters = {{"pa", {0,
+//   0}},
 //   {"pb", {-1, 0}}}, .soft = {}});
 //   world.step(1.0 / 60);
 #pragma once
@@ -38,7 +39,8 @@ struct Inconsistency {
   double value;
 };
 
-// The force [N] and the torque about the centre of mass [N m] that a joint exerted on a body in the last step.
+// The force [N] and the torque about the centre of mass [N m] that a joint exerted on a body in the
+// last step.
 struct Reaction {
   double force_x, force_y, torque;
 };
@@ -52,7 +54,8 @@ class World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  // --- setting up: throws cdot::Error, may allocate ---------------------------------------------------------------
+  // --- setting up: throws cdot::Error, may allocate
+  // ---------------------------------------------------------------
 
   int add_body(const BodyDefinition& definition);  // returns its index: 0, 1, ...
   int ground();  // the index of one static body at the origin, made when first asked for
@@ -60,17 +63,19 @@ class World {
   int add_spring(const SpringDefinition& definition);
   void set_force(int body, double force_x, double force_y, double torque);
 
-  // Rows of joints that the present pose or velocity violates by more than the tolerance ([m] or [rad], and /s).
+  // Rows of joints that the present pose or velocity violates by more than the tolerance ([m] or
+  // [rad], and /s).
   std::vector<Inconsistency> inconsistencies(double tolerance) const;
-  // Moves the bodies onto C = 0 and their velocities onto Cdot = 0 by the least mass-weighted change.
-  // False if that did not succeed: the joints contradict each other.
+  // Moves the bodies onto C = 0 and their velocities onto Cdot = 0 by the least mass-weighted
+  // change. False if that did not succeed: the joints contradict each other.
   bool project(double tolerance);
   // Sentences about what was accepted but does nothing (a joint between static bodies).
   const std::vector<std::string>& notes() const;
   // Analyses islands and patterns now rather than in the next step(), which then does not allocate.
   void prepare();
 
-  // --- running: never throws, never allocates ----------------------------------------------------------------------
+  // --- running: never throws, never allocates
+  // ----------------------------------------------------------------------
 
   void step(double h);
 
@@ -79,7 +84,8 @@ class World {
   void set_velocity(int body, double vx, double vy, double w);
   void apply_impulse(int body, double impulse_x, double impulse_y, double angular_impulse);
 
-  // --- looking -----------------------------------------------------------------------------------------------------
+  // --- looking
+  // -----------------------------------------------------------------------------------------------------
 
   double time() const;
   const Settings& settings() const;
@@ -94,19 +100,22 @@ class World {
   int joint_count() const;
   const JointType& joint_type(int joint) const;
   std::vector<int> joint_bodies(int joint) const;
-  // All numbers of Parameters<T>, given or defaulted, units normalised, laid out by ParameterInfo::offset.
+  // All numbers of Parameters<T>, given or defaulted, units normalised, laid out by
+  // ParameterInfo::offset.
   std::vector<double> joint_parameters(int joint) const;
   bool broken(int joint) const;
   std::vector<double> position_error(int joint) const;  // C
   std::vector<double> velocity_error(int joint) const;  // Cdot = J v + dC/dt
   std::vector<double> impulse(int joint) const;         // lambda of the last (sub)step [N s, N m s]
   Reaction reaction(int joint, int body) const;
-  double coordinate(int joint, std::string_view name) const;       // value of a free coordinate [m, rad]
+  double coordinate(int joint, std::string_view name) const;  // value of a free coordinate [m, rad]
   double coordinate_rate(int joint, std::string_view name) const;  // and its rate
 
-  WorstError worst_position_error() const;  // over all joints that are not soft, an inequality counts where C < 0
+  WorstError worst_position_error()
+      const;  // over all joints that are not soft, an inequality counts where C < 0
   WorstError worst_velocity_error() const;  // at the present pose; inequality rows do not count
-  // Kinetic energy + gravity and constant forces (zero where each body was added) + springs, soft joints included.
+  // Kinetic energy + gravity and constant forces (zero where each body was added) + springs, soft
+  // joints included.
   double energy() const;
   // Rows that the direct solver found to depend on others in its last factorisation.
   int redundant_rows() const;

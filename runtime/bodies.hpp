@@ -1,0 +1,31 @@
+// The bodies as arrays. Apart from the joints: an integrator or a force needs nothing else.
+#pragma once
+
+#include <vector>
+
+#include "runtime/kernel.hpp"
+
+namespace cdot {
+
+// S is a space: Planar<double>, Planar<float>.
+template <class S>
+struct Bodies {
+  using T = typename S::Scalar;
+
+  std::vector<typename S::Pose> pose;
+  std::vector<typename S::Velocity> velocity;
+  std::vector<typename S::InverseMass> inverse_mass;  // exactly 0 where immovable
+  // What the solvers divide by: inverse_mass, unless the geometric stiffness has added to the
+  // inertias.
+  std::vector<typename S::InverseMass> effective_mass;
+  std::vector<typename S::Velocity> force;  // constant, beside gravity
+  std::vector<typename S::Velocity>
+      acceleration;  // M^-1 force + gravity, constant between calls to set_force
+  std::vector<typename S::Velocity> displacement;  // scratch of the drift correction
+  std::vector<typename S::Pose> start;  // where the body was added: zero of its potential energy
+
+  int count() const { return static_cast<int>(pose.size()); }
+  bool immovable(int body) const { return S::immovable(inverse_mass[static_cast<size_t>(body)]); }
+};
+
+}  // namespace cdot
