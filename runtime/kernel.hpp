@@ -20,7 +20,7 @@
 //   B::inverse_mass_jacobian (J, m, D)                             (M^-1 J^T)^T, laid out like dense
 //   B::gamma           (q, v, p, t, g)                             -Jdot v - d/dt(dC/dt)                [rows]
 //   B::time_derivative (q, p, t, C_t)                              dC/dt at fixed q (zero unless explicit_time)
-//   B::stiffness       (q, p, t, lambda, H)                        d(J^T lambda)/dq, lower triangle, n = 3 bodies
+//   B::stiffness       (q, p, t, lambda, H)                        d(J^T lambda)/dq, H[3 bodies][3 bodies]
 //
 //   q: Pose<T>[bodies]   v: Velocity<T>[bodies]   m: InverseMass<T>[bodies]   p: Parameters<T>   t: time [s]
 //

@@ -1,0 +1,65 @@
+// What is derived from a joint: C, Cdot, J, K, gamma and the geometric stiffness, as expressions over vectors.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "derive/joint.hpp"
+
+namespace cdot::derive {
+
+// The symbols of one body.
+struct BodySymbols {
+  Expr x, theta;      // centre of mass (vector), angle
+  Expr v, w;          // their rates
+  Expr inv_m, inv_I;  // inverse mass and inertia
+};
+BodySymbols body_symbols(const Joint& joint, int body);
+
+// One body's part of a row of J: the row vector that multiplies v and the number that multiplies w.
+struct JacobianEntry {
+  Expr v;  // vector
+  Expr w;  // scalar
+};
+
+// A scalar row. Vector equations have been taken apart into their components along the world's axes.
+struct ScalarRow {
+  std::string name;        // "C1", "C1_x", or the author's name
+  const Row* row = nullptr;  // the statement that it comes from; null for a coordinate
+  RowKind kind = RowKind::equality;
+  int component = -1;      // of a vector equation; -1 for a scalar one
+  Expr C;                  // zero for a velocity row
+  Expr Cdot;               // J v + dC/dt, before the velocities are isolated
+  Expr C_t;                // dC/dt at fixed q
+  Expr gamma;              // -Jdot v - d/dt(dC/dt)
+  std::vector<JacobianEntry> J;  // one per body
+};
+
+// The rows of a joint, or the one row of a coordinate.
+struct Block {
+  std::string name;  // of the coordinate; empty for the joint itself
+  int immovable = -1;  // this body has neither velocity nor inverse mass
+  std::vector<ScalarRow> rows;
+  std::vector<std::vector<Expr>> K;  // lower triangle: K[i][j], j <= i
+  std::vector<Expr> lambda;          // the multipliers that `stiffness` contains
+  std::vector<std::vector<Expr>> stiffness;  // d(J^T lambda)/dq: [3 bodies][3 bodies], x y theta per body
+};
+
+// A velocity row that is not linear in the velocities.
+struct NotLinear : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// d e/dt along the motion: dx/dt = v, ds/dt = w x s for what is fixed in a body, dtheta/dt = w. Velocities themselves
+// count as constant, so that applied twice it gives C's second derivative without the accelerations.
+// With `immovable` >= 0 that body stands still.
+Expr time_derivative(Expr e, const Joint& joint, int immovable = -1);
+
+// The coefficients of the velocities in an expression that is linear in them: transposition, node by node.
+std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint);
+
+Block derive_rows(const Joint& joint, int immovable = -1);
+Block derive_coordinate(const Joint& joint, const Coordinate& coordinate, int immovable = -1);
+
+}  // namespace cdot::derive

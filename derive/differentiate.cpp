@@ -1,0 +1,387 @@
+// C to Cdot, Cdot to J, J to K: the derivation, on vectors and by the rules of the textbook.
+//
+// J is read off Cdot by transposition. A term n . (w x r) says how w enters; its transpose (r x n) w says what w is
+// multiplied by. Each rule below is such an identity, so "isolating the velocities" is a walk from Cdot to the leaves.
+#include <cassert>
+#include <map>
+
+#include "derive/derivation.hpp"
+
+namespace cdot::derive {
+namespace {
+
+class TimeDerivative {
+ public:
+  TimeDerivative(const Joint& joint, int immovable) : joint_(joint), immovable_(immovable) {}
+
+  Expr of(Expr e) {
+    if (const auto found = done_.find(&*e); found != done_.end()) return found->second;
+    const Expr result = e->vector ? vector_rule(e) : scalar_rule(e);
+    if (!e->name.empty()) e->pool->name(result, e->name + "_dot", false);
+    done_.emplace(&*e, result);
+    return result;
+  }
+
+ private:
+  bool moves(int body) const { return body >= 0 && body != immovable_; }
+
+  Expr vector_rule(Expr e) {
+    Pool& pool = *e->pool;
+    switch (e->kind) {
+      case Kind::symbol:
+        if (!moves(e->body)) return zero_vector(pool);
+        if (e->role == Role::position) return body_symbols(joint_, e->body).v;
+        // ds/dt = w x s for a vector fixed in a body.
+        if (e->role == Role::body_vector) return cross(body_symbols(joint_, e->body).w, e);
+        return zero_vector(pool);
+      case Kind::sum: return sum_rule(e);
+      // d(s u)/dt = sdot u + s udot
+      case Kind::scale: return of(e->args[0]) * e->args[1] + e->args[0] * of(e->args[1]);
+      case Kind::perp: return perp(of(e->args[0]));
+      // d(u/|u|)/dt = (n x udot)/|u| perp(n): only the part across n turns it.
+      case Kind::unit: return cross(e, of(e->args[0])) / norm(e->args[0]) * perp(e);
+      default: break;
+    }
+    assert(false && "not a vector");
+    return e;
+  }
+
+  Expr scalar_rule(Expr e) {
+    Pool& pool = *e->pool;
+    switch (e->kind) {
+      case Kind::number: return pool.number(0);
+      case Kind::symbol:
+        if (e->role == Role::angle && moves(e->body)) return body_symbols(joint_, e->body).w;
+        return pool.number(e->role == Role::time ? 1 : 0);
+      case Kind::sum: return sum_rule(e);
+      case Kind::product: return product_rule(e);
+      // d(u . v)/dt = udot . v + u . vdot, and the same for u x v
+      case Kind::dot: return dot(of(e->args[0]), e->args[1]) + dot(e->args[0], of(e->args[1]));
+      case Kind::cross: return cross(of(e->args[0]), e->args[1]) + cross(e->args[0], of(e->args[1]));
+      // d|u|/dt = n . udot
+      case Kind::norm: return dot(unit(e->args[0]), of(e->args[0]));
+      case Kind::function: return chain_rule(e);
+      default: break;
+    }
+    assert(false && "not a scalar");
+    return e;
+  }
+
+  Expr sum_rule(Expr e) {
+    std::vector<Term> terms;
+    for (std::size_t i = 0; i < e->args.size(); ++i) terms.push_back({e->coefs[i], of(e->args[i])});
+    return sum(*e->pool, terms, e->vector);
+  }
+
+  // d(x^k y ...)/dt = k x^(k-1) xdot y ... + ...
+  Expr product_rule(Expr e) {
+    Expr total = e->pool->number(0);
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      const Expr rate = of(e->args[i]);
+      if (is_zero(rate)) continue;
+      total = total + Rational(e->exponents[i]) * (e / e->args[i] * rate);
+    }
+    return total;
+  }
+
+  Expr chain_rule(Expr e) {
+    const Expr a = e->args[0], rate = of(a);
+    switch (e->fn) {
+      case Fn::sqrt: return Rational(1, 2) * (rate / e);
+      case Fn::sin: return call(Fn::cos, a) * rate;
+      case Fn::cos: return -(call(Fn::sin, a) * rate);
+      case Fn::tan: return (e->pool->number(1) + pow(e, 2)) * rate;
+      case Fn::exp: return e * rate;
+      case Fn::log: return rate / a;
+      case Fn::abs: return call(Fn::sign, a) * rate;
+      case Fn::sign: return e->pool->number(0);
+      case Fn::atan2: return atan2_rule(e);
+      case Fn::inverse:
+      case Fn::select: break;  // arise only after differentiation
+    }
+    assert(false && "no derivative");
+    return e;
+  }
+
+  Expr atan2_rule(Expr e) {
+    const Expr y = e->args[0], x = e->args[1];
+    const Term cross_part = split_coefficient(y), dot_part = split_coefficient(x);
+    const bool angle_between = cross_part.e->kind == Kind::cross && dot_part.e->kind == Kind::dot &&
+                               cross_part.e->args == dot_part.e->args &&
+                               abs(cross_part.coef) == Rational(1) && dot_part.coef == Rational(1);
+    if (angle_between) {
+      // The angle from u to v grows as v turns and falls as u turns; a vector turns at (u x udot)/(u . u).
+      const Expr u = cross_part.e->args[0], v = cross_part.e->args[1];
+      return cross_part.coef * (turning(v) - turning(u));
+    }
+    // d atan2(y, x)/dt = (x ydot - y xdot)/(x^2 + y^2)
+    return (x * of(y) - y * of(x)) / (pow(x, 2) + pow(y, 2));
+  }
+
+  Expr turning(Expr u) { return cross(u, of(u)) / dot(u, u); }
+
+  const Joint& joint_;
+  int immovable_;
+  std::map<const Node*, Expr> done_;
+};
+
+// Walks from an expression that is linear in the velocities to v and w, carrying what each node is multiplied by.
+class Transposition {
+ public:
+  explicit Transposition(Expr root) : order_(topological(std::span(&root, 1))) {
+    for (const Expr e : order_) {
+      bool moving = e->kind == Kind::symbol && (e->role == Role::velocity || e->role == Role::spin);
+      for (const Expr arg : e->args) moving = moving || moving_.at(&*arg);
+      moving_.emplace(&*e, moving);
+    }
+    factor_.emplace(&*root, root->pool->number(1));
+    for (auto e = order_.rbegin(); e != order_.rend(); ++e) {
+      const auto found = factor_.find(&**e);
+      if (found != factor_.end() && moving_.at(&**e)) pass_on(*e, found->second);
+    }
+  }
+
+  Expr coefficient(Expr velocity) const {
+    const auto found = factor_.find(&*velocity);
+    if (found != factor_.end()) return found->second;
+    return velocity->vector ? zero_vector(*velocity->pool) : velocity->pool->number(0);
+  }
+
+ private:
+  bool moving(Expr e) const { return moving_.at(&*e); }
+
+  void add(Expr e, Expr factor) {
+    if (!moving(e)) return;
+    const auto [at, fresh] = factor_.emplace(&*e, factor);
+    if (!fresh) at->second = at->second + factor;
+  }
+
+  void pass_on(Expr e, Expr c) {
+    switch (e->kind) {
+      case Kind::symbol: return;
+      case Kind::sum:
+        for (std::size_t i = 0; i < e->args.size(); ++i) add(e->args[i], e->coefs[i] * c);
+        return;
+      case Kind::product: return pass_on_product(e, c);
+      case Kind::scale:  // c . (s u) = (c . u) s
+        require(!(moving(e->args[0]) && moving(e->args[1])));
+        add(e->args[0], dot(c, e->args[1]));
+        add(e->args[1], e->args[0] * c);
+        return;
+      case Kind::dot:
+        require(!(moving(e->args[0]) && moving(e->args[1])));
+        add(e->args[0], c * e->args[1]);
+        add(e->args[1], c * e->args[0]);
+        return;
+      case Kind::cross:  // u x v = u . (-perp v) = perp(u) . v
+        require(!(moving(e->args[0]) && moving(e->args[1])));
+        add(e->args[0], -(c * perp(e->args[1])));
+        add(e->args[1], c * perp(e->args[0]));
+        return;
+      case Kind::perp:  // c . perp(u) = -perp(c) . u
+        return add(e->args[0], -perp(c));
+      default: require(false);
+    }
+  }
+
+  void pass_on_product(Expr e, Expr c) {
+    int found = 0;
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      if (!moving(e->args[i])) continue;
+      require(++found == 1 && e->exponents[i] == 1);
+      add(e->args[i], c * (e / e->args[i]));
+    }
+  }
+
+  static void require(bool linear) {
+    if (!linear) throw NotLinear("the row is not linear in the velocities");
+  }
+
+  std::vector<Expr> order_;
+  std::map<const Node*, bool> moving_;
+  std::map<const Node*, Expr> factor_;
+};
+
+// A term coef * rest * op(u, v), op being dot or cross.
+struct PairTerm {
+  Rational coef;
+  Expr rest;  // scalar
+  Kind kind = Kind::number;
+  Expr u, v;
+};
+
+PairTerm pair_term(const Term& term) {
+  PairTerm out{term.coef, term.e, Kind::number, {}, {}};
+  std::vector<Expr> factors{term.e};
+  if (term.e->kind == Kind::product && term.e->name.empty()) factors = term.e->args;
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const Expr f = factors[i];
+    if (f->kind != Kind::dot && f->kind != Kind::cross) continue;
+    if (factors.size() > 1 && term.e->exponents[i] != 1) continue;
+    return {term.coef, term.e / f, f->kind, f->args[0], f->args[1]};
+  }
+  return out;
+}
+
+// r1 x t + r2 x t = (r1 + r2) x t: two products fewer, and the form that people write. Likewise for dot.
+bool merge_pair(std::vector<Term>& terms) {
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const PairTerm a = pair_term(terms[i]);
+    if (a.kind == Kind::number) continue;
+    for (std::size_t j = i + 1; j < terms.size(); ++j) {
+      const PairTerm b = pair_term(terms[j]);
+      if (b.kind != a.kind || b.rest != a.rest || abs(b.coef) != abs(a.coef)) continue;
+      const Rational swap = a.kind == Kind::cross ? Rational(-1) : Rational(1);
+      const Rational sign = b.coef / a.coef;
+      Expr left, right;
+      if (a.v == b.v) left = a.u + sign * b.u, right = a.v;
+      else if (a.u == b.u) left = a.u, right = a.v + sign * b.v;
+      else if (a.v == b.u) left = a.u + (sign * swap) * b.v, right = a.v;
+      else if (a.u == b.v) left = a.u, right = a.v + (sign * swap) * b.u;
+      else continue;
+      const Expr merged = a.rest * (a.kind == Kind::cross ? cross(left, right) : dot(left, right));
+      terms[i] = {a.coef, merged};
+      terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(j));
+      return true;
+    }
+  }
+  return false;
+}
+
+Expr merge_pairs(Expr e) {
+  if (e->vector || e->kind != Kind::sum || !e->name.empty()) return e;
+  std::vector<Term> terms = terms_of(e);
+  while (merge_pair(terms)) {
+  }
+  return sum(*e->pool, terms, false);
+}
+
+// K = J M^-1 J^T, entry by entry: sum over the bodies of v_i . v_j / m + w_i w_j / I.
+std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const Block& block) {
+  std::vector<std::vector<Expr>> K(block.rows.size());
+  for (std::size_t i = 0; i < block.rows.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      Expr entry = joint.pool->number(0);
+      for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+        if (static_cast<int>(b) == block.immovable) continue;
+        const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+        const JacobianEntry& Ji = block.rows[i].J[b];
+        const JacobianEntry& Jj = block.rows[j].J[b];
+        entry = entry + body.inv_m * dot(Ji.v, Jj.v) + body.inv_I * (Ji.w * Jj.w);
+      }
+      K[i].push_back(entry);
+    }
+  }
+  return K;
+}
+
+// d(J^T lambda)/dq: each component of the generalised force, differentiated along the motion at fixed time and
+// lambda; what multiplies v_x, v_y and w of a body is its column.
+std::vector<std::vector<Expr>> geometric_stiffness(const Joint& joint, Block& block) {
+  Pool& pool = *joint.pool;
+  const Expr ex = world_x(pool), ey = perp(ex);
+  for (std::size_t i = 0; i < block.rows.size(); ++i) {
+    block.lambda.push_back(pool.symbol("lambda_" + std::to_string(i + 1), Role::multiplier));
+  }
+  std::vector<std::vector<Expr>> H;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    Expr force = zero_vector(pool), torque = pool.number(0);
+    for (std::size_t i = 0; i < block.rows.size(); ++i) {
+      force = force + block.lambda[i] * block.rows[i].J[b].v;
+      torque = torque + block.lambda[i] * block.rows[i].J[b].w;
+    }
+    for (const Expr component : {dot(ex, force), dot(ey, force), torque}) {
+      std::vector<Expr> columns;
+      const Expr rate = time_derivative(component, joint, block.immovable);
+      for (const JacobianEntry& entry : isolate_velocities(rate, joint)) {
+        columns.insert(columns.end(), {dot(ex, entry.v), dot(ey, entry.v), entry.w});
+      }
+      H.push_back(std::move(columns));
+    }
+  }
+  return H;
+}
+
+ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int immovable) {
+  Pool& pool = *joint.pool;
+  const bool at_velocity_level = row.kind == RowKind::velocity;
+  row.C = at_velocity_level ? pool.number(0) : expression;
+  row.Cdot = at_velocity_level ? expression : time_derivative(expression, joint, immovable);
+  std::map<const Node*, Expr> at_rest;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    at_rest.emplace(&*body.v, zero_vector(pool));
+    at_rest.emplace(&*body.w, pool.number(0));
+  }
+  if (at_velocity_level && immovable >= 0) {
+    const BodySymbols body = body_symbols(joint, immovable);
+    row.Cdot = substitute(row.Cdot, {{&*body.v, zero_vector(pool)}, {&*body.w, pool.number(0)}});
+  }
+  row.C_t = substitute(row.Cdot, at_rest);
+  row.J = isolate_velocities(row.Cdot, joint);
+  row.gamma = -time_derivative(row.Cdot, joint, immovable);
+  return row;
+}
+
+Block finished(const Joint& joint, Block block) {
+  block.K = effective_mass(joint, block);
+  block.stiffness = geometric_stiffness(joint, block);
+  return block;
+}
+
+}  // namespace
+
+BodySymbols body_symbols(const Joint& joint, int body) {
+  Pool& pool = *joint.pool;
+  const std::string& name = joint.bodies[static_cast<std::size_t>(body)];
+  return {pool.vector_symbol("x_" + name, Role::position, body),
+          pool.symbol("theta_" + name, Role::angle, body),
+          pool.vector_symbol("v_" + name, Role::velocity, body),
+          pool.symbol("w_" + name, Role::spin, body),
+          pool.symbol("inv_m_" + name, Role::inverse_mass, body),
+          pool.symbol("inv_I_" + name, Role::inverse_inertia, body)};
+}
+
+Expr time_derivative(Expr e, const Joint& joint, int immovable) {
+  return TimeDerivative(joint, immovable).of(e);
+}
+
+std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint) {
+  const Transposition transposed(Cdot);
+  std::vector<JacobianEntry> J;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    J.push_back({transposed.coefficient(body.v), merge_pairs(transposed.coefficient(body.w))});
+  }
+  return J;
+}
+
+Block derive_rows(const Joint& joint, int immovable) {
+  Block block;
+  block.immovable = immovable;
+  const Expr ex = world_x(*joint.pool);
+  for (const Row& row : joint.rows) {
+    if (!row.C->vector) {
+      block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, {}, {}, {}, {}, {}},
+                                      row.C, immovable));
+      continue;
+    }
+    const Expr axes[] = {ex, perp(ex)};
+    for (int k = 0; k < 2; ++k) {
+      ScalarRow part{row.name + (k == 0 ? "_x" : "_y"), &row, row.kind, k, {}, {}, {}, {}, {}};
+      block.rows.push_back(derive_row(joint, std::move(part), dot(axes[k], row.C), immovable));
+    }
+  }
+  return finished(joint, std::move(block));
+}
+
+Block derive_coordinate(const Joint& joint, const Coordinate& coordinate, int immovable) {
+  Block block;
+  block.name = coordinate.name;
+  block.immovable = immovable;
+  ScalarRow row{coordinate.name, nullptr, RowKind::equality, -1, {}, {}, {}, {}, {}};
+  block.rows.push_back(derive_row(joint, std::move(row), coordinate.value, immovable));
+  return finished(joint, std::move(block));
+}
+
+}  // namespace cdot::derive
