@@ -52,6 +52,8 @@ struct Planar {
     return v.x * v.x + v.y * v.y < speed * speed && std::fabs(v.w) < speed;
   }
 
+  static InverseMass unit_mass() { return {T(1), T(1)}; }
+
   static bool immovable(const InverseMass& m) { return m.m == 0 && m.I == 0; }
 };
 

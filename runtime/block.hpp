@@ -1,0 +1,102 @@
+// Row blocks as a solver sees them: arrays of numbers and functions that loop over them. Which
+// joint, coordinate or immovable variant stands behind a block is not known here.
+#pragma once
+
+#include <vector>
+
+#include "runtime/bodies.hpp"
+#include "runtime/kernel.hpp"
+#include "runtime/settings.hpp"
+
+namespace cdot {
+
+template <class S>
+struct Batch;
+
+// The loops of one row block over the slots [begin, end) of a batch, made by
+// runtime/block_loops.hpp.
+template <class S>
+struct BlockOps {
+  using T = typename S::Scalar;
+  using Velocity = typename S::Velocity;
+  using Slots = Batch<S>&;
+
+  int bodies, rows;
+  int parameter_size, jacobian_size;  // in numbers of type T
+  bool explicit_time;
+
+  // C and J, and the rows' drift dC/dt where C depends on the time.
+  void (*evaluate)(Slots, int begin, int end, const Bodies<S>&, T time);
+  // C alone, at the present poses.
+  void (*position)(Slots, int begin, int end, const Bodies<S>&, T time);
+  // K from J, one triangle, into `factor`; and in its place its factorisation.
+  void (*effective_mass)(Slots, int begin, int end, const Bodies<S>&);
+  void (*factorize)(Slots, int begin, int end);
+  // J velocity.
+  void (*velocity)(const Batch<S>&, int begin, int end, const Velocity* velocity, T* Jv);
+  // velocity += M^-1 J^T lambda, lambda laid out like the batch's.
+  void (*apply)(const Batch<S>&, int begin, int end, const Bodies<S>&, const T* lambda, Velocity*);
+  // One sweep of sequential impulses, added to `lambda` and to the velocities: exact rows, and rows
+  // with softness and bounds (which keep K in `factor`).
+  void (*iterate)(const Batch<S>&, int begin, int end, Bodies<S>&, T* lambda);
+  void (*iterate_bounded)(Slots, int begin, int end, Bodies<S>&);
+  // One sweep of Newton on C, with the J and K of the step: moves the poses and collects the moves
+  // in displacement, the impulses in correction.
+  void (*correct)(Slots, int begin, int end, Bodies<S>&, T time);
+  void (*correct_bounded)(Slots, int begin, int end, Bodies<S>&, T time);
+  // J and (M^-1 J^T)^T of one slot, [rows][freedom * bodies].
+  void (*dense)(const Batch<S>&, int slot, const Bodies<S>&, double* J, double* weighted);
+  // J^T lambda of one slot: the impulse by body.
+  void (*transposed)(const Batch<S>&, int slot, const T* lambda, Velocity* impulse);
+  // d(J^T lambda)/dq of one slot, [freedom * bodies][freedom * bodies].
+  void (*stiffness)(const Batch<S>&, int slot, const Bodies<S>&, T time, const T* lambda, T* H);
+};
+
+// How rows that are not plainly exact get their bias, softness and bounds: one constant per effect,
+// defined where the effect is. A batch under no law has none of these numbers.
+template <class S>
+struct Law {
+  using T = typename S::Scalar;
+  int constants;  // numbers per slot that the law keeps in Batch::constants
+  bool reported;  // its error counts in worst_position_error(): the joint's own rows, not an
+                  // effect's
+  // Fills bias, softness, lower and upper of [begin, end) from C, K and the constants.
+  void (*fill)(Batch<S>&, int begin, int end, T h, const Settings&);
+  // What the drift correction shall remove of one slot's C, row by row. Null: nothing.
+  void (*error)(const Batch<S>&, int slot, T* error);
+  // Potential energy of one slot. Null: none.
+  double (*energy)(const Batch<S>&, int slot);
+};
+
+// All blocks of one kind under one law, slot by slot. Slots of an island are neighbours.
+template <class S>
+struct Batch {
+  using T = typename S::Scalar;
+
+  const BlockOps<S>* ops = nullptr;
+  const Law<S>* law = nullptr;  // null: exact rows, J v = -bias
+  std::vector<RowKind> kinds;   // [rows]
+  std::vector<int> joint;       // that the slot belongs to
+  std::vector<int> body;        // [slot][bodies]
+  std::vector<T> parameters;    // [slot][parameter_size]
+  std::vector<T> jacobian;      // [slot][jacobian_size]
+  std::vector<T> factor;        // [slot][rows (rows + 1) / 2]
+  std::vector<T> C, bias;       // [slot][rows]
+  std::vector<T> lambda;        // impulse of the velocity solve, kept for the next step
+  std::vector<T> correction;    // impulse of the drift correction
+  // Only under a law:
+  std::vector<T> softness, lower, upper;  // [slot][rows]
+  std::vector<T> constants;               // [slot][law->constants]
+
+  int count() const { return static_cast<int>(joint.size()); }
+  int triangle() const { return ops->rows * (ops->rows + 1) / 2; }
+};
+
+// The slots of a batch that belong to one island.
+template <class S>
+struct Segment {
+  Batch<S>* batch;
+  int begin, end;
+};
+
+}  // namespace cdot

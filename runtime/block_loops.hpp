@@ -1,0 +1,262 @@
+// The loops of BlockOps, written once for every generated row block. The only place that calls
+// kernels in step().
+#pragma once
+
+#include <type_traits>
+
+#include "runtime/block.hpp"
+
+namespace cdot {
+
+// Joint owns the parameters; Block is the joint, one of its coordinates, or either with a body
+// immovable.
+template <class S, class Joint, class Block>
+struct BlockLoops {
+  using T = typename S::Scalar;
+  using Pose = typename S::Pose;
+  using Velocity = typename S::Velocity;
+  using InverseMass = typename S::InverseMass;
+  using Parameters = typename Joint::template Parameters<T>;
+  using Jacobian = typename Block::template Jacobian<T>;
+  static constexpr int bodies = Block::bodies;
+  static constexpr int rows = Block::rows;
+  static constexpr int width = S::freedom * bodies;
+  static constexpr int triangle = rows * (rows + 1) / 2;
+
+  // An empty struct (all entries of J known) has size 1 but holds nothing.
+  template <class Struct>
+  static constexpr int numbers() {
+    return std::is_empty_v<Struct> ? 0 : static_cast<int>(sizeof(Struct) / sizeof(T));
+  }
+
+  // Generated structs hold numbers of type T and nothing else; here they lie in arrays of T.
+  template <class Struct, class Number>
+  static auto& as(Number* numbers_of, int slot) {
+    using Target = std::conditional_t<std::is_const_v<Number>, const Struct, Struct>;
+    return *reinterpret_cast<Target*>(numbers_of + slot * numbers<Struct>());
+  }
+
+  static const int* bodies_of(const Batch<S>& batch, int slot) {
+    return batch.body.data() + slot * bodies;
+  }
+
+  template <class Item>
+  static void gather(const std::vector<Item>& from, const int* body, Item (&to)[bodies]) {
+    for (int k = 0; k < bodies; ++k) to[k] = from[static_cast<size_t>(body[k])];
+  }
+
+  static void evaluate(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      Pose q[bodies];
+      gather(all.pose, bodies_of(batch, slot), q);
+      const Parameters& p = as<Parameters>(batch.parameters.data(), slot);
+      T C[rows];
+      Block::jacobian(q, p, time, C, as<Jacobian>(batch.jacobian.data(), slot));
+      for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
+      T drift[rows] = {};
+      if constexpr (Block::explicit_time) Block::time_derivative(q, p, time, drift);
+      for (int r = 0; r < rows; ++r) batch.bias[slot * rows + r] = drift[r];
+    }
+  }
+
+  static void position(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      Pose q[bodies];
+      gather(all.pose, bodies_of(batch, slot), q);
+      T C[rows];
+      Block::position(q, as<Parameters>(batch.parameters.data(), slot), time, C);
+      for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
+    }
+  }
+
+  static void effective_mass(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {
+    for (int slot = begin; slot < end; ++slot) {
+      InverseMass m[bodies];
+      gather(all.effective_mass, bodies_of(batch, slot), m);
+      T K[triangle];
+      Block::effective_mass(as<Jacobian>(batch.jacobian.data(), slot), m, K);
+      for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = K[k];
+    }
+  }
+
+  static void factorize(Batch<S>& batch, int begin, int end) {
+    for (int slot = begin; slot < end; ++slot) {
+      T K[triangle], F[triangle];
+      for (int k = 0; k < triangle; ++k) K[k] = batch.factor[slot * triangle + k];
+      Block::factor(K, F);
+      for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = F[k];
+    }
+  }
+
+  static void velocity(const Batch<S>& batch, int begin, int end, const Velocity* of, T* out) {
+    for (int slot = begin; slot < end; ++slot) {
+      Velocity v[bodies];
+      for (int k = 0; k < bodies; ++k) v[k] = of[bodies_of(batch, slot)[k]];
+      T Jv[rows];
+      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
+      for (int r = 0; r < rows; ++r) out[slot * rows + r] = Jv[r];
+    }
+  }
+
+  static void apply(const Batch<S>& batch, int begin, int end, const Bodies<S>& all,
+                    const T* impulses, Velocity* to) {
+    for (int slot = begin; slot < end; ++slot) {
+      T lambda[rows];
+      for (int r = 0; r < rows; ++r) lambda[r] = impulses[slot * rows + r];
+      push(batch, slot, all, lambda, to);
+    }
+  }
+
+  // to += M^-1 J^T lambda
+  static void push(const Batch<S>& batch, int slot, const Bodies<S>& all, const T (&lambda)[rows],
+                   Velocity* to) {
+    const int* body = bodies_of(batch, slot);
+    Velocity v[bodies];
+    InverseMass m[bodies];
+    gather(all.effective_mass, body, m);
+    for (int k = 0; k < bodies; ++k) v[k] = to[body[k]];
+    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), m, lambda, v);
+    for (int k = 0; k < bodies; ++k) to[body[k]] = v[k];
+  }
+
+  // K lambda = -(J v + bias)
+  static void iterate(const Batch<S>& batch, int begin, int end, Bodies<S>& all, T* impulses) {
+    for (int slot = begin; slot < end; ++slot) {
+      Velocity v[bodies];
+      gather(all.velocity, bodies_of(batch, slot), v);
+      T Jv[rows], b[rows], F[triangle], lambda[rows];
+      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
+      for (int r = 0; r < rows; ++r) b[r] = -(Jv[r] + batch.bias[slot * rows + r]);
+      for (int k = 0; k < triangle; ++k) F[k] = batch.factor[slot * triangle + k];
+      Block::solve(F, b, lambda);
+      for (int r = 0; r < rows; ++r) impulses[slot * rows + r] += lambda[r];
+      push(batch, slot, all, lambda, all.velocity.data());
+    }
+  }
+
+  // Row by row, since each row may stop at a bound of its own:
+  // (K_rr + softness) change = -(J v + bias + softness lambda), lower <= lambda + change <= upper
+  static void iterate_bounded(Batch<S>& batch, int begin, int end, Bodies<S>& all) {
+    for (int slot = begin; slot < end; ++slot) {
+      Velocity v[bodies];
+      gather(all.velocity, bodies_of(batch, slot), v);
+      T Jv[rows], change[rows];
+      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
+      const T* K = batch.factor.data() + slot * triangle;
+      for (int r = 0; r < rows; ++r) {
+        const int i = slot * rows + r;
+        const T softness = batch.softness[i], before = batch.lambda[i];
+        const T b = -(Jv[r] + batch.bias[i] + softness * before);
+        const T wanted = before + b * inverse(K[r * (r + 1) / 2 + r] + softness);
+        const T after = select(wanted < batch.lower[i], batch.lower[i],
+                               select(wanted > batch.upper[i], batch.upper[i], wanted));
+        batch.lambda[i] = after;
+        change[r] = after - before;
+        for (int s = r + 1; s < rows; ++s) Jv[s] += K[s * (s + 1) / 2 + r] * change[r];
+      }
+      push(batch, slot, all, change, all.velocity.data());
+    }
+  }
+
+  // K lambda = -C, displacement = M^-1 J^T lambda
+  static void correct(Batch<S>& batch, int begin, int end, Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      position(batch, slot, slot + 1, all, time);
+      T b[rows], F[triangle], lambda[rows];
+      for (int r = 0; r < rows; ++r) b[r] = -batch.C[slot * rows + r];
+      for (int k = 0; k < triangle; ++k) F[k] = batch.factor[slot * triangle + k];
+      Block::solve(F, b, lambda);
+      displace(batch, slot, all, lambda);
+    }
+  }
+
+  // The same row by row, for the part of C that the law calls an error.
+  static void correct_bounded(Batch<S>& batch, int begin, int end, Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      position(batch, slot, slot + 1, all, time);
+      T error[rows], lambda[rows];
+      batch.law->error(batch, slot, error);
+      const T* K = batch.factor.data() + slot * triangle;
+      for (int r = 0; r < rows; ++r) {
+        lambda[r] = -error[r] * inverse(K[r * (r + 1) / 2 + r]);
+        for (int s = r + 1; s < rows; ++s) error[s] += K[s * (s + 1) / 2 + r] * lambda[r];
+      }
+      displace(batch, slot, all, lambda);
+    }
+  }
+
+  static void displace(Batch<S>& batch, int slot, Bodies<S>& all, const T (&lambda)[rows]) {
+    const int* body = bodies_of(batch, slot);
+    Velocity moved[bodies] = {};
+    InverseMass m[bodies];
+    gather(all.effective_mass, body, m);
+    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), m, lambda, moved);
+    for (int r = 0; r < rows; ++r) batch.correction[slot * rows + r] += lambda[r];
+    for (int k = 0; k < bodies; ++k) {
+      const size_t i = static_cast<size_t>(body[k]);
+      all.pose[i] = S::moved(all.pose[i], moved[k]);
+      all.displacement[i] = S::sum(all.displacement[i], moved[k], T(1));
+    }
+  }
+
+  static void dense(const Batch<S>& batch, int slot, const Bodies<S>& all, double* J,
+                    double* weighted) {
+    InverseMass m[bodies];
+    gather(all.effective_mass, bodies_of(batch, slot), m);
+    T D[rows][width], W[rows][width];
+    Block::dense(as<Jacobian>(batch.jacobian.data(), slot), D);
+    Block::inverse_mass_jacobian(as<Jacobian>(batch.jacobian.data(), slot), m, W);
+    for (int r = 0; r < rows; ++r) {
+      for (int c = 0; c < width; ++c) {
+        J[r * width + c] = D[r][c];
+        weighted[r * width + c] = W[r][c];
+      }
+    }
+  }
+
+  static void transposed(const Batch<S>& batch, int slot, const T* impulses, Velocity* impulse) {
+    InverseMass one[bodies];
+    for (int k = 0; k < bodies; ++k) one[k] = S::unit_mass();
+    T lambda[rows];
+    for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
+    for (int k = 0; k < bodies; ++k) impulse[k] = Velocity{};
+    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), one, lambda, impulse);
+  }
+
+  static void stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, T time,
+                        const T* impulses, T* H) {
+    Pose q[bodies];
+    gather(all.pose, bodies_of(batch, slot), q);
+    T lambda[rows], D[width][width];
+    for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
+    Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, D);
+    for (int r = 0; r < width; ++r)
+      for (int c = 0; c < width; ++c) H[r * width + c] = D[r][c];
+  }
+
+  static constexpr BlockOps<S> ops() {
+    return {bodies,
+            rows,
+            numbers<Parameters>(),
+            numbers<Jacobian>(),
+            Block::explicit_time,
+            evaluate,
+            position,
+            effective_mass,
+            factorize,
+            velocity,
+            apply,
+            iterate,
+            iterate_bounded,
+            correct,
+            correct_bounded,
+            dense,
+            transposed,
+            stiffness};
+  }
+};
+
+template <class S, class Joint, class Block>
+inline constexpr BlockOps<S> block_ops = BlockLoops<S, Joint, Block>::ops();
+
+}  // namespace cdot

@@ -1,0 +1,48 @@
+// The registry as data: names, rows, parameters and coordinates of every joint.
+#include "runtime/joints.hpp"
+
+#include <algorithm>
+#include <type_traits>
+
+#include "generated/registry.hpp"
+
+namespace cdot {
+namespace {
+
+template <class Joint>
+JointType describe() {
+  JointType type;
+  type.name = Joint::name;
+  type.bodies = Joint::bodies;
+  type.row_kinds.assign(Joint::row_kinds.begin(), Joint::row_kinds.end());
+  type.parameters.assign(Joint::parameters.begin(), Joint::parameters.end());
+  [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {
+    (type.coordinates.push_back({Coordinates::name, Coordinates::unit}), ...);
+  }(std::type_identity<typename Joint::Coordinates>{});
+  type.parameter_size = 0;
+  for (const ParameterInfo& info : type.parameters)
+    type.parameter_size = std::max(type.parameter_size, info.offset + info.size);
+  type.explicit_time = Joint::explicit_time;
+  return type;
+}
+
+template <class... Joints>
+std::vector<JointType> describe_all(std::type_identity<std::tuple<Joints...>>) {
+  return {describe<Joints>()...};
+}
+
+}  // namespace
+
+std::span<const JointType> joint_types() {
+  static const std::vector<JointType> types = describe_all(std::type_identity<planar::Joints>{});
+  return types;
+}
+
+const JointType* find_joint_type(std::string_view name) {
+  const auto types = joint_types();
+  const auto found = std::find_if(types.begin(), types.end(),
+                                  [&](const JointType& type) { return type.name == name; });
+  return found == types.end() ? nullptr : &*found;
+}
+
+}  // namespace cdot

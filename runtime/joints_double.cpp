@@ -1,0 +1,16 @@
+// Instantiates every generated kernel in double. Apart because this is most of what there is to
+// compile.
+#include "generated/registry.hpp"
+#include "runtime/joint_table.hpp"
+#include "runtime/planar.hpp"
+
+namespace cdot {
+
+template <>
+const std::vector<JointEntry<Planar<double>>>& joint_entries<Planar<double>>() {
+  static const auto entries =
+      make_joint_entries<Planar<double>>(std::type_identity<planar::Joints>{});
+  return entries;
+}
+
+}  // namespace cdot

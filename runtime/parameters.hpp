@@ -1,0 +1,17 @@
+// A joint's parameters as a scene names them, turned into the numbers that its kernel reads.
+#pragma once
+
+#include <vector>
+
+#include "runtime/joints.hpp"
+#include "runtime/planar.hpp"
+#include "runtime/settings.hpp"
+
+namespace cdot {
+
+// All numbers of Parameters<double>: given ones checked and normalised, the others by the spec's
+// default from the poses of the joint's bodies. Throws Error.
+std::vector<double> joint_parameters(int type, const std::vector<NamedValue>& given,
+                                     const planar::Pose<double>* poses);
+
+}  // namespace cdot
