@@ -1,0 +1,47 @@
+// The state of a scene at one time, and frames picked at the times that somebody asked for. Steps are never shortened
+// to hit such a time: what is written does not change what is simulated.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "runtime/world.hpp"
+
+namespace cdot {
+
+struct BodyState {
+  double x, y, angle, vx, vy, w;
+};
+
+struct Frame {
+  double time = 0;
+  std::vector<BodyState> bodies;
+  double energy = 0;  // [J]
+  WorstError worst;   // |C| of the joint that is off most [m], [rad]
+};
+
+Frame frame_of(const World<double>& world, double time, int bodies);
+bool finite(const Frame& frame);
+
+// Between two steps: positions by the cubic that has both ends' positions and velocities, the rest linear. Its error
+// is of fourth order in the step, that of the step itself of first.
+Frame between(const Frame& before, const Frame& after, double time);
+
+// Hands on the frames at given times as the steps go by.
+class Sampler {
+ public:
+  using Take = std::function<void(const Frame&)>;
+  Sampler(std::vector<double> ascending_times, Take take);
+  // `before` and `after` are the ends of a step, equal at the start.
+  void step(const Frame& before, const Frame& after);
+
+ private:
+  std::vector<double> times_;
+  std::size_t next_ = 0;
+  Take take_;
+};
+
+// 0, dt, 2 dt, … up to `until`.
+std::vector<double> every(double dt, double until);
+
+}  // namespace cdot

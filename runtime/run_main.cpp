@@ -1,0 +1,143 @@
+// cdot-run: the command line. Reads a scene, runs it, writes what was asked for.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+
+#include "runtime/run_list.hpp"
+#include "runtime/run_output.hpp"
+#include "runtime/run_simulate.hpp"
+#include "runtime/scene.hpp"
+#include "runtime/viewer.hpp"
+
+namespace {
+
+enum Status { well = 0, answer_is_no = 1, bad_input = 2, stopped = 130 };
+
+struct Arguments {
+  std::string scene, csv, html, svg;
+  double until = 0, step = 0, every = 0, tolerance = 0;
+  std::vector<double> times;
+  std::string solver, drift;
+  int iterations = 0, substeps = 0;
+  bool project = false, json = false, progress = false;
+};
+
+constexpr const char* footer = R"(
+Examples
+  cdot-run simulate specs/scenes/four_bar.toml
+  cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html      then open the page
+  cdot-run simulate specs/scenes/four_bar.toml --step 0.0001 --every 0.1 -o four_bar.csv
+  cdot-run list                                                          the joints that a scene may name
+
+Exit status
+  0  all well
+  1  the answer is no: the run was not finite, or a joint was off by more than the tolerance
+  2  bad usage, or a scene with mistakes; each is shown with its line and the likely fix
+
+The format of scenes is described in specs/scenes/README.md.)";
+
+void add_simulate(CLI::App& app, Arguments& arguments) {
+  CLI::App* simulate = app.add_subcommand("simulate", "Run a scene and say how it went");
+  simulate->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
+  simulate->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
+      ->check(CLI::PositiveNumber);
+  simulate->add_option("--step", arguments.step, "the time step [s]")->check(CLI::PositiveNumber);
+  simulate->add_option("--solver", arguments.solver, "direct or iterative")
+      ->check(CLI::IsMember({"direct", "iterative"}));
+  simulate->add_option("--drift", arguments.drift, "what keeps joints together: projection, baumgarte or none")
+      ->check(CLI::IsMember({"projection", "baumgarte", "none"}));
+  simulate->add_option("--iterations", arguments.iterations, "of the iterative solver, per substep")
+      ->check(CLI::PositiveNumber);
+  simulate->add_option("--substeps", arguments.substeps, "per step")->check(CLI::PositiveNumber);
+  simulate->add_option("--tolerance", arguments.tolerance, "joint error from which the run has failed [m, rad]")
+      ->check(CLI::PositiveNumber);
+  simulate->add_flag("--project", arguments.project, "move a start that does not fit onto its joints");
+  simulate->add_option("-o,--output", arguments.csv,
+                       "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name");
+  auto* every = simulate->add_option("--every", arguments.every, "a CSV row each so many seconds; else one per step")
+                    ->check(CLI::PositiveNumber);
+  simulate->add_option("--times", arguments.times, "CSV rows at these times: 0,0.5,2")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(every);
+  simulate->add_option("--html", arguments.html, "write a page that plays the mechanism, all in one file");
+  simulate->add_option("--svg", arguments.svg, "write a picture of the mechanism at several times, with its traces");
+  simulate->add_flag("--json", arguments.json, "the summary as JSON");
+  simulate->add_flag("--progress", arguments.progress, "show progress even where stderr is no terminal");
+  simulate->footer(footer);
+}
+
+void override_scene(const Arguments& arguments, cdot::Scene& scene) {
+  if (arguments.until > 0) scene.duration = arguments.until;
+  if (arguments.step > 0) scene.step = arguments.step;
+  if (arguments.tolerance > 0) scene.tolerance = arguments.tolerance;
+  if (arguments.iterations > 0) scene.settings.iterations = arguments.iterations;
+  if (arguments.substeps > 0) scene.settings.substeps = arguments.substeps;
+  if (arguments.project) scene.project = true;
+  cdot::Settings& settings = scene.settings;
+  if (arguments.solver == "direct") settings.solver = cdot::Solver::direct;
+  if (arguments.solver == "iterative") settings.solver = cdot::Solver::iterative;
+  if (arguments.drift == "projection") settings.drift = cdot::Drift::projection;
+  if (arguments.drift == "baumgarte") settings.drift = cdot::Drift::baumgarte;
+  if (arguments.drift == "none") settings.drift = cdot::Drift::none;
+}
+
+cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene, cdot::OutputFile* csv) {
+  cdot::RunOptions options;
+  if (csv) {
+    csv->write(cdot::csv_head(scene));
+    options.row = [csv](const cdot::Frame& frame) { csv->write(cdot::csv_row(frame)); };
+  }
+  options.row_times = arguments.times;
+  std::sort(options.row_times.begin(), options.row_times.end());
+  if (arguments.every > 0) options.row_times = cdot::every(arguments.every, scene.duration);
+  if (!arguments.html.empty() || !arguments.svg.empty()) options.film_times = cdot::film_times(scene);
+  options.progress = arguments.progress || ::isatty(STDERR_FILENO) != 0;
+  return options;
+}
+
+int simulate(const Arguments& arguments) {
+  cdot::Scene scene = cdot::read_scene(arguments.scene);
+  override_scene(arguments, scene);
+  std::optional<cdot::OutputFile> csv;
+  if (!arguments.csv.empty()) csv.emplace(arguments.csv);
+
+  std::string warnings;
+  const cdot::RunOptions options = options_of(arguments, scene, csv ? &*csv : nullptr);
+  const cdot::RunResult result = cdot::simulate(scene, options, warnings);
+  fmt::print(stderr, "{}", warnings);
+  if (result.interrupted) return stopped;
+
+  if (csv) csv->commit();
+  if (!arguments.html.empty()) cdot::write_file(arguments.html, cdot::html_page(scene, result.film));
+  if (!arguments.svg.empty()) cdot::write_file(arguments.svg, cdot::svg_still(scene, result.film));
+  fmt::print("{}", arguments.json ? cdot::summary_json(scene, result) : cdot::summary_text(scene, result));
+  return cdot::failure(scene, result).empty() ? well : answer_is_no;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Runs mechanisms: bodies, and joints whose kernels were derived from their position constraints.");
+  app.name("cdot-run");
+  app.require_subcommand(1);
+  app.footer(footer);
+  Arguments arguments;
+  add_simulate(app, arguments);
+  CLI::App* list = app.add_subcommand("list", "Show the joints that a scene may name, with their parameters");
+  list->add_flag("--json", arguments.json, "as JSON");
+  try {
+    app.parse(argc, argv);
+    if (!list->parsed()) return simulate(arguments);
+    fmt::print("{}", arguments.json ? cdot::list_json() : cdot::list_text());
+    return well;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? well : bad_input;
+  } catch (const cdot::SceneError& error) {
+    fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes, error.mistakes == 1 ? "" : "s");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "cdot-run: {}\n", error.what());
+  }
+  return bad_input;
+}

@@ -1,0 +1,65 @@
+#include "runtime/run_output.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <iterator>
+
+namespace cdot {
+
+OutputFile::OutputFile(const std::string& path)
+    : path_(path), temporary_(fmt::format("{}.{}.part", path, ::getpid())) {
+  file_ = std::fopen(temporary_.c_str(), "wb");
+  if (!file_) fail("cannot be written");
+}
+
+OutputFile::~OutputFile() {
+  if (!file_) return;
+  std::fclose(file_);
+  std::remove(temporary_.c_str());
+}
+
+void OutputFile::write(std::string_view text) {
+  if (std::fwrite(text.data(), 1, text.size(), file_) != text.size()) fail("cannot be written");
+}
+
+void OutputFile::commit() {
+  if (std::fflush(file_) != 0) fail("cannot be written");
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot take its name");
+  std::fclose(file_);
+  file_ = nullptr;
+}
+
+void OutputFile::fail(const char* what) const {
+  throw Error(fmt::format("{}: {}: {}", path_, what, std::strerror(errno)));
+}
+
+void write_file(const std::string& path, std::string_view text) {
+  OutputFile file(path);
+  file.write(text);
+  file.commit();
+}
+
+std::string csv_head(const Scene& scene) {
+  std::string head = "time";
+  for (const SceneBody& body : scene.bodies) {
+    for (const char* column : {"x", "y", "angle", "vx", "vy", "omega"}) {
+      head += fmt::format(",{}.{}", body.name, column);
+    }
+  }
+  return head + "\n";
+}
+
+std::string csv_row(const Frame& frame) {
+  std::string row;
+  auto out = fmt::format_to(std::back_inserter(row), "{}", frame.time);
+  for (const BodyState& b : frame.bodies) {
+    out = fmt::format_to(out, ",{},{},{},{},{},{}", b.x, b.y, b.angle, b.vx, b.vy, b.w);
+  }
+  row += '\n';
+  return row;
+}
+
+}  // namespace cdot

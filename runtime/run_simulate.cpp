@@ -1,0 +1,117 @@
+#include "runtime/run_simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <csignal>
+#include <ctime>
+
+namespace cdot {
+namespace {
+
+constexpr double start_tolerance = 1e-6;  // [m], [rad], and per second: what a start may be off unreported
+
+volatile std::sig_atomic_t interrupted = 0;
+void interrupt(int) { interrupted = 1; }
+
+double cpu_now() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+// The world at the start, moved onto its joints if the scene asks for it.
+World<double> world_at_start(const Scene& scene, std::string& warnings) {
+  World<double> world = build_world<double>(scene);
+  if (scene.project && !world.project(start_tolerance * start_tolerance)) {
+    warnings += fmt::format("{}: warning: the start could not be projected: joints contradict each other\n", scene.file);
+  }
+  warnings += inconsistency_report(scene, world, start_tolerance);
+  world.prepare();
+  return world;
+}
+
+// A line on stderr that is written over, at most a few times a second.
+class Progress {
+ public:
+  Progress(bool wanted, double until) : wanted_(wanted), until_(until) {}
+  ~Progress() {
+    if (shown_) fmt::print(stderr, "\r{:60}\r", "");
+  }
+  void at(double time) {
+    if (!wanted_ || ++calls_ % 64 != 0) return;
+    const std::time_t now = std::time(nullptr);
+    if (now == last_) return;
+    if (last_ != 0) {
+      fmt::print(stderr, "\r{:3.0f} %  {:.4g} s of {:.4g} s", 100 * time / until_, time, until_);
+      shown_ = true;
+    }
+    last_ = now;
+  }
+
+ private:
+  bool wanted_, shown_ = false;
+  double until_;
+  unsigned calls_ = 0;
+  std::time_t last_ = 0;
+};
+
+void judge(const Scene& scene, const Frame& frame, RunResult& result) {
+  const WorstError& worst = frame.worst;
+  if (worst.joint >= 0 && worst.value >= result.worst_error) {
+    result.worst_error = worst.value;
+    result.worst_error_time = frame.time;
+    result.worst_joint = scene.joints[static_cast<std::size_t>(worst.joint)].name;
+  }
+  result.finite = finite(frame) && std::isfinite(worst.value);
+  result.energy_drift = std::max(result.energy_drift, std::abs(frame.energy - result.energy_start));
+  result.energy_end = frame.energy;
+  result.time = frame.time;
+}
+
+void finish(const Scene& scene, const World<double>& world, RunResult& result) {
+  for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+    if (world.broken(static_cast<int>(k))) result.broken_joints.push_back(scene.joints[k].name);
+  }
+  result.redundant_rows = world.redundant_rows();
+  result.notes = world.notes();
+  result.interrupted = interrupted != 0;
+}
+
+}  // namespace
+
+RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
+  RunResult result;
+  World<double> world = world_at_start(scene, warnings);
+  Sampler rows(options.row_times, options.row ? options.row : [](const Frame&) {});
+  Sampler film(options.film_times, [&](const Frame& frame) { result.film.push_back(frame); });
+  const bool every_step = options.row && options.row_times.empty();
+  Progress progress(options.progress, scene.duration);
+  interrupted = 0;
+  const auto previous_handler = std::signal(SIGINT, interrupt);
+
+  const int bodies = static_cast<int>(scene.bodies.size());
+  const auto steps = static_cast<long long>(std::ceil(scene.duration / scene.step * (1 - 1e-12)));
+  Frame before = frame_of(world, 0, bodies), after = before;
+  result.energy_start = before.energy;
+  for (long long k = 0;; ++k) {
+    judge(scene, after, result);
+    if (!result.finite) break;
+    if (every_step) options.row(after);
+    rows.step(before, after);
+    film.step(before, after);
+    if (k == steps || interrupted != 0) break;
+    const double start = cpu_now();
+    world.step(scene.step);
+    result.cpu += cpu_now() - start;
+    result.steps = k + 1;
+    std::swap(before, after);
+    after = frame_of(world, static_cast<double>(k + 1) * scene.step, bodies);
+    progress.at(after.time);
+  }
+  std::signal(SIGINT, previous_handler);
+  finish(scene, world, result);
+  return result;
+}
+
+}  // namespace cdot

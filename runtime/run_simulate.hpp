@@ -1,0 +1,41 @@
+// Runs a scene from start to end: rows and film frames on the way, a verdict at the end.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/run_frame.hpp"
+#include "runtime/scene.hpp"
+
+namespace cdot {
+
+struct RunOptions {
+  std::function<void(const Frame&)> row;  // called for every row of the trajectory, if set
+  std::vector<double> row_times;          // when; empty: after every step
+  std::vector<double> film_times;
+  bool progress = false;  // on stderr
+};
+
+struct RunResult {
+  double time = 0;  // reached [s]
+  long long steps = 0;
+  double cpu = 0;  // spent in step() [s]
+  double worst_error = 0, worst_error_time = 0;
+  std::string worst_joint;
+  double energy_start = 0, energy_end = 0, energy_drift = 0;  // [J]; drift: the largest |E - E_start|
+  int redundant_rows = 0;
+  std::vector<std::string> broken_joints, notes;
+  bool finite = true, interrupted = false;
+  std::vector<Frame> film;
+};
+
+// `warnings` receives what was odd but not wrong (an inconsistent start), in the lines of the scene.
+RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings);
+
+// Why the answer is no; empty if the run stayed finite and its joints held.
+std::string failure(const Scene& scene, const RunResult& result);
+
+std::string summary_text(const Scene& scene, const RunResult& result);
+std::string summary_json(const Scene& scene, const RunResult& result);
+
+}  // namespace cdot

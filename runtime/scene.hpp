@@ -1,0 +1,93 @@
+// A scene: what a TOML file says, checked and with every name resolved, as plain data.
+// specs/scenes/README.md is the format. Reading knows the joints only by their table of names and
+// parameters (runtime/joints.hpp).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/effects.hpp"
+#include "runtime/scene_text.hpp"
+#include "runtime/settings.hpp"
+#include "runtime/world.hpp"
+
+namespace cdot {
+
+using Vec2 = std::array<double, 2>;
+
+inline constexpr int world_body = -1;  // the body index that "world" stands for in a scene
+
+// How a body is drawn, and how its mass is spread if no inertia is given.
+struct Shape {
+  enum Kind { none, rod, box, disc } kind = none;
+  double length = 0,
+         width = 0;  // along and across the body's x axis [m]; a disc's length is its diameter
+};
+
+struct SceneBody {
+  std::string name;
+  BodyDefinition definition;
+  Shape shape;
+  std::vector<Vec2> traces;  // points of the body whose paths are drawn
+};
+
+struct SceneSpring {
+  Softness softness;
+  std::optional<double> rest;  // where the coordinate is at the start, if not given
+};
+
+// Effects on one coordinate of a joint.
+struct SceneEffects {
+  std::string coordinate;
+  std::optional<Limit> limit;
+  std::optional<Motor> motor;
+  std::vector<SceneSpring> springs;  // a damper is a spring without stiffness
+  std::optional<DryFriction> friction;
+};
+
+struct SceneJoint {
+  std::string name;
+  JointDefinition definition;  // its bodies are indices into Scene::bodies, or world_body
+  std::vector<SceneEffects> effects;
+  std::optional<double> breaking;
+  Span where;  // its header in the file
+};
+
+struct Scene {
+  std::string file, title;
+  Settings settings;
+  double duration = 10;     // [s]
+  double step = 0.001;      // [s]
+  double tolerance = 0.01;  // [m], [rad]: the joint error from which a run has failed
+  bool project = false;     // move an inconsistent start onto the joints
+  std::vector<SceneBody> bodies;
+  std::vector<SceneJoint> joints;
+  std::vector<SpringDefinition> springs;
+  std::shared_ptr<const Mistakes> source;  // to report, in its lines, what only the World finds
+};
+
+// Thrown if a scene has mistakes: what() is the whole report, one paragraph per mistake.
+struct SceneError : std::runtime_error {
+  SceneError(const std::string& report, int count) : std::runtime_error(report), mistakes(count) {}
+  int mistakes;
+};
+
+Scene read_scene(const std::string& path);
+Scene read_scene(std::string_view text, const std::string& name);
+
+// The World of a scene: body k of the scene is body k of the World. What the World refuses is
+// thrown as SceneError.
+template <class T>
+World<T> build_world(const Scene& scene);
+
+// The rows that the start violates beyond `tolerance`, one paragraph per joint; empty if there are
+// none.
+template <class T>
+std::string inconsistency_report(const Scene& scene, const World<T>& world, double tolerance);
+
+}  // namespace cdot

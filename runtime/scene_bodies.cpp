@@ -1,0 +1,127 @@
+// The [[body]] entries of a scene: mass, pose, motion, what is drawn.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runtime/scene_read.hpp"
+
+namespace cdot {
+namespace {
+
+// { rod = length, width = … }, { box = [along, across] } or { disc = radius }
+Shape read_shape(Entry& body) {
+  Shape shape;
+  std::optional<Entry> entry = body.table("shape", "`shape` of " + body.what());
+  if (!entry) {
+    if (body.has("shape")) {
+      body.error(body.where("shape"), "`shape` must be a table", "shape = { rod = 1.0 }, { box = [1, 0.5] } or { disc = 0.2 }");
+    }
+    return shape;
+  }
+  const bool rod = entry->has("rod"), box = entry->has("box"), disc = entry->has("disc");
+  if (rod + box + disc != 1) {
+    entry->error(entry->header(), "a shape is one of rod, box and disc", "shape = { rod = 1.0 }");
+  }
+  const Quantity size{Sign::positive};
+  if (const auto length = entry->number("rod", size)) shape = {Shape::rod, *length, 0.06 * *length};
+  if (const auto sides = entry->numbers("box", 2, size)) shape = {Shape::box, (*sides)[0], (*sides)[1]};
+  if (const auto radius = entry->number("disc", size)) shape = {Shape::disc, 2 * *radius, 2 * *radius};
+  if (const auto width = entry->number("width", size)) {
+    if (!rod) entry->error(entry->where("width"), "`width` belongs to a rod");
+    shape.width = *width;
+  }
+  entry->close();
+  return shape;
+}
+
+// Moment of inertia about the centre of a body of uniform density.
+double uniform_inertia(const Shape& shape, double mass) {
+  switch (shape.kind) {
+    case Shape::rod:
+      return mass * shape.length * shape.length / 12;
+    case Shape::box:
+      return mass * (shape.length * shape.length + shape.width * shape.width) / 12;
+    case Shape::disc:
+      return mass * shape.length * shape.length / 8;
+    case Shape::none:
+      return 0;
+  }
+  return 0;
+}
+
+void read_mass(Entry& body, const Shape& shape, BodyDefinition& definition) {
+  definition.is_static = body.flag("static").value_or(false);
+  definition.fixed_rotation = body.flag("fixed_rotation").value_or(false);
+  const bool mass_given = body.has("mass"), inertia_given = body.has("inertia");
+  definition.mass = body.number("mass", {Sign::positive}).value_or(0);
+  const std::optional<double> inertia = body.number("inertia", {Sign::not_negative});
+  if (definition.is_static) return;
+  if (!mass_given) body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
+  definition.inertia = inertia_given ? inertia.value_or(1) : uniform_inertia(shape, definition.mass);
+  if (definition.fixed_rotation || definition.inertia > 0) return;
+  if (inertia_given) {
+    body.error(body.where("inertia"), "`inertia` is 0, but the body is free to turn",
+               "a point mass on a pin needs fixed_rotation = true");
+  } else if (shape.kind == Shape::none) {
+    body.error(body.header(), body.what() + " has no `inertia`",
+               "inertia = …, a shape to work it out from, or fixed_rotation = true");
+  }
+}
+
+void read_motion(Entry& body, BodyDefinition& definition) {
+  const Vec2 position = body.vec2("position").value_or(Vec2{});
+  definition.x = position[0];
+  definition.y = position[1];
+  definition.angle = body.number("angle", {Sign::any, true}).value_or(0);
+  const Vec2 velocity = body.vec2("velocity").value_or(Vec2{});
+  definition.vx = velocity[0];
+  definition.vy = velocity[1];
+  definition.w = body.number("spin", {Sign::any, true}).value_or(0);
+  for (const char* key : {"velocity", "spin"}) {
+    const bool moves = std::string_view(key) == "spin" ? definition.w != 0 : velocity != Vec2{};
+    if (definition.is_static && moves) {
+      body.error(body.where(key), fmt::format("a static body cannot move: `{}` is not 0", key));
+    }
+  }
+  if (definition.fixed_rotation && definition.w != 0) {
+    body.error(body.where("spin"), "a body with fixed_rotation cannot turn: `spin` is not 0");
+  }
+}
+
+void read_forces(Entry& body, BodyDefinition& definition) {
+  const Vec2 force = body.vec2("force").value_or(Vec2{});
+  definition.force_x = force[0];
+  definition.force_y = force[1];
+  definition.torque = body.number("torque").value_or(0);
+  definition.linear_damping = body.number("linear_damping", {Sign::not_negative}).value_or(0);
+  definition.angular_damping = body.number("angular_damping", {Sign::not_negative}).value_or(0);
+}
+
+// trace = true for the centre, [x, y] for a point of the body
+std::vector<Vec2> read_trace(Entry& body) {
+  if (body.is_array("trace")) {
+    const std::optional<Vec2> point = body.vec2("trace");
+    return point ? std::vector<Vec2>{*point} : std::vector<Vec2>{};
+  }
+  return body.flag("trace").value_or(false) ? std::vector<Vec2>{Vec2{}} : std::vector<Vec2>{};
+}
+
+}  // namespace
+
+void read_bodies(Entry& top, Scene& scene) {
+  std::map<std::string, Span> used{{"world", {}}};
+  for (Entry& entry : top.list("body")) {
+    SceneBody body;
+    body.name = read_name(entry, used, std::nullopt).value_or("");
+    body.shape = read_shape(entry);
+    read_mass(entry, body.shape, body.definition);
+    read_motion(entry, body.definition);
+    read_forces(entry, body.definition);
+    body.traces = read_trace(entry);
+    entry.close();
+    scene.bodies.push_back(std::move(body));
+  }
+  if (!top.has("body")) top.error({}, "a scene needs at least one body", "start with a line [[body]]");
+}
+
+}  // namespace cdot

@@ -1,0 +1,88 @@
+// From a scene to a World: the names are gone, what the World refuses is reported in the lines of the scene.
+#include <fmt/format.h>
+
+#include "runtime/scene.hpp"
+
+namespace cdot {
+namespace {
+
+template <class T>
+void add_effects(World<T>& world, int joint, const SceneJoint& source) {
+  for (const SceneEffects& effects : source.effects) {
+    const std::string& coordinate = effects.coordinate;
+    if (effects.limit) add_limit(world, joint, coordinate, *effects.limit);
+    if (effects.motor) add_motor(world, joint, coordinate, *effects.motor);
+    for (const SceneSpring& spring : effects.springs) {
+      const double rest = spring.rest ? *spring.rest : world.coordinate(joint, coordinate);
+      add_spring(world, joint, coordinate, {spring.softness, rest});
+    }
+    if (effects.friction) add_friction(world, joint, coordinate, *effects.friction);
+  }
+  if (source.breaking) set_breaking_load(world, joint, *source.breaking);
+}
+
+template <class T>
+void add_joint(World<T>& world, const SceneJoint& source) {
+  JointDefinition definition = source.definition;
+  for (int& body : definition.bodies) body = body == world_body ? world.ground() : body;
+  add_effects(world, world.add_joint(definition), source);
+}
+
+template <class T>
+void add_spring(World<T>& world, SpringDefinition spring) {
+  for (int* body : {&spring.body_a, &spring.body_b}) *body = *body == world_body ? world.ground() : *body;
+  world.add_spring(spring);
+}
+
+std::string row_text(const Inconsistency& row, int rows) {
+  const char* what = row.velocity ? "Cdot" : "C";
+  return rows == 1 ? fmt::format("{} = {:.3g}", what, row.value)
+                   : fmt::format("{}{} = {:.3g}", what, row.row + 1, row.value);
+}
+
+}  // namespace
+
+template <class T>
+World<T> build_world(const Scene& scene) {
+  World<T> world(scene.settings);
+  for (const SceneBody& body : scene.bodies) world.add_body(body.definition);
+  std::string report;
+  int mistakes = 0;
+  for (const SceneJoint& joint : scene.joints) {
+    try {
+      add_joint(world, joint);
+    } catch (const Error& error) {
+      report += scene.source->paragraph("error", joint.where, fmt::format("{}: {}", joint.name, error.what()), "");
+      ++mistakes;
+    }
+  }
+  if (mistakes > 0) throw SceneError(report, mistakes);
+  for (const SpringDefinition& spring : scene.springs) add_spring(world, spring);
+  return world;
+}
+
+template <class T>
+std::string inconsistency_report(const Scene& scene, const World<T>& world, double tolerance) {
+  std::string report;
+  const std::vector<Inconsistency> rows = world.inconsistencies(tolerance);
+  for (std::size_t k = 0; k < rows.size();) {
+    const int joint = rows[k].joint;
+    const SceneJoint& source = scene.joints[static_cast<std::size_t>(joint)];
+    const int joint_rows = static_cast<int>(world.joint_type(joint).row_kinds.size());
+    std::string list;
+    for (; k < rows.size() && rows[k].joint == joint; ++k) {
+      list += (list.empty() ? "" : ", ") + row_text(rows[k], joint_rows);
+    }
+    report += scene.source->paragraph(
+        "warning", source.where, fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name, list),
+        "correct the pose or velocity, or let project = true move the bodies onto their joints");
+  }
+  return report;
+}
+
+template World<double> build_world<double>(const Scene&);
+template World<float> build_world<float>(const Scene&);
+template std::string inconsistency_report(const Scene&, const World<double>&, double);
+template std::string inconsistency_report(const Scene&, const World<float>&, double);
+
+}  // namespace cdot

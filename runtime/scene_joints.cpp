@@ -1,0 +1,231 @@
+// The [[joint]] and [[spring]] entries of a scene. Which parameters and coordinates a joint has is asked of the table
+// of joint types; nothing here knows a joint by name.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "runtime/scene_read.hpp"
+
+namespace cdot {
+namespace {
+
+// "the point pa on body a", "the direction t on the world", "the scalar l [m]"
+std::string described(const ParameterInfo& parameter) {
+  if (parameter.kind == ParameterKind::scalar) return fmt::format("the scalar {} [{}]", parameter.name, parameter.unit);
+  const bool on_world = parameter.body < 0;
+  return fmt::format("the {} {} on {}", parameter.kind == ParameterKind::point ? "point" : "direction", parameter.name,
+                     on_world ? "the world" : fmt::format("body {}", static_cast<char>('a' + parameter.body)));
+}
+
+const JointType* read_type(Entry& joint) {
+  joint.required("type", "type = \"revolute\"");
+  const std::optional<std::string> name = joint.text("type");
+  if (!name) return nullptr;
+  const JointType* type = find_joint_type(*name);
+  if (type) return type;
+  std::vector<std::string> known;
+  for (const JointType& other : joint_types()) known.emplace_back(other.name);
+  joint.error(joint.where("type"), fmt::format("no joint is called \"{}\"", *name), did_you_mean(*name, known));
+  return nullptr;
+}
+
+// The bodies in the order of the spec; nothing if their number is wrong.
+std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType& type, const BodyNames& names) {
+  const bool one = type.bodies == 1;
+  joint.required("bodies", one ? "bodies = [\"rod\"]" : "bodies = [\"world\", \"rod\"]");
+  const std::optional<std::vector<int>> bodies = names.find(joint, "bodies");
+  if (!bodies) return {};
+  const int given = static_cast<int>(bodies->size());
+  if (given != type.bodies) {
+    joint.error(joint.where("bodies"),
+                fmt::format("a {} joint has {} {}, but {} {} named", type.name, type.bodies, one ? "body" : "bodies",
+                            given, given == 1 ? "is" : "are"));
+    return {};
+  }
+  if (type.bodies == 2 && (*bodies)[0] == (*bodies)[1]) {
+    joint.error(joint.where("bodies"), fmt::format("a joint between \"{}\" and itself", names.name((*bodies)[0])));
+    return {};
+  }
+  return bodies;
+}
+
+// The numbers of one parameter in the frame of its body; nothing if it is left to its default, or wrong.
+std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter, int body,
+                                                  std::optional<Vec2> at, const BodyNames& names) {
+  const std::string key(parameter.name);
+  if (parameter.kind == ParameterKind::scalar) {
+    const std::optional<double> value = joint.number(key, {Sign::any, parameter.unit == "rad"});
+    return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
+  }
+  std::optional<Vec2> vector;
+  if (parameter.kind == ParameterKind::point) {
+    vector = read_point(joint, key, body, names);
+    if (!joint.has(key) && at) vector = names.to_body(body, *at);
+  } else {
+    vector = read_direction(joint, key, body, names);
+    const bool direction = parameter.kind != ParameterKind::vector;
+    if (direction && vector && std::hypot((*vector)[0], (*vector)[1]) == 0) {
+      joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key), "any other length will do: [1, 0]");
+    }
+  }
+  if (!vector) return {};
+  return std::vector<double>{(*vector)[0], (*vector)[1]};
+}
+
+void read_parameters(Entry& joint, const JointType& type, const BodyNames& names, JointDefinition& definition) {
+  const std::optional<Vec2> at = joint.vec2("at");
+  bool has_point = false;
+  for (const ParameterInfo& parameter : type.parameters) {
+    const bool on_body = parameter.body >= 0;
+    const int body = on_body ? definition.bodies[static_cast<std::size_t>(parameter.body)] : world_body;
+    const bool point = parameter.kind == ParameterKind::point;
+    const bool given = joint.has(std::string(parameter.name)) || (point && joint.has("at"));
+    has_point = has_point || point;
+    if (const auto numbers = read_parameter(joint, parameter, body, at, names)) {
+      definition.parameters.push_back({std::string(parameter.name), *numbers});
+    } else if (!given && !parameter.has_default) {
+      joint.error(joint.header(), fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
+                  point ? fmt::format("{0} = [x, y] in the frame of \"{1}\", {0} = {{ world = [x, y] }}, or at = [x, y]",
+                                      parameter.name, names.name(body))
+                        : "");
+    }
+  }
+  if (joint.has("at") && !has_point) {
+    joint.error(joint.where("at"), fmt::format("a {} joint has no points that `at` could place", type.name));
+  }
+}
+
+// [lower, upper] or { lower = …, upper = … }
+std::optional<Limit> read_limit(Entry& effects, Quantity quantity) {
+  Limit limit;
+  if (std::optional<Entry> table = effects.table("limit", "`limit` of " + effects.what())) {
+    limit.lower = table->number("lower", quantity);
+    limit.upper = table->number("upper", quantity);
+    if (!table->has("lower") && !table->has("upper")) table->error(table->header(), "a limit without `lower` or `upper`");
+    table->close();
+  } else if (const auto both = effects.numbers("limit", 2, quantity)) {
+    limit = {(*both)[0], (*both)[1]};
+  }
+  if (limit.lower && limit.upper && *limit.lower > *limit.upper) {
+    effects.error(effects.where("limit"),
+                  fmt::format("the lower limit {} is above the upper limit {}", *limit.lower, *limit.upper));
+  }
+  if (!limit.lower && !limit.upper) return {};
+  return limit;
+}
+
+std::optional<Motor> read_motor(Entry& effects, Quantity quantity) {
+  std::optional<Entry> table = effects.table("motor", "`motor` of " + effects.what());
+  if (!table) {
+    if (effects.has("motor")) effects.error(effects.where("motor"), "`motor` must be a table", "{ speed = 2, max = 10 }");
+    return {};
+  }
+  Motor motor;
+  table->required("speed", "speed = 2.0");
+  motor.speed = table->number("speed", quantity).value_or(0);
+  motor.max_force = table->number("max", {Sign::not_negative}).value_or(unlimited);
+  table->close();
+  return motor;
+}
+
+std::vector<SceneSpring> read_coordinate_springs(Entry& effects, Quantity quantity) {
+  std::vector<SceneSpring> springs;
+  if (std::optional<Entry> table = effects.table("spring", "`spring` of " + effects.what())) {
+    const std::optional<double> rest = table->number("rest", quantity);
+    if (const auto softness = read_softness(*table)) springs.push_back({*softness, rest});
+    table->close();
+  } else if (effects.has("spring")) {
+    effects.error(effects.where("spring"), "`spring` must be a table", "{ frequency = 2, damping_ratio = 0.5 }");
+  }
+  if (const auto damping = effects.number("damper", {Sign::not_negative})) {
+    Softness softness;
+    softness.by_frequency = false;
+    softness.damping = *damping;
+    springs.push_back({softness, 0});
+  }
+  return springs;
+}
+
+void read_effects(Entry& joint, const JointType& type, std::vector<SceneEffects>& all) {
+  for (const CoordinateInfo& coordinate : type.coordinates) {
+    const std::string key(coordinate.name);
+    std::optional<Entry> entry = joint.table(key, fmt::format("`{}` of {}", key, joint.what()));
+    if (!entry) {
+      if (joint.has(key)) {
+        joint.error(joint.where(key), fmt::format("`{}` is a coordinate: it takes effects", key),
+                    fmt::format("{}.limit = [0, 1], {}.motor = {{ speed = 2 }}, …", key, key));
+      }
+      continue;
+    }
+    const Quantity quantity{Sign::any, coordinate.unit == "rad"};
+    SceneEffects effects;
+    effects.coordinate = key;
+    effects.limit = read_limit(*entry, quantity);
+    effects.motor = read_motor(*entry, quantity);
+    effects.springs = read_coordinate_springs(*entry, quantity);
+    if (const auto force = entry->number("friction", {Sign::not_negative})) effects.friction = DryFriction{*force};
+    entry->close();
+    all.push_back(std::move(effects));
+  }
+}
+
+std::optional<Softness> read_soft(Entry& joint) {
+  std::optional<Entry> table = joint.table("soft", "`soft` of " + joint.what());
+  if (!table) {
+    if (joint.has("soft")) joint.error(joint.where("soft"), "`soft` must be a table", "{ frequency = 2, damping_ratio = 0.5 }");
+    return {};
+  }
+  const std::optional<Softness> softness = read_softness(*table);
+  table->close();
+  return softness;
+}
+
+}  // namespace
+
+void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
+  std::map<std::string, Span> used;
+  for (Entry& entry : top.list("joint")) {
+    SceneJoint joint;
+    joint.where = entry.header();
+    const std::string unnamed = fmt::format("joint{}", scene.joints.size() + 1);
+    joint.name = read_name(entry, used, unnamed).value_or("");
+    const JointType* type = read_type(entry);
+    if (!type) continue;  // what else it may say depends on the type
+    joint.definition.type = type->name;
+    const std::optional<std::vector<int>> bodies = read_joint_bodies(entry, *type, names);
+    joint.definition.bodies = bodies.value_or(std::vector<int>(static_cast<std::size_t>(type->bodies), world_body));
+    read_parameters(entry, *type, names, joint.definition);
+    read_effects(entry, *type, joint.effects);
+    joint.definition.soft = read_soft(entry);
+    joint.breaking = entry.number("breaking", {Sign::positive});
+    entry.close();
+    scene.joints.push_back(std::move(joint));
+  }
+}
+
+void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
+  std::map<std::string, Span> used;
+  for (Entry& entry : top.list("spring")) {
+    read_name(entry, used, "");
+    entry.required("bodies", "bodies = [\"world\", \"mass\"]");
+    entry.required("stiffness", "stiffness = 100");
+    const std::optional<std::vector<int>> bodies = names.find(entry, "bodies");
+    const bool two = bodies && bodies->size() == 2;
+    if (bodies && !two) entry.error(entry.where("bodies"), fmt::format("a spring has 2 bodies, but {} named", bodies->size()));
+    SpringDefinition spring;
+    spring.body_a = two ? (*bodies)[0] : world_body;
+    spring.body_b = two ? (*bodies)[1] : world_body;
+    const Vec2 pa = read_point(entry, "pa", spring.body_a, names).value_or(Vec2{});
+    const Vec2 pb = read_point(entry, "pb", spring.body_b, names).value_or(Vec2{});
+    spring.ax = pa[0], spring.ay = pa[1], spring.bx = pb[0], spring.by = pb[1];
+    const Vec2 from = names.to_world(spring.body_a, pa), to = names.to_world(spring.body_b, pb);
+    const double length = std::hypot(to[0] - from[0], to[1] - from[1]);
+    spring.rest_length = entry.number("rest", {Sign::not_negative}).value_or(length);
+    spring.stiffness = entry.number("stiffness", {Sign::not_negative}).value_or(0);
+    spring.damping = entry.number("damping", {Sign::not_negative}).value_or(0);
+    entry.close();
+    scene.springs.push_back(spring);
+  }
+}
+
+}  // namespace cdot

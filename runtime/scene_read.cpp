@@ -1,0 +1,183 @@
+// The scene reader: from the text of a TOML file to a Scene, or to all that is wrong with it.
+#include "runtime/scene_read.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+namespace cdot {
+namespace {
+
+bool fits_a_column(const std::string& name) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), fits);
+}
+
+// What toml++ says, without the name of the rule that it was in.
+std::string syntax_error(std::string_view description) {
+  if (description.starts_with("Error while parsing ")) {
+    description.remove_prefix(std::string_view("Error while parsing ").size());
+  }
+  return fmt::format("this is no TOML: {}", description);
+}
+
+Vec2 turned(Vec2 v, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * v[0] - s * v[1], s * v[0] + c * v[1]};
+}
+
+void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
+  Entry top(table, {}, "the scene", mistakes);
+  read_settings(top, scene);
+  read_bodies(top, scene);
+  const BodyNames names(scene.bodies);
+  read_joints(top, names, scene);
+  read_springs(top, names, scene);
+  top.close();
+}
+
+}  // namespace
+
+BodyNames::BodyNames(const std::vector<SceneBody>& bodies) : bodies_(&bodies) {
+  index_["world"] = world_body;
+  for (std::size_t k = 0; k < bodies.size(); ++k) index_.emplace(bodies[k].name, static_cast<int>(k));
+  for (const auto& [name, body] : index_) known_.push_back(name);
+}
+
+std::optional<std::vector<int>> BodyNames::find(Entry& entry, const std::string& key) const {
+  const std::optional<std::vector<std::string>> names = entry.texts(key);
+  if (!names) return {};
+  std::vector<int> bodies;
+  bool all_known = true;
+  for (std::size_t k = 0; k < names->size(); ++k) {
+    const auto found = index_.find((*names)[k]);
+    if (found == index_.end()) {
+      entry.error(entry.element(key, k), fmt::format("no body is called \"{}\"", (*names)[k]),
+                  did_you_mean((*names)[k], known_));
+      all_known = false;
+    } else {
+      bodies.push_back(found->second);
+    }
+  }
+  if (!all_known) return {};
+  return bodies;
+}
+
+const std::string& BodyNames::name(int body) const {
+  static const std::string world = "world";
+  return body == world_body ? world : (*bodies_)[static_cast<std::size_t>(body)].name;
+}
+
+Vec2 BodyNames::to_body(int body, Vec2 position) const {
+  if (body == world_body) return position;
+  const BodyDefinition& pose = (*bodies_)[static_cast<std::size_t>(body)].definition;
+  return turned({position[0] - pose.x, position[1] - pose.y}, -pose.angle);
+}
+
+Vec2 BodyNames::turned_to_body(int body, Vec2 direction) const {
+  if (body == world_body) return direction;
+  return turned(direction, -(*bodies_)[static_cast<std::size_t>(body)].definition.angle);
+}
+
+Vec2 BodyNames::to_world(int body, Vec2 position) const {
+  if (body == world_body) return position;
+  const BodyDefinition& pose = (*bodies_)[static_cast<std::size_t>(body)].definition;
+  const Vec2 arm = turned(position, pose.angle);
+  return {pose.x + arm[0], pose.y + arm[1]};
+}
+
+namespace {
+
+// [x, y] as it stands, or { world = [x, y] } through `from_world`.
+template <class FromWorld>
+std::optional<Vec2> in_body_or_world(Entry& entry, const std::string& key, FromWorld from_world) {
+  std::optional<Entry> table = entry.table(key, fmt::format("`{}` of {}", key, entry.what()));
+  if (!table) return entry.vec2(key);
+  const std::optional<Vec2> world = table->vec2("world");
+  if (!table->has("world")) table->error(table->header(), fmt::format("`{}` has no `world`", key), "{ world = [x, y] }");
+  table->close();
+  if (!world) return {};
+  return from_world(*world);
+}
+
+}  // namespace
+
+std::optional<Vec2> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names) {
+  return in_body_or_world(entry, key, [&](Vec2 position) { return names.to_body(body, position); });
+}
+
+std::optional<Vec2> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names) {
+  return in_body_or_world(entry, key, [&](Vec2 direction) { return names.turned_to_body(body, direction); });
+}
+
+std::optional<Softness> read_softness(Entry& entry) {
+  const bool frequency = entry.has("frequency"), stiffness = entry.has("stiffness");
+  Softness softness;
+  softness.by_frequency = frequency;
+  softness.frequency = entry.number("frequency", {Sign::positive}).value_or(0);
+  softness.damping_ratio = entry.number("damping_ratio", {Sign::not_negative}).value_or(0);
+  softness.stiffness = entry.number("stiffness", {Sign::not_negative}).value_or(0);
+  softness.damping = entry.number("damping", {Sign::not_negative}).value_or(0);
+  const bool mixed = frequency ? stiffness || entry.has("damping") : entry.has("damping_ratio");
+  if (frequency == stiffness || mixed) {
+    entry.error(entry.header(), fmt::format("{} needs either a frequency or a stiffness", entry.what()),
+                "{ frequency = 2, damping_ratio = 0.5 } or { stiffness = 100, damping = 1 }");
+    return {};
+  }
+  return softness;
+}
+
+std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
+                                     const std::optional<std::string>& fallback) {
+  if (!entry.has("name")) {
+    if (!fallback) entry.error(entry.header(), entry.what() + " has no `name`", "name = \"rod\"");
+    return fallback;
+  }
+  const Span where = entry.where("name");
+  const std::optional<std::string> name = entry.text("name");
+  if (!name) return {};
+  entry.rename(fmt::format("{} \"{}\"", entry.what(), entry.written("name")));
+  if (!fits_a_column(*name)) {
+    entry.error(where, fmt::format("\"{}\" is no name", *name), "use letters, digits, _ and -");
+    return {};
+  }
+  const auto [earlier, is_new] = used.emplace(*name, where);
+  if (is_new) return name;
+  const Span first = earlier->second;
+  const bool same_place = first == where;
+  entry.error(where, first.line == 0 ? fmt::format("\"{}\" is the name of what never moves", *name)
+                     : same_place    ? fmt::format("all copies are called \"{}\"", *name)
+                                     : fmt::format("\"{}\" is the name of line {} already", *name, first.line),
+              same_place && first.line > 0 ? fmt::format("name = \"{}{{i}}\"", *name) : "");
+  return {};
+}
+
+Scene read_scene(std::string_view text, const std::string& name) {
+  auto mistakes = std::make_shared<Mistakes>(name, text);
+  Scene scene;
+  scene.file = name;
+  try {
+    read_all(toml::parse(text, name), *mistakes, scene);
+  } catch (const toml::parse_error& error) {
+    mistakes->add(span_of(error.source()), syntax_error(error.description()));
+  }
+  if (!mistakes->none()) throw SceneError(mistakes->report(), mistakes->count());
+  scene.source = mistakes;
+  return scene;
+}
+
+Scene read_scene(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  if (!file || !(text << file.rdbuf())) {
+    throw SceneError(fmt::format("{}: error: cannot be read\n", path), 1);
+  }
+  return read_scene(text.str(), path);
+}
+
+}  // namespace cdot

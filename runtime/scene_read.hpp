@@ -1,0 +1,54 @@
+// What the parts of the scene reader share: the names of the bodies, and points given in one frame
+// or another.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/scene.hpp"
+#include "runtime/scene_entry.hpp"
+
+namespace cdot {
+
+// The bodies read so far by name. A body with mistakes is known all the same, so that joints to it
+// are no mistakes.
+class BodyNames {
+ public:
+  explicit BodyNames(const std::vector<SceneBody>& bodies);
+  // The index of each name in `key`; nothing, and a complaint, if one is unknown. "world" is
+  // world_body.
+  std::optional<std::vector<int>> find(Entry& entry, const std::string& key) const;
+  const std::string& name(int body) const;
+  // A world position or direction in the frame of a body at its initial pose.
+  Vec2 to_body(int body, Vec2 world_position) const;
+  Vec2 turned_to_body(int body, Vec2 world_direction) const;
+  Vec2 to_world(int body, Vec2 body_position) const;
+
+ private:
+  const std::vector<SceneBody>* bodies_;
+  std::map<std::string, int> index_;
+  std::vector<std::string> known_;
+};
+
+// A point of a body: [x, y] in its frame, or { world = [x, y] } where it is at the start.
+std::optional<Vec2> read_point(Entry& entry, const std::string& key, int body,
+                               const BodyNames& names);
+std::optional<Vec2> read_direction(Entry& entry, const std::string& key, int body,
+                                   const BodyNames& names);
+
+// { frequency, damping_ratio } or { stiffness, damping }; the entry stays open for more keys.
+std::optional<Softness> read_softness(Entry& entry);
+
+// A name that a CSV column can carry, unused so far; `fallback` if the entry has none and that is
+// allowed.
+std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
+                                     const std::optional<std::string>& fallback);
+
+void read_settings(Entry& top, Scene& scene);                         // scene_settings.cpp
+void read_bodies(Entry& top, Scene& scene);                           // scene_bodies.cpp
+void read_joints(Entry& top, const BodyNames& names, Scene& scene);   // scene_joints.cpp
+void read_springs(Entry& top, const BodyNames& names, Scene& scene);  // scene_joints.cpp
+
+}  // namespace cdot

@@ -1,0 +1,55 @@
+// The top of a scene file: what is simulated, for how long, and how.
+#include <fmt/format.h>
+
+#include "runtime/scene_read.hpp"
+
+namespace cdot {
+namespace {
+
+void read_time(Entry& top, Scene& scene) {
+  scene.duration = top.number("duration", {Sign::positive}).value_or(scene.duration);
+  scene.step = top.number("step", {Sign::positive}).value_or(scene.step);
+  if (scene.step > scene.duration) {
+    top.error(top.where("step"), fmt::format("the step of {} s is longer than the duration of {} s", scene.step,
+                                             scene.duration));
+  }
+}
+
+void read_method(Entry& top, Settings& settings) {
+  if (const auto solver = top.choice("solver", {"direct", "iterative"})) {
+    settings.solver = *solver == "direct" ? Solver::direct : Solver::iterative;
+  }
+  if (const auto drift = top.choice("drift", {"projection", "baumgarte", "none"})) {
+    settings.drift = *drift == "none"        ? Drift::none
+                     : *drift == "baumgarte" ? Drift::baumgarte
+                                             : Drift::projection;
+  }
+  settings.iterations = top.whole("iterations", 1).value_or(settings.iterations);
+  settings.substeps = top.whole("substeps", 1).value_or(settings.substeps);
+  settings.baumgarte = top.number("baumgarte", {Sign::positive}).value_or(settings.baumgarte);
+  settings.warm_start = top.flag("warm_start").value_or(settings.warm_start);
+  settings.geometric_stiffness = top.flag("geometric_stiffness").value_or(settings.geometric_stiffness);
+  if (settings.baumgarte > 1) {
+    top.error(top.where("baumgarte"), "`baumgarte` is the share of the error removed per step: at most 1");
+  }
+}
+
+}  // namespace
+
+void read_settings(Entry& top, Scene& scene) {
+  scene.title = top.text("title").value_or("");
+  if (top.whole("dimension", 2).value_or(2) != 2) {
+    top.error(top.where("dimension"), "only planar scenes can be run", "dimension = 2");
+  }
+  const Vec2 gravity = top.vec2("gravity").value_or(Vec2{0, -9.81});
+  scene.settings.gravity_x = gravity[0];
+  scene.settings.gravity_y = gravity[1];
+  read_time(top, scene);
+  read_method(top, scene.settings);
+  scene.settings.sleep_after = top.number("sleep_after", {Sign::not_negative}).value_or(0);
+  scene.settings.sleep_speed = top.number("sleep_speed", {Sign::positive}).value_or(scene.settings.sleep_speed);
+  scene.tolerance = top.number("tolerance", {Sign::positive}).value_or(scene.tolerance);
+  scene.project = top.flag("project").value_or(false);
+}
+
+}  // namespace cdot

@@ -1,0 +1,52 @@
+// The text of a scene file and the mistakes found in it: every mistake has a place, a cause and,
+// where one can be guessed, a fix. Kept apart from the reader so that what a mistake looks like is
+// decided in one place.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cdot {
+
+// A stretch of one line, columns counted in characters from 1, `end` one past the last. Line 0: the
+// file as a whole.
+struct Span {
+  int line = 0, begin = 0, end = 0;
+  auto operator<=>(const Span&) const = default;
+};
+
+class Mistakes {
+ public:
+  Mistakes(std::string file, std::string_view text);
+
+  void add(Span where, std::string cause, std::string fix = {});
+  bool none() const { return found_.empty(); }
+  int count() const;
+
+  // All mistakes in the order of the file, each with its line and a caret span under the part that
+  // is wrong.
+  std::string report() const;
+  // One such paragraph: `kind` is "error" or "warning".
+  std::string paragraph(std::string_view kind, Span where, std::string_view cause,
+                        std::string_view fix) const;
+
+ private:
+  struct Mistake {
+    Span where;
+    std::string cause, fix;
+    auto operator<=>(const Mistake&) const = default;
+  };
+  std::vector<Mistake> ordered() const;
+
+  std::string file_;
+  std::vector<std::string> lines_;
+  std::vector<Mistake> found_;
+};
+
+// "did you mean `angle`?" for the known word that is nearest to `word`; else "one of: ...", or
+// nothing if none is known.
+std::string did_you_mean(std::string_view word, std::span<const std::string> known);
+
+}  // namespace cdot

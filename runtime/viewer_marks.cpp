@@ -1,0 +1,254 @@
+// How bodies and joints look. Joints are drawn by what they are made of (points, directions, rows, coordinates), not by
+// name: points that coincide are a pin, points apart a rod, a rope or a spring, a free slide is a rail.
+#include "runtime/viewer_marks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace cdot {
+
+namespace {
+
+constexpr double coincident = 1.5;  // picture units below which two points are one
+constexpr const char* rigid_link = R"(<line class="rigid" x2="1"/>)";
+constexpr const char* rope_link = R"(<line class="rope" x2="1"/>)";
+constexpr const char* gear_link = R"(<line class="gear" x2="1"/>)";
+constexpr const char* spring_link =
+    R"(<polyline class="spring" points="0,0 .15,0 .2,-9 .3,9 .4,-9 .5,9 .6,-9 .7,9 .8,-9 .85,0 1,0"/>)";
+constexpr const char* ground_mark = R"(<path class="ground" d="M0 0L-11 17H11ZM-17 17H17"/>)";
+
+// One colour for all bodies whose names differ only in their last digits: the links of a chain.
+class Colours {
+ public:
+  int of(std::string name) {
+    while (!name.empty() && name.back() >= '0' && name.back() <= '9') name.pop_back();
+    return families_.emplace(name, static_cast<int>(families_.size()) % 8).first->second;
+  }
+
+ private:
+  std::map<std::string, int> families_;
+};
+
+struct JointPoint {
+  Anchor anchor;
+  Vec2 at;  // in the picture at the start
+  bool in_world_frame;
+};
+
+class Painter {
+ public:
+  Painter(const Scene& scene, const std::vector<Frame>& film, Drawing& drawing)
+      : scene_(scene), drawing_(drawing), world_(build_world<double>(scene)),
+        start_(places_of(drawing.view, film.front())) {}
+
+  void joints();
+  void springs();
+  void bodies();
+  void traces();
+
+ private:
+  Anchor anchor(int body, double x, double y) const;
+  std::vector<JointPoint> points(int joint) const;
+  void pin(const JointPoint& p, const JointPoint& q, bool welded);
+  void link(const JointPoint& p, const JointPoint& q, const char* svg);
+  void rail(int joint, const CoordinateInfo& coordinate, const JointPoint& through);
+  void between_points(int joint, const std::vector<JointPoint>& points);
+  bool is_still(int body) const;
+  void mark_ground(const JointPoint& point);
+  std::string body_svg(std::size_t body) const;
+
+  const Scene& scene_;
+  Drawing& drawing_;
+  World<double> world_;
+  std::vector<Place> start_;
+  std::map<int, std::vector<Vec2>> joint_points_;  // of each body, for bodies without a shape
+};
+
+Anchor Painter::anchor(int body, double x, double y) const {
+  const double s = drawing_.view.scale;
+  if (body == world_body) return {body, {s * (x - drawing_.view.left), s * (drawing_.view.top - y)}};
+  return {body, {s * x, -s * y}};
+}
+
+bool Painter::is_still(int body) const {
+  return body == world_body || scene_.bodies[static_cast<std::size_t>(body)].definition.is_static;
+}
+
+std::vector<JointPoint> Painter::points(int joint) const {
+  const std::vector<double> numbers = world_.joint_parameters(joint);
+  const SceneJoint& source = scene_.joints[static_cast<std::size_t>(joint)];
+  std::vector<JointPoint> result;
+  for (const ParameterInfo& info : world_.joint_type(joint).parameters) {
+    if (info.kind != ParameterKind::point) continue;
+    const int body = info.body < 0 ? world_body : source.definition.bodies[static_cast<std::size_t>(info.body)];
+    const auto at = static_cast<std::size_t>(info.offset);
+    const Anchor place = anchor(body, numbers[at], numbers[at + 1]);
+    result.push_back({place, position(place, start_), info.body < 0});
+  }
+  return result;
+}
+
+void Painter::mark_ground(const JointPoint& point) {
+  drawing_.pins.push_back({world_body, fmt::format(R"svg(<g transform="translate({:.2f} {:.2f})">{}</g>)svg", point.at[0],
+                                                   point.at[1], ground_mark)});
+}
+
+void Painter::pin(const JointPoint& p, const JointPoint& q, bool welded) {
+  const JointPoint& moving = is_still(p.anchor.body) ? q : p;
+  if (is_still(p.anchor.body) || is_still(q.anchor.body)) mark_ground(moving);
+  const Vec2 at = moving.anchor.local;
+  const char* svg = welded ? R"svg(<rect class="pin" x="{0:.2f}" y="{1:.2f}" width="9" height="9" transform="translate(-4.5 -4.5)"/>)svg"
+                           : R"(<circle class="pin" cx="{0:.2f}" cy="{1:.2f}" r="5"/>)";
+  drawing_.pins.push_back({moving.anchor.body, fmt::format(fmt::runtime(svg), at[0], at[1])});
+}
+
+void Painter::link(const JointPoint& p, const JointPoint& q, const char* svg) {
+  drawing_.links.push_back({p.anchor, q.anchor, svg});
+  for (const JointPoint* end : {&p, &q}) {
+    if (is_still(end->anchor.body) && end->anchor.body == world_body) mark_ground(*end);
+  }
+}
+
+// The direction in which a coordinate [m] grows, by its differences when a body is moved, drawn through a point.
+void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint& through) {
+  int body = -1;
+  for (const int candidate : scene_.joints[static_cast<std::size_t>(joint)].definition.bodies) {
+    if (!is_still(candidate) && candidate != through.anchor.body) body = candidate;
+  }
+  if (body < 0) return;
+  const planar::Pose<double> pose = world_.pose(body);
+  const double step = 1e-3 / drawing_.view.scale, before = world_.coordinate(joint, coordinate.name);
+  world_.set_pose(body, pose.x + step, pose.y, pose.angle);
+  const double along_x = world_.coordinate(joint, coordinate.name) - before;
+  world_.set_pose(body, pose.x, pose.y + step, pose.angle);
+  const double along_y = world_.coordinate(joint, coordinate.name) - before;
+  world_.set_pose(body, pose.x, pose.y, pose.angle);
+
+  const Anchor& a = through.anchor;
+  const bool still = is_still(a.body);
+  const double turned = a.body == world_body ? 0 : start_[static_cast<std::size_t>(a.body)].degrees;
+  const double degrees = std::atan2(-along_y, along_x) * 57.29577951308232 - turned;
+  const double half = still ? 2000 : 70;
+  drawing_.bodies.push_back(
+      {a.body, fmt::format(R"svg(<line class="rail" x1="{:.0f}" x2="{:.0f}" transform="translate({:.2f} {:.2f}) rotate({:.2f})"/>)svg",
+                           -half, half, a.local[0], a.local[1], degrees)});
+}
+
+// Two points apart are linked; points of bodies with as many points fixed in the world hang on a rope over those.
+void Painter::between_points(int joint, const std::vector<JointPoint>& all) {
+  const JointType& type = world_.joint_type(joint);
+  const bool soft = scene_.joints[static_cast<std::size_t>(joint)].definition.soft.has_value();
+  const bool loose = type.row_kinds[0] == RowKind::inequality;
+  const char* svg = soft ? spring_link : loose ? rope_link : rigid_link;
+  std::vector<JointPoint> fixed, riding;
+  for (const JointPoint& point : all) (point.in_world_frame ? fixed : riding).push_back(point);
+  if (fixed.size() == 2 && riding.size() == 2) {
+    link(riding[0], fixed[0], rope_link);
+    link(fixed[0], fixed[1], rope_link);
+    link(riding[1], fixed[1], rope_link);
+  } else if (all.size() == 2) {
+    link(all[0], all[1], svg);
+  }
+}
+
+void Painter::joints() {
+  for (int joint = 0; joint < world_.joint_count(); ++joint) {
+    const JointType& type = world_.joint_type(joint);
+    const std::vector<JointPoint> all = points(joint);
+    for (const JointPoint& point : all) {
+      if (point.anchor.body != world_body) joint_points_[point.anchor.body].push_back(point.anchor.local);
+    }
+    const bool directed = std::any_of(type.parameters.begin(), type.parameters.end(), [](const ParameterInfo& info) {
+      return info.kind == ParameterKind::unit || info.kind == ParameterKind::frame;
+    });
+    bool slides = false;
+    for (const CoordinateInfo& coordinate : type.coordinates) {
+      if (coordinate.unit != "m" || !directed || all.size() != 2) continue;
+      slides = true;
+      rail(joint, coordinate, is_still(all[0].anchor.body) ? all[0] : all[1]);
+    }
+    const bool pair = all.size() == 2;
+    const double apart = pair ? std::hypot(all[0].at[0] - all[1].at[0], all[0].at[1] - all[1].at[1]) : 0;
+    if (pair && (slides || apart < coincident)) {
+      pin(all[0], all[1], type.row_kinds.size() == 3 && !type.explicit_time);
+    } else if (!all.empty()) {
+      between_points(joint, all);
+    } else if (type.bodies >= 2) {
+      const std::vector<int>& bodies = scene_.joints[static_cast<std::size_t>(joint)].definition.bodies;
+      if (!is_still(bodies[0]) && !is_still(bodies[1])) drawing_.links.push_back({{bodies[0], {}}, {bodies[1], {}}, gear_link});
+    }
+  }
+}
+
+void Painter::springs() {
+  for (const SpringDefinition& spring : scene_.springs) {
+    const Anchor from = anchor(spring.body_a, spring.ax, spring.ay), to = anchor(spring.body_b, spring.bx, spring.by);
+    link({from, position(from, start_), false}, {to, position(to, start_), false}, spring_link);
+  }
+}
+
+std::string Painter::body_svg(std::size_t body) const {
+  const Shape& shape = scene_.bodies[body].shape;
+  const double length = drawing_.view.scale * shape.length;
+  const double width = std::clamp(drawing_.view.scale * shape.width, 3.0, 1e6);
+  switch (shape.kind) {
+    case Shape::rod: {
+      const double bar = std::clamp(width, 5.0, 26.0);
+      return fmt::format(R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" rx="{:.2f}"/>)",
+                         -length / 2 - bar / 2, -bar / 2, length + bar, bar, bar / 2);
+    }
+    case Shape::box:
+      return fmt::format(R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" rx="2"/>)", -length / 2,
+                         -width / 2, length, width);
+    case Shape::disc:
+      return fmt::format(R"(<circle r="{0:.2f}"/><line x2="{0:.2f}"/>)", std::max(length / 2, 3.0));
+    case Shape::none:
+      break;
+  }
+  std::string svg;
+  const auto found = joint_points_.find(static_cast<int>(body));
+  if (found != joint_points_.end()) {
+    for (const Vec2& p : found->second) svg += fmt::format(R"(<line x2="{:.2f}" y2="{:.2f}"/>)", p[0], p[1]);
+  }
+  return svg + R"(<circle r="9"/>)";
+}
+
+void Painter::bodies() {
+  Colours colours;
+  for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
+    const SceneBody& body = scene_.bodies[k];
+    const std::string kind = body.definition.is_static ? "still" : fmt::format("c{}", colours.of(body.name));
+    drawing_.bodies.push_back({static_cast<int>(k), fmt::format(R"(<g class="body {}"><title>{}</title>{}</g>)", kind,
+                                                                escaped(body.name), body_svg(k))});
+  }
+}
+
+// What the scene asks for; else the centre of the last body that can move.
+void Painter::traces() {
+  for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
+    for (const Vec2& point : scene_.bodies[k].traces) {
+      drawing_.traces.push_back(anchor(static_cast<int>(k), point[0], point[1]));
+    }
+  }
+  for (std::size_t k = scene_.bodies.size(); k-- > 0 && drawing_.traces.empty();) {
+    if (!scene_.bodies[k].definition.is_static) drawing_.traces.push_back(anchor(static_cast<int>(k), 0, 0));
+  }
+}
+
+}  // namespace
+
+Drawing draw(const Scene& scene, const std::vector<Frame>& film) {
+  Drawing drawing;
+  drawing.view = view_of(scene, film);
+  Painter painter(scene, film, drawing);
+  painter.joints();
+  painter.springs();
+  painter.bodies();
+  painter.traces();
+  return drawing;
+}
+
+}  // namespace cdot

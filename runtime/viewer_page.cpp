@@ -1,0 +1,163 @@
+// The page that plays a film, and the still: the drawing of viewer_marks.cpp placed once per frame or snapshot.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/viewer.hpp"
+#include "runtime/viewer_assets.hpp"
+#include "runtime/viewer_marks.hpp"
+
+namespace cdot {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int most_frames = 3000;
+constexpr double most_poses = 200000;  // frames times bodies that a page carries
+constexpr int snapshots = 7;           // of a still
+
+double rounded(double value, double steps_per_unit) { return std::round(value * steps_per_unit) / steps_per_unit; }
+
+Json anchor_json(const Anchor& anchor) {
+  return {anchor.body, rounded(anchor.local[0], 100), rounded(anchor.local[1], 100)};
+}
+
+Json place_json(const Place& place) {
+  return {rounded(place.x, 100), rounded(place.y, 100), rounded(place.degrees, 100)};
+}
+
+std::string group(const Mark& mark, const std::vector<Place>& places) {
+  if (mark.body == world_body) return mark.svg + "\n";
+  return fmt::format("<g data-body=\"{}\" transform=\"{}\">{}</g>\n", mark.body,
+                     transform(places[static_cast<std::size_t>(mark.body)]), mark.svg);
+}
+
+// All marks at one time.
+std::string placed(const Drawing& drawing, const std::vector<Place>& places) {
+  std::string svg;
+  for (std::size_t k = 0; k < drawing.links.size(); ++k) {
+    svg += fmt::format("<g data-link=\"{}\" transform=\"{}\">{}</g>\n", k, link_transform(drawing.links[k], places),
+                       drawing.links[k].svg);
+  }
+  for (const Mark& mark : drawing.bodies) svg += group(mark, places);
+  for (const Mark& mark : drawing.pins) svg += group(mark, places);
+  return svg;
+}
+
+// Slow enough to see: a film lasts at least six seconds.
+double playing_speed(double duration) {
+  constexpr double speeds[] = {0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1};
+  double best = speeds[0];
+  for (const double speed : speeds) {
+    if (duration / speed >= 6) best = speed;
+  }
+  return best;
+}
+
+void add_frames(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film, Json& run) {
+  Json moving = Json::array(), times = Json::array(), poses = Json::array(), energy = Json::array(), error = Json::array();
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    if (!scene.bodies[k].definition.is_static) moving.push_back(k);
+  }
+  for (const Frame& frame : film) {
+    times.push_back(frame.time);
+    energy.push_back(frame.energy);
+    error.push_back(frame.worst.value);
+    for (const Json& body : moving) {
+      for (const Json& number : place_json(place_of(drawing.view, frame.bodies[body.get<std::size_t>()]))) {
+        poses.push_back(number);
+      }
+    }
+  }
+  run.update({{"moving", moving}, {"times", times}, {"poses", poses}, {"energy", energy}, {"error", error}});
+}
+
+std::string run_json(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film) {
+  const double duration = film.back().time;
+  Json run = {{"view", {drawing.view.left, drawing.view.top, drawing.view.scale}},
+              {"speed", playing_speed(duration)},
+              {"decimals", duration < 2 ? 4 : 2},
+              {"tail", std::max<std::size_t>(film.size() / 8, 1)}};
+  run["start"] = run["links"] = run["traces"] = Json::array();
+  for (const Place& place : places_of(drawing.view, film.front())) run["start"].push_back(place_json(place));
+  for (const Link& link : drawing.links) run["links"].push_back({anchor_json(link.from), anchor_json(link.to)});
+  for (const Anchor& trace : drawing.traces) run["traces"].push_back(anchor_json(trace));
+  add_frames(scene, drawing, film, run);
+  std::string text = run.dump();
+  // "</script>" in a name must not end the element.
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  return text;
+}
+
+// Fills the places {{name}} of the template, each once and from left to right.
+std::string filled(std::string_view page, const std::vector<std::pair<std::string, std::string>>& values) {
+  std::string result;
+  while (!page.empty()) {
+    const std::size_t open = std::min(page.find("{{"), page.size());
+    result += page.substr(0, open);
+    page.remove_prefix(open);
+    if (page.empty()) break;
+    const std::string_view name = page.substr(2, page.find("}}") - 2);
+    for (const auto& [key, value] : values) {
+      if (key == name) result += value;
+    }
+    page.remove_prefix(name.size() + 4);
+  }
+  return result;
+}
+
+std::string svg_head(const View& view, const char* attributes) {
+  return fmt::format("<svg {} xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n", attributes,
+                     view.width, view.height);
+}
+
+}  // namespace
+
+std::vector<double> film_times(const Scene& scene) {
+  const double bodies = std::max<double>(1, static_cast<double>(scene.bodies.size()));
+  const double most = std::min<double>(most_frames, most_poses / bodies);
+  const double frames = std::clamp(60 * scene.duration, 600.0, std::max(600.0, most));
+  // A film has no more frames than the run has steps.
+  return every(std::max(scene.duration / frames, scene.step), scene.duration);
+}
+
+std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
+  const Drawing drawing = draw(scene, film);
+  const std::string stage = svg_head(drawing.view, "id=\"stage\"") + "<g id=\"paths\"></g>\n" +
+                            placed(drawing, places_of(drawing.view, film.front())) + "</svg>";
+  const std::string title = escaped(scene.title.empty() ? scene.file : scene.title);
+  const std::string facts = fmt::format("{} bodies, {} joints, step {:.4g} s", scene.bodies.size(), scene.joints.size(),
+                                        scene.step);
+  return filled(viewer_html, {{"title", title},
+                              {"style", std::string(viewer_css) + std::string(viewer_marks_css)},
+                              {"facts", facts},
+                              {"stage", stage},
+                              {"run", run_json(scene, drawing, film)},
+                              {"script", std::string(viewer_js)}});
+}
+
+std::string svg_still(const Scene& scene, const std::vector<Frame>& film) {
+  const Drawing drawing = draw(scene, film);
+  std::string svg = svg_head(drawing.view, fmt::format("width=\"{:.0f}\"", 0.8 * drawing.view.width).c_str());
+  svg += fmt::format("<style>\n{}@media (prefers-color-scheme: dark) {{ svg {{ --ink: #e6edf3; --paper: #0d1117; }} }}\n</style>\n",
+                     viewer_marks_css);
+  for (std::size_t k = 0; k < drawing.traces.size(); ++k) {
+    svg += fmt::format("<polyline class=\"trace t{}\" points=\"", k % 4);
+    for (const Frame& frame : film) {
+      const Vec2 at = position(drawing.traces[k], places_of(drawing.view, frame));
+      svg += fmt::format("{:.1f},{:.1f} ", at[0], at[1]);
+    }
+    svg += "\"/>\n";
+  }
+  for (int k = 0; k < snapshots; ++k) {
+    const std::size_t frame = (film.size() - 1) * static_cast<std::size_t>(k) / (snapshots - 1);
+    const double opacity = k == snapshots - 1 ? 1 : 0.12 + 0.06 * k;
+    svg += fmt::format("<g opacity=\"{:.2f}\">\n{}</g>\n", opacity, placed(drawing, places_of(drawing.view, film[frame])));
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace cdot
