@@ -97,7 +97,8 @@ class TimeDerivative {
       case Fn::sign: return e->pool->number(0);
       case Fn::atan2: return atan2_rule(e);
       case Fn::inverse:
-      case Fn::select: break;  // arise only after differentiation
+      case Fn::select:
+      case Fn::pivot: break;  // arise only after differentiation
     }
     assert(false && "no derivative");
     return e;

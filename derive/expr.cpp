@@ -55,6 +55,7 @@ std::string_view name_of(Fn fn) {
     case Fn::atan2: return "atan2";
     case Fn::inverse: return "inverse";
     case Fn::select: return "select";
+    case Fn::pivot: return "pivot";
   }
   return "";
 }

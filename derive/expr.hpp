@@ -31,9 +31,10 @@ enum class Kind {
   unit       // direction of a vector; (1, 0) for the zero vector
 };
 
-// `inverse` and `select` arise only when vectors are written out in components (canonical.hpp):
-// inverse(x) is 1/x, and 0 at x = 0; select(l, x, y) is x where l > 0, else y.
-enum class Fn { sqrt, sin, cos, tan, exp, log, abs, sign, atan2, inverse, select };
+// The last three arise only after differentiation, when things are written out in components (canonical.hpp):
+// inverse(x) is 1/x, and 0 at x = 0; select(l, x, y) is x where l > 0, else y; pivot(d, k) is 1/d, and 0 where d is
+// negligible beside the diagonal entry k that elimination left it from.
+enum class Fn { sqrt, sin, cos, tan, exp, log, abs, sign, atan2, inverse, select, pivot };
 std::string_view name_of(Fn fn);
 
 // What a leaf stands for; decides its time derivative and where a kernel reads it.

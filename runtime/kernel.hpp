@@ -91,6 +91,20 @@ inline T inverse(T x) {
   return select(abs(x) >= smallest<T>(), T(1) / x, T(0));
 }
 
+// -1, 0 or 1.
+template <class T>
+inline T sign(T x) {
+  return select(x > T(0), T(1), select(x < T(0), T(-1), T(0)));
+}
+
+// 1/d for a pivot d of K = L D L^T that elimination left of the diagonal entry k; 0 where d is round-off beside k: that
+// row depends on those before it, and its impulse stays zero.
+template <class T>
+inline T pivot(T d, T k) {
+  constexpr auto epsilon = std::numeric_limits<typename ScalarOf<T>::type>::epsilon();
+  return select(d > T(64 * epsilon) * k, T(1) / d, T(0));
+}
+
 namespace planar {
 
 // Centre of mass [m], rotation R = [c -s; s c] and the unwrapped angle [rad] that c and s belong to.

@@ -1,0 +1,21 @@
+// Texts of the generated files. Nothing here depends on anything but the joints: no date, no path, no version.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "derive/kernel.hpp"
+
+namespace cdot::derive {
+
+// generated/planar/<joint>.hpp
+std::string emit_kernel(const Kernel& kernel);
+
+// generated/registry.hpp: the list of all joints, by name.
+std::string emit_registry(const std::vector<std::string>& joints);
+
+// C, J and K as people write them, a line each, for the comment above a kernel.
+std::vector<std::string> describe(const Kernel& kernel);
+
+}  // namespace cdot::derive

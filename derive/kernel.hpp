@@ -1,0 +1,67 @@
+// What a kernel computes: every function of the contract (runtime/kernel.hpp) as a program, before it becomes text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "derive/derivation.hpp"
+#include "derive/program.hpp"
+
+namespace cdot::derive {
+
+// One number stored by Jacobian<T>.
+struct Field {
+  std::string name;
+  Expr value;   // what `jacobian` computes, in components
+  Expr symbol;  // how later functions refer to it
+};
+
+// A function of the contract. Inputs are found by the names of the program's input operations.
+struct KernelFunction {
+  std::string name;     // "jacobian"
+  std::string summary;  // "C and J"
+  Program program;      // outputs carry the text of what is assigned: "C[0]", "J.t_x"
+};
+
+// One row block: the joint, a coordinate, or one of these with a body immovable.
+struct KernelBlock {
+  std::string name;  // of the struct: "line", "slide", "a_immovable"
+  Block block;
+  std::vector<Field> fields;
+  std::vector<KernelFunction> functions;
+  std::vector<KernelBlock> variants;  // with one body immovable
+};
+
+struct DefaultValue {
+  int parameter = 0;
+  Program program;  // outputs "p.t_x", ...
+};
+
+struct Kernel {
+  const Joint* joint = nullptr;
+  KernelBlock rows;
+  std::vector<KernelBlock> coordinates;
+  std::vector<DefaultValue> defaults;
+};
+
+Kernel plan_kernel(const Joint& joint);
+
+// Everything written out in components and read from poses and parameters: arms become c l_x - s l_y.
+// Shared by the kernel, the ledger and the hand derivations, so that all are counted alike.
+class PoseInputs {
+ public:
+  explicit PoseInputs(const Joint& joint);
+  Expr of(Expr scalar);  // any scalar expression of the joint
+
+ private:
+  std::map<const Node*, Expr> rotated_;
+};
+
+// The symbol of number `axis` (0: x, 1: y; -1: a scalar) of a parameter, as a kernel reads it.
+Expr local_symbol(const Joint& joint, const Parameter& parameter, int axis);
+// Its name in Parameters<T>: "pa_x", "phi".
+std::string field_name(const Parameter& parameter, int axis);
+// How many numbers a parameter has.
+int size_of(const Parameter& parameter);
+
+}  // namespace cdot::derive

@@ -1,0 +1,72 @@
+// The ledger of operation counts: generated/ledger.csv, so that a change's price shows in its diff.
+#include "derive/ledger.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+namespace cdot::derive {
+namespace {
+
+void add_functions(const Joint& joint, const KernelBlock& block, const std::string& name,
+                   std::vector<LedgerRow>& rows) {
+  for (const KernelFunction& f : block.functions) {
+    rows.push_back({joint.name, name, f.name, "generated", count(f.program)});
+  }
+  for (const KernelBlock& variant : block.variants) {
+    add_functions(joint, variant, (name == "rows" ? "" : name + ".") + variant.name, rows);
+  }
+}
+
+void add_quantities(const Joint& joint, const Block& block, const std::string& name,
+                    std::vector<LedgerRow>& rows) {
+  const Expr ex = world_x(*joint.pool);
+  std::vector<Expr> C, J, K;
+  for (std::size_t i = 0; i < block.rows.size(); ++i) {
+    C.push_back(block.rows[i].C);
+    for (const JacobianEntry& entry : block.rows[i].J) {
+      J.insert(J.end(), {dot(ex, entry.v), dot(perp(ex), entry.v), entry.w});
+    }
+    for (const Expr entry : block.K[i]) K.push_back(entry);
+  }
+  rows.push_back({joint.name, name, "C", "generated", cost_from_poses(joint, C)});
+  rows.push_back({joint.name, name, "J", "generated", cost_from_poses(joint, J)});
+  rows.push_back({joint.name, name, "K", "generated", cost_from_poses(joint, K)});
+}
+
+}  // namespace
+
+Count cost_from_poses(const Joint& joint, const std::vector<Expr>& scalars) {
+  PoseInputs pose(joint);
+  std::vector<NamedExpr> outputs;
+  for (const Expr e : scalars) outputs.push_back({"", pose.of(e)});
+  return count(simplify(assemble(outputs)));
+}
+
+std::vector<LedgerRow> ledger_of(const Kernel& kernel) {
+  std::vector<LedgerRow> rows;
+  const Joint& joint = *kernel.joint;
+  add_quantities(joint, kernel.rows.block, "rows", rows);
+  add_functions(joint, kernel.rows, "rows", rows);
+  for (const KernelBlock& coordinate : kernel.coordinates) {
+    add_quantities(joint, coordinate.block, coordinate.name, rows);
+    add_functions(joint, coordinate, coordinate.name, rows);
+  }
+  return rows;
+}
+
+std::string emit_ledger(std::vector<LedgerRow> rows) {
+  std::stable_sort(rows.begin(), rows.end(), [](const LedgerRow& a, const LedgerRow& b) {
+    return std::tie(a.joint, a.block, a.quantity) < std::tie(b.joint, b.block, b.quantity);
+  });
+  std::string s = "joint,block,quantity,source,add,multiply,divide,root,compare,call,total\n";
+  for (const LedgerRow& r : rows) {
+    const Count& c = r.count;
+    s += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", r.joint, r.block, r.quantity, r.source, c.add,
+                     c.multiply, c.divide, c.root, c.compare, c.call, c.total());
+  }
+  return s;
+}
+
+}  // namespace cdot::derive

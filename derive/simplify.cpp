@@ -1,0 +1,269 @@
+// Passes from program to program. Each finds its best single rewriting, deterministically: the most frequent pair, the
+// first of equals. They are run in several orders and the cheapest program wins, for sharing and factoring compete.
+#include <algorithm>
+#include <functional>
+#include <optional>
+#include <set>
+#include <tuple>
+
+#include "derive/program_builder.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// How often an operation is used by needed operations and outputs.
+std::vector<int> use_counts(const Program& program) {
+  std::vector<int> uses(program.ops.size());
+  for (const Output& output : program.outputs) ++uses[static_cast<std::size_t>(output.op)];
+  for (std::size_t i = program.ops.size(); i-- > 0;) {
+    if (uses[i] == 0) continue;
+    for (const int arg : program.ops[i].args) ++uses[static_cast<std::size_t>(arg)];
+  }
+  return uses;
+}
+
+// Copies the needed operations; `rewrite` may build something else in the place of an operation (its operands, in
+// terms of the new program, are given), or say nullopt to keep it.
+using Rewrite = std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index,
+                                                 const std::vector<int>& new_index)>;
+Program copy(const Program& program, const Rewrite& rewrite) {
+  const std::vector<int> uses = use_counts(program);
+  ProgramBuilder builder;
+  std::vector<int> at(program.ops.size(), -1);
+  for (std::size_t i = 0; i < program.ops.size(); ++i) {
+    if (uses[i] == 0) continue;
+    const Operation& op = program.ops[i];
+    std::optional<int> made = rewrite(builder, op, static_cast<int>(i), at);
+    if (!made) {
+      std::vector<int> args;
+      for (const int arg : op.args) args.push_back(at[static_cast<std::size_t>(arg)]);
+      made = builder.rebuild(op, std::move(args));
+    }
+    at[i] = *made;
+  }
+  for (const Output& o : program.outputs) builder.output(o.name, at[static_cast<std::size_t>(o.op)]);
+  return builder.finish();
+}
+
+// Two operands that occur together: a term pair x + ratio y (up to a common factor), or a factor pair x y.
+struct Pair {
+  int x = 0, y = 0;
+  Rational ratio;
+  friend bool operator==(const Pair&, const Pair&) = default;
+};
+
+std::vector<Pair> term_pairs(const Program& program, const Operation& op) {
+  std::vector<Pair> pairs;
+  if (op.kind != OpKind::sum) return pairs;
+  for (std::size_t i = 0; i < op.args.size(); ++i) {
+    for (std::size_t j = i + 1; j < op.args.size(); ++j) {
+      // The difference of two positions cancels what is large in both: neither is ever paired with anything else.
+      const bool first = program.ops[static_cast<std::size_t>(op.args[i])].is_position;
+      const bool second = program.ops[static_cast<std::size_t>(op.args[j])].is_position;
+      if (first != second && op.args.size() > 2) continue;
+      const bool swap = op.args[i] > op.args[j];
+      const std::size_t x = swap ? j : i, y = swap ? i : j;
+      pairs.push_back({op.args[x], op.args[y], op.coefs[y] / op.coefs[x]});
+    }
+  }
+  return pairs;
+}
+
+std::vector<Pair> factor_pairs(const Program&, const Operation& op) {
+  std::vector<Pair> pairs;
+  if (op.kind != OpKind::product) return pairs;
+  for (std::size_t i = 0; i < op.args.size(); ++i) {
+    if (op.exponents[i] > 1) pairs.push_back({op.args[i], op.args[i], Rational(1)});
+    for (std::size_t j = i + 1; j < op.args.size(); ++j) {
+      pairs.push_back({std::min(op.args[i], op.args[j]), std::max(op.args[i], op.args[j]),
+                       Rational(1)});
+    }
+  }
+  return pairs;
+}
+
+using PairFinder = std::vector<Pair> (*)(const Program&, const Operation&);
+
+// The pair that occurs in most operations, if in more than one; the first such.
+std::optional<Pair> most_frequent(const Program& program, PairFinder pairs_of) {
+  const std::vector<int> uses = use_counts(program);
+  const auto less = [](const Pair& a, const Pair& b) {
+    return std::tie(a.x, a.y, a.ratio) < std::tie(b.x, b.y, b.ratio);
+  };
+  std::map<Pair, int, decltype(less)> seen(less);
+  std::optional<Pair> best;
+  int best_count = 1;
+  for (std::size_t i = 0; i < program.ops.size(); ++i) {
+    if (uses[i] == 0) continue;
+    for (const Pair& pair : pairs_of(program, program.ops[i])) {
+      const int n = ++seen[pair];
+      if (n > best_count) best_count = n, best = pair;
+    }
+  }
+  return best;
+}
+
+std::size_t find(const std::vector<int>& args, int arg) {
+  return static_cast<std::size_t>(std::find(args.begin(), args.end(), arg) - args.begin());
+}
+
+// x + y once for all sums that contain it.
+std::optional<Program> share_terms(const Program& program) {
+  const std::optional<Pair> pair = most_frequent(program, term_pairs);
+  if (!pair) return std::nullopt;
+  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
+                           const std::vector<int>& at) -> std::optional<int> {
+    if (op.kind != OpKind::sum) return std::nullopt;
+    const std::size_t x = find(op.args, pair->x), y = find(op.args, pair->y);
+    if (x == op.args.size() || y == op.args.size() || op.coefs[y] / op.coefs[x] != pair->ratio) {
+      return std::nullopt;
+    }
+    const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
+    std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio})};
+    std::vector<Rational> coefs{op.coefs[x]};
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      if (i == x || i == y) continue;
+      args.push_back(mapped(i));
+      coefs.push_back(op.coefs[i]);
+    }
+    return builder.sum(std::move(args), std::move(coefs), op.name);
+  });
+}
+
+// x y once for all products that contain it.
+std::optional<Program> share_factors(const Program& program) {
+  const std::optional<Pair> pair = most_frequent(program, factor_pairs);
+  if (!pair) return std::nullopt;
+  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
+                           const std::vector<int>& at) -> std::optional<int> {
+    if (op.kind != OpKind::product) return std::nullopt;
+    std::vector<int> exponents = op.exponents;
+    const std::size_t x = find(op.args, pair->x), y = find(op.args, pair->y);
+    if (x == op.args.size() || y == op.args.size()) return std::nullopt;
+    const int times = x == y ? exponents[x] / 2 : std::min(exponents[x], exponents[y]);
+    if (times == 0) return std::nullopt;
+    exponents[x] -= times;
+    exponents[y] -= times;
+    const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
+    std::vector<int> args{builder.product({mapped(x), mapped(y)}, {1, 1})};
+    std::vector<int> powers{times};
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      if (exponents[i] == 0) continue;
+      args.push_back(mapped(i));
+      powers.push_back(exponents[i]);
+    }
+    return builder.product(std::move(args), std::move(powers), op.name);
+  });
+}
+
+// Terms of `sum` from which `factor` can be taken without computing anything twice.
+std::vector<std::size_t> terms_with(const Program& program, const Operation& sum, int factor,
+                                    const std::vector<int>& uses) {
+  std::vector<std::size_t> terms;
+  for (std::size_t i = 0; i < sum.args.size(); ++i) {
+    const Operation& term = program.ops[static_cast<std::size_t>(sum.args[i])];
+    const bool own = uses[static_cast<std::size_t>(sum.args[i])] == 1;
+    const bool contains = term.kind == OpKind::product && own && find(term.args, factor) < term.args.size();
+    if (sum.args[i] == factor || contains) terms.push_back(i);
+  }
+  return terms;
+}
+
+struct Factoring {
+  int sum = 0, factor = 0;
+  std::vector<std::size_t> terms;
+};
+
+std::optional<Factoring> best_factoring(const Program& program) {
+  const std::vector<int> uses = use_counts(program);
+  std::optional<Factoring> best;
+  for (std::size_t s = 0; s < program.ops.size(); ++s) {
+    const Operation& sum = program.ops[s];
+    if (uses[s] == 0 || sum.kind != OpKind::sum) continue;
+    std::set<int> factors;
+    for (const int arg : sum.args) {
+      const Operation& term = program.ops[static_cast<std::size_t>(arg)];
+      if (term.kind == OpKind::product) factors.insert(term.args.begin(), term.args.end());
+    }
+    for (const int factor : factors) {
+      std::vector<std::size_t> terms = terms_with(program, sum, factor, uses);
+      if (terms.size() >= 2 && (!best || terms.size() > best->terms.size())) {
+        best = Factoring{static_cast<int>(s), factor, std::move(terms)};
+      }
+    }
+  }
+  return best;
+}
+
+// a x + b x = x (a + b)
+std::optional<Program> take_out_factor(const Program& program) {
+  const std::optional<Factoring> f = best_factoring(program);
+  if (!f) return std::nullopt;
+  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int index,
+                           const std::vector<int>& at) -> std::optional<int> {
+    if (index != f->sum) return std::nullopt;
+    std::vector<int> inner, outer;
+    std::vector<Rational> inner_coefs, outer_coefs;
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      if (std::find(f->terms.begin(), f->terms.end(), i) == f->terms.end()) {
+        outer.push_back(at[static_cast<std::size_t>(op.args[i])]);
+        outer_coefs.push_back(op.coefs[i]);
+        continue;
+      }
+      const Operation& term = program.ops[static_cast<std::size_t>(op.args[i])];
+      std::vector<int> args, exponents;
+      if (op.args[i] != f->factor) {
+        for (std::size_t k = 0; k < term.args.size(); ++k) {
+          const int left = term.exponents[k] - (term.args[k] == f->factor ? 1 : 0);
+          if (left == 0) continue;
+          args.push_back(at[static_cast<std::size_t>(term.args[k])]);
+          exponents.push_back(left);
+        }
+      }
+      inner.push_back(builder.product(std::move(args), std::move(exponents)));
+      inner_coefs.push_back(op.coefs[i]);
+    }
+    const int rest = builder.sum(std::move(inner), std::move(inner_coefs));
+    const int taken = builder.product({at[static_cast<std::size_t>(f->factor)], rest}, {1, 1});
+    outer.push_back(taken);
+    outer_coefs.push_back(Rational(1));
+    return builder.sum(std::move(outer), std::move(outer_coefs), op.name);
+  });
+}
+
+using Pass = std::optional<Program> (*)(const Program&);
+
+Program exhaust(Program program, Pass pass) {
+  while (std::optional<Program> next = pass(program)) program = std::move(*next);
+  return program;
+}
+
+// What an operation costs beside an addition; a division or root weighs as on current processors.
+int weight(const Count& c) {
+  return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call;
+}
+
+}  // namespace
+
+Program simplify(const Program& program) {
+  static constexpr Pass orders[][3] = {{share_factors, share_terms, take_out_factor},
+                                       {take_out_factor, share_factors, share_terms},
+                                       {share_terms, take_out_factor, share_factors},
+                                       {share_terms, share_factors, take_out_factor},
+                                       {take_out_factor, share_terms, share_factors}};
+  Program best = program;
+  for (bool improved = true; improved;) {
+    improved = false;
+    const Program start = best;
+    for (const auto& order : orders) {
+      Program candidate = start;
+      for (const Pass pass : order) candidate = exhaust(std::move(candidate), pass);
+      if (weight(count(candidate)) >= weight(count(best))) continue;
+      best = std::move(candidate);
+      improved = true;
+    }
+  }
+  return best;
+}
+
+}  // namespace cdot::derive
