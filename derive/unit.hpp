@@ -11,7 +11,7 @@ namespace cdot::derive {
 
 // Radians are kept only where nothing but seconds stands beside them: an arc, radius times angle, is in metres.
 struct Unit {
-  Rational m, rad, s, kg;
+  Rational m{}, rad{}, s{}, kg{};
 
   friend bool operator==(const Unit&, const Unit&) = default;
 };

@@ -1,0 +1,80 @@
+// Expression trees to typed values: names looked up, types and units checked, Exprs built.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "derive/ast.hpp"
+#include "derive/operators.hpp"
+#include "derive/value.hpp"
+
+namespace cdot::derive {
+
+// What the evaluator asks of the place where an expression stands.
+class Names {
+ public:
+  virtual ~Names() = default;
+  virtual const Value* find(const std::string& name) = 0;  // null if unknown; counts as a use
+  virtual int body(const std::string& letter) const = 0;   // -1 if it is no body
+  virtual void use_body(int body, Span where) = 0;
+  virtual void use_world() = 0;
+  virtual std::vector<std::string> known() const = 0;           // for "did you mean"
+  virtual std::string hint(const std::string& name) const = 0;  // why an unknown name is unknown
+};
+
+class Evaluator {
+ public:
+  // In a hand derivation units are only remarked on, radians and numbers are one, and matrices may
+  // occur.
+  Evaluator(Pool& pool, Names& names, Diagnostics& diagnostics, bool hand)
+      : pool_(pool), names_(names), diagnostics_(diagnostics), hand_(hand) {}
+
+  // Widths that a matrix of so many blocks per row has where its blocks do not tell: 2, 1, 2, 1 for
+  // J.
+  void expect_columns(std::vector<int> widths) { expected_columns_ = std::move(widths); }
+
+  Value operator()(const Ast& ast);
+
+  // Adds `terms` with `signs` ('+' or '-'); `parts` are the trees they came from. `relation` is
+  // what the message says about the last one: "adds", "equates".
+  Value add(const std::vector<Value>& terms, const std::string& signs,
+            const std::vector<Span>& parts, std::string_view relation = {});
+
+ private:
+  Value evaluate(const Ast& ast);
+  Value number(const Ast& ast);
+  Value name(const Ast& ast);
+  Value sum(const Ast& ast);
+  Value product(const Ast& ast);
+  Value power(const Ast& ast);
+  Value member(const Ast& ast);
+  Value call(const Ast& ast);
+  Value apply(const Operator& o, const std::vector<Value>& arguments, const Ast& ast);
+  std::optional<Value> unit_of_call(const Operator& o, const std::vector<Value>& a, const Ast& ast);
+  Value wrong_arguments(const std::vector<Value>& arguments, const Ast& ast);
+  Value unknown(const Ast& ast, bool called);
+
+  Value plain(const Ast& ast, std::string_view use);  // of a number, vector, point or matrix
+  bool add_types(Value& total, const Value& next, char sign, Span part, Span first);
+  Value scaled(const std::vector<Value>& factors, const Ast& ast);
+  Value error(Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
+  void unit_error(Span where, std::string message, std::string fix, std::vector<Span> also = {});
+
+  // Matrices, in evaluate_matrix.cpp.
+  Value transpose(const Ast& ast);
+  Value matrix(const Ast& ast);
+  Value matrix_product(const std::vector<Value>& factors, const Ast& ast);
+  Value matrix_sum(const std::vector<Value>& terms, const std::string& signs,
+                   const std::vector<Span>& parts);
+  Value matrix_power(const Value& base, int exponent, const Ast& ast);
+  std::optional<Matrix> multiply(const Value& a, const Value& b, Span where);
+  Value simplest(Matrix m, bool as_vector);
+
+  Pool& pool_;
+  Names& names_;
+  Diagnostics& diagnostics_;
+  bool hand_;
+  std::vector<int> expected_columns_;
+};
+
+}  // namespace cdot::derive

@@ -1,0 +1,246 @@
+#include "derive/lexer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+
+namespace cdot::derive {
+namespace {
+
+constexpr std::size_t longest_name = 64;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
+
+// Characters that a word processor puts in place of those of the language.
+struct LookAlike {
+  std::string_view character, meaning;
+};
+constexpr std::array<LookAlike, 9> look_alikes = {{{"\u2212", "-"},
+                                                   {"\u2013", "-"},
+                                                   {"\u00D7", "*"},
+                                                   {"\u00B7", "*"},
+                                                   {"\u22C5", "*"},
+                                                   {"\u2264", "<="},
+                                                   {"\u2265", ">="},
+                                                   {"\u2032", "'"},
+                                                   {"\u2019", "'"}}};
+
+class Lexer {
+ public:
+  Lexer(const SourceFile& file, Diagnostics& diagnostics)
+      : text_(file.text), diagnostics_(diagnostics) {}
+
+  Tokens run() {
+    if (text_.starts_with("\uFEFF")) at_ = 3;  // a byte order mark
+    while (at_ < text_.size()) step();
+    add(TokenKind::newline, at_, at_);
+    add(TokenKind::end, at_, at_);
+    return std::move(tokens_);
+  }
+
+ private:
+  void step() {
+    const char c = text_[at_];
+    if (c == '\n') return newline();
+    if (c == ' ' || c == '\t' || c == '\r') return void(++at_);
+    if (c == '#') return comment();
+    if (c == '"') return string();
+    if (is_letter(c)) return name();
+    if (is_digit(c)) return number();
+    if (c == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1])) return bare_fraction();
+    if (symbol()) return;
+    unknown();
+  }
+
+  void newline() {
+    if (depth_ > 0 && statement_follows(at_ + 1)) depth_ = 0;  // the parser tells what is open
+    if (depth_ == 0) add(TokenKind::newline, at_, at_ + 1);
+    ++at_;
+  }
+
+  // Whether the next line opens a statement, so that a bracket left open does not swallow it.
+  bool statement_follows(std::size_t i) const {
+    while (i < text_.size() && (text_[i] == ' ' || text_[i] == '\t')) ++i;
+    std::size_t end = i;
+    while (end < text_.size() && is_letter(text_[end])) ++end;
+    if (!starts_statement(text_.substr(i, end - i))) return false;
+    while (end < text_.size() && text_[end] == ' ') ++end;
+    return end < text_.size() && (is_letter(text_[end]) || text_[end] == '"');
+  }
+
+  void comment() {
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && text_[at_] != '\n') ++at_;
+    if (tokens_.list.empty() || tokens_.list.back().kind == TokenKind::newline)
+      tokens_.comments.push_back(span(begin, at_));
+  }
+
+  void string() {
+    const std::size_t begin = at_++;
+    while (at_ < text_.size() && text_[at_] != '"' && text_[at_] != '\n') ++at_;
+    Token token{TokenKind::string, span(begin, at_), text_.substr(begin + 1, at_ - begin - 1)};
+    if (at_ < text_.size() && text_[at_] == '"')
+      token.where = span(begin, ++at_);
+    else
+      diagnostics_.error(span(begin, begin + 1), "the text that starts here has no end",
+                         "close it with \" on the same line");
+    tokens_.list.push_back(token);
+  }
+
+  void name() {
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
+    if (at_ - begin > longest_name)
+      diagnostics_.error(span(begin, at_), "a name of " + std::to_string(at_ - begin) +
+                                               " characters; at most 64 are allowed");
+    add(TokenKind::name, begin, begin + std::min(at_ - begin, longest_name));
+  }
+
+  void digits() {
+    while (at_ < text_.size() && is_digit(text_[at_])) ++at_;
+  }
+
+  // digits [ "." digits ] [ "e" [sign] digits ]
+  void number() {
+    const std::size_t begin = at_;
+    digits();
+    if (at_ + 1 < text_.size() && text_[at_] == '.' && is_digit(text_[at_ + 1])) {
+      ++at_;
+      digits();
+    }
+    std::size_t e = at_;
+    if (e < text_.size() && (text_[e] == 'e' || text_[e] == 'E')) {
+      ++e;
+      if (e < text_.size() && (text_[e] == '+' || text_[e] == '-')) ++e;
+      if (e < text_.size() && is_digit(text_[e])) {
+        at_ = e;
+        digits();
+      }
+    }
+    add(TokenKind::number, begin, at_);
+    if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
+      junk_after_number(begin);
+  }
+
+  void junk_after_number(std::size_t begin) {
+    const std::size_t end_of_number = at_;
+    while (at_ < text_.size() &&
+           (is_letter(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.'))
+      ++at_;
+    const std::string digits(text_.substr(begin, std::min<std::size_t>(end_of_number - begin, 20)));
+    const std::string rest(
+        text_.substr(end_of_number, std::min<std::size_t>(at_ - end_of_number, 20)));
+    if (rest.starts_with('.'))
+      diagnostics_.error(span(begin, at_), "this is not a number",
+                         "digits must stand on both sides of the point, as in 1.0");
+    else
+      diagnostics_.error(span(begin, at_), "a name may not start with a digit",
+                         "for a product write " + digits + "*" + rest +
+                             ", for a number with a unit " + digits + " [" + rest + "]");
+  }
+
+  void bare_fraction() {
+    const std::size_t begin = at_++;
+    digits();
+    diagnostics_.error(
+        span(begin, at_), "a number starts with a digit",
+        "write 0" + std::string(text_.substr(begin, std::min<std::size_t>(at_ - begin, 20))));
+    add(TokenKind::number, begin + 1, at_);
+  }
+
+  bool symbol() {
+    static constexpr std::array<std::string_view, 5> pairs = {"==", "<=", ">=", "+=", "-="};
+    const auto two = text_.substr(at_, 2);
+    const bool pair = std::find(pairs.begin(), pairs.end(), two) != pairs.end();
+    static constexpr std::string_view singles = "()[]{},.:;=<>+-*/^'";
+    if (!pair && singles.find(text_[at_]) == std::string_view::npos) return false;
+    const char c = text_[at_];
+    if (c == '(' || c == '[') ++depth_;
+    if ((c == ')' || c == ']') && depth_ > 0) --depth_;
+    const std::size_t length = pair ? 2 : 1;
+    add(TokenKind::symbol, at_, at_ + length);
+    at_ += length;
+    return true;
+  }
+
+  void unknown() {
+    for (const LookAlike& l : look_alikes)
+      if (text_.substr(at_).starts_with(l.character)) {
+        const Span where = span(at_, at_ + l.character.size());
+        diagnostics_.error(where, "this character only looks like " + quote(l.meaning),
+                           "write " + quote(l.meaning));
+        at_ += l.character.size();
+        return tokens_.list.push_back({TokenKind::symbol, where, l.meaning});
+      }
+    const std::size_t begin = at_;
+    const bool ascii = is_ascii(text_[at_]);
+    do ++at_;
+    while (at_ < text_.size() && !known(text_[at_]) && is_ascii(text_[at_]) == ascii);
+    if (ascii && text_[begin] >= ' ' && text_[begin] != 0x7F)
+      diagnostics_.error(span(begin, at_), "a character that the language does not have",
+                         text_[begin] == '@' || text_[begin] == '|' || text_[begin] == '&' ||
+                                 text_[begin] == '$' || text_[begin] == '%'
+                             ? "remove it"
+                             : "");
+    else
+      diagnostics_.error(
+          span(begin, at_),
+          ascii ? "a control character in the text" : "only plain letters can be used here",
+          ascii ? "save the file as plain UTF-8 text"
+                : "names are of a-z, A-Z, 0-9 and _; other letters may stand in "
+                  "comments and \"texts\"");
+  }
+
+  static bool known(char c) {
+    static constexpr std::string_view others = " \t\r\n#\"()[]{},.:;=<>+-*/^'";
+    return is_letter(c) || is_digit(c) || others.find(c) != std::string_view::npos;
+  }
+
+  static Span span(std::size_t begin, std::size_t end) {
+    return {static_cast<int>(begin), static_cast<int>(end)};
+  }
+
+  void add(TokenKind kind, std::size_t begin, std::size_t end) {
+    tokens_.list.push_back({kind, span(begin, end), text_.substr(begin, end - begin)});
+  }
+
+  std::string_view text_;
+  Diagnostics& diagnostics_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+  Tokens tokens_;
+};
+
+}  // namespace
+
+Tokens lex(const SourceFile& file, Diagnostics& diagnostics) {
+  return Lexer(file, diagnostics).run();
+}
+
+std::string quote(std::string_view word) {
+  std::string out = "`";
+  for (const char c : word.substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
+  return out + (word.size() > 40 ? "...`" : "`");
+}
+
+const std::vector<std::string>& statement_words(bool hand) {
+  static const std::vector<std::string> joint = {"joint",  "source",   "include",   "point",
+                                                 "vector", "unit",     "frame",     "scalar",
+                                                 "let",    "velocity", "coordinate"};
+  static const std::vector<std::string> entry = {"entry", "source", "note",   "assume",
+                                                 "let",   "free",   "lambda", "update",
+                                                 "bound", "claim",  "listed"};
+  return hand ? entry : joint;
+}
+
+bool starts_statement(std::string_view word) {
+  const auto has = [&](bool hand) {
+    const auto& words = statement_words(hand);
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  return has(false) || has(true);
+}
+
+}  // namespace cdot::derive

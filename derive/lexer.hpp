@@ -1,0 +1,33 @@
+// Text of a spec or of a hand derivation as tokens. Lines end statements except inside open
+// brackets.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "derive/source.hpp"
+
+namespace cdot::derive {
+
+enum class TokenKind { name, number, string, symbol, newline, end };
+
+struct Token {
+  TokenKind kind = TokenKind::end;
+  Span where;
+  std::string_view text;  // of a string: without its quotes
+};
+
+struct Tokens {
+  std::vector<Token> list;     // ends with newline and end
+  std::vector<Span> comments;  // of whole lines
+};
+
+Tokens lex(const SourceFile& file, Diagnostics& diagnostics);
+
+// A word of the user, short and printable, in back quotes.
+std::string quote(std::string_view word);
+
+bool starts_statement(std::string_view word);  // a word of the language that opens a statement
+const std::vector<std::string>& statement_words(bool hand);
+
+}  // namespace cdot::derive

@@ -1,0 +1,22 @@
+// Matrices of scalar expressions, as hand derivations write them.
+// One without rows is a multiple of the identity, of the size that its place asks for; its factor
+// is the only entry.
+#pragma once
+
+#include <vector>
+
+#include "derive/expr.hpp"
+
+namespace cdot::derive {
+
+struct Matrix {
+  int rows = 0, columns = 0;
+  std::vector<Expr> entries;  // row by row
+
+  bool any_size() const { return rows == 0; }
+  Expr at(int row, int column) const {
+    return entries[static_cast<std::size_t>(row * columns + column)];
+  }
+};
+
+}  // namespace cdot::derive

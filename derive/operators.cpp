@@ -1,0 +1,202 @@
+#include "derive/operators.hpp"
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+
+#include "derive/symbols.hpp"
+
+namespace cdot::derive {
+namespace {
+
+using Arguments = std::span<const Value>;
+
+Value build_dot(Pool&, Arguments a) { return scalar(dot(a[0].e, a[1].e)); }
+Value build_cross(Pool&, Arguments a) { return scalar(cross(a[0].e, a[1].e)); }
+Value build_turn(Pool&, Arguments a) { return vector(cross(a[0].e, a[1].e)); }
+Value build_perp(Pool&, Arguments a) { return vector(perp(a[0].e)); }
+Value build_norm(Pool&, Arguments a) { return scalar(norm(a[0].e)); }
+Value build_unit(Pool&, Arguments a) { return vector(unit(a[0].e)); }
+
+Value build_local(Pool& pool, Arguments a) {
+  if (a[1].type == Type::body && a[1].body < 0) return a[0];
+  const Expr axis = a[1].type == Type::frame ? a[1].e : body_axis(pool, a[1].body);
+  Value v = vector(components_along(a[0].e, axis));
+  v.axis = axis;
+  return v;
+}
+
+Value build_angle_of(Pool& pool, Arguments a) {
+  return scalar(a[0].body < 0 ? pool.number(0) : body_angle(pool, a[0].body));
+}
+
+Value build_angle_between(Pool&, Arguments a) {
+  const std::array<Expr, 2> sides = {cross(a[0].e, a[1].e), dot(a[0].e, a[1].e)};
+  return scalar(call(Fn::atan2, sides));
+}
+
+Value build_centre(Pool& pool, Arguments a) {
+  Value v = vector(body_position(pool, a[0].body));
+  v.type = Type::point;
+  v.body = a[0].body;
+  v.arm = zero_vector(pool);
+  v.anchored = true;
+  return v;
+}
+
+Value build_arm(Pool&, Arguments a) { return vector(a[0].arm); }
+
+Value build_velocity(Pool& pool, Arguments a) {
+  if (a[0].body < 0) return vector(zero_vector(pool));
+  const Expr centre = body_velocity(pool, a[0].body);
+  if (a[0].type == Type::body) return vector(centre);
+  return vector(centre + cross(body_spin(pool, a[0].body), a[0].arm));
+}
+
+Value build_spin(Pool& pool, Arguments a) {
+  return scalar(a[0].body < 0 ? pool.number(0) : body_spin(pool, a[0].body));
+}
+
+template <Fn fn>
+Value build_function(Pool&, Arguments a) {
+  if (a.size() == 1) return scalar(call(fn, a[0].e));
+  const std::array<Expr, 2> both = {a[0].e, a[1].e};
+  return scalar(call(fn, both));
+}
+
+Value build_mass(Pool& pool, Arguments a) { return scalar(pow(inverse_mass(pool, a[0].body), -1)); }
+Value build_inertia(Pool& pool, Arguments a) {
+  return scalar(pow(inverse_inertia(pool, a[0].body), -1));
+}
+
+Value build_rotation(Pool& pool, Arguments a) {
+  const Expr axis = body_axis(pool, a[0].body);
+  const Expr c = component(axis, 0), s = component(axis, 1);
+  Value v;
+  v.type = Type::matrix;
+  v.matrix = std::make_shared<Matrix>(Matrix{2, 2, {c, -s, s, c}});
+  return v;
+}
+
+using enum Operator::Where;
+using Gives = UnitGiven;
+constexpr UnitRule products = {UnitNeed::any, Gives::product}, kept = {UnitNeed::any, Gives::same},
+                   to_number = {UnitNeed::any, Gives::number},
+                   of_angle = {UnitNeed::angle, Gives::number},
+                   of_number = {UnitNeed::number, Gives::number},
+                   to_angle = {UnitNeed::any, Gives::radians};
+
+const std::vector<Operator> table = {
+    {"dot", "dot(u, v)", {vector_, vector_}, products, build_dot, "u_x v_x + u_y v_y"},
+    {"cross", "cross(u, v)", {vector_, vector_}, products, build_cross, "u_x v_y - u_y v_x"},
+    {"cross", "cross(w, v)", {number_, vector_}, products, build_turn, "(-w v_y, w v_x)"},
+    {"perp", "perp(u)", {vector_}, kept, build_perp, "(-u_y, u_x), a quarter turn to the left"},
+    {"norm", "norm(u)", {vector_}, kept, build_norm, "the length of a vector"},
+    {"unit",
+     "unit(u)",
+     {vector_},
+     to_number,
+     build_unit,
+     "the direction of a vector; (1, 0) for the zero vector"},
+    {"local",
+     "local(u, f)",
+     {vector_, frame_ | body_ | world_},
+     kept,
+     build_local,
+     "the components of u along the axes of a frame or body; .x and .y take one"},
+    {"angle",
+     "angle(a)",
+     {body_ | world_},
+     to_angle,
+     build_angle_of,
+     "the angle of a body, unwrapped"},
+    {"angle",
+     "angle(u, v)",
+     {vector_, vector_},
+     to_angle,
+     build_angle_between,
+     "the angle from u to v, in (-pi, pi]"},
+    {"x",
+     "x(a)",
+     {body_},
+     {UnitNeed::any, Gives::metres},
+     build_centre,
+     "the centre of mass of a body, a point"},
+    {"arm",
+     "arm(p)",
+     {point_},
+     {UnitNeed::any, Gives::metres},
+     build_arm,
+     "p minus the centre of mass of its body"},
+    {"v",
+     "v(p)",
+     {point_ | body_ | world_},
+     {UnitNeed::any, Gives::speed},
+     build_velocity,
+     "the velocity of a point or of a body's centre of mass",
+     velocity},
+    {"w",
+     "w(a)",
+     {body_ | world_},
+     {UnitNeed::any, Gives::spin},
+     build_spin,
+     "the angular velocity of a body",
+     velocity},
+    {"sqrt",
+     "sqrt(s)",
+     {number_},
+     {UnitNeed::any, Gives::root},
+     build_function<Fn::sqrt>,
+     "square root"},
+    {"sin", "sin(s)", {number_}, of_angle, build_function<Fn::sin>, "sine of an angle"},
+    {"cos", "cos(s)", {number_}, of_angle, build_function<Fn::cos>, "cosine of an angle"},
+    {"tan", "tan(s)", {number_}, of_angle, build_function<Fn::tan>, "tangent of an angle"},
+    {"exp", "exp(s)", {number_}, of_number, build_function<Fn::exp>, "e to the power s"},
+    {"log", "log(s)", {number_}, of_number, build_function<Fn::log>, "natural logarithm"},
+    {"abs", "abs(s)", {number_}, kept, build_function<Fn::abs>, "s without its sign"},
+    {"atan2",
+     "atan2(y, x)",
+     {number_, number_},
+     {UnitNeed::equal, Gives::radians},
+     build_function<Fn::atan2>,
+     "the angle of the vector (x, y), in (-pi, pi]"},
+    {"m", "m(a)", {body_}, {UnitNeed::any, Gives::mass}, build_mass, "the mass of a body", hand},
+    {"I",
+     "I(a)",
+     {body_},
+     {UnitNeed::any, Gives::inertia},
+     build_inertia,
+     "the moment of inertia of a body",
+     hand},
+    {"skew", "skew(r)", {vector_}, kept, build_perp, "the matrix with skew(r) w = w x r", hand},
+    {"S", "S(r)", {vector_}, kept, build_perp, "the same as skew(r)", hand},
+    {"R", "R(a)", {body_}, to_number, build_rotation, "the rotation matrix of a body", hand},
+};
+
+}  // namespace
+
+const std::vector<Operator>& operators() { return table; }
+
+bool is_operator(std::string_view name) { return !operators_named(name).empty(); }
+
+std::vector<const Operator*> operators_named(std::string_view name) {
+  std::vector<const Operator*> found;
+  for (const Operator& o : operators())
+    if (o.name == name) found.push_back(&o);
+  return found;
+}
+
+std::string operators_help() {
+  std::string out;
+  for (const Operator& o : operators()) {
+    out += "  " + std::string(o.signature);
+    out +=
+        std::string(16 - std::min<std::size_t>(14, o.signature.size()), ' ') + std::string(o.help);
+    if (o.where == velocity) out += "  (in velocity rows and .hand files)";
+    if (o.where == hand) out += "  (in .hand files)";
+    out += "\n";
+  }
+  return out;
+}
+
+}  // namespace cdot::derive

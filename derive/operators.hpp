@@ -1,0 +1,48 @@
+// The operators of the spec language: one table, read by the reader, by `--help operators` and by
+// the tests.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "derive/value.hpp"
+
+namespace cdot::derive {
+
+// What an operator may be applied to; several bits where it takes several.
+enum Takes : unsigned {
+  number_ = 1,
+  vector_ = 2,
+  point_ = 4,  // fixed in a body
+  body_ = 8,   // not the world
+  world_ = 16,
+  frame_ = 32,
+  matrix_ = 64
+};
+
+enum class UnitNeed { any, angle, number, equal };  // equal: all arguments have one unit
+enum class UnitGiven { product, same, root, number, radians, metres, speed, spin, mass, inertia };
+
+struct UnitRule {
+  UnitNeed needs;
+  UnitGiven gives;
+};
+
+struct Operator {
+  std::string_view name;
+  std::string_view signature;  // "dot(u, v)"
+  std::vector<unsigned> takes;
+  UnitRule unit;
+  Value (*build)(Pool& pool, std::span<const Value> arguments);  // the unit is set by the rule
+  std::string_view help;
+  enum class Where { anywhere, velocity, hand } where = Where::anywhere;
+};
+
+const std::vector<Operator>& operators();
+bool is_operator(std::string_view name);
+std::vector<const Operator*> operators_named(std::string_view name);
+std::string operators_help();
+
+}  // namespace cdot::derive

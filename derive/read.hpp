@@ -1,0 +1,41 @@
+// The reader's front door: the text of a spec in, a Joint and everything there is to say about it
+// out.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "derive/joint.hpp"
+#include "derive/source.hpp"
+#include "derive/value.hpp"
+
+namespace cdot::derive {
+
+// The specs that an `include` may name.
+using Library = std::map<std::string, std::shared_ptr<const SourceFile>>;
+Library load_library(const std::filesystem::path& folder);  // every *.joint in it
+
+// The whole file; throws std::runtime_error that says why, if it cannot be read.
+std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path);
+
+struct ReadOptions {
+  // Parameters that are fixed elsewhere than the spec says: {"t", "a"}. For hand derivations that
+  // do so.
+  std::map<std::string, std::string> anchors;
+};
+
+struct ReadResult {
+  std::optional<Joint> joint;  // empty if there are errors
+  std::shared_ptr<const SourceFile> file;
+  Diagnostics diagnostics;
+  std::map<std::string, Value> names;  // every parameter, arm and let, typed
+};
+
+ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library,
+                      std::shared_ptr<Pool> pool = std::make_shared<Pool>(),
+                      const ReadOptions& options = {});
+
+}  // namespace cdot::derive

@@ -1,0 +1,60 @@
+#include "derive/symbols.hpp"
+
+#include <array>
+
+namespace cdot::derive {
+namespace {
+
+constexpr std::array<std::string_view, 7> stems = {"x_",     "v_",     "w_",   "theta_",
+                                                   "inv_m_", "inv_I_", "axis_"};
+
+std::string named(std::string_view stem, int body) { return std::string(stem) + body_name(body); }
+
+}  // namespace
+
+std::string body_name(int body) {
+  return body < 0 ? "world" : std::string(1, static_cast<char>('a' + body));
+}
+
+int body_of_letter(std::string_view word) {
+  const bool letter = word.size() == 1 && word[0] >= 'a' && word[0] < 'a' + most_bodies;
+  return letter ? word[0] - 'a' : -1;
+}
+
+Expr body_position(Pool& pool, int body) {
+  return pool.vector_symbol(named("x_", body), Role::position, body);
+}
+Expr body_velocity(Pool& pool, int body) {
+  return pool.vector_symbol(named("v_", body), Role::velocity, body);
+}
+Expr body_angle(Pool& pool, int body) {
+  return pool.symbol(named("theta_", body), Role::angle, body);
+}
+Expr body_spin(Pool& pool, int body) { return pool.symbol(named("w_", body), Role::spin, body); }
+Expr body_axis(Pool& pool, int body) {
+  if (body < 0) return world_x(pool);
+  return pool.vector_symbol(named("axis_", body), Role::body_vector, body, true);
+}
+Expr inverse_mass(Pool& pool, int body) {
+  return pool.symbol(named("inv_m_", body), Role::inverse_mass, body);
+}
+Expr inverse_inertia(Pool& pool, int body) {
+  return pool.symbol(named("inv_I_", body), Role::inverse_inertia, body);
+}
+Expr time_symbol(Pool& pool) { return pool.symbol("time", Role::time); }
+Expr pi_symbol(Pool& pool) { return pool.symbol("pi", Role::constant); }
+
+bool is_symbol_of_tool(std::string_view name) {
+  if (name == "time" || name == "pi" || name == "e_x" || name == "e_y") return true;
+  for (const std::string_view stem : stems)
+    if (name.starts_with(stem) && body_of_letter(name.substr(stem.size())) >= 0) return true;
+  return false;
+}
+
+std::string arm_name(std::string_view prefix, std::string_view point) {
+  const bool short_form = point.size() > 1 && point[0] == 'p';
+  return std::string(prefix) +
+         (short_form ? "r" + std::string(point.substr(1)) : "r_" + std::string(point));
+}
+
+}  // namespace cdot::derive
