@@ -48,8 +48,10 @@ struct BlockOps {
   void (*dense)(const Batch<S>&, int slot, const Bodies<S>&, double* J, double* weighted);
   // J^T lambda of one slot: the impulse by body.
   void (*transposed)(const Batch<S>&, int slot, const T* lambda, Velocity* impulse);
-  // d(J^T lambda)/dq of one slot, [freedom * bodies][freedom * bodies].
-  void (*stiffness)(const Batch<S>&, int slot, const Bodies<S>&, T time, const T* lambda, T* H);
+  // stiffness -= the diagonal of d(J^T lambda)/dq, by body, lambda from the last step with its
+  // drift correction.
+  void (*add_stiffness)(const Batch<S>&, int begin, int end, const Bodies<S>&, T time,
+                        Velocity* stiffness);
 };
 
 // How rows that are not plainly exact get their bias, softness and bounds: one constant per effect,
@@ -81,14 +83,23 @@ struct Batch {
   std::vector<T> parameters;    // [slot][parameter_size]
   std::vector<T> jacobian;      // [slot][jacobian_size]
   std::vector<T> factor;        // [slot][rows (rows + 1) / 2]
-  std::vector<T> C, bias;       // [slot][rows]
+  std::vector<T> C, bias;       // [slot][rows], as all below
   std::vector<T> lambda;        // impulse of the velocity solve, kept for the next step
   std::vector<T> correction;    // impulse of the drift correction
+  std::vector<T> scratch;
   // Only under a law:
   std::vector<T> softness, lower, upper;  // [slot][rows]
   std::vector<T> constants;               // [slot][law->constants]
 
   int count() const { return static_cast<int>(joint.size()); }
+  // Everything that is kept per slot.
+  template <class F>
+  void for_each_array(F f) {
+    f(joint), f(body);
+    for (auto* array : {&parameters, &jacobian, &factor, &C, &bias, &lambda, &correction, &scratch,
+                        &softness, &lower, &upper, &constants})
+      f(*array);
+  }
   int triangle() const { return ops->rows * (ops->rows + 1) / 2; }
 };
 

@@ -223,15 +223,23 @@ struct BlockLoops {
     Block::apply(as<Jacobian>(batch.jacobian.data(), slot), one, lambda, impulse);
   }
 
-  static void stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, T time,
-                        const T* impulses, T* H) {
-    Pose q[bodies];
-    gather(all.pose, bodies_of(batch, slot), q);
-    T lambda[rows], D[width][width];
-    for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
-    Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, D);
-    for (int r = 0; r < width; ++r)
-      for (int c = 0; c < width; ++c) H[r * width + c] = D[r][c];
+  static void add_stiffness(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time,
+                            Velocity* stiffness) {
+    for (int slot = begin; slot < end; ++slot) {
+      const int* body = bodies_of(batch, slot);
+      Pose q[bodies];
+      gather(all.pose, body, q);
+      T lambda[rows], H[width][width];
+      for (int r = 0; r < rows; ++r)
+        lambda[r] = batch.lambda[slot * rows + r] + batch.correction[slot * rows + r];
+      Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, H);
+      for (int k = 0; k < bodies; ++k) {
+        T diagonal[S::freedom];
+        for (int c = 0; c < S::freedom; ++c)
+          diagonal[c] = -H[k * S::freedom + c][k * S::freedom + c];
+        stiffness[body[k]] = S::sum(stiffness[body[k]], S::from(diagonal), T(1));
+      }
+    }
   }
 
   static constexpr BlockOps<S> ops() {
@@ -252,7 +260,7 @@ struct BlockLoops {
             correct_bounded,
             dense,
             transposed,
-            stiffness};
+            add_stiffness};
   }
 };
 

@@ -47,7 +47,7 @@ void normalise(const JointType& type, const ParameterInfo& info, double* numbers
 
 }  // namespace
 
-std::vector<double> joint_parameters(int type_index, const std::vector<NamedValue>& given,
+std::vector<double> parameter_numbers(int type_index, const std::vector<NamedValue>& given,
                                      const planar::Pose<double>* poses) {
   const JointType& type = joint_types()[static_cast<size_t>(type_index)];
   const auto& entry = joint_entries<Planar<double>>()[static_cast<size_t>(type_index)];

@@ -11,7 +11,7 @@ namespace cdot {
 
 // All numbers of Parameters<double>: given ones checked and normalised, the others by the spec's
 // default from the poses of the joint's bodies. Throws Error.
-std::vector<double> joint_parameters(int type, const std::vector<NamedValue>& given,
+std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given,
                                      const planar::Pose<double>* poses);
 
 }  // namespace cdot

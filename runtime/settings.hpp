@@ -46,8 +46,7 @@ struct BodyDefinition {
   double x = 0, y = 0, angle = 0;  // centre of mass [m], [rad]
   double vx = 0, vy = 0, w = 0;    // [m/s], [rad/s]
   double mass = 0;                 // [kg]; must be > 0 unless is_static
-  double inertia =
-      0;  // about the centre of mass [kg m^2]; must be > 0 unless static or fixed_rotation
+  double inertia = 0;  // about the centre of mass [kg m^2]; 0: a point mass, which does not turn
   bool is_static = false;           // immovable: inverse mass and inertia exactly 0
   bool fixed_rotation = false;      // inverse inertia exactly 0
   double force_x = 0, force_y = 0;  // constant, at the centre of mass [N]

@@ -17,11 +17,12 @@
 
 #include "runtime/joints.hpp"
 #include "runtime/kernel.hpp"
+#include "runtime/planar.hpp"
 #include "runtime/settings.hpp"
 
 namespace cdot {
 
-template <class T>
+template <class S>
 struct WorldState;
 
 // The largest entry of C or Cdot over all joints; joint is -1 in a World without joints.
@@ -54,8 +55,7 @@ class World {
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  // --- setting up: throws cdot::Error, may allocate
-  // ---------------------------------------------------------------
+  // --- setting up: throws cdot::Error, may allocate ---
 
   int add_body(const BodyDefinition& definition);  // returns its index: 0, 1, ...
   int ground();  // the index of one static body at the origin, made when first asked for
@@ -74,8 +74,7 @@ class World {
   // Analyses islands and patterns now rather than in the next step(), which then does not allocate.
   void prepare();
 
-  // --- running: never throws, never allocates
-  // ----------------------------------------------------------------------
+  // --- running: step() never throws and, once prepared, never allocates ---
 
   void step(double h);
 
@@ -84,8 +83,7 @@ class World {
   void set_velocity(int body, double vx, double vy, double w);
   void apply_impulse(int body, double impulse_x, double impulse_y, double angular_impulse);
 
-  // --- looking
-  // -----------------------------------------------------------------------------------------------------
+  // --- looking ---
 
   double time() const;
   const Settings& settings() const;
@@ -111,9 +109,10 @@ class World {
   double coordinate(int joint, std::string_view name) const;  // value of a free coordinate [m, rad]
   double coordinate_rate(int joint, std::string_view name) const;  // and its rate
 
-  WorstError worst_position_error()
-      const;  // over all joints that are not soft, an inequality counts where C < 0
-  WorstError worst_velocity_error() const;  // at the present pose; inequality rows do not count
+  // Over all joints that are neither soft nor broken; an inequality counts where C < 0.
+  WorstError worst_position_error() const;
+  // At the present poses; inequality rows do not count.
+  WorstError worst_velocity_error() const;
   // Kinetic energy + gravity and constant forces (zero where each body was added) + springs, soft
   // joints included.
   double energy() const;
@@ -124,10 +123,10 @@ class World {
   std::uint64_t hash() const;  // of every bit of poses and velocities
 
   // For runtime/effects.hpp.
-  WorldState<T>& state() { return *state_; }
+  WorldState<Planar<T>>& state() { return *state_; }
 
  private:
-  std::unique_ptr<WorldState<T>> state_;
+  std::unique_ptr<WorldState<Planar<T>>> state_;
 };
 
 extern template class World<float>;

@@ -1,0 +1,23 @@
+// Gives a joint, or an effect on one, its slot in the batch of its kind.
+#pragma once
+
+#include <span>
+
+#include "runtime/world_state.hpp"
+
+namespace cdot {
+
+template <class S>
+void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law,
+              std::vector<RowKind> kinds, std::span<const double> constants);
+
+// The one row of a joint's coordinate under an effect's law. Throws Error if there is no such joint
+// or coordinate; does nothing for a joint between immovable bodies.
+template <class S>
+void add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordinate,
+                        const Law<S>* law, std::span<const double> constants);
+
+// Index into JointType::coordinates. Throws Error, listing those there are.
+int coordinate_index(int type, std::string_view name);
+
+}  // namespace cdot

@@ -1,0 +1,92 @@
+// The breaking load. It needs no row: only a look at the joint's own impulses after each substep,
+// in Worlds that asked.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/effects.hpp"
+#include "runtime/world_state.hpp"
+
+namespace cdot {
+namespace {
+
+template <class Item>
+void swap_slots(std::vector<Item>& array, int count, int i, int j) {
+  const auto width = static_cast<std::ptrdiff_t>(array.size()) / count;
+  std::swap_ranges(array.begin() + i * width, array.begin() + (i + 1) * width,
+                   array.begin() + j * width);
+}
+
+template <class S>
+void move_place(WorldState<S>& world, const Batch<S>& batch, int from, int to) {
+  for (Place& place : world.joints[batch.joint[to]].places)
+    if (world.batches[place.batch].get() == &batch && place.slot == from) place.slot = to;
+}
+
+// The slot changes places with the last one of its segment, which then ends before it. Nothing is
+// allocated.
+template <class S>
+void remove_slot(WorldState<S>& world, Island<S>& island, Batch<S>& batch, int slot) {
+  for (Segment<S>& segment : island.segments) {
+    if (segment.batch != &batch || slot < segment.begin || slot >= segment.end) continue;
+    const int last = --segment.end;
+    if (last != slot) {
+      batch.for_each_array(
+          [&, count = batch.count()](auto& array) { swap_slots(array, count, slot, last); });
+      move_place(world, batch, last, slot);
+      move_place(world, batch, slot, last);
+    }
+    island.system.remove(&batch, slot, last);
+  }
+}
+
+template <class S>
+void break_joint(WorldState<S>& world, int joint) {
+  JointRecord& record = world.joints[joint];
+  record.broken = true;
+  int island = -1;
+  for (int body : record.bodies) island = std::max(island, world.island_of[body]);
+  for (const Place& place : record.places)
+    remove_slot(world, world.islands[island], *world.batches[place.batch], place.slot);
+  world.islands[island].factored = false;
+}
+
+template <class S>
+double force_of(const WorldState<S>& world, const JointRecord& record, double h) {
+  const Place& place = record.places[0];
+  const Batch<S>& batch = *world.batches[place.batch];
+  double square = 0;
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    const int i = place.slot * batch.ops->rows + r;
+    const double impulse = double(batch.lambda[i]) + double(batch.correction[i]);
+    square += impulse * impulse;
+  }
+  return std::sqrt(square) / h;
+}
+
+template <class S>
+void break_overloaded(WorldState<S>& world, typename S::Scalar h) {
+  for (const auto& [joint, load] : world.breaking_loads) {
+    const JointRecord& record = world.joints[joint];
+    if (!record.broken && force_of(world, record, double(h)) > load) break_joint(world, joint);
+  }
+}
+
+}  // namespace
+
+template <class T>
+void set_breaking_load(World<T>& world, int joint, double load) {
+  auto& state = world.state();
+  if (joint < 0 || joint >= world.joint_count())
+    throw Error(fmt::format("there is no joint number {}", joint));
+  if (!(load > 0)) throw Error("a breaking load must be > 0");
+  if (state.joints[joint].places.empty()) return;
+  if (state.breaking_loads.empty()) state.after_substep.push_back({break_overloaded<Planar<T>>});
+  state.breaking_loads.emplace_back(joint, load);
+}
+
+template void set_breaking_load(World<double>&, int, double);
+template void set_breaking_load(World<float>&, int, double);
+
+}  // namespace cdot

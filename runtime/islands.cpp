@@ -1,0 +1,147 @@
+// Who is connected with whom: union-find over movable bodies, then the slots of every batch sorted
+// by island.
+#include <algorithm>
+#include <numeric>
+
+#include "runtime/joints.hpp"
+#include "runtime/planar.hpp"
+#include "runtime/stages.hpp"
+
+namespace cdot {
+namespace {
+
+// The representative of a set is its smallest body, so that islands are numbered independently of
+// the joints' order.
+struct Sets {
+  explicit Sets(int n) : parent(static_cast<size_t>(n)) {
+    std::iota(parent.begin(), parent.end(), 0);
+  }
+  int find(int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+  void unite(int i, int j) {
+    i = find(i);
+    j = find(j);
+    parent[std::max(i, j)] = std::min(i, j);
+  }
+  std::vector<int> parent;
+};
+
+template <class S>
+void unite_bodies(const WorldState<S>& world, Sets& sets) {
+  const auto unite = [&](const std::vector<int>& bodies) {
+    int first = -1;
+    for (int body : bodies) {
+      if (world.bodies.immovable(body)) continue;
+      if (first >= 0) sets.unite(first, body);
+      first = body;
+    }
+  };
+  for (const JointRecord& joint : world.joints)
+    if (!joint.broken) unite(joint.bodies);
+  for (const auto& spring : world.springs) unite({spring.body_a, spring.body_b});
+}
+
+template <class S>
+void number_islands(WorldState<S>& world) {
+  const int n = world.bodies.count();
+  Sets sets(n);
+  unite_bodies(world, sets);
+  world.islands.clear();
+  world.island_of.assign(static_cast<size_t>(n), -1);
+  for (int body = 0; body < n; ++body) {
+    if (world.bodies.immovable(body)) continue;
+    const int root = sets.find(body);
+    if (root == body) {
+      world.island_of[body] = static_cast<int>(world.islands.size());
+      world.islands.emplace_back();
+    }
+    world.island_of[body] = world.island_of[root];
+    world.islands[world.island_of[body]].bodies.push_back(body);
+  }
+}
+
+template <class Item>
+void permute(std::vector<Item>& items, const std::vector<int>& order) {
+  if (items.empty() || order.empty()) return;
+  const size_t width = items.size() / order.size();
+  std::vector<Item> sorted;
+  sorted.reserve(items.size());
+  for (int from : order)
+    for (size_t k = 0; k < width; ++k) sorted.push_back(items[from * width + k]);
+  items = std::move(sorted);
+}
+
+template <class S>
+int island_of_slot(const WorldState<S>& world, const Batch<S>& batch, int slot) {
+  for (int k = 0; k < batch.ops->bodies; ++k) {
+    const int island = world.island_of[batch.body[slot * batch.ops->bodies + k]];
+    if (island >= 0) return island;
+  }
+  return -1;  // cannot be: blocks between immovable bodies are never added
+}
+
+// Slots by island, broken joints last in theirs; the islands get their segments.
+template <class S>
+void sort_slots(WorldState<S>& world, int index) {
+  Batch<S>& batch = *world.batches[index];
+  std::vector<std::pair<int, bool>> key;
+  for (int slot = 0; slot < batch.count(); ++slot)
+    key.emplace_back(island_of_slot(world, batch, slot), world.joints[batch.joint[slot]].broken);
+  std::vector<int> order(key.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return key[i] < key[j]; });
+  batch.for_each_array([&](auto& array) { permute(array, order); });
+
+  std::vector<int> now(order.size());
+  for (size_t slot = 0; slot < order.size(); ++slot) now[order[slot]] = static_cast<int>(slot);
+  for (JointRecord& joint : world.joints)
+    for (Place& place : joint.places)
+      if (place.batch == index) place.slot = now[place.slot];
+
+  for (int begin = 0, end; begin < batch.count(); begin = end) {
+    const auto& first = key[order[begin]];
+    for (end = begin; end < batch.count() && key[order[end]] == first;) ++end;
+    if (first.second) continue;
+    Island<S>& island = world.islands[first.first];
+    island.segments.push_back({&batch, begin, end});
+    island.restless |= batch.ops->explicit_time;
+  }
+}
+
+template <class S>
+void give_out_forces(WorldState<S>& world) {
+  for (const auto& spring : world.springs) {
+    const int island = std::max(world.island_of[spring.body_a], world.island_of[spring.body_b]);
+    if (island >= 0) world.islands[island].springs.push_back(spring);
+  }
+  for (const auto& drag : world.drags)
+    world.islands[world.island_of[drag.body]].drags.push_back(drag);
+}
+
+}  // namespace
+
+template <class S>
+void prepare_topology(WorldState<S>& world) {
+  if (world.prepared) return;
+  number_islands(world);
+  for (int i = 0; i < static_cast<int>(world.batches.size()); ++i) sort_slots(world, i);
+  give_out_forces(world);
+  world.awake.clear();
+  for (int i = 0; i < static_cast<int>(world.islands.size()); ++i) {
+    Island<S>& island = world.islands[i];
+    // Rows under a law first: what is solved last in a sweep holds best, and that should be the
+    // joints.
+    std::stable_partition(island.segments.begin(), island.segments.end(),
+                          [](const Segment<S>& segment) { return segment.batch->law != nullptr; });
+    if (world.settings.solver == Solver::direct) island.system.build(island.segments, world.bodies);
+    world.awake.push_back(i);
+  }
+  world.prepared = true;
+}
+
+template void prepare_topology(WorldState<Planar<double>>&);
+template void prepare_topology(WorldState<Planar<float>>&);
+
+}  // namespace cdot

@@ -1,0 +1,104 @@
+#include "runtime/laws.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "runtime/planar.hpp"
+
+namespace cdot {
+namespace {
+
+template <class T>
+constexpr T unbounded = std::numeric_limits<T>::infinity();
+
+template <class S>
+void fill_unilateral(Batch<S>& batch, int begin, int end, typename S::Scalar h,
+                     const Settings& settings) {
+  using T = typename S::Scalar;
+  const int rows = batch.ops->rows;
+  const T share = settings.drift == Drift::baumgarte ? T(settings.baumgarte) : T(0);
+  for (int i = begin * rows; i < end * rows; ++i) {
+    const RowKind kind = batch.kinds[static_cast<size_t>(i % rows)];
+    const bool inequality = kind == RowKind::inequality;
+    batch.lower[i] = inequality ? T(0) : -unbounded<T>;
+    batch.upper[i] = unbounded<T>;
+    batch.bias[i] += inequality ? unilateral_bias(batch.C[i], h, settings) : share * batch.C[i] / h;
+  }
+}
+
+template <class S>
+void error_unilateral(const Batch<S>& batch, int slot, typename S::Scalar* error) {
+  using T = typename S::Scalar;
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    const T C = batch.C[slot * batch.ops->rows + r];
+    error[r] = batch.kinds[r] == RowKind::inequality && C > T(0) ? T(0) : C;
+  }
+}
+
+// Out of a unilateral spring's reach the row is exact, so that C cannot leap over 0 within the
+// step.
+template <class S>
+void fill_soft(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings&) {
+  using T = typename S::Scalar;
+  const int rows = batch.ops->rows;
+  for (int i = begin * rows; i < end * rows; ++i) {
+    const int slot = i / rows, r = i % rows;
+    const T C = batch.C[i], K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
+    const bool inequality = batch.kinds[static_cast<size_t>(r)] == RowKind::inequality;
+    batch.lower[i] = inequality ? T(0) : -unbounded<T>;
+    batch.upper[i] = unbounded<T>;
+    const SpringRow<T> row =
+        inequality && C > T(0)
+            ? SpringRow<T>{C / h, T(0)}
+            : spring_row(C, K, batch.constants.data() + slot * spring_constants_count, h);
+    batch.bias[i] += row.bias;
+    batch.softness[i] = row.softness;
+  }
+}
+
+template <class S>
+double energy_soft(const Batch<S>& batch, int slot) {
+  double energy = 0;
+  const int rows = batch.ops->rows;
+  for (int r = 0; r < rows; ++r) {
+    const double C = batch.C[slot * rows + r];
+    if (batch.kinds[r] == RowKind::inequality && C > 0) continue;
+    const auto K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
+    const auto* constants = batch.constants.data() + slot * spring_constants_count;
+    energy += 0.5 * spring_stiffness(K, constants) * C * C;
+  }
+  return energy;
+}
+
+}  // namespace
+
+void spring_constants(const Softness& softness, double* constants) {
+  const double strength = softness.by_frequency ? softness.frequency : softness.stiffness;
+  const double damping = softness.by_frequency ? softness.damping_ratio : softness.damping;
+  if (!(strength >= 0 && damping >= 0) || !std::isfinite(strength) || !std::isfinite(damping))
+    throw Error("a spring needs a frequency or stiffness and a damping that are finite and >= 0");
+  if (strength == 0 && (softness.by_frequency || damping == 0))
+    throw Error("a spring of zero stiffness without damping does nothing; leave it out");
+  constants[0] = softness.by_frequency ? 1 : 0;
+  constants[1] = strength;
+  constants[2] = damping;
+}
+
+template <class S>
+const Law<S>& unilateral_law() {
+  static constexpr Law<S> law{0, true, fill_unilateral<S>, error_unilateral<S>, nullptr};
+  return law;
+}
+
+template <class S>
+const Law<S>& soft_law() {
+  static constexpr Law<S> law{spring_constants_count, false, fill_soft<S>, nullptr, energy_soft<S>};
+  return law;
+}
+
+template const Law<Planar<double>>& unilateral_law();
+template const Law<Planar<float>>& unilateral_law();
+template const Law<Planar<double>>& soft_law();
+template const Law<Planar<float>>& soft_law();
+
+}  // namespace cdot

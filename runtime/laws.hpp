@@ -1,0 +1,58 @@
+// The laws of a joint's own rows that are not plain equalities: inequalities, and rows as springs.
+// The laws of effects on coordinates are in effects.cpp.
+#pragma once
+
+#include "runtime/block.hpp"
+
+namespace cdot {
+
+// C >= 0 where the spec says so: the impulse may only push C up.
+template <class S>
+const Law<S>& unilateral_law();
+
+// Equality rows as springs with damping. Constants: those of spring_constants().
+template <class S>
+const Law<S>& soft_law();
+
+inline constexpr int spring_constants_count = 3;
+
+// {by_frequency, frequency or stiffness, damping ratio or damping}. Throws Error.
+void spring_constants(const Softness& softness, double* constants);
+
+// An implicit Euler step of a spring with damping on one row, as bias and softness of that row.
+// With k, d from the effective mass if the spring is told by its frequency: k = (2 pi f)^2 / K, d =
+// 2 zeta 2 pi f / K; softness = 1 / (h (d + h k)), bias = C k / (d + h k)       (SFT-1 of the hand
+// derivations)
+template <class T>
+struct SpringRow {
+  T bias, softness;
+};
+template <class T>
+SpringRow<T> spring_row(T C, T K, const T* constants, T h) {
+  T k = constants[1], d = constants[2];
+  if (constants[0] != T(0)) {
+    const T w = T(6.283185307179586476925) * constants[1], mass = inverse(K);
+    k = mass * w * w;
+    d = mass * T(2) * constants[2] * w;
+  }
+  const T divisor = inverse(d + h * k);
+  return {C * k * divisor, divisor / h};
+}
+
+// k of the same spring, for its energy k C^2 / 2.
+template <class T>
+double spring_stiffness(T K, const T* constants) {
+  if (constants[0] == T(0)) return constants[1];
+  const double w = 6.283185307179586476925 * double(constants[1]);
+  return K > T(0) ? w * w / double(K) : 0.0;
+}
+
+// The bias of a row that keeps C >= 0: far away it lets C shrink to 0 within the step but not
+// further; beyond 0, the share that the drift correction takes per step is fed back.
+template <class T>
+T unilateral_bias(T C, T h, const Settings& settings) {
+  const T share = settings.drift == Drift::baumgarte ? T(settings.baumgarte) : T(0);
+  return select(C > T(0), C, share * C) / h;
+}
+
+}  // namespace cdot

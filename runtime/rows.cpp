@@ -1,0 +1,65 @@
+// Evaluates the rows of an island, once per step, before the solver of the settings sees them.
+#include <algorithm>
+
+#include "runtime/planar.hpp"
+#include "runtime/stages.hpp"
+
+namespace cdot {
+
+template <class S>
+void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  if (!world.settings.geometric_stiffness) return;
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies) all.increment[i] = {};
+  for (const Segment<S>& segment : island.segments)
+    segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all,
+                                      T(world.time), all.increment.data());
+  for (int i : island.bodies) {
+    all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.increment[i], h);
+    all.increment[i] = {};
+  }
+  island.factored = false;
+}
+
+template <class S>
+void factorize_rows(WorldState<S>& world, Island<S>& island) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    // The direct solver builds its own K; a law looks at K's diagonal whatever the solver.
+    if (!batch.law && world.settings.solver == Solver::direct) continue;
+    batch.ops->effective_mass(batch, segment.begin, segment.end, world.bodies);
+    if (!batch.law) batch.ops->factorize(batch, segment.begin, segment.end);
+  }
+}
+
+template <class S>
+void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  if (!island.evaluated)
+    for (const Segment<S>& segment : island.segments)
+      segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies,
+                                   T(world.time));
+  island.evaluated = true;
+  factorize_rows(world, island);
+  const T share = T(world.settings.baumgarte) / h;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (batch.law) {
+      batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
+    } else if (world.settings.drift == Drift::baumgarte) {
+      const int rows = batch.ops->rows;
+      for (int i = segment.begin * rows; i < segment.end * rows; ++i)
+        batch.bias[i] += share * batch.C[i];
+    }
+  }
+}
+
+template void stiffen_bodies(WorldState<Planar<double>>&, Island<Planar<double>>&, double);
+template void stiffen_bodies(WorldState<Planar<float>>&, Island<Planar<float>>&, float);
+template void factorize_rows(WorldState<Planar<double>>&, Island<Planar<double>>&);
+template void factorize_rows(WorldState<Planar<float>>&, Island<Planar<float>>&);
+template void evaluate_rows(WorldState<Planar<double>>&, Island<Planar<double>>&, double);
+template void evaluate_rows(WorldState<Planar<float>>&, Island<Planar<float>>&, float);
+
+}  // namespace cdot

@@ -1,0 +1,36 @@
+// Sequential impulses: each block brings its own rows to J v = -bias, in turn, again and again.
+#include <algorithm>
+
+#include "runtime/planar.hpp"
+#include "runtime/stages.hpp"
+
+namespace cdot {
+
+template <class S>
+void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const bool warm = world.settings.warm_start && world.last_step > 0;
+  const T share = warm ? h / T(world.last_step) : T(0);  // the same force over another time
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    const int rows = batch.ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i) batch.lambda[i] *= share;
+    if (warm)
+      batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.lambda.data(),
+                       world.bodies.velocity.data());
+  }
+  for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
+    for (const Segment<S>& segment : island.segments) {
+      Batch<S>& batch = *segment.batch;
+      if (batch.law)
+        batch.ops->iterate_bounded(batch, segment.begin, segment.end, world.bodies);
+      else
+        batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, batch.lambda.data());
+    }
+  }
+}
+
+template void solve_iterative(WorldState<Planar<double>>&, Island<Planar<double>>&, double);
+template void solve_iterative(WorldState<Planar<float>>&, Island<Planar<float>>&, float);
+
+}  // namespace cdot

@@ -1,0 +1,105 @@
+// The global system K lambda = b of one island: assembled from its row blocks, factored sparse,
+// solved exactly.
+#pragma once
+
+#include <vector>
+
+#include "runtime/block.hpp"
+#include "runtime/ldlt.hpp"
+
+namespace cdot {
+
+template <class S>
+class System {
+ public:
+  using T = typename S::Scalar;
+
+  // Analyses the pattern. Slots are told apart by their position in `segments`.
+  void build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies);
+  bool built() const { return built_; }
+  int rows() const { return rows_; }
+
+  // K from the present J and effective masses.
+  void assemble(const Bodies<S>& bodies);
+
+  // The rows of `slot`, now kept at `last`, are no more; those that were at `last` are now at
+  // `slot`.
+  void remove(const Batch<S>* batch, int slot, int last);
+
+  // Some rows have softness or bounds.
+  bool lawful() const { return lawful_; }
+
+  // b of every row from value(batch, i), i numbering the batch's rows.
+  template <class F>
+  void load(F value) {
+    each_row([&](int row, const Batch<S>& batch, int i) { b[row] = value(batch, i); });
+  }
+  // Softness and bounds of the rows under a law.
+  void load_laws();
+  // Takes part only where wanted(batch, i); softness 0.
+  template <class F>
+  void choose(F wanted) {
+    each_row([&](int row, const Batch<S>& batch, int i) {
+      fixed[row] = wanted(batch, i) ? free : at_lower;
+      softness[row] = lambda[row] = 0;
+    });
+  }
+  // Hands lambda of every row to put(batch, i, lambda).
+  template <class F>
+  void store(F put) {
+    each_row([&](int row, Batch<S>& batch, int i) { put(batch, i, lambda[row]); });
+  }
+  template <class F>
+  void each_row(F f) {
+    for (const Block& block : blocks)
+      for (int r = 0; r < block.batch->ops->rows; ++r)
+        f(block.first + r, *block.batch, block.slot * block.batch->ops->rows + r);
+  }
+
+  // Vectors over all rows, in the order of the blocks; the caller's to fill between the calls.
+  std::vector<double> b, lambda;
+  std::vector<double> softness, lower, upper;
+  enum Hold : char { free = 0, at_lower = 1, at_upper = 2 };
+  std::vector<char> fixed;   // Hold: where not free, lambda stays what it is
+  std::vector<char> broken;  // 1: the row is no more: lambda = 0
+
+  // Factors with the rows marked in `fixed` or `broken` taken out. Returns the number of dependent
+  // rows.
+  int factor();
+  // lambda of the free rows from b and the lambda of the fixed ones.
+  void solve();
+  // lambda within [lower, upper], by an active set: where a bound holds it back, J v + bias need
+  // not vanish. Returns the number of dependent rows of the last factorisation.
+  int solve_bounded();
+
+  // One block: rows [first, first + ops->rows) belong to a slot of a batch.
+  struct Block {
+    Batch<S>* batch;
+    int slot;
+    int first;
+  };
+  std::vector<Block> blocks;
+
+ private:
+  // J of block i times the weighted J of block j over one body that they share.
+  struct Product {
+    int i, j;
+    int body_i, body_j;  // position of the body in the block
+    int target;          // into targets_
+  };
+  void list_products(const Bodies<S>& bodies);
+  bool revise_active_set(bool one_by_one);
+
+  bool built_ = false, lawful_ = false;
+  int rows_ = 0;
+  Ldlt ldlt_;
+  std::vector<Product> products_;
+  std::vector<int>
+      targets_;  // places in ldlt_.values(), [rows of i][rows of j] per product; -1: other triangle
+  std::vector<int> offset_;  // by block, into jacobian_ and weighted_
+  std::vector<double> jacobian_, weighted_;
+  std::vector<double> right_side_, product_;
+  std::vector<char> out_, held_;  // held_: the active set of the last solve_bounded()
+};
+
+}  // namespace cdot

@@ -1,0 +1,86 @@
+// All data of a World, by value and in arrays, for the stages that step() lists. Nobody outside
+// runtime/ includes this.
+#pragma once
+
+#include <limits>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "runtime/block.hpp"
+#include "runtime/bodies.hpp"
+#include "runtime/settings.hpp"
+#include "runtime/system.hpp"
+
+namespace cdot {
+
+// A slot of a batch: where a joint's rows, or those of an effect on it, are kept.
+struct Place {
+  int batch;
+  int slot;
+};
+
+struct JointRecord {
+  int type;  // index into joint_types()
+  std::vector<int> bodies;
+  std::vector<double> parameters;
+  std::vector<Place>
+      places;  // its own rows first, then its effects; none if all its bodies are immovable
+  bool broken = false;
+};
+
+template <class S>
+struct Drag {
+  using T = typename S::Scalar;
+  int body;
+  T linear, angular;  // [1/s]
+};
+
+// Bodies that push each other through joints and springs: solved together, and asleep together.
+template <class S>
+struct Island {
+  using T = typename S::Scalar;
+  std::vector<int> bodies;  // movable ones
+  std::vector<Segment<S>> segments;
+  std::vector<typename S::PointSpring> springs;
+  std::vector<Drag<S>> drags;
+  System<S> system;                                 // of the direct solver and of projections
+  int redundant_rows = 0;                           // of the last factorisation
+  bool restless = false;                            // driven by time: never sleeps
+  T residual = std::numeric_limits<T>::infinity();  // largest C left by the last correction
+  bool evaluated = false;                           // C and J belong to the present poses
+  bool factored = false;                            // and system to that J, all rows free
+  bool asleep = false;
+  double rested = 0;  // [s]
+};
+
+template <class S>
+struct WorldState {
+  using T = typename S::Scalar;
+  // Something that must be looked at after every substep, such as breaking loads.
+  struct Hook {
+    void (*run)(WorldState&, T h);
+  };
+
+  Settings settings;
+  double time = 0;
+  double last_step =
+      0;  // [s], the substep before: impulses kept for warm starting are scaled by h / last_step
+  Bodies<S> bodies;
+  int ground = -1;
+  std::vector<JointRecord> joints;
+  std::vector<std::unique_ptr<Batch<S>>> batches;
+  std::vector<typename S::PointSpring> springs;
+  std::vector<Drag<S>> drags;
+  std::vector<std::pair<int, double>> breaking_loads;  // by joint
+  std::vector<Hook> after_substep;
+  std::vector<std::string> notes;
+
+  bool prepared = false;  // islands, order of slots and patterns are those of the present joints
+  std::vector<Island<S>> islands;
+  std::vector<int> island_of;  // by body; -1: immovable
+  std::vector<int> awake;      // islands, in order
+};
+
+}  // namespace cdot
