@@ -1,0 +1,140 @@
+// The derivation from the first sentence to the last: this file is its table of contents.
+#include "derive/explain.hpp"
+
+#include <utility>
+
+#include "derive/explain_lecture.hpp"
+
+namespace cdot::derive {
+namespace {
+
+std::string kind_of(const Joint& joint, const Parameter& p) {
+  const std::string where =
+      p.body < 0 ? "the world" : joint.bodies[static_cast<std::size_t>(p.body)];
+  switch (p.kind) {
+    case ParameterKind::point: return "a point fixed in " + where;
+    case ParameterKind::vector: return "a vector fixed in " + where;
+    case ParameterKind::unit: return "a direction (a vector of length 1) fixed in " + where;
+    case ParameterKind::frame: return "the x axis of a frame fixed in " + where;
+    case ParameterKind::scalar: break;
+  }
+  return "a number";
+}
+
+void describe(const Lecture& lecture, const Parameter& p, Step& step) {
+  const bool arm = p.kind == ParameterKind::point && p.body >= 0;
+  const bool frame = p.kind == ParameterKind::frame;
+  std::vector<Formula> formulas{leaf(p.value, frame ? p.symbol->symbol : p.name)};
+  std::string words = "{} [" + text(p.unit) + "]: " + kind_of(lecture.joint, p);
+  if (arm) {
+    words += ", with the arm {} from the centre of mass {}";
+    formulas.push_back(leaf(p.symbol));
+    formulas.push_back(leaf(body_symbols(lecture.joint, p.body).x));
+  }
+  if (p.default_value) {
+    words += "; by default {} at the start";
+    formulas.push_back(lecture.notation.of(p.default_value));
+  }
+  step.list(words, std::move(formulas));
+}
+
+void describe_bodies(const Joint& joint, Step& step) {
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    step.list("body " + joint.bodies[b] +
+                  ": centre of mass {} [m], angle {} [rad], velocity {} [m/s], angular velocity {} "
+                  "[rad/s], inverse mass {} [1/kg], inverse inertia {} [1/(kg m^2)]",
+              {leaf(body.x), leaf(body.theta), leaf(body.v), leaf(body.w), leaf(body.inv_m),
+               leaf(body.inv_I)});
+  }
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string all;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    all += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
+  }
+  return all;
+}
+
+void explain_rows(Lecture& lecture, const Part& part) {
+  state_constraint(lecture, part);
+  Step& derivative = lecture.section("The time derivative");
+  derivative.say("Velocities follow from C by differentiating it along the motion.");
+  differentiate(lecture, part, derivative);
+
+  Step& velocities = lecture.section("The velocities isolated");
+  velocities.say("Each term is brought into the form \"something times a velocity\".");
+  isolate_velocities(lecture, part, velocities);
+
+  Step& jacobian = lecture.section("The Jacobian by inspection");
+  read_jacobian(lecture, part, jacobian);
+
+  Step& mass = lecture.section("The effective mass");
+  mass.say("K = J M^-1 J', with each body's inv_m and inv_I on the diagonal of M^-1. "
+           "K lambda = -Cdot gives the impulse lambda that makes Cdot vanish, J' lambda what it "
+           "does to the bodies.");
+  multiply_mass(lecture, part, mass);
+
+  Step& gamma = lecture.section("The acceleration level");
+  gamma.say("Once more differentiated, the velocities themselves held fixed: J times the "
+            "accelerations must equal gamma, minus what is left.");
+  differentiate_again(lecture, part, gamma);
+}
+
+void explain_coordinate(Lecture& lecture, const Part& part, const Coordinate& coordinate) {
+  Step& step = lecture.section("Coordinate " + coordinate.name);
+  step.say("Left free by the joint [" + text(coordinate.unit) +
+           "]; motors, limits, springs and friction act on it: `" + coordinate.text + "`");
+  const Statement& s = part.statements[0];
+  step.show({label("C", s, s.C), {{lecture.notation.definition(s.C), ""}}});
+  differentiate(lecture, part, step);
+  isolate_velocities(lecture, part, step);
+  read_jacobian(lecture, part, step);
+  multiply_mass(lecture, part, step);
+  differentiate_again(lecture, part, step);
+}
+
+}  // namespace
+
+void Step::say(std::string text, std::vector<Formula> formulas) {
+  items.push_back({Item::Kind::paragraph, {std::move(text), std::move(formulas)}, {}});
+}
+
+void Step::list(std::string text, std::vector<Formula> formulas) {
+  items.push_back({Item::Kind::bullet, {std::move(text), std::move(formulas)}, {}});
+}
+
+void Step::show(Chain chain) { items.push_back({Item::Kind::chain, {}, std::move(chain)}); }
+
+void introduce(Lecture& lecture) {
+  const Joint& joint = lecture.joint;
+  lecture.out.title = joint.name;
+  lecture.out.bodies = joint.bodies;
+  Step& step = lecture.section("The joint");
+  if (!joint.title.empty()) step.say(joint.title);
+  if (!joint.source.empty()) step.say("Source: " + joint.source);
+  if (!joint.includes.empty()) step.say("Composed of the joints " + joined(joint.includes) + ".");
+  step.say("Vectors are in world axes; × is the cross product of the plane, "
+           "w × r = w perp(r), perp(r) = (-r.y, r.x).");
+  describe_bodies(joint, step);
+  for (const Parameter& p : joint.parameters) describe(lecture, p, step);
+}
+
+Explanation explain(const Joint& joint) {
+  Lecture lecture(joint);
+  const Part rows = rows_part(joint);
+  std::vector<Part> coordinates;
+  for (const Coordinate& c : joint.coordinates) coordinates.push_back(coordinate_part(joint, c));
+  introduce(lecture);
+  explain_rows(lecture, rows);
+  std::vector<const Part*> all{&rows};
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    explain_coordinate(lecture, coordinates[i], joint.coordinates[i]);
+    all.push_back(&coordinates[i]);
+  }
+  state_limits(lecture, all);
+  return std::move(lecture.out);
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,292 @@
+// Building written formulas, by hand and from expressions. How they look is decided by the writers.
+#include "derive/explain_formula.hpp"
+
+#include <utility>
+
+namespace cdot::derive {
+namespace {
+
+Formula of_form(Form kind, std::vector<Formula> args) {
+  Formula f;
+  f.form = kind;
+  f.args = std::move(args);
+  return f;
+}
+
+bool is_negative(const Formula& f) {
+  return f.form == Form::sum && f.args.size() == 1 && f.minus[0];
+}
+
+std::vector<Formula> of_all(const Notation& notation, Expr e) {
+  std::vector<Formula> args;
+  for (const Expr arg : e->args) args.push_back(notation.of(arg));
+  return args;
+}
+
+}  // namespace
+
+Formula leaf(Expr e, std::string name) {
+  Formula f;
+  f.form = Form::leaf;
+  f.leaf = e;
+  f.name = !name.empty() ? std::move(name) : e->kind == Kind::symbol ? e->symbol : e->name;
+  return f;
+}
+
+Formula number(Rational value) {
+  Formula f;
+  f.number = value;
+  return f;
+}
+
+Formula sum(std::vector<SignedFormula> terms) {
+  if (terms.empty()) return number(0);
+  if (terms.size() == 1 && !terms[0].minus) return std::move(terms[0].formula);
+  Formula f;
+  f.form = Form::sum;
+  for (SignedFormula& term : terms) {
+    const bool flips = is_negative(term.formula);
+    f.minus.push_back(term.minus != flips);
+    f.args.push_back(flips ? term.formula.args[0] : std::move(term.formula));
+  }
+  if (f.args.size() == 1 && !f.minus[0]) return f.args[0];
+  return f;
+}
+
+Formula negative(Formula f) { return sum({{true, std::move(f)}}); }
+
+Formula product(std::vector<Formula> factors) {
+  std::vector<Formula> kept;
+  bool minus = false;
+  for (Formula& f : factors) {
+    if (is_negative(f)) {
+      minus = !minus;
+      f = Formula(f.args[0]);
+    }
+    if (is_one(f)) continue;
+    if (f.form == Form::product) kept.insert(kept.end(), f.args.begin(), f.args.end());
+    else kept.push_back(std::move(f));
+  }
+  Formula result = kept.empty()       ? number(1)
+                   : kept.size() == 1 ? std::move(kept[0])
+                                      : of_form(Form::product, std::move(kept));
+  return minus ? negative(std::move(result)) : result;
+}
+
+Formula quotient(Formula above, Formula below) {
+  if (is_one(below)) return above;
+  if (is_negative(above)) return negative(quotient(above.args[0], std::move(below)));
+  return of_form(Form::quotient, {std::move(above), std::move(below)});
+}
+
+Formula power(Formula base, int exponent) {
+  if (exponent == 1) return base;
+  if (is_negative(base)) {
+    Formula positive = power(base.args[0], exponent);
+    return exponent % 2 == 0 ? positive : negative(std::move(positive));
+  }
+  Formula f = of_form(Form::power, {std::move(base)});
+  f.exponent = exponent;
+  return f;
+}
+
+Formula dot(Formula u, Formula v) { return of_form(Form::dot, {std::move(u), std::move(v)}); }
+Formula cross(Formula u, Formula v) { return of_form(Form::cross, {std::move(u), std::move(v)}); }
+
+Formula form(Form kind, Formula arg) {
+  const bool odd = kind == Form::perp || kind == Form::transpose || kind == Form::skew;
+  if (odd && is_negative(arg)) return negative(of_form(kind, {arg.args[0]}));
+  return of_form(kind, {std::move(arg)});
+}
+
+Formula times(Rational magnitude, Formula f) {
+  if (magnitude.num() == 1) return quotient(std::move(f), number(magnitude.den()));
+  return product({number(magnitude), std::move(f)});
+}
+
+Formula component(Formula u, const char* axis) {
+  Formula f = of_form(Form::component, {std::move(u)});
+  f.name = axis;
+  return f;
+}
+
+Formula identity() { return of_form(Form::identity, {}); }
+
+Formula matrix(int columns, std::vector<Formula> entries) {
+  Formula f = of_form(Form::matrix, std::move(entries));
+  f.columns = columns;
+  return f;
+}
+
+bool is_one(const Formula& f) { return f.form == Form::number && f.number == Rational(1); }
+
+std::vector<SignedFormula> terms_of(const Formula& f) {
+  if (f.form != Form::sum) return {{false, f}};
+  std::vector<SignedFormula> terms;
+  for (std::size_t i = 0; i < f.args.size(); ++i) terms.push_back({f.minus[i], f.args[i]});
+  return terms;
+}
+
+std::optional<AngleBetween> angle_between(Expr e) {
+  if (e->kind != Kind::function || e->fn != Fn::atan2) return {};
+  const Term y = split_coefficient(e->args[0]), x = split_coefficient(e->args[1]);
+  const bool fits = y.e->kind == Kind::cross && x.e->kind == Kind::dot && x.coef == Rational(1) &&
+                    abs(y.coef) == Rational(1) && y.e->args == x.e->args;
+  if (!fits) return {};
+  const Expr u = y.e->args[0], v = y.e->args[1];
+  return y.coef == Rational(1) ? AngleBetween{u, v} : AngleBetween{v, u};
+}
+
+Notation::Notation(const Joint& joint) {
+  for (const Parameter& p : joint.parameters) {
+    if (p.kind != ParameterKind::point || p.body < 0) continue;
+    points_.push_back({p.name, body_symbols(joint, p.body).x, p.symbol, p.value});
+  }
+}
+
+bool Notation::has_name(Expr e) {
+  return !e->name.empty() && (e->named_by_let || e->name.ends_with("_dot"));
+}
+
+Formula Notation::of(Expr e) const { return has_name(e) ? leaf(e) : written(e); }
+Formula Notation::definition(Expr e) const { return written(e); }
+
+Formula Notation::written(Expr e) const {
+  switch (e->kind) {
+    case Kind::number: return e->value.sign() < 0 ? negative(number(-e->value)) : number(e->value);
+    case Kind::symbol: return leaf(e);
+    case Kind::sum: return sum_of(e);
+    case Kind::product: return product_of(e);
+    case Kind::scale: return scale_of(e);
+    case Kind::dot: return dot_of(e);
+    case Kind::cross: return cross_of(e);
+    case Kind::perp: return form(Form::perp, of(e->args[0]));
+    case Kind::norm: return form(Form::norm, of(e->args[0]));
+    case Kind::unit: return form(Form::unit, of(e->args[0]));
+    case Kind::function: break;
+  }
+  if (const auto angle = angle_between(e)) {
+    Formula f = of_form(Form::call, {of(angle->from), of(angle->to)});
+    f.name = "angle";
+    return f;
+  }
+  Formula f = of_form(Form::call, of_all(*this, e));
+  f.name = name_of(e->fn);
+  return f;
+}
+
+Notation::PointTerms Notation::points_among(Expr sum) const {
+  PointTerms found{std::vector<const Point*>(sum->args.size()), std::vector<bool>(sum->args.size())};
+  for (std::size_t i = 0; i < sum->args.size(); ++i) {
+    for (std::size_t j = 0; j < sum->args.size() && !found.at[i]; ++j) {
+      if (found.used[j] || sum->coefs[i] != sum->coefs[j]) continue;
+      for (const Point& point : points_) {
+        if (point.position != sum->args[i] || point.arm != sum->args[j]) continue;
+        found.at[i] = &point;
+        found.used[j] = true;
+        break;
+      }
+    }
+  }
+  return found;
+}
+
+Formula Notation::sum_of(Expr e) const {
+  const PointTerms points = points_among(e);
+  std::vector<SignedFormula> terms;
+  for (std::size_t i = 0; i < e->args.size(); ++i) {
+    if (points.used[i]) continue;
+    const Rational c = e->coefs[i];
+    Formula f = points.at[i]        ? leaf(points.at[i]->value, points.at[i]->name)
+                : is_one(e->args[i]) ? number(1)
+                                     : of(e->args[i]);
+    f = is_one(f) ? number(abs(c)) : times(abs(c), std::move(f));
+    terms.push_back({c.sign() < 0, std::move(f)});
+  }
+  // The first positive term leads, so that a sum does not open with a minus sign without need.
+  const Formula whole = sum(std::move(terms));
+  if (whole.form != Form::sum) return whole;
+  std::vector<SignedFormula> ordered = terms_of(whole);
+  std::size_t lead = 0;
+  while (lead < ordered.size() && ordered[lead].minus) ++lead;
+  if (lead > 0 && lead < ordered.size()) {
+    SignedFormula first = ordered[lead];
+    ordered.erase(ordered.begin() + static_cast<std::ptrdiff_t>(lead));
+    ordered.insert(ordered.begin(), std::move(first));
+  }
+  return sum(std::move(ordered));
+}
+
+Formula Notation::product_of(Expr e) const {
+  std::vector<Formula> above, below;
+  for (std::size_t i = 0; i < e->args.size(); ++i) {
+    const int k = e->exponents[i];
+    (k > 0 ? above : below).push_back(power(of(e->args[i]), k > 0 ? k : -k));
+  }
+  return quotient(product(std::move(above)), product(std::move(below)));
+}
+
+// The component along an axis of the world is written u.x; a direction comes first, as in n · u.
+Formula Notation::dot_of(Expr e) const {
+  const Expr ex = world_x(*e->pool), u = e->args[0], v = e->args[1];
+  if (u == ex) return component(of(v), "x");
+  if (v == ex) return component(of(u), "x");
+  return v->unit_length && !u->unit_length ? dot(of(v), of(u)) : dot(of(u), of(v));
+}
+
+// e_x × u = u.y
+Formula Notation::cross_of(Expr e) const {
+  const Expr ex = world_x(*e->pool), u = e->args[0], v = e->args[1];
+  if (u == ex) return component(of(v), "y");
+  if (v == ex) return negative(component(of(u), "y"));
+  return cross(of(u), of(v));
+}
+
+// w perp(r) is written w × r.
+Formula Notation::scale_of(Expr e) const {
+  const Expr s = e->args[0], u = e->args[1];
+  const bool turns = s->kind == Kind::symbol && s->role == Role::spin && u->kind == Kind::perp;
+  if (turns) return cross(of(s), of(u->args[0]));
+  return product({of(s), of(u)});
+}
+
+Expr value_of(const Formula& f, Pool& pool) {
+  std::vector<Expr> args;
+  for (const Formula& arg : f.args) args.push_back(value_of(arg, pool));
+  switch (f.form) {
+    case Form::leaf: return f.leaf;
+    case Form::number: return pool.number(f.number);
+    case Form::sum: {
+      Expr total = f.minus[0] ? -args[0] : args[0];
+      for (std::size_t i = 1; i < args.size(); ++i) {
+        total = f.minus[i] ? total - args[i] : total + args[i];
+      }
+      return total;
+    }
+    case Form::product: {
+      Expr total = args[0];
+      for (std::size_t i = 1; i < args.size(); ++i) total = total * args[i];
+      return total;
+    }
+    case Form::quotient: return args[0] / args[1];
+    case Form::power: return pow(args[0], f.exponent);
+    case Form::dot: return dot(args[0], args[1]);
+    case Form::cross: return cross(args[0], args[1]);
+    case Form::perp: return perp(args[0]);
+    case Form::norm: return norm(args[0]);
+    case Form::unit: return unit(args[0]);
+    case Form::component:
+      return dot(f.name == "x" ? world_x(pool) : perp(world_x(pool)), args[0]);
+    default: break;
+  }
+  if (f.form == Form::call && f.name == "angle") {
+    return call(Fn::atan2, std::vector{cross(args[0], args[1]), dot(args[0], args[1])});
+  }
+  for (const Fn fn : {Fn::sqrt, Fn::sin, Fn::cos, Fn::tan, Fn::exp, Fn::log, Fn::abs, Fn::sign,
+                      Fn::atan2}) {
+    if (f.form == Form::call && f.name == name_of(fn)) return call(fn, args);
+  }
+  throw std::logic_error("a matrix has no scalar or vector value");
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,89 @@
+// Grouping scalar rows into the author's statements, and the names of what is derived from them.
+#include "derive/explain_lecture.hpp"
+
+#include <utility>
+
+namespace cdot::derive {
+namespace {
+
+Expr left_side(const ScalarRow& row) { return row.kind == RowKind::velocity ? row.Cdot : row.C; }
+
+Statement scalar_statement(const ScalarRow& row, std::size_t index) {
+  return {row.name, row.row, row.kind, left_side(row), index, {}};
+}
+
+// S(r) for perp(r), term by term; other columns as they are.
+Formula column(const Notation& notation, Expr w) {
+  std::vector<SignedFormula> terms;
+  for (const Term& term : terms_of(w)) {
+    Formula f = term.e->kind == Kind::perp ? form(Form::skew, notation.of(term.e->args[0]))
+                                           : notation.of(term.e);
+    terms.push_back({term.coef.sign() < 0, times(abs(term.coef), std::move(f))});
+  }
+  return sum(std::move(terms));
+}
+
+}  // namespace
+
+Step& Lecture::section(std::string heading, int level) {
+  out.steps.push_back({level, std::move(heading), {}});
+  return out.steps.back();
+}
+
+Part rows_part(const Joint& joint) {
+  Part part{derive_rows(joint), {}};
+  const std::vector<ScalarRow>& rows = part.block.rows;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = *rows[i].row;
+    const bool vector = row.C->vector;
+    const Expr Cdot = row.kind == RowKind::velocity ? row.C : time_derivative(row.C, joint);
+    const auto entries = vector ? isolate_vector(Cdot, joint) : std::nullopt;
+    if (!entries) {
+      part.statements.push_back(scalar_statement(rows[i], i));
+      continue;
+    }
+    part.statements.push_back({row.name, &row, row.kind, row.C, i, *entries});
+    ++i;  // its second component
+  }
+  if (part.statements.size() == 1) part.statements[0].name.clear();
+  return part;
+}
+
+Part coordinate_part(const Joint& joint, const Coordinate& coordinate) {
+  Part part{derive_coordinate(joint, coordinate), {}};
+  part.statements.push_back(scalar_statement(part.block.rows[0], 0));
+  return part;
+}
+
+Formula label(const std::string& letter, const Statement& statement, Expr e) {
+  const bool coordinate = statement.row == nullptr;
+  if (coordinate && letter == "C") return leaf(e, statement.name);
+  if (coordinate && letter == "Cdot") return leaf(e, statement.name + "_dot");
+  const std::string& name = statement.name;
+  // A row without a name of its own is called C1: its J is J_1.
+  const bool numbered = name.size() > 1 && name[0] == 'C' && name[1] >= '0' && name[1] <= '9';
+  return leaf(e, name.empty() ? letter : letter + "_" + (numbered ? name.substr(1) : name));
+}
+
+Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& s) {
+  if (!s.vector()) return part.block.rows[s.first].Cdot;
+  return s.kind == RowKind::velocity ? s.C : time_derivative(s.C, lecture.joint);
+}
+
+Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s,
+                   std::size_t body) {
+  if (s.vector()) {
+    const Expr v = s.entries[body].v;
+    return is_zero(v) ? number(0) : product({lecture.notation.of(v), identity()});
+  }
+  const Expr v = part.block.rows[s.first].J[body].v;
+  return is_zero(v) ? number(0) : form(Form::transpose, lecture.notation.of(v));
+}
+
+Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s,
+                   std::size_t body) {
+  if (s.vector()) return column(lecture.notation, s.entries[body].w);
+  return lecture.notation.of(part.block.rows[s.first].J[body].w);
+}
+
+}  // namespace cdot::derive

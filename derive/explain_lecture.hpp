@@ -1,0 +1,59 @@
+// What the sections of an explanation share: the joint's statements with their derivation, and how things are called.
+#pragma once
+
+#include "derive/explain_rates.hpp"
+#include "derive/explain_velocities.hpp"
+
+namespace cdot::derive {
+
+// One equation as the author wrote it: a scalar row, or a vector row with its two components kept together.
+struct Statement {
+  std::string name;              // "line"; empty if it is the only one
+  const Row* row = nullptr;      // null for a coordinate
+  RowKind kind = RowKind::equality;
+  Expr C;                        // scalar or vector; a velocity row: its velocity expression
+  std::size_t first = 0;         // its first scalar row in the block
+  std::vector<VectorEntry> entries;  // J of a vector row, by body
+
+  bool vector() const { return C->vector; }
+};
+
+// The rows of the joint, or a coordinate.
+struct Part {
+  Block block;
+  std::vector<Statement> statements;
+};
+
+struct Lecture {
+  explicit Lecture(const Joint& j) : joint(j), notation(j), rates(j, notation) {}
+
+  const Joint& joint;
+  Notation notation;
+  Rates rates;
+  Explanation out;
+
+  Step& section(std::string heading, int level = 1);
+};
+
+Part rows_part(const Joint& joint);
+Part coordinate_part(const Joint& joint, const Coordinate& coordinate);
+
+// "C", or "C_line" where there are several; e is what it equals, if that is an expression.
+Formula label(const std::string& letter, const Statement& statement, Expr e = {});
+
+Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& statement);
+// What stands in a statement's row of J for one body: the block of v and the block of w; 0 where nothing does.
+Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
+Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
+
+// The sections, in order.
+void introduce(Lecture& lecture);
+void state_constraint(Lecture& lecture, const Part& part);
+void differentiate(Lecture& lecture, const Part& part, Step& step);
+void isolate_velocities(Lecture& lecture, const Part& part, Step& step);
+void read_jacobian(Lecture& lecture, const Part& part, Step& step);
+void multiply_mass(Lecture& lecture, const Part& part, Step& step);
+void differentiate_again(Lecture& lecture, const Part& part, Step& step);
+void state_limits(Lecture& lecture, const std::vector<const Part*>& parts);
+
+}  // namespace cdot::derive

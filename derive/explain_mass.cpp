@@ -1,0 +1,178 @@
+// K = J M^-1 J', first as the product that it is, then simplified.
+#include <algorithm>
+#include <utility>
+
+#include "derive/explain_lecture.hpp"
+
+namespace cdot::derive {
+namespace {
+
+Formula name_of_K(const Part& part, const std::string& row, const std::string& column) {
+  const bool coordinate = part.statements[0].row == nullptr;
+  if (coordinate) return leaf({}, "K_" + part.statements[0].name);
+  return leaf({}, row.empty() ? "K" : "K[" + row + ", " + column + "]");
+}
+
+struct Factors {
+  Rational coef;
+  Expr i, j;
+};
+
+Factors factors(Expr i, Expr j) {
+  const Term a = split_coefficient(i), b = split_coefficient(j);
+  return {a.coef * b.coef, a.e, b.e};
+}
+
+// inv_m_a (t · t): the form before any identity of t is used.
+void add_scalar_product(const Notation& notation, Expr inverse_mass, Expr vi, Expr vj,
+                        std::vector<SignedFormula>& terms) {
+  if (is_zero(vi) || is_zero(vj)) return;
+  const Factors f = factors(vi, vj);
+  const Formula written = dot(notation.of(f.i), notation.of(f.j));
+  terms.push_back(
+      {f.coef.sign() < 0, product({number(abs(f.coef)), leaf(inverse_mass), written})});
+}
+
+void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj,
+                 std::vector<SignedFormula>& terms) {
+  if (is_zero(wi) || is_zero(wj)) return;
+  const Factors f = factors(wi, wj);
+  const Formula a = notation.of(f.i), b = notation.of(f.j);
+  const Formula both = wi == wj ? power(a, 2) : product({a, b});
+  terms.push_back({f.coef.sign() < 0, product({number(abs(f.coef)), leaf(inverse), both})});
+}
+
+class MassProduct {
+ public:
+  MassProduct(const Lecture& lecture, const Part& part) : lecture_(lecture), part_(part) {}
+
+  // Sum over the bodies of (block of v) inv_m (block of v)' + (block of w) inv_I (block of w)'.
+  Formula of(const Statement& s, const Statement& t) const {
+    std::vector<SignedFormula> terms;
+    for (std::size_t b = 0; b < lecture_.joint.bodies.size(); ++b) {
+      const BodySymbols body = body_symbols(lecture_.joint, static_cast<int>(b));
+      if (!s.vector() && !t.vector()) {
+        const JacobianEntry &Js = J(s, b), &Jt = J(t, b);
+        add_scalar_product(lecture_.notation, body.inv_m, Js.v, Jt.v, terms);
+        add_product(lecture_.notation, body.inv_I, Js.w, Jt.w, terms);
+      } else {
+        add_blocks(body.inv_m, block_of_v(lecture_, part_, s, b), block_of_v(lecture_, part_, t, b),
+                   terms);
+        add_blocks(body.inv_I, block_of_w(lecture_, part_, s, b), block_of_w(lecture_, part_, t, b),
+                   terms);
+      }
+    }
+    return sum(std::move(terms));
+  }
+
+ private:
+  const JacobianEntry& J(const Statement& s, std::size_t body) const {
+    return part_.block.rows[s.first].J[body];
+  }
+
+  static Formula transposed(const Formula& f) {
+    if (f.form == Form::transpose) return f.args[0];
+    if (f.form == Form::sum && f.args.size() == 1) return negative(transposed(f.args[0]));
+    const bool symmetric = f.form == Form::identity || f.form == Form::number ||
+                           (f.leaf && !f.leaf->vector);
+    return symmetric ? f : form(Form::transpose, f);
+  }
+
+  static void add_blocks(Expr inverse, const Formula& i, const Formula& j,
+                         std::vector<SignedFormula>& terms) {
+    if (i == number(0) || j == number(0)) return;
+    const Formula right = transposed(j);
+    // E E' is E, and E beside anything is not written.
+    std::vector<Formula> both{leaf(inverse), i, right};
+    const bool with_identity = is_identity(i) || is_identity(right);
+    if (with_identity && !(is_identity(i) && is_identity(right))) {
+      both = {leaf(inverse), unsigned_one(i), unsigned_one(right)};
+    } else if (with_identity) {
+      both = {leaf(inverse), i, unsigned_one(right)};
+    }
+    terms.push_back({false, product(std::move(both))});
+  }
+
+  static bool is_identity(const Formula& f) {
+    return f.form == Form::identity || f == negative(identity());
+  }
+  static Formula unsigned_one(const Formula& f) {
+    if (f.form == Form::identity) return number(1);
+    return is_identity(f) ? negative(number(1)) : f;
+  }
+
+  const Lecture& lecture_;
+  const Part& part_;
+};
+
+// What the builders used to make K simpler than the product: lengths of unit vectors, right angles.
+std::string identities_used(const Lecture& lecture, const Part& part, const Statement& s,
+                            const Statement& t) {
+  std::string used;
+  if (s.vector() || t.vector()) return "written out in components";
+  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
+    const Expr vi = part.block.rows[s.first].J[b].v, vj = part.block.rows[t.first].J[b].v;
+    if (is_zero(vi) || is_zero(vj)) continue;
+    const Factors f = factors(vi, vj);
+    std::string identity;
+    const std::string i = text(f.i), j = text(f.j);
+    const auto spoken = [](Expr e, const std::string& full) { return e->name.empty() ? full : e->name; };
+    if (f.i == f.j && f.i->unit_length) {
+      identity = spoken(f.i, i) + " has length 1: " + spoken(f.i, i) + " · " + spoken(f.i, i) + " = 1";
+    } else if (is_zero(dot(f.i, f.j))) {
+      identity = spoken(f.i, i) + " · " + spoken(f.j, j) + " = 0";
+    }
+    if (!identity.empty() && used.find(identity) == std::string::npos) {
+      used += (used.empty() ? "" : "; ") + identity;
+    }
+  }
+  return used.empty() ? "simplified" : used;
+}
+
+std::size_t rows_of(const Statement& s) { return s.vector() ? 2 : 1; }
+
+// Entries of block.K, which holds the lower triangle, for the rows of s and the columns of t.
+Formula simplified(const Lecture& lecture, const Part& part, const Statement& s,
+                   const Statement& t) {
+  std::vector<Formula> entries;
+  for (std::size_t i = s.first; i < s.first + rows_of(s); ++i) {
+    for (std::size_t j = t.first; j < t.first + rows_of(t); ++j) {
+      entries.push_back(lecture.notation.definition(part.block.K[std::max(i, j)][std::min(i, j)]));
+    }
+  }
+  if (entries.size() == 1) return entries[0];
+  return matrix(static_cast<int>(rows_of(t)), std::move(entries));
+}
+
+Formula J_M_J(const Formula& J) {
+  return product({J, power(leaf({}, "M"), -1), form(Form::transpose, J)});
+}
+
+}  // namespace
+
+void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
+  std::vector<Formula> blocks;
+  const bool coordinate = part.statements[0].row == nullptr;
+  const MassProduct mass_product(lecture, part);
+  for (const Statement& s : part.statements) {
+    for (const Statement& t : part.statements) {
+      const bool above = &t >= &s;
+      const Formula name = name_of_K(part, above ? s.name : t.name, above ? t.name : s.name);
+      blocks.push_back(above ? name : form(Form::transpose, name));
+      if (!above) continue;
+      const Formula full = mass_product.of(s, t), result = simplified(lecture, part, s, t);
+      Chain chain{name, {}};
+      if (part.statements.size() == 1) chain.links.push_back({J_M_J(label("J", s)), ""});
+      chain.links.push_back({full, "body by body"});
+      if (result != full) chain.links.push_back({result, identities_used(lecture, part, s, t)});
+      step.show(std::move(chain));
+    }
+  }
+  if (part.statements.size() < 2 || coordinate) return;
+  const int columns = static_cast<int>(part.statements.size());
+  step.say("Together, with what lies below the diagonal by symmetry:");
+  step.show({leaf({}, "K"),
+             {{J_M_J(leaf({}, "J")), ""}, {matrix(columns, std::move(blocks)), ""}}});
+}
+
+}  // namespace cdot::derive

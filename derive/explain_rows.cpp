@@ -1,0 +1,193 @@
+// From C to J: the constraint, its derivative, the velocities isolated, the Jacobian read off, and gamma.
+#include <algorithm>
+#include <utility>
+
+#include "derive/explain_lecture.hpp"
+
+namespace cdot::derive {
+namespace {
+
+void head(Step& step, const Part& part, const Statement& s) {
+  if (part.statements.size() > 1) step.say("Row `" + s.name + "`:");
+}
+
+// What multiplies one velocity, summed up from the terms of Cdot.
+void collect(Lecture& lecture, const std::vector<VelocityTerm>& terms, Expr coefficient, int body,
+             bool spin, Step& step) {
+  std::vector<SignedFormula> parts;
+  for (const VelocityTerm& term : terms) {
+    if (term.body != body || term.spin != spin || is_zero(term.coefficient)) continue;
+    parts.push_back({false, lecture.notation.of(term.coefficient)});
+  }
+  if (parts.size() < 2) return;
+  const BodySymbols symbols = body_symbols(lecture.joint, body);
+  const Formula velocity = leaf(spin ? symbols.w : symbols.v);
+  const Formula merged = lecture.notation.of(coefficient), listed = sum(std::move(parts));
+  if (merged == listed) return;
+  std::string rule = "like terms of " + velocity.name + " collected";
+  if (merged == number(0)) rule = velocity.name + " cancels";
+  step.show({listed, {{merged, std::move(rule)}}});
+}
+
+// Cdot as the sum of "entry of J times velocity", and dC/dt.
+Formula isolated(const Lecture& lecture, const ScalarRow& row) {
+  std::vector<SignedFormula> terms;
+  for (std::size_t b = 0; b < row.J.size(); ++b) {
+    const int body = static_cast<int>(b);
+    const auto add = [&](Expr coefficient, bool spin) {
+      if (is_zero(coefficient)) return;
+      terms.push_back({false, multiplied(coefficient, body, spin, lecture.joint, lecture.notation)});
+    };
+    add(row.J[b].v, false);
+    add(row.J[b].w, true);
+  }
+  if (!is_zero(row.C_t)) {
+    for (SignedFormula& t : terms_of(lecture.notation.of(row.C_t))) terms.push_back(std::move(t));
+  }
+  return sum(std::move(terms));
+}
+
+void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
+  const ScalarRow& row = part.block.rows[s.first];
+  const bool at_velocity_level = s.kind == RowKind::velocity;
+  const Formula Cdot =
+      at_velocity_level ? lecture.notation.definition(s.C) : lecture.rates.inserted(s.C);
+  const std::vector<VelocityTerm> terms = isolate(Cdot, lecture.joint);
+  for (const VelocityTerm& term : terms) {
+    if (term.identity.empty()) continue;
+    const Formula written = sum({{term.minus, term.written}});
+    const Formula result = term.body < 0 ? number(0)
+                                         : multiplied(term.coefficient, term.body, term.spin,
+                                                      lecture.joint, lecture.notation);
+    step.show({written, {{result, term.identity}}});
+  }
+  for (std::size_t b = 0; b < row.J.size(); ++b) {
+    collect(lecture, terms, row.J[b].v, static_cast<int>(b), false, step);
+    collect(lecture, terms, row.J[b].w, static_cast<int>(b), true, step);
+  }
+  step.show({label("Cdot", s, row.Cdot), {{isolated(lecture, row), ""}}});
+}
+
+void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
+  std::vector<SignedFormula> terms;
+  const auto add = [&terms](Formula block, Expr velocity) {
+    if (block == number(0)) return;
+    // E v is written v.
+    if (block.form == Form::identity) block = number(1);
+    if (block == negative(identity())) block = negative(number(1));
+    terms.push_back({false, product({std::move(block), leaf(velocity)})});
+  };
+  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
+    add(block_of_v(lecture, part, s, b), body.v);
+    add(block_of_w(lecture, part, s, b), body.w);
+  }
+  step.show({label("Cdot", s, Cdot_of(lecture, part, s)),
+             {{sum(std::move(terms)), "w × r = S(r) w, with S(r) = perp(r) as a column"}}});
+}
+
+Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s) {
+  std::vector<Formula> blocks;
+  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
+    blocks.push_back(block_of_v(lecture, part, s, b));
+    blocks.push_back(block_of_w(lecture, part, s, b));
+  }
+  const int columns = static_cast<int>(blocks.size());
+  return matrix(columns, std::move(blocks));
+}
+
+void list_columns(const Lecture& lecture, const Part& part, const Statement& s, Step& step) {
+  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
+    const Formula v = block_of_v(lecture, part, s, b), w = block_of_w(lecture, part, s, b);
+    if (v != number(0)) step.list("{} is multiplied by {}", {leaf(body.v), v});
+    if (w != number(0)) step.list("{} is multiplied by {}", {leaf(body.w), w});
+  }
+}
+
+}  // namespace
+
+void state_constraint(Lecture& lecture, const Part& part) {
+  Step& step = lecture.section("Position constraint");
+  if (!lecture.joint.lets.empty()) step.say("Names:");
+  for (const Let& let : lecture.joint.lets) {
+    if (!let.value || !Notation::has_name(let.value)) continue;
+    step.show({leaf(let.value, let.name), {{lecture.notation.definition(let.value), ""}}});
+  }
+  for (const Statement& s : part.statements) {
+    std::string as_written = "Row `" + s.row->name + "`: `" + s.row->text + "`";
+    if (!s.row->from.empty()) as_written += ", from the included joint " + s.row->from;
+    step.say(as_written + (s.vector() ? ". Two rows, x and y, kept together as a vector:" : ":"));
+    const Formula C = lecture.notation.definition(s.C);
+    if (s.kind == RowKind::velocity) {
+      step.show({label("Cdot", s, s.C), {{C, ""}}});
+      step.say("It is written at velocity level: it has no position form, and C is reported as 0.");
+    } else {
+      step.show({label("C", s, s.C), {{C, ""}}});
+    }
+    if (s.kind == RowKind::inequality) {
+      step.say("An inequality: {} ≥ 0 must hold, and its impulse may only push C up (lambda ≥ 0).",
+               {label("C", s, s.C)});
+    }
+  }
+}
+
+void differentiate(Lecture& lecture, const Part& part, Step& step) {
+  for (const Statement& s : part.statements) {
+    if (s.kind == RowKind::velocity) continue;
+    head(step, part, s);
+    const Expr Cdot = Cdot_of(lecture, part, s);
+    for (Chain& chain : lecture.rates.differentiate(s.C, label("Cdot", s, Cdot))) {
+      step.show(std::move(chain));
+    }
+  }
+}
+
+void isolate_velocities(Lecture& lecture, const Part& part, Step& step) {
+  for (const Statement& s : part.statements) {
+    head(step, part, s);
+    if (s.vector()) isolate_rows_together(lecture, part, s, step);
+    else isolate_scalar(lecture, part, s, step);
+  }
+}
+
+void read_jacobian(Lecture& lecture, const Part& part, Step& step) {
+  std::vector<Formula> all;
+  for (const Statement& s : part.statements) {
+    head(step, part, s);
+    list_columns(lecture, part, s, step);
+    const Expr C_t = part.block.rows[s.first].C_t;
+    if (!s.vector() && !is_zero(C_t)) {
+      step.list("no velocity, so it is dC/dt at rest: {}", {lecture.notation.of(C_t)});
+    }
+    const Formula row = row_of_J(lecture, part, s);
+    all.insert(all.end(), row.args.begin(), row.args.end());
+    if (part.statements.size() == 1) step.show({label("J", s), {{row, ""}}});
+  }
+  if (part.statements.size() < 2) return;
+  step.say("Row under row:");
+  const int columns = static_cast<int>(2 * lecture.joint.bodies.size());
+  step.show({leaf({}, "J"), {{matrix(columns, std::move(all)), ""}}});
+}
+
+void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
+  for (const Statement& s : part.statements) {
+    head(step, part, s);
+    const Expr Cdot = Cdot_of(lecture, part, s), gamma = -time_derivative(Cdot, lecture.joint);
+    const Formula name = label("gamma", s, gamma);
+    const Formula simplified = lecture.notation.definition(gamma);
+    std::vector<Chain> chains = lecture.rates.differentiate(Cdot, negative(name));
+    for (Chain& chain : chains) {
+      const bool last = &chain == &chains.back();
+      if (last) chain.links.resize(1);
+      const Formula result = last ? number(0) : lecture.notation.definition(chain.left.leaf);
+      if (!last && result != chain.links.back().formula) {
+        chain.links.push_back({result, "w × (w × r) = -w^2 r"});
+      }
+      step.show(std::move(chain));
+    }
+    step.show({name, {{simplified, ""}}});
+  }
+}
+
+}  // namespace cdot::derive
