@@ -8,6 +8,11 @@ template <class S>
 void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
+  // dv/dt = -d v, implicitly: v / (1 + h d) never overshoots 0. Before the forces, so that it does
+  // not dampen the h g of a body that hangs at rest.
+  for (const Drag<S>& drag : island.drags)
+    all.velocity[drag.body] = S::damped(all.velocity[drag.body], T(1) / (T(1) + h * drag.linear),
+                                        T(1) / (T(1) + h * drag.angular));
   for (const auto& spring : island.springs) {
     const auto a = static_cast<size_t>(spring.body_a), b = static_cast<size_t>(spring.body_b);
     const auto stretch = S::stretch(spring, all.pose[a], all.pose[b]);
@@ -18,10 +23,6 @@ void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h)
     all.velocity[b] = S::sum(all.velocity[b], on_b, T(1));
   }
   for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.acceleration[i], h);
-  // dv/dt = -d v, implicitly: v / (1 + h d) never overshoots 0
-  for (const Drag<S>& drag : island.drags)
-    all.velocity[drag.body] = S::damped(all.velocity[drag.body], T(1) / (T(1) + h * drag.linear),
-                                        T(1) / (T(1) + h * drag.angular));
 }
 
 template void apply_forces(WorldState<Planar<double>>&, Island<Planar<double>>&, double);

@@ -15,8 +15,12 @@ void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar 
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all,
                                       T(world.time), all.increment.data());
+  // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq, an implicit Euler step of the
+  // turning forces: v starts as (M + h G)^-1 M v.
   for (int i : island.bodies) {
     all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.increment[i], h);
+    all.velocity[i] =
+        S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
     all.increment[i] = {};
   }
   island.factored = false;
