@@ -2,6 +2,7 @@
 // looked up here.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -86,6 +87,28 @@ struct JointAst {
   std::string dimension;  // "planar"; empty if the header is missing
   std::string title, source, comment;
   std::vector<StatementAst> statements;
+};
+
+// One item of an entry of a hand derivation.
+struct HandItemAst {
+  enum class Kind { assume, let, free, rows, quantity, lambda, update, bound, claim };
+  Kind kind = Kind::let;
+  Word word;  // let, quantity, claim: what; update: v, w, x or angle; assume: the anchored name
+  Word body;  // update, anchor, immovable
+  std::vector<Word> names;  // free, rows
+  bool flag = false;        // update: -=; bound: lambda >= 0; assume: the body is immovable
+  Ast left, right;          // right: the expression; left: of a claim or an assumed equation
+  Span where;
+  std::string text;
+  bool broken = false;
+};
+
+struct HandEntryAst {
+  std::string id, title, source, note, listed;
+  std::map<std::string, std::string> anchors;  // of parameters that the entry fixes elsewhere
+  std::vector<std::string> immovable;
+  std::vector<HandItemAst> items;
+  Span where;
 };
 
 }  // namespace cdot::derive

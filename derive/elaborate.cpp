@@ -33,7 +33,7 @@ void parse_source(Source& source) {
   if (source.file->text.size() > largest_file)
     return source.diagnostics.error({0, 0}, "the file is larger than 1 MiB",
                                     "a joint is one page; is this the right file?");
-  source.tokens = lex(*source.file, source.diagnostics);
+  source.tokens = lex(*source.file, false, source.diagnostics);
   source.ast = parse_joint(*source.file, source.tokens, source.diagnostics);
   for (const StatementAst& s : source.ast.statements)
     if (!s.declared.name.text.empty() && s.kind != StatementAst::Kind::coordinate)
@@ -54,7 +54,7 @@ void Elaborator::error(Source& source, Span where, std::string message, std::str
 
 Value Elaborator::evaluate(Source& source, const Ast& ast) {
   SourceNames names(*this, source);
-  return Evaluator(*pool_, names, source.diagnostics, false)(ast);
+  return Evaluator(*pool_, names, source.diagnostics)(ast);
 }
 
 void Elaborator::run(Source& spec) {
@@ -149,9 +149,7 @@ void Elaborator::warn_unused(Source& spec) {
 
 void Elaborator::finish(ReadResult& result, Source& spec) {
   for (const auto& [name, entry] : names_) result.names.emplace(name, entry.value);
-  std::stable_sort(
-      spec.diagnostics.list.begin(), spec.diagnostics.list.end(),
-      [](const Diagnostic& a, const Diagnostic& b) { return a.where.begin < b.where.begin; });
+  spec.diagnostics.sort();
   result.diagnostics = spec.diagnostics;
   if (!result.diagnostics.has_errors()) result.joint = std::move(joint_);
 }

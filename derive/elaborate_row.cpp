@@ -58,7 +58,7 @@ void Elaborator::row(Source& source, const StatementAst& s) {
 // lhs - rhs, or rhs - lhs for <=.
 std::optional<Value> Elaborator::constraint(Source& source, const StatementAst& s) {
   SourceNames names(*this, source);
-  Evaluator evaluator(*pool_, names, source.diagnostics, false);
+  Evaluator evaluator(*pool_, names, source.diagnostics);
   Value left = evaluator(s.left), right = evaluator(s.right);
   if (left.type == Type::poison || right.type == Type::poison) return {};
   Diagnostics& d = source.diagnostics;

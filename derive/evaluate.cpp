@@ -45,14 +45,14 @@ std::string fix_of_units(const Value& a, const Value& b) {
 }  // namespace
 
 Value Evaluator::error(Span where, std::string message, std::string fix, std::vector<Span> also) {
-  diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
+  findings_.error(where, std::move(message), std::move(fix), std::move(also));
   return {};
 }
 
 void Evaluator::unit_error(Span where, std::string message, std::string fix,
                            std::vector<Span> also) {
   if (hand_)
-    diagnostics_.warning(where, std::move(message), std::move(fix), std::move(also));
+    findings_.warning(where, std::move(message), std::move(fix), std::move(also));
   else
     diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
 }
@@ -141,12 +141,15 @@ Value Evaluator::unknown(const Ast& ast, bool called) {
     fix = called ? "`cdot --help operators` lists the operators"
                  : "declare it with point, vector, unit, frame, scalar or let";
   const Span where = {ast.where.begin, ast.where.begin + static_cast<int>(ast.text.size())};
-  return error(where, (called ? "there is no operator " : "there is no ") + quote(ast.text), fix);
+  diagnostics_.error(where, (called ? "there is no operator " : "there is no ") + quote(ast.text),
+                     fix);
+  return {};
 }
 
-// What may stand in sums and products.
+// What may stand in sums and products. A hand derivation does not tell points from vectors.
 Value Evaluator::plain(const Ast& ast, std::string_view use) {
   Value v = (*this)(ast);
+  if (hand_ && v.type == Type::point) v = vector(v.e, v.unit);
   if (v.type == Type::body && v.body >= 0)
     return error(
         ast.where, "a body " + std::string(use),
@@ -184,7 +187,7 @@ Value Evaluator::add(const std::vector<Value>& terms, const std::string& signs,
     if (i > 0 && !add_types(total, next, signs[i], parts[i], parts[0])) return {};
     if (i == 0) total = next;
     if (!terms[known].unit) known = i;
-    if (!same_unit(terms[known], next)) {
+    if (!same_unit(terms[known], next, hand_)) {
       const std::string a = spoken(*terms[known].unit), b = spoken(*next.unit);
       const std::string what = relation.empty() ? signs[i] == '-' ? "subtracts " + b + " from " + a
                                                                   : "adds " + b + " to " + a

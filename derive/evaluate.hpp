@@ -24,10 +24,14 @@ class Names {
 
 class Evaluator {
  public:
-  // In a hand derivation units are only remarked on, radians and numbers are one, and matrices may
-  // occur.
-  Evaluator(Pool& pool, Names& names, Diagnostics& diagnostics, bool hand)
-      : pool_(pool), names_(names), diagnostics_(diagnostics), hand_(hand) {}
+  // For a spec.
+  Evaluator(Pool& pool, Names& names, Diagnostics& diagnostics)
+      : pool_(pool), names_(names), diagnostics_(diagnostics), findings_(diagnostics) {}
+  // For a hand derivation: matrices may occur, points are vectors, radians and numbers are one.
+  // What cannot be evaluated goes into `findings` (as an error) and so do units that do not match
+  // (as a warning); only unknown names are bad input.
+  Evaluator(Pool& pool, Names& names, Diagnostics& diagnostics, Diagnostics& findings)
+      : pool_(pool), names_(names), diagnostics_(diagnostics), findings_(findings), hand_(true) {}
 
   // Widths that a matrix of so many blocks per row has where its blocks do not tell: 2, 1, 2, 1 for
   // J.
@@ -55,6 +59,7 @@ class Evaluator {
   Value unknown(const Ast& ast, bool called);
 
   Value plain(const Ast& ast, std::string_view use);  // of a number, vector, point or matrix
+  Value hand_argument(Value v);
   bool add_types(Value& total, const Value& next, char sign, Span part, Span first);
   Value scaled(const std::vector<Value>& factors, const Ast& ast);
   Value error(Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
@@ -73,7 +78,8 @@ class Evaluator {
   Pool& pool_;
   Names& names_;
   Diagnostics& diagnostics_;
-  bool hand_;
+  Diagnostics& findings_;
+  bool hand_ = false;
   std::vector<int> expected_columns_;
 };
 

@@ -9,14 +9,14 @@
 namespace cdot::derive {
 namespace {
 
-unsigned bit_of(const Value& v) {
+unsigned bit_of(const Value& v, bool hand) {
   switch (v.type) {
     case Type::scalar:
       return number_ | (v.zero ? vector_ : 0u);
     case Type::vector:
       return vector_;
     case Type::point:
-      return v.anchored ? point_ : 0u;
+      return (v.anchored ? point_ : 0u) | (hand ? vector_ : 0u);
     case Type::body:
       return v.body < 0 ? world_ : body_;
     case Type::frame:
@@ -29,10 +29,10 @@ unsigned bit_of(const Value& v) {
   return 0;
 }
 
-bool fits(const Operator& o, const std::vector<Value>& arguments) {
+bool fits(const Operator& o, const std::vector<Value>& arguments, bool hand) {
   if (o.takes.size() != arguments.size()) return false;
   for (std::size_t i = 0; i < arguments.size(); ++i)
-    if ((o.takes[i] & bit_of(arguments[i])) == 0) return false;
+    if ((o.takes[i] & bit_of(arguments[i], hand)) == 0) return false;
   return true;
 }
 
@@ -97,12 +97,17 @@ std::optional<Unit> unit_given(UnitGiven given, const std::vector<Value>& a) {
 
 }  // namespace
 
+// A column of two is a vector to an operator, a matrix of one entry a number.
+Value Evaluator::hand_argument(Value v) {
+  return v.type == Type::matrix ? simplest(*v.matrix, true) : v;
+}
+
 Value Evaluator::call(const Ast& ast) {
   const auto candidates = operators_named(ast.text);
   std::vector<Value> arguments;
   bool poisoned = false;
   for (const Ast& a : ast.args) {
-    arguments.push_back((*this)(a));
+    arguments.push_back(hand_argument((*this)(a)));
     poisoned |= arguments.back().type == Type::poison;
   }
   if (candidates.empty()) return unknown(ast, true);
@@ -111,7 +116,7 @@ Value Evaluator::call(const Ast& ast) {
                  "a spec says where things are; masses are the solver's business");
   if (poisoned) return {};
   for (const Operator* o : candidates)
-    if (fits(*o, arguments)) return apply(*o, arguments, ast);
+    if (fits(*o, arguments, hand_)) return apply(*o, arguments, ast);
   return wrong_arguments(arguments, ast);
 }
 
@@ -135,7 +140,7 @@ Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast&
     unsigned allowed = 0;
     for (const Operator* c : candidates)
       if (c->takes.size() == arguments.size()) allowed |= c->takes[i];
-    if ((allowed & bit_of(arguments[i])) != 0) continue;
+    if ((allowed & bit_of(arguments[i], hand_)) != 0) continue;
     const bool subtract = arguments[i].type == Type::point && (allowed & vector_) != 0;
     return error(ast.args[i].where,
                  quote(ast.text) + " takes " + takes_in_words(allowed) + " here, not " +
@@ -164,7 +169,10 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
     return error(ast.args[0].where, "these are components along a frame already");
   std::vector<Value> built = arguments;
   for (std::size_t i = 0; i < built.size(); ++i)
-    if (built[i].zero && (o.takes[i] & number_) == 0) built[i] = vector(zero_vector(pool_), {});
+    if (built[i].zero && (o.takes[i] & number_) == 0)
+      built[i] = vector(zero_vector(pool_), {});
+    else if (built[i].type == Type::point && (o.takes[i] & point_) == 0)
+      built[i] = vector(built[i].e, built[i].unit);
   if (o.name == "arm" && arguments[0].body < 0)
     return error(ast.args[0].where,
                  "a point of the world has no arm: the world has no centre of mass",
@@ -198,7 +206,7 @@ std::optional<Value> Evaluator::unit_of_call(const Operator& o, const std::vecto
   if (o.unit.needs == UnitNeed::number &&
       !need({Unit{}, Unit{.rad = 1}}, "a pure number", "divide by a quantity of that unit"))
     return {};
-  if (o.unit.needs == UnitNeed::equal && !same_unit(a[0], a[1])) {
+  if (o.unit.needs == UnitNeed::equal && !same_unit(a[0], a[1], hand_)) {
     unit_error(ast.args[1].where,
                quote(o.name) + " takes two quantities of one unit, not " + spoken(*a[0].unit) +
                    " and " + spoken(*a[1].unit),

@@ -83,9 +83,79 @@ Matrix inverse(const Matrix& m, Pool& pool) {
   return r;
 }
 
-// Sizes of block rows and block columns.
-struct Layout {
-  std::vector<int> heights, widths;  // widths per block of a row, row after row
+// Adds blocks of equal height, side by side, below m.
+void append_rows(Matrix& m, const std::vector<Matrix>& blocks, int columns) {
+  const int height = blocks.front().rows;
+  for (int i = 0; i < height; ++i)
+    for (const Matrix& block : blocks)
+      for (int j = 0; j < block.columns; ++j) m.entries.push_back(block.at(i, j));
+  m.columns = columns;
+  m.rows += height;
+}
+
+// Where blocks of a matrix stand, and how large they are.
+class Blocks {
+ public:
+  Blocks(const std::vector<Value>& blocks, const std::vector<int>& row_lengths,
+         const std::vector<int>& expected_columns)
+      : blocks_(blocks), lengths_(row_lengths) {
+    aligned_ =
+        std::all_of(lengths_.begin(), lengths_.end(), [&](int n) { return n == lengths_[0]; });
+    for (std::size_t i = 0, next = 0; i < lengths_.size(); ++i) {
+      starts_.push_back(next);
+      next += static_cast<std::size_t>(lengths_[i]);
+    }
+    for (std::size_t i = 0; i < lengths_.size(); ++i) heights_.push_back(height_of_row(i));
+    if (aligned_) shared_widths(expected_columns);
+  }
+
+  std::size_t rows() const { return lengths_.size(); }
+  int length(std::size_t row) const { return lengths_[row]; }
+  std::size_t index(std::size_t row, int column) const {
+    return starts_[row] + static_cast<std::size_t>(column);
+  }
+  int height(std::size_t row) const { return heights_[row]; }
+  // Widths come from the column's blocks, where rows have equally many.
+  int width(std::size_t row, int column) const {
+    if (aligned_) return widths_[static_cast<std::size_t>(column)];
+    const Value& b = blocks_[index(row, column)];
+    if (b.zero) return 1;
+    return any_size(b) ? heights_[row] : as_matrix(b).columns;
+  }
+
+ private:
+  // From the row's blocks; a row of nothing but 0 and E is as high as E, which is 2 in the plane.
+  int height_of_row(std::size_t row) const {
+    bool identity = false;
+    for (int j = 0; j < lengths_[row]; ++j) {
+      const Value& b = blocks_[index(row, j)];
+      if (!any_size(b)) return as_matrix(b).rows;
+      identity |= !b.zero;
+    }
+    return identity ? 2 : 1;
+  }
+
+  void shared_widths(const std::vector<int>& expected) {
+    for (int j = 0; j < lengths_[0]; ++j) {
+      const bool hint = expected.size() == static_cast<std::size_t>(lengths_[0]);
+      int width = hint ? expected[static_cast<std::size_t>(j)] : 1;
+      for (std::size_t i = lengths_.size(); i-- > 0;) {
+        const Value& b = blocks_[index(i, j)];
+        if (any_size(b) && !b.zero) width = heights_[i];
+      }
+      for (std::size_t i = lengths_.size(); i-- > 0;) {
+        const Value& b = blocks_[index(i, j)];
+        if (!any_size(b)) width = as_matrix(b).columns;
+      }
+      widths_.push_back(width);
+    }
+  }
+
+  const std::vector<Value>& blocks_;
+  const std::vector<int>& lengths_;
+  bool aligned_ = false;
+  std::vector<std::size_t> starts_;
+  std::vector<int> heights_, widths_;
 };
 
 }  // namespace
@@ -102,8 +172,6 @@ Value Evaluator::simplest(Matrix m, bool as_vector) {
 Value Evaluator::transpose(const Ast& ast) {
   const Value v = plain(ast.args[0], "has no transpose");
   if (v.type == Type::poison || v.type == Type::scalar) return v;
-  if (v.type == Type::point)
-    return error(ast.where, "a point has no transpose", "subtract a point to get a vector");
   Value result = wrapped(transposed(as_matrix(v)));
   if (v.type == Type::matrix) return simplest(*result.matrix, true);
   return result;
@@ -121,8 +189,6 @@ Value Evaluator::matrix_sum(const std::vector<Value>& terms, const std::string& 
     total = {size.rows, size.columns, std::vector<Expr>(size.entries.size(), pool_.number(0))};
   }
   for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (terms[i].type == Type::point)
-      return error(parts[i], "a point cannot be added to a matrix", "subtract a point first");
     const Matrix m = open && terms[i].zero ? Matrix{0, 0, {pool_.number(0)}}
                      : open                ? *terms[i].matrix
                                            : sized(terms[i], total.rows, total.columns, pool_);
@@ -163,8 +229,6 @@ Value Evaluator::matrix_product(const std::vector<Value>& factors, const Ast& as
   for (std::size_t i = 0; i < factors.size(); ++i) {
     Value next = factors[i];
     const Span where = ast.args[i].where;
-    if (next.type == Type::point)
-      return error(where, "a point cannot be multiplied", "subtract a point first");
     if (ast.ops[i] == '/') {
       if (next.type != Type::scalar)
         return error(where, "nothing can be divided by " + std::string(in_words(next.type)),
@@ -194,63 +258,35 @@ Value Evaluator::matrix_power(const Value& base, int exponent, const Ast& ast) {
   return power;
 }
 
-// "[" blocks "]": heights come from each row's blocks, widths from those of the column, where rows
-// have equally many.
+// "[" blocks "]"
 Value Evaluator::matrix(const Ast& ast) {
   std::vector<Value> blocks;
   for (const Ast& a : ast.args) {
     blocks.push_back(plain(a, "cannot be a block"));
     if (blocks.back().type == Type::poison) return {};
-    if (blocks.back().type == Type::point)
-      return error(a.where, "a point cannot be a block", "subtract a point to get a vector");
   }
-  const auto& lengths = ast.row_lengths;
-  const bool aligned =
-      std::all_of(lengths.begin(), lengths.end(), [&](int n) { return n == lengths[0]; });
-  std::vector<int> widths(static_cast<std::size_t>(lengths[0]), 0);
-  for (std::size_t i = 0; aligned && i < blocks.size(); ++i)
-    if (int& width = widths[i % widths.size()]; !any_size(blocks[i]))
-      width = std::max(width, as_matrix(blocks[i]).columns);
-  if (aligned && widths.size() == expected_columns_.size())
-    for (std::size_t j = 0; j < widths.size(); ++j)
-      if (widths[j] == 0) widths[j] = expected_columns_[j];
+  const Blocks layout(blocks, ast.row_lengths, expected_columns_);
   Matrix m;
-  std::size_t next = 0;
-  for (const int length : lengths) {
-    int height = 0;
-    bool identity = false;
-    for (int j = 0; j < length; ++j) {
-      const Value& b = blocks[next + static_cast<std::size_t>(j)];
-      identity |= any_size(b) && !b.zero;
-      if (!any_size(b)) height = std::max(height, as_matrix(b).rows);
-    }
-    if (height == 0) height = identity ? 2 : 1;
+  for (std::size_t i = 0; i < layout.rows(); ++i) {
     std::vector<Matrix> row;
     int columns = 0;
-    for (int j = 0; j < length; ++j) {
-      const Value& b = blocks[next + static_cast<std::size_t>(j)];
-      int width = aligned ? widths[static_cast<std::size_t>(j)] : 0;
-      if (width == 0) width = b.zero ? 1 : height;
-      row.push_back(sized(b, height, width, pool_));
-      if (row.back().rows != height || (aligned && row.back().columns != width))
-        return error(ast.args[next + static_cast<std::size_t>(j)].where,
+    for (int j = 0; j < layout.length(i); ++j) {
+      const std::size_t k = layout.index(i, j);
+      row.push_back(sized(blocks[k], layout.height(i), layout.width(i, j), pool_));
+      if (row.back().rows != layout.height(i) || row.back().columns != layout.width(i, j))
+        return error(ast.args[k].where,
                      "this block is " + size_in_words(row.back()) +
-                         ", its place in the matrix is " + std::to_string(height) + " x " +
-                         std::to_string(width),
+                         ", its place in the matrix is " + std::to_string(layout.height(i)) +
+                         " x " + std::to_string(layout.width(i, j)),
                      "perhaps a transpose ' is missing");
       columns += row.back().columns;
     }
-    if (m.rows > 0 && columns != m.columns)
-      return error(ast.args[next].where,
+    if (i > 0 && columns != m.columns)
+      return error(ast.args[layout.index(i, 0)].where,
                    "this row has " + std::to_string(columns) + " columns, the first has " +
                        std::to_string(m.columns),
                    "", {ast.args[0].where});
-    for (int i = 0; i < height; ++i)
-      for (const Matrix& block : row)
-        for (int j = 0; j < block.columns; ++j) m.entries.push_back(block.at(i, j));
-    m.columns = columns;
-    m.rows += height;
-    next += static_cast<std::size_t>(length);
+    append_rows(m, row, columns);
     if (m.rows > largest_side || m.columns > largest_side)
       return error(ast.where, "a matrix with more than 64 rows or columns");
   }

@@ -29,8 +29,8 @@ constexpr std::array<LookAlike, 9> look_alikes = {{{"\u2212", "-"},
 
 class Lexer {
  public:
-  Lexer(const SourceFile& file, Diagnostics& diagnostics)
-      : text_(file.text), diagnostics_(diagnostics) {}
+  Lexer(const SourceFile& file, bool hand, Diagnostics& diagnostics)
+      : text_(file.text), hand_(hand), diagnostics_(diagnostics) {}
 
   Tokens run() {
     if (text_.starts_with("\uFEFF")) at_ = 3;  // a byte order mark
@@ -95,7 +95,17 @@ class Lexer {
     if (at_ - begin > longest_name)
       diagnostics_.error(span(begin, at_), "a name of " + std::to_string(at_ - begin) +
                                                " characters; at most 64 are allowed");
+    const bool opens = tokens_.list.empty() || tokens_.list.back().kind == TokenKind::newline;
     add(TokenKind::name, begin, begin + std::min(at_ - begin, longest_name));
+    if (hand_ && opens && tokens_.list.back().text == "entry") id();
+  }
+
+  // The id of an entry, such as P2P-11: all up to the next blank.
+  void id() {
+    while (at_ < text_.size() && text_[at_] == ' ') ++at_;
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && text_[at_] > ' ' && text_[at_] <= '~' && text_[at_] != '"') ++at_;
+    if (at_ > begin) add(TokenKind::name, begin, std::min(at_, begin + longest_name));
   }
 
   void digits() {
@@ -207,6 +217,7 @@ class Lexer {
   }
 
   std::string_view text_;
+  bool hand_;
   Diagnostics& diagnostics_;
   std::size_t at_ = 0;
   int depth_ = 0;
@@ -215,8 +226,8 @@ class Lexer {
 
 }  // namespace
 
-Tokens lex(const SourceFile& file, Diagnostics& diagnostics) {
-  return Lexer(file, diagnostics).run();
+Tokens lex(const SourceFile& file, bool hand, Diagnostics& diagnostics) {
+  return Lexer(file, hand, diagnostics).run();
 }
 
 std::string quote(std::string_view word) {
@@ -229,9 +240,9 @@ const std::vector<std::string>& statement_words(bool hand) {
   static const std::vector<std::string> joint = {"joint",  "source",   "include",   "point",
                                                  "vector", "unit",     "frame",     "scalar",
                                                  "let",    "velocity", "coordinate"};
-  static const std::vector<std::string> entry = {"entry", "source", "note",   "assume",
-                                                 "let",   "free",   "lambda", "update",
-                                                 "bound", "claim",  "listed"};
+  static const std::vector<std::string> entry = {"entry",  "source", "note",  "assume",
+                                                 "let",    "free",   "rows",  "lambda",
+                                                 "update", "bound",  "claim", "listed"};
   return hand ? entry : joint;
 }
 

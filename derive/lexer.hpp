@@ -22,7 +22,7 @@ struct Tokens {
   std::vector<Span> comments;  // of whole lines
 };
 
-Tokens lex(const SourceFile& file, Diagnostics& diagnostics);
+Tokens lex(const SourceFile& file, bool hand, Diagnostics& diagnostics);
 
 // A word of the user, short and printable, in back quotes.
 std::string quote(std::string_view word);

@@ -171,6 +171,12 @@ bool Diagnostics::has_errors() const {
                      [](const Diagnostic& d) { return d.severity == Severity::error; });
 }
 
+void Diagnostics::sort() {
+  std::stable_sort(list.begin(), list.end(), [](const Diagnostic& a, const Diagnostic& b) {
+    return a.where.begin < b.where.begin;
+  });
+}
+
 void Diagnostics::error(Span where, std::string message, std::string fix, std::vector<Span> also) {
   const auto errors = std::count_if(
       list.begin(), list.end(), [](const Diagnostic& d) { return d.severity == Severity::error; });

@@ -1,5 +1,6 @@
-// Source text and what is said about it: positions, caret spans, messages. Used by the readers of specs and of hand
-// derivations and by every later stage that has something to say about a line of them.
+// Source text and what is said about it: positions, caret spans, messages. Used by the readers of
+// specs and of hand derivations and by every later stage that has something to say about a line of
+// them.
 #pragma once
 
 #include <string>
@@ -29,20 +30,23 @@ enum class Severity { error, warning };
 struct Diagnostic {
   Severity severity = Severity::error;
   Span where;
-  std::vector<Span> also;  // further spans that get carets (the other operand, the first declaration)
-  std::string message;     // what is wrong
-  std::string fix;         // what to do; may be empty
+  std::vector<Span>
+      also;             // further spans that get carets (the other operand, the first declaration)
+  std::string message;  // what is wrong
+  std::string fix;      // what to do; may be empty
 };
 
 // All that was found in one file, in the order of the text.
 struct Diagnostics {
   std::vector<Diagnostic> list;
   bool has_errors() const;
+  void sort();
   void error(Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
   void warning(Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
 };
 
-// For a terminal or a log: long lines are shortened around the caret, control and invalid bytes are shown safely.
+// For a terminal or a log: long lines are shortened around the caret, control and invalid bytes are
+// shown safely.
 //   specs/planar/line.joint:7:3: error: adds metres to radians
 //     7 |   dot(t, u) + angle(a) = 0
 //       |   ^~~~~~~~~   ~~~~~~~~

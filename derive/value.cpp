@@ -22,11 +22,11 @@ std::string_view in_words(Type type) {
   return "";
 }
 
-bool same_unit(const Value& a, const Value& b) {
+bool same_unit(const Value& a, const Value& b, bool radians_are_numbers) {
   if (!a.unit || !b.unit || *a.unit == *b.unit) return true;
   Unit x = *a.unit, y = *b.unit;
   x.rad = y.rad = 0;
-  return (a.ratio || b.ratio) && x == y;
+  return (radians_are_numbers || a.ratio || b.ratio) && x == y;
 }
 
 Expr components_along(Expr u, Expr axis) {

@@ -46,8 +46,8 @@ inline Value vector(Expr e, std::optional<Unit> unit = Unit{}) {
 
 std::string_view in_words(Type type);  // "a number", "a vector", ...
 
-// Whether two values may be added or compared.
-bool same_unit(const Value& a, const Value& b);
+// Whether two values may be added or compared; if radians are numbers, a rad and 1 are one.
+bool same_unit(const Value& a, const Value& b, bool radians_are_numbers = false);
 
 // u along a frame with the x axis `axis`, as a vector whose world components are these components.
 Expr components_along(Expr u, Expr axis);

@@ -1,0 +1,358 @@
+// An entry of a hand derivation: its trees to matrices of expressions.
+#include <algorithm>
+
+#include "derive/evaluate.hpp"
+#include "derive/hand.hpp"
+#include "derive/lexer.hpp"
+#include "derive/symbols.hpp"
+
+namespace cdot::derive {
+namespace {
+
+using Kind = HandItemAst::Kind;
+
+Value of_matrix(Matrix m) {
+  if (m.rows == 1 && m.columns == 1) return scalar(m.at(0, 0), {});
+  Value v;
+  v.type = Type::matrix;
+  v.matrix = std::make_shared<const Matrix>(std::move(m));
+  return v;
+}
+
+class EntryElaborator final : public Names {
+ public:
+  EntryElaborator(const HandEntryAst& ast, const HandFile& file, const ReadResult& read,
+                  const GeneratedRows& generated, Diagnostics& diagnostics)
+      : ast_(ast),
+        file_(file),
+        read_(read),
+        joint_(*read.joint),
+        pool_(*read.joint->pool),
+        generated_(generated),
+        diagnostics_(diagnostics) {
+    entry_.id = ast.id;
+    entry_.title = ast.title;
+    entry_.source = ast.source;
+    entry_.note = ast.note;
+    entry_.listed = ast.listed;
+    entry_.anchors = ast.anchors;
+    entry_.immovable = ast.immovable;
+    entry_.where = ast.where;
+  }
+
+  HandEntry run() {
+    begin_part({});
+    for (const HandItemAst& item : ast_.items)
+      if (!item.broken) elaborate(item);
+    for (Diagnostic& d : findings_.list)
+      if (d.severity == Severity::warning) entry_.remarks.push_back(std::move(d));
+    std::erase_if(entry_.parts, [](const HandPart& p) { return p.items.empty(); });
+    return std::move(entry_);
+  }
+
+  const Value* find(const std::string& name) override;
+  int body(const std::string& letter) const override {
+    const int body = body_of_letter(letter);
+    return body < static_cast<int>(joint_.bodies.size()) ? body : -1;
+  }
+  void use_body(int, Span) override {}
+  void use_world() override {}
+  std::vector<std::string> known() const override;
+  std::string hint(const std::string& name) const override;
+
+ private:
+  void elaborate(const HandItemAst& item);
+  void let(const HandItemAst& item);
+  void free(const HandItemAst& item);
+  void rows(const HandItemAst& item);
+  void assume(const HandItemAst& item);
+  void quantity(const HandItemAst& item);
+  void update(const HandItemAst& item);
+  void claim(const HandItemAst& item);
+  void bound(const HandItemAst& item);
+
+  void begin_part(std::vector<std::string> rows);
+  const Value* special(const std::string& name);
+  Value lambda();
+  bool name_is_free(const Word& word);
+  Value evaluate(const Ast& ast, bool rows_of_J = false);
+  void store(const Value& v, std::optional<Matrix>& matrix, Expr& expression);
+  std::string problem() const;
+  HandItem begin(const HandItemAst& item, HandItem::Kind kind) const;
+
+  const HandEntryAst& ast_;
+  const HandFile& file_;
+  const ReadResult& read_;
+  const Joint& joint_;
+  Pool& pool_;
+  const GeneratedRows& generated_;
+  Diagnostics& diagnostics_;
+  HandEntry entry_;
+  Diagnostics findings_;
+  std::map<std::string, Value> names_;      // lets and free symbols of the entry
+  std::map<std::string, Value> said_;       // C, Cdot, J, K, lambda of this part
+  std::optional<Generated> generated_now_;  // of this part's rows
+};
+
+void EntryElaborator::elaborate(const HandItemAst& item) {
+  switch (item.kind) {
+    case Kind::assume:
+      return assume(item);
+    case Kind::let:
+      return let(item);
+    case Kind::free:
+      return free(item);
+    case Kind::rows:
+      return rows(item);
+    case Kind::quantity:
+    case Kind::lambda:
+      return quantity(item);
+    case Kind::update:
+      return update(item);
+    case Kind::bound:
+      return bound(item);
+    case Kind::claim:
+      return claim(item);
+  }
+}
+
+void EntryElaborator::begin_part(std::vector<std::string> rows) {
+  entry_.parts.push_back({std::move(rows), {}});
+  said_.clear();
+  generated_now_.reset();
+}
+
+const Value* EntryElaborator::find(const std::string& name) {
+  if (const auto own = names_.find(name); own != names_.end()) return &own->second;
+  if (const auto spec = read_.names.find(name); spec != read_.names.end()) return &spec->second;
+  return special(name);
+}
+
+// What has a meaning of its own in hand derivations.
+const Value* EntryElaborator::special(const std::string& name) {
+  if (const auto said = said_.find(name); said != said_.end()) return &said->second;
+  if (name == "E") return &(said_["E"] = of_matrix({0, 0, {pool_.number(1)}}));
+  if (name != "C" && name != "Cdot" && name != "J" && name != "K" && name != "lambda")
+    return nullptr;
+  if (!generated_now_) generated_now_ = generated_(entry_.parts.back().rows);
+  const Value v = name == "C"      ? of_matrix(generated_now_->C)
+                  : name == "Cdot" ? of_matrix(generated_now_->Cdot)
+                  : name == "J"    ? of_matrix(generated_now_->J)
+                  : name == "K"    ? of_matrix(generated_now_->K)
+                                   : lambda();
+  return &(said_[name] = v);
+}
+
+// A number for one row, a column for several.
+Value EntryElaborator::lambda() {
+  const int rows = generated_now_->C.rows;
+  if (rows == 1) return scalar(pool_.symbol("lambda", Role::multiplier), {});
+  Matrix column{rows, 1, {}};
+  for (int i = 1; i <= rows; ++i)
+    column.entries.push_back(pool_.symbol("lambda_" + std::to_string(i), Role::multiplier));
+  return of_matrix(std::move(column));
+}
+
+std::vector<std::string> EntryElaborator::known() const {
+  std::vector<std::string> all = {"time", "pi", "world", "E", "C", "Cdot", "J", "K", "lambda"};
+  for (const auto& [name, value] : names_) all.push_back(name);
+  for (const auto& [name, value] : read_.names) all.push_back(name);
+  return all;
+}
+
+std::string EntryElaborator::hint(const std::string& name) const {
+  for (const HandItemAst& item : ast_.items) {
+    const bool listed = std::any_of(item.names.begin(), item.names.end(),
+                                    [&](const Word& w) { return w.text == name; });
+    if ((item.kind == Kind::let && item.word.text == name) || (item.kind == Kind::free && listed))
+      return quote(name) + " is declared only in line " +
+             std::to_string(file_.file->line(item.where.begin)) + "; move that up";
+  }
+  return {};
+}
+
+Value EntryElaborator::evaluate(const Ast& ast, bool rows_of_J) {
+  Evaluator evaluator(pool_, *this, diagnostics_, findings_);
+  if (rows_of_J) {
+    std::vector<int> widths;
+    for (std::size_t i = 0; i < joint_.bodies.size(); ++i) widths.insert(widths.end(), {2, 1});
+    evaluator.expect_columns(std::move(widths));
+  }
+  Value v = evaluator(ast);
+  if (v.type != Type::body && v.type != Type::frame) return v;
+  findings_.error(ast.where, std::string(in_words(v.type)) + " is not a quantity");
+  return {};
+}
+
+// What the last error among the findings says.
+std::string EntryElaborator::problem() const {
+  for (auto d = findings_.list.rbegin(); d != findings_.list.rend(); ++d)
+    if (d->severity == Severity::error)
+      return d->message + ": " +
+             quote(std::string_view(file_.file->text)
+                       .substr(static_cast<std::size_t>(d->where.begin),
+                               static_cast<std::size_t>(d->where.end - d->where.begin)));
+  return "it rests on something that has no value";
+}
+
+void EntryElaborator::store(const Value& v, std::optional<Matrix>& matrix, Expr& expression) {
+  if (v.type == Type::scalar || v.type == Type::vector || v.type == Type::point) expression = v.e;
+  if (v.type == Type::scalar) matrix = Matrix{1, 1, {v.e}};
+  if (v.type == Type::vector || v.type == Type::point)
+    matrix = Matrix{2, 1, {component(v.e, 0), component(v.e, 1)}};
+  if (v.type == Type::matrix) {
+    matrix = *v.matrix;
+    if (!matrix->any_size()) return;
+    const Expr d = matrix->entries[0], zero = pool_.number(0);
+    matrix = Matrix{2, 2, {d, zero, zero, d}};
+  }
+}
+
+HandItem EntryElaborator::begin(const HandItemAst& item, HandItem::Kind kind) const {
+  HandItem out;
+  out.kind = kind;
+  out.what = item.word.text;
+  out.where = item.where;
+  out.text = item.text;
+  return out;
+}
+
+bool EntryElaborator::name_is_free(const Word& word) {
+  const auto spec = read_.names.find(word.text);
+  const bool taken = names_.contains(word.text) || spec != read_.names.end();
+  if (!taken && word.text != "C" && word.text != "Cdot" && word.text != "J" && word.text != "K" &&
+      word.text != "lambda" && word.text != "E" && !is_symbol_of_tool(word.text))
+    return true;
+  diagnostics_.error(word.where,
+                     spec != read_.names.end() ? quote(word.text) + " is a name of the spec already"
+                                               : quote(word.text) + " has a meaning already",
+                     "choose another name");
+  return false;
+}
+
+// let NAME = expression
+void EntryElaborator::let(const HandItemAst& item) {
+  Value v = evaluate(item.right);
+  if (v.type == Type::point) v = vector(v.e, v.unit);
+  if (v.zero) v.unit.reset();
+  v.zero = false;
+  if (!name_is_free(item.word)) return;
+  if (v.type == Type::scalar || v.type == Type::vector) pool_.name(v.e, item.word.text, true);
+  names_[item.word.text] = v;
+}
+
+void EntryElaborator::free(const HandItemAst& item) {
+  for (const Word& word : item.names) {
+    if (word.text.empty() || !name_is_free(word)) continue;
+    entry_.free.push_back(word.text);
+    names_[word.text] = scalar(pool_.symbol(word.text, Role::given), {});
+  }
+}
+
+void EntryElaborator::rows(const HandItemAst& item) {
+  std::vector<std::string> names, known;
+  for (const Row& r : joint_.rows) known.push_back(r.name);
+  for (const Coordinate& c : joint_.coordinates) known.push_back(c.name);
+  for (const Word& word : item.names) {
+    if (std::find(known.begin(), known.end(), word.text) != known.end()) {
+      names.push_back(word.text);
+      continue;
+    }
+    const std::string near = nearest(word.text, known);
+    std::string all;
+    for (const std::string& k : known) all += (all.empty() ? "" : ", ") + k;
+    diagnostics_.error(word.where, "the joint has no row or coordinate " + quote(word.text),
+                       near.empty() ? "it has " + all : "did you mean " + quote(near) + "?");
+  }
+  if (names.size() == item.names.size()) begin_part(std::move(names));
+}
+
+void EntryElaborator::assume(const HandItemAst& item) {
+  HandAssumption a;
+  a.where = item.where;
+  a.text = item.text;
+  if (!item.body.text.empty()) {
+    const bool known_body = item.body.text == "world" || body(item.body.text) >= 0;
+    if (!known_body)
+      diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
+    const auto parameter =
+        std::find_if(joint_.parameters.begin(), joint_.parameters.end(),
+                     [&](const Parameter& p) { return p.name == item.word.text; });
+    const bool placed =
+        parameter != joint_.parameters.end() && parameter->kind != ParameterKind::scalar;
+    if (!item.flag && !placed)
+      diagnostics_.error(item.word.where,
+                         "the spec has no point or direction " + quote(item.word.text),
+                         "only the spec's parameters can be fixed elsewhere");
+    return entry_.assumptions.push_back(std::move(a));
+  }
+  store(evaluate(item.left), a.left, a.left_expression);
+  store(evaluate(item.right), a.right, a.right_expression);
+  entry_.assumptions.push_back(std::move(a));
+}
+
+// C, Cdot, J, K, b or lambda = expression
+void EntryElaborator::quantity(const HandItemAst& item) {
+  HandItem out =
+      begin(item, item.kind == Kind::lambda ? HandItem::Kind::lambda : HandItem::Kind::quantity);
+  const Value v = evaluate(item.right, item.word.text == "J");
+  if (v.type == Type::poison) out.problem = problem();
+  store(v, out.value, out.expression);
+  if (item.word.text != "b") said_[item.word.text] = v;
+  entry_.parts.back().items.push_back(std::move(out));
+}
+
+void EntryElaborator::update(const HandItemAst& item) {
+  HandItem out = begin(item, HandItem::Kind::update);
+  out.target = item.word.text == "v"   ? HandItem::Target::velocity
+               : item.word.text == "w" ? HandItem::Target::spin
+               : item.word.text == "x" ? HandItem::Target::position
+                                       : HandItem::Target::angle;
+  out.body = body(item.body.text);
+  if (out.body < 0)
+    return diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
+  const Value v = evaluate(item.right);
+  store(v, out.value, out.expression);
+  const int rows = item.word.text == "v" || item.word.text == "x" ? 2 : 1;
+  if (v.type == Type::poison)
+    out.problem = problem();
+  else if (out.value->rows != rows || out.value->columns != 1) {
+    out.problem =
+        std::string(in_words(v.type)) + " is added to " + (rows == 2 ? "a vector" : "a number");
+    out.value.reset();
+  }
+  if (item.flag && out.value) {
+    for (Expr& e : out.value->entries) e = -e;
+    if (out.expression) out.expression = -out.expression;
+  }
+  entry_.parts.back().items.push_back(std::move(out));
+}
+
+void EntryElaborator::bound(const HandItemAst& item) {
+  HandItem out = begin(item, HandItem::Kind::bound);
+  out.pushes_only = item.flag;
+  entry_.parts.back().items.push_back(std::move(out));
+}
+
+void EntryElaborator::claim(const HandItemAst& item) {
+  HandItem out = begin(item, HandItem::Kind::claim);
+  const bool J = item.word.text == "J";
+  const Value left = evaluate(item.left, J), right = evaluate(item.right, J);
+  if (!same_unit(left, right, true))
+    findings_.warning(item.right.where,
+                      "equates " + spoken(*left.unit) + " and " + spoken(*right.unit), "",
+                      {item.left.where});
+  store(left, out.value, out.expression);
+  store(right, out.right, out.right_expression);
+  if (!out.value || !out.right) out.problem = problem();
+  entry_.parts.back().items.push_back(std::move(out));
+}
+
+}  // namespace
+
+HandEntry elaborate_entry(const HandEntryAst& entry, const HandFile& file, const ReadResult& joint,
+                          const GeneratedRows& generated, Diagnostics& diagnostics) {
+  return EntryElaborator(entry, file, joint, generated, diagnostics).run();
+}
+
+}  // namespace cdot::derive
