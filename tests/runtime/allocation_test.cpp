@@ -1,0 +1,67 @@
+// step() does not allocate: every operator new of the process is counted while it runs.
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test {
+
+extern long allocations;  // counting_new.cpp
+
+namespace {
+
+// Every kind of row and force there is, a joint that breaks and an island that falls asleep on the way.
+template <class T>
+void add_everything(World<T>& world) {
+  const auto rods = add_chain(world, 10, -0.4);
+  add_motor(world, 1, "angle", {.speed = 1, .max_force = 2});
+  add_limit(world, 2, "angle", {.lower = -0.1, .upper = 0.1});
+  add_friction(world, 3, "angle", {.max_force = 0.1});
+  add_spring(world, 4, "angle", {.softness = {.by_frequency = true, .frequency = 2}, .rest = 0.2});
+  set_breaking_load(world, 7, 30);
+  distance(world, rods[0], rods[5], 4,
+           Softness{.by_frequency = true, .frequency = 3, .damping_ratio = 0.2});
+  world.add_spring({.body_a = rods[1], .body_b = rods[9], .stiffness = 5, .rest_length = 3});
+  world.add_joint({"max_distance",
+                   {rods[2], rods[6]},
+                   {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {4.0}}},
+                   {}});
+  add_chain(world, 3, -pi / 2);
+}
+
+template <class T>
+long allocations_of_a_run(Solver solver, Drift drift, bool geometric_stiffness) {
+  Settings s = settings(solver, drift, -9.81);
+  s.geometric_stiffness = geometric_stiffness;
+  s.sleep_after = 0.1;
+  s.substeps = 2;
+  World<T> world(s);
+  add_everything(world);
+  world.prepare();
+  const long before = allocations;
+  for (int i = 0; i < 200; ++i) {
+    world.step(0.005);
+    if (i % 50 == 49) world.apply_impulse(world.body_count() - 1, 0.1, 0, 0);
+  }
+  const long made = allocations - before;
+  EXPECT_TRUE(world.broken(7));
+  EXPECT_TRUE(finite(world));
+  return made;
+}
+
+TEST(Allocation, TheCounterCounts) {
+  const long before = allocations;
+  std::vector<int> memory(100);
+  EXPECT_EQ(allocations - before, 1) << memory.size();
+}
+
+TEST(Allocation, StepDoesNotAllocate) {
+  for (Solver solver : {Solver::direct, Solver::iterative}) {
+    for (Drift drift : {Drift::none, Drift::baumgarte, Drift::projection}) {
+      for (bool stiff : {false, true}) {
+        EXPECT_EQ(allocations_of_a_run<double>(solver, drift, stiff), 0);
+        EXPECT_EQ(allocations_of_a_run<float>(solver, drift, stiff), 0);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test

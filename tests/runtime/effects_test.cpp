@@ -1,0 +1,213 @@
+// Effects on coordinates against what a person computes by hand.
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+constexpr Solver both[] = {Solver::direct, Solver::iterative};
+
+// A wheel on a fixed axle; its angle counts from b to a, so the wheel is a.
+template <class T>
+int add_wheel(World<T>& world, double inertia, int* wheel, double torque = 0) {
+  *wheel = world.add_body({.mass = 1, .inertia = inertia, .torque = torque});
+  return revolute(world, *wheel, world.ground(), 0, 0, 0, 0);
+}
+
+TEST(Motor, ReachesItsSpeedAtOnceIfItsForceIsUnlimited) {
+  for (Solver solver : both) {
+    World<double> world(settings(solver));
+    int wheel;
+    const int joint = add_wheel(world, 2, &wheel);
+    add_motor(world, joint, "angle", {.speed = 3});
+    world.step(0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, 3, 1e-12);
+    EXPECT_NEAR(world.coordinate_rate(joint, "angle"), 3, 1e-12);
+  }
+}
+
+TEST(Motor, AcceleratesWithItsLargestForceUntilItHasItsSpeed) {
+  for (Solver solver : both) {
+    World<double> world(settings(solver));
+    int wheel;
+    const int joint = add_wheel(world, 2, &wheel);
+    add_motor(world, joint, "angle", {.speed = 3, .max_force = 0.5});
+    run(world, 4, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, 0.5 * 4 / 2, 1e-9);
+    run(world, 20, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, 3, 1e-9);
+  }
+}
+
+TEST(DryFriction, HoldsUpToItsForceAndBrakesAboveIt) {
+  for (Solver solver : both) {
+    for (double torque : {0.4, 0.7}) {
+      World<double> world(settings(solver));
+      int wheel;
+      add_friction(world, add_wheel(world, 2, &wheel, torque), "angle", {.max_force = 0.5});
+      run(world, 1, 0.01);
+      EXPECT_NEAR(world.velocity(wheel).w, torque < 0.5 ? 0 : 0.2 / 2, 1e-9);
+    }
+  }
+}
+
+TEST(DryFriction, StopsARunningWheelAfterTheTimeThatMomentumGives) {
+  for (Solver solver : both) {
+    World<double> world(settings(solver));
+    int wheel;
+    add_friction(world, add_wheel(world, 2, &wheel), "angle", {.max_force = 0.5});
+    world.set_velocity(wheel, 0, 0, 1);
+    run(world, 2, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, 0.5, 1e-9);
+    run(world, 3, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, 0, 1e-12);
+    EXPECT_NEAR(world.pose(wheel).angle, 2, 0.02);  // w^2 I / (2 torque)
+  }
+}
+
+TEST(Limit, StopsEachSideWhereItIs) {
+  for (Solver solver : both) {
+    for (Drift drift : {Drift::none, Drift::baumgarte, Drift::projection}) {
+      for (double torque : {5.0, -5.0}) {
+        World<double> world(settings(solver, drift));
+        int wheel;
+        const int joint = add_wheel(world, 2, &wheel, torque);
+        add_limit(world, joint, "angle", {.lower = -200 * pi / 180, .upper = 45 * pi / 180});
+        double farthest = 0;
+        for (int i = 0; i < 600; ++i) {
+          world.step(1.0 / 60);
+          const double angle = world.coordinate(joint, "angle") * 180 / pi;
+          farthest = std::max(farthest, torque > 0 ? angle - 45 : -200 - angle);
+        }
+        EXPECT_LT(farthest, 1e-3);
+        EXPECT_NEAR(world.pose(wheel).angle * 180 / pi, torque > 0 ? 45 : -200, 1e-3);
+      }
+    }
+  }
+}
+
+TEST(Limit, OneSideOnlyAndNoPullFromIt) {
+  for (Solver solver : both) {
+    World<double> world(settings(solver));
+    int wheel;
+    const int joint = add_wheel(world, 2, &wheel);
+    add_limit(world, joint, "angle", {.lower = -1, .upper = {}});
+    world.set_velocity(wheel, 0, 0, 4);
+    run(world, 3, 0.01);
+    EXPECT_NEAR(world.pose(wheel).angle, 12, 1e-9);  // counts turns
+    world.set_velocity(wheel, 0, 0, -4);
+    run(world, 3, 0.01);
+    EXPECT_NEAR(world.pose(wheel).angle, 0, 1e-9);
+    run(world, 1, 0.01);
+    EXPECT_NEAR(world.pose(wheel).angle, -1, 1e-9);
+  }
+}
+
+TEST(Limit, ThousandTurnsAreCounted) {
+  World<double> world;
+  int wheel;
+  const int joint = add_wheel(world, 2, &wheel);
+  world.set_velocity(wheel, 0, 0, 2 * pi);
+  run(world, 1000, 0.01);
+  EXPECT_NEAR(world.coordinate(joint, "angle"), 2000 * pi, 1e-6);
+}
+
+// A slider on a slope: limit, motor and spring on the slide of a prismatic joint.
+TEST(Prismatic, BlockSlidesDownAndStopsAtItsLimit) {
+  for (Solver solver : both) {
+    const double slope = pi / 6, g = 9.81;
+    World<double> world(settings(solver, Drift::projection, -g));
+    const int block = world.add_body({.mass = 1, .inertia = 0.1});
+    // The normal of the incline that falls to the right.
+    const int joint =
+        world.add_joint({"prismatic",
+                         {block, world.ground()},
+                         {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {std::sin(slope), std::cos(slope)}}},
+                         {}});
+    const double h = 1e-3;
+    run(world, 1, h);
+    const double down = std::hypot(world.pose(block).x, world.pose(block).y);
+    EXPECT_NEAR(down, g * std::sin(slope) * 0.5 * (1 + h), 1e-9);
+    const double sign = world.coordinate(joint, "slide") > 0 ? 1 : -1;
+    EXPECT_NEAR(world.coordinate(joint, "slide") * sign, down, 1e-12);
+    add_limit(world, joint, "slide", {.lower = -4, .upper = 4});
+    run(world, 2, h);
+    EXPECT_NEAR(world.coordinate(joint, "slide") * sign, 4, 1e-9);
+    EXPECT_NEAR(std::hypot(world.velocity(block).x, world.velocity(block).y), 0, 1e-9);
+  }
+}
+
+TEST(Effects, SeveralOnOneCoordinate) {
+  for (Solver solver : both) {
+    World<double> world(settings(solver));
+    int wheel;
+    const int joint = add_wheel(world, 2, &wheel);
+    add_motor(world, joint, "angle", {.speed = 2, .max_force = 1});
+    add_friction(world, joint, "angle", {.max_force = 0.4});
+    add_limit(world, joint, "angle", {.lower = {}, .upper = 1});
+    run(world, 1, 0.01);
+    EXPECT_NEAR(world.velocity(wheel).w, 0.6 / 2, 1e-6);
+    run(world, 9, 0.01);
+    EXPECT_NEAR(world.pose(wheel).angle, 1, 1e-9);
+  }
+}
+
+TEST(BreakingLoad, BreaksJustAboveIt) {
+  for (Solver solver : both) {
+    for (double load : {99.0, 101.0}) {
+      Settings s = settings(solver, Drift::projection, -10);
+      s.iterations = 200;
+      World<double> world(s);
+      const auto rods = add_chain(world, 5, -pi / 2, 2);
+      set_breaking_load(world, 0, load);
+      run(world, 1, 0.01);
+      EXPECT_EQ(world.broken(0), load < 100);
+      EXPECT_NEAR(world.pose(rods[4]).y, load < 100 ? -4.5 - 5 : -4.5, 0.11);
+      EXPECT_FALSE(world.broken(1));
+      EXPECT_LT(world.worst_position_error().value, 1e-6);
+    }
+  }
+}
+
+TEST(BreakingLoad, OfOneJointAmongMany) {
+  for (Solver solver : both) {
+    Settings s = settings(solver, Drift::projection, -10);
+    s.iterations = 100;
+    World<double> world(s);
+    const auto rods = add_chain(world, 5, 0.0, 2);
+    add_spring(world, 2, "angle", {.softness = {.by_frequency = false, .damping = 0.1}});
+    set_breaking_load(world, 2, 5);
+    run(world, 0.5, 0.005);
+    EXPECT_TRUE(world.broken(2));
+    const auto impulse = world.impulse(2);
+    EXPECT_EQ(impulse[0], 0);
+    EXPECT_LT(world.worst_position_error().value, 1e-3);
+    world.add_body({.mass = 1});  // and the topology is made anew without the broken joint
+    run(world, 0.5, 0.005);
+    EXPECT_EQ(world.island_count(), 3);
+    EXPECT_LT(world.pose(rods[4]).y, -2);
+  }
+}
+
+TEST(Effects, MistakesAreRefused) {
+  World<double> world;
+  int wheel;
+  const int joint = add_wheel(world, 2, &wheel);
+  EXPECT_THROW(add_limit(world, joint, "slide", {.lower = 0, .upper = 1}), Error);
+  EXPECT_THROW(add_limit(world, joint, "angle", {.lower = 2, .upper = 1}), Error);
+  EXPECT_THROW(add_limit(world, joint, "angle", {}), Error);
+  EXPECT_THROW(add_limit(world, joint + 1, "angle", {.lower = 0, .upper = 1}), Error);
+  EXPECT_THROW(add_motor(world, joint, "angle", {.speed = NAN}), Error);
+  EXPECT_THROW(add_motor(world, joint, "angle", {.speed = 1, .max_force = -1}), Error);
+  EXPECT_THROW(add_friction(world, joint, "angle", {.max_force = -1}), Error);
+  EXPECT_THROW(add_spring(world, joint, "angle", {}), Error);
+  EXPECT_THROW(set_breaking_load(world, joint, 0), Error);
+  try {
+    add_motor(world, joint, "slide", {.speed = 1});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "joint `revolute` has no free coordinate `slide`; it has `angle`");
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test

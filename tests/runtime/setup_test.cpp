@@ -1,0 +1,151 @@
+// Setting a World up: what is refused and how it is said, what is accepted but does nothing, inconsistent starts.
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+template <class F>
+std::string message_of(F f) {
+  try {
+    f();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+JointDefinition revolute_with(std::vector<int> bodies, std::vector<NamedValue> parameters) {
+  return {"revolute", std::move(bodies), std::move(parameters), {}};
+}
+
+TEST(Setup, MistakesInJointsAreNamed) {
+  World<double> world;
+  const int g = world.ground(), b = world.add_body({.mass = 1, .inertia = 1});
+  const auto say = [&](const JointDefinition& joint) {
+    return message_of([&] { world.add_joint(joint); });
+  };
+  EXPECT_EQ(say({"revolut", {g, b}, {}, {}}), "there is no joint `revolut`");
+  EXPECT_EQ(say(revolute_with({g}, {})), "joint `revolute` connects 2 bodies, not 1");
+  EXPECT_EQ(say(revolute_with({g, 7}, {})), "there is no body number 7");
+  EXPECT_EQ(say(revolute_with({b, b}, {})), "joint `revolute` names the same movable body twice");
+  EXPECT_EQ(say(revolute_with({g, b}, {{"pc", {0, 0}}})),
+            "joint `revolute` has no parameter `pc`; its parameters are `pa`, `pb`");
+  EXPECT_EQ(say(revolute_with({g, b}, {{"pa", {0}}})),
+            "parameter `pa` of joint `revolute` takes 2 numbers, not 1");
+  EXPECT_EQ(say(revolute_with({g, b}, {{"pa", {0, NAN}}})),
+            "parameter `pa` of joint `revolute` is not finite");
+  EXPECT_EQ(say(revolute_with({g, b}, {{"pa", {0, 0}}, {"pa", {1, 0}}})),
+            "parameter `pa` of joint `revolute` is given twice");
+  EXPECT_EQ(say(revolute_with({g, b}, {})),
+            "joint `revolute` needs its parameter `pa` (it has no default)");
+  EXPECT_EQ(say({"prismatic", {b, g}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 0}}}, {}}),
+            "parameter `t` of joint `prismatic` is a direction and must not be zero");
+  EXPECT_EQ(world.joint_count(), 0);
+}
+
+TEST(Setup, MistakesInBodiesAreNamed) {
+  World<double> world;
+  EXPECT_EQ(message_of([&] { world.add_body({.mass = 0, .inertia = 1}); }),
+            "a body needs a mass > 0, or to be static");
+  EXPECT_EQ(message_of([&] { world.add_body({.mass = -1, .inertia = 1}); }),
+            "a body needs a mass > 0, or to be static");
+  EXPECT_EQ(message_of([&] { world.add_body({.x = NAN, .mass = 1}); }),
+            "every number of a body must be finite");
+  EXPECT_EQ(message_of([&] { world.add_body({.vx = 1, .is_static = true}); }),
+            "a static body has no velocity");
+  EXPECT_EQ(world.body_count(), 0);
+  EXPECT_THROW(World<double>({.iterations = 0}), Error);
+  EXPECT_THROW(World<double>({.baumgarte = 2}), Error);
+}
+
+TEST(Setup, MissingParametersTakeTheSpecsDefaults) {
+  World<double> world;
+  const int a = world.add_body({.x = 1, .y = 2, .angle = 0.5, .mass = 1, .inertia = 1});
+  const int b = world.add_body({.x = 3, .y = 1, .angle = -1, .mass = 1, .inertia = 1});
+  const int joint = world.add_joint(revolute_with({a, b}, {{"pa", {0.7, -0.2}}}));
+  for (double C : world.position_error(joint)) EXPECT_NEAR(C, 0, 1e-15);
+  EXPECT_EQ(world.joint_parameters(joint).size(), 4u);
+}
+
+TEST(Setup, DirectionsAreNormalised) {
+  for (double scale : {1.0, 10.0, 1e-6, 1e-200}) {
+    World<double> world;
+    const int b = world.add_body({.mass = 1, .inertia = 1});
+    const int joint = world.add_joint(
+        {"prismatic",
+         {b, world.ground()},
+         {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0.6 * scale, 0.8 * scale}}},
+         {}});
+    const auto p = world.joint_parameters(joint);
+    const int offset = world.joint_type(joint).parameters[2].offset;
+    EXPECT_NEAR(p[offset], 0.6, 1e-15);
+    EXPECT_NEAR(p[offset + 1], 0.8, 1e-15);
+  }
+}
+
+TEST(Setup, JointBetweenStaticBodiesDoesNothingAndSaysSo) {
+  World<double> world;
+  const int wall = world.add_body({.x = 5, .is_static = true});
+  revolute(world, world.ground(), wall, 0, 0, 1, 1);
+  ASSERT_EQ(world.notes().size(), 1u);
+  EXPECT_EQ(world.notes()[0],
+            "joint number 0 (`revolute`) connects only immovable bodies and does nothing");
+  run(world, 1, 0.01);
+  EXPECT_EQ(world.pose(wall).x, 5);
+  EXPECT_TRUE(finite(world));
+}
+
+TEST(Setup, InconsistentStartIsReportedAndProjected) {
+  for (Solver solver : {Solver::direct, Solver::iterative}) {
+    World<double> world(settings(solver));
+    const auto rods = add_chain(world, 4, -0.4);
+    EXPECT_TRUE(world.inconsistencies(1e-9).empty());
+    const auto q = world.pose(rods[2]);
+    world.set_pose(rods[2], q.x + 0.1, q.y - 0.05, q.angle + 0.1);
+    world.set_velocity(rods[0], 0, 0, 1);
+    const auto found = world.inconsistencies(1e-9);
+    bool position = false, velocity = false;
+    for (const Inconsistency& item : found) (item.velocity ? velocity : position) = true;
+    EXPECT_TRUE(position && velocity);
+    EXPECT_TRUE(world.project(1e-9));
+    EXPECT_TRUE(world.inconsistencies(1e-9).empty());
+    EXPECT_GT(world.energy(), 1e-3) << "the projection keeps what motion the joints allow";
+  }
+}
+
+TEST(Setup, ProjectionOfWhatCannotBeIsRefused) {
+  World<double> world;
+  const int bob = world.add_body({.x = 1, .mass = 1});
+  const int post = world.add_body({.x = 5, .is_static = true});
+  distance(world, world.ground(), bob, 1);
+  distance(world, post, bob, 1);
+  EXPECT_FALSE(world.project(1e-9));
+  EXPECT_TRUE(finite(world));
+}
+
+TEST(Setup, ProjectionIsTheLeastChangeInTheMetricOfTheMasses) {
+  World<double> world;
+  const int light = world.add_body({.x = 0, .mass = 1});
+  const int heavy = world.add_body({.x = 1.3, .mass = 2});
+  distance(world, light, heavy, 1);
+  EXPECT_TRUE(world.project(1e-12));
+  EXPECT_NEAR(world.pose(light).x, 0.2, 1e-12);  // twice as far as the body of twice the mass
+  EXPECT_NEAR(world.pose(heavy).x, 1.2, 1e-12);
+}
+
+TEST(Setup, FixedRotationAndPointMassesDoNotTurn) {
+  World<double> world(settings(Solver::direct, Drift::projection, -9.81));
+  const int a = world.add_body({.x = 1, .mass = 1, .inertia = 2, .fixed_rotation = true});
+  const int b = world.add_body({.x = 2, .mass = 1});
+  revolute(world, world.ground(), a, 0, 0, 0, 0);
+  revolute(world, a, b, 0.5, 0, -0.5, 0);
+  world.project(1e-12);
+  run(world, 1, 1e-2);
+  EXPECT_TRUE(finite(world));
+  EXPECT_EQ(world.pose(a).angle, 0);
+  EXPECT_EQ(world.pose(b).angle, 0);
+  EXPECT_LT(world.worst_position_error().value, 1e-9);
+}
+
+}  // namespace
+}  // namespace cdot::test
