@@ -92,8 +92,8 @@ class Elaborator {
   int row_count_ = 0;
 };
 
-// Names as one source sees them.
-class SourceNames final : public Names {
+// Scope as one source sees them.
+class SourceNames final : public Scope {
  public:
   SourceNames(Elaborator& elaborator, Source& source) : e_(elaborator), source_(source) {}
   const Value* find(const std::string& name) override;

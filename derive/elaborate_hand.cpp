@@ -19,7 +19,7 @@ Value of_matrix(Matrix m) {
   return v;
 }
 
-class EntryElaborator final : public Names {
+class EntryElaborator final : public Scope {
  public:
   EntryElaborator(const HandEntryAst& ast, const HandFile& file, const ReadResult& read,
                   const GeneratedRows& generated, Diagnostics& diagnostics)

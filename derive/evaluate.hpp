@@ -11,9 +11,9 @@
 namespace cdot::derive {
 
 // What the evaluator asks of the place where an expression stands.
-class Names {
+class Scope {
  public:
-  virtual ~Names() = default;
+  virtual ~Scope() = default;
   virtual const Value* find(const std::string& name) = 0;  // null if unknown; counts as a use
   virtual int body(const std::string& letter) const = 0;   // -1 if it is no body
   virtual void use_body(int body, Span where) = 0;
@@ -25,12 +25,12 @@ class Names {
 class Evaluator {
  public:
   // For a spec.
-  Evaluator(Pool& pool, Names& names, Diagnostics& diagnostics)
+  Evaluator(Pool& pool, Scope& names, Diagnostics& diagnostics)
       : pool_(pool), names_(names), diagnostics_(diagnostics), findings_(diagnostics) {}
   // For a hand derivation: matrices may occur, points are vectors, radians and numbers are one.
   // What cannot be evaluated goes into `findings` (as an error) and so do units that do not match
   // (as a warning); only unknown names are bad input.
-  Evaluator(Pool& pool, Names& names, Diagnostics& diagnostics, Diagnostics& findings)
+  Evaluator(Pool& pool, Scope& names, Diagnostics& diagnostics, Diagnostics& findings)
       : pool_(pool), names_(names), diagnostics_(diagnostics), findings_(findings), hand_(true) {}
 
   // Widths that a matrix of so many blocks per row has where its blocks do not tell: 2, 1, 2, 1 for
@@ -76,7 +76,7 @@ class Evaluator {
   Value simplest(Matrix m, bool as_vector);
 
   Pool& pool_;
-  Names& names_;
+  Scope& names_;
   Diagnostics& diagnostics_;
   Diagnostics& findings_;
   bool hand_ = false;
