@@ -1,0 +1,300 @@
+#include "derive/finite_field.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+
+#include "derive/numeric.hpp"
+
+namespace cdot::derive {
+namespace {
+
+__extension__ using Wide = unsigned __int128;
+
+// A root of no square, a division by zero: another pose has to be tried.
+struct NotHere {};
+
+struct Rotation {
+  Modular c{1}, s{0};
+};
+Rotation operator*(Rotation a, Rotation b) {
+  return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s};
+}
+Rotation pow(Rotation r, std::int64_t exponent) {
+  if (exponent < 0) return pow(Rotation{r.c, Modular(0) - r.s}, -exponent);
+  Rotation result;
+  for (; exponent > 0; exponent /= 2, r = r * r) {
+    if (exponent % 2 == 1) result = result * r;
+  }
+  return result;
+}
+// (1 - t^2, 2 t) / (1 + t^2); the divisor is never zero since -1 is no square.
+Rotation rotation_of(Modular t) {
+  const Modular inv = inverse(Modular(1) + t * t);
+  return {(Modular(1) - t * t) * inv, (t + t) * inv};
+}
+
+// A generic pose. Angles and scalars are small whole numbers, so that sums of them can be
+// recognised in the argument of a sine, which then obeys the addition theorems; other arguments get
+// a random value each.
+class Pose final : public Arithmetic<Modular> {
+ public:
+  explicit Pose(std::uint64_t seed) : random_(seed), salt_(random_.bits()) {
+    unit_turn_ = rotation_of(any());
+    base_ = any();
+    // A turn by pi/4: of order 8 in the group of rotations, which has 2^61 elements.
+    eighth_turn_ = rotation_of(any());
+    for (int i = 0; i < 58; ++i) eighth_turn_ = eighth_turn_ * eighth_turn_;
+  }
+
+  Modular number(Rational value) override {
+    return Modular(value.num()) * inverse(Modular(value.den()));
+  }
+
+  Modular scalar_leaf(const Node& symbol) override {
+    if (symbol.role == Role::angle) return Modular(angle_of(symbol.body));
+    if (symbol.role == Role::constant) return pi_ = remembered(symbol.symbol, any());
+    return remembered(symbol.symbol, Modular(small()));
+  }
+
+  Pair<Modular> vector_leaf(const Node& symbol) override {
+    if (&symbol == &*world_x(*symbol.pool)) return {Modular(1), Modular(0)};
+    if (symbol.role == Role::body_vector && symbol.symbol.starts_with("axis_")) {
+      return turned({}, symbol.body);
+    }
+    if (symbol.unit_length) return turned(rotation_of(any()), symbol.body);
+    return {any(), any()};
+  }
+
+  Modular inverse(const Modular& x) override {
+    if (x.is_zero()) throw NotHere{};
+    return derive::inverse(x);
+  }
+
+  Modular call(Fn fn, std::span<const Modular> args) override {
+    const Modular x = args[0];
+    switch (fn) {
+      case Fn::sqrt:
+        return root(x);
+      case Fn::sign:
+        return sign(x);
+      case Fn::abs:
+        return sign(x) * x;
+      case Fn::sin:
+        return turn(x).s;
+      case Fn::cos:
+        return turn(x).c;
+      case Fn::tan:
+        return turn(x).s * inverse(turn(x).c);
+      case Fn::exp:
+        return exponential(x);
+      case Fn::inverse:
+      case Fn::pivot:
+        return inverse(x);
+      case Fn::select:
+        return sign(x) == Modular(1) ? args[1] : args[2];
+      case Fn::log:
+        return any_for(1, x, x);
+      case Fn::atan2:
+        return any_for(2, x, args[1]);
+    }
+    return x;
+  }
+
+ private:
+  static constexpr std::int64_t step = 720720;  // divisible by 1..16, so that halves stay whole
+  static constexpr std::int64_t small_bound = std::int64_t{1} << 56;
+
+  Modular any() { return Modular::of_bits(random_.bits()); }
+  std::int64_t small() { return step * static_cast<std::int64_t>(random_.bits() >> 36); }
+
+  Modular remembered(const std::string& name, Modular fresh) {
+    return scalars_.emplace(name, fresh).first->second;
+  }
+  std::int64_t angle_of(int body) { return angles_.emplace(body, small()).first->second; }
+
+  Pair<Modular> turned(Rotation r, int body) {
+    if (body >= 0) r = r * pow(unit_turn_, angle_of(body));
+    return {r.c, r.s};
+  }
+
+  static Modular sign(Modular x) {
+    if (x.is_zero()) throw NotHere{};
+    return Modular(x.is_square() ? 1 : -1);
+  }
+
+  static Modular root(Modular x) {
+    if (!x.is_square()) throw NotHere{};
+    return pow(x, std::uint64_t{1} << 59);  // x^((p+1)/4), a square itself
+  }
+
+  Modular any_for(int kind, Modular x, Modular y) {
+    Random random(salt_ ^ (x.value() * 3 + y.value() * 5 + static_cast<std::uint64_t>(kind)));
+    return Modular::of_bits(random.bits());
+  }
+
+  Rotation turn(Modular x) {
+    for (int eighths = -16; eighths <= 16; ++eighths) {
+      const Modular rest = x - Modular(eighths) * pi_ * derive::inverse(Modular(4));
+      if (std::abs(rest.centred()) < small_bound) {
+        return pow(unit_turn_, rest.centred()) * pow(eighth_turn_, eighths);
+      }
+    }
+    return rotation_of(any_for(3, x, x));
+  }
+
+  Modular exponential(Modular x) {
+    const std::int64_t whole = x.centred();
+    if (std::abs(whole) >= small_bound) return any_for(4, x, x);
+    const Modular power = pow(base_, static_cast<std::uint64_t>(std::abs(whole)));
+    return whole < 0 ? inverse(power) : power;
+  }
+
+  Random random_;
+  std::uint64_t salt_;
+  Rotation unit_turn_, eighth_turn_;
+  Modular base_, pi_;
+  std::map<int, std::int64_t> angles_;
+  std::map<std::string, Modular> scalars_;
+};
+
+using Matrix = std::vector<std::vector<Modular>>;
+
+std::optional<Matrix> jacobian_at(std::span<const ScalarRow> rows, std::uint64_t seed) {
+  Pose pose(seed);
+  Evaluation<Modular> values(pose);
+  Matrix J;
+  try {
+    for (const ScalarRow& row : rows) {
+      std::vector<Modular> entries;
+      for (const JacobianEntry& entry : row.J) {
+        const Pair<Modular> v = values.vector(entry.v);
+        entries.insert(entries.end(), {v[0], v[1], values.scalar(entry.w)});
+      }
+      J.push_back(std::move(entries));
+    }
+  } catch (const NotHere&) {
+    return std::nullopt;
+  }
+  return J;
+}
+
+// A combination of rows that vanishes: its last coefficient is 1 and stands at the row that depends
+// on the earlier ones.
+struct Combination {
+  std::size_t row;
+  std::vector<Modular> coefs;
+};
+
+// Elimination, row by row; a row that becomes zero is a combination of earlier ones.
+std::vector<Combination> combinations(Matrix J) {
+  const std::size_t rows = J.size(), columns = rows == 0 ? 0 : J[0].size();
+  std::vector<Combination> found;
+  std::vector<std::size_t> pivots(rows, columns);
+  Matrix made(rows, std::vector<Modular>(rows));  // J[i] = made[i] times the rows as given
+  for (std::size_t i = 0; i < rows; ++i) {
+    made[i][i] = Modular(1);
+    for (std::size_t k = 0; k < i; ++k) {
+      if (pivots[k] == columns) continue;
+      const Modular factor = J[i][pivots[k]] * inverse(J[k][pivots[k]]);
+      for (std::size_t c = 0; c < columns; ++c) J[i][c] = J[i][c] - factor * J[k][c];
+      for (std::size_t c = 0; c < rows; ++c) made[i][c] = made[i][c] - factor * made[k][c];
+    }
+    std::size_t pivot = 0;
+    while (pivot < columns && J[i][pivot].is_zero()) ++pivot;
+    pivots[i] = pivot;
+    if (pivot == columns) found.push_back({i, made[i]});
+  }
+  return found;
+}
+
+// The fraction with a small numerator and denominator that x stands for, if there is one.
+std::optional<Rational> small_fraction(Modular x) {
+  for (std::int64_t den = 1; den <= 1000; ++den) {
+    const std::int64_t num = (x * Modular(den)).centred();
+    if (std::abs(num) <= 1000000) return Rational(num, den);
+  }
+  return std::nullopt;
+}
+
+GenericRank::Dependence dependence(const std::vector<Combination>& at_poses) {
+  GenericRank::Dependence out;
+  const Combination& first = at_poses.front();
+  out.row = static_cast<int>(first.row);
+  bool constant = true;
+  for (std::size_t i = 0; i < first.coefs.size(); ++i) {
+    for (const Combination& other : at_poses)
+      constant = constant && other.coefs[i] == first.coefs[i];
+    if (i != first.row && !first.coefs[i].is_zero()) out.on.push_back(static_cast<int>(i));
+    const std::optional<Rational> coef = small_fraction(first.coefs[i]);
+    constant = constant && coef;
+    out.coefs.push_back(coef.value_or(Rational(0)));
+  }
+  if (!constant) out.coefs.clear();
+  return out;
+}
+
+}  // namespace
+
+Modular::Modular(std::int64_t whole) {
+  const std::int64_t rest = whole % static_cast<std::int64_t>(prime);
+  value_ = rest < 0 ? prime - static_cast<std::uint64_t>(-rest) : static_cast<std::uint64_t>(rest);
+}
+
+Modular Modular::of_bits(std::uint64_t bits) {
+  Modular m;
+  m.value_ = bits % prime;
+  return m;
+}
+
+bool Modular::is_square() const { return pow(*this, (prime - 1) / 2) == Modular(1); }
+
+std::int64_t Modular::centred() const {
+  return value_ > prime / 2 ? -static_cast<std::int64_t>(prime - value_)
+                            : static_cast<std::int64_t>(value_);
+}
+
+Modular operator+(Modular a, Modular b) { return Modular::of_bits(a.value_ + b.value_); }
+Modular operator-(Modular a, Modular b) {
+  return Modular::of_bits(a.value_ + Modular::prime - b.value_);
+}
+Modular operator*(Modular a, Modular b) {
+  const Wide product = Wide(a.value_) * b.value_;
+  return Modular::of_bits(static_cast<std::uint64_t>(product & Modular::prime) +
+                          static_cast<std::uint64_t>(product >> 61));
+}
+
+Modular pow(Modular base, std::uint64_t exponent) {
+  Modular result(1);
+  for (; exponent > 0; exponent /= 2, base = base * base) {
+    if (exponent % 2 == 1) result = result * base;
+  }
+  return result;
+}
+
+Modular inverse(Modular x) { return pow(x, Modular::prime - 2); }
+
+GenericRank generic_rank(std::span<const ScalarRow> rows) {
+  constexpr int wanted = 4, attempts = 8192;  // with n roots, one pose in 2^n serves
+  GenericRank result;
+  std::vector<std::vector<Combination>> per_pose;
+  for (std::uint64_t seed = 1; seed <= attempts && result.poses < wanted; ++seed) {
+    const std::optional<Matrix> J = jacobian_at(rows, seed);
+    if (!J) continue;
+    ++result.poses;
+    std::vector<Combination> found = combinations(*J);
+    const int rank = static_cast<int>(rows.size() - found.size());
+    if (rank > result.rank) per_pose.clear();
+    if (rank >= result.rank) per_pose.push_back(std::move(found));
+    result.rank = std::max(result.rank, rank);
+    if (result.rank == static_cast<int>(rows.size())) break;
+  }
+  for (std::size_t k = 0; !per_pose.empty() && k < per_pose.front().size(); ++k) {
+    std::vector<Combination> at_poses;
+    for (const auto& found : per_pose) at_poses.push_back(found[k]);
+    result.dependences.push_back(dependence(at_poses));
+  }
+  return result;
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,91 @@
+// GiNaC's view of a joint's expressions, and a decision whether one of them vanishes. Nothing that
+// includes this header hands GiNaC's text on: its order of terms changes from run to run.
+#pragma once
+
+#include <ginac/ginac.h>
+
+#include <optional>
+#include <vector>
+
+#include "derive/derivation.hpp"
+#include "derive/numeric.hpp"
+
+namespace cdot::derive {
+
+// Expressions of a joint as GiNaC's, over one of two sets of coordinates:
+//   names  arms and directions are symbols r_x, r_y, whose time derivative is w x r
+//   raw    every body is x, y, theta; what is fixed in it is R(theta) times constants
+// In both, rate() is GiNaC's own chain rule over the symbols.
+class Algebra final : public Arithmetic<GiNaC::ex> {
+ public:
+  enum class Route { names, raw };
+  Algebra(const Joint& joint, Route route, int immovable = -1);
+
+  GiNaC::ex of(Expr scalar) { return evaluation_.scalar(scalar); }
+  Pair<GiNaC::ex> of_vector(Expr vector) { return evaluation_.vector(vector); }
+  // Tells the zero test which sums of vectors its expressions are about.
+  void shorten(Expr root);
+  // The coordinate and velocity symbols of a body: x, y, theta; v_x, v_y, w.
+  std::array<GiNaC::ex, 3> coordinates(int body);
+  std::array<GiNaC::ex, 3> velocities(int body);
+  // d e/dt along the motion; the velocities count as constant.
+  GiNaC::ex rate(const GiNaC::ex& e);
+  // Decides whether e vanishes wherever it is defined, given that unit vectors have length 1 and so
+  // on.
+  enum class Zero { yes, no, undecided };
+  Zero is_zero(const GiNaC::ex& e);
+  // After Zero::no: a pose at which it shows, in the joint's names, and how much it is there.
+  const std::string& witness() const { return witness_; }
+  // Reduced by the same relations: the numerator as a polynomial. It is zero where e is.
+  std::optional<GiNaC::ex> numerator(const GiNaC::ex& e);
+
+  GiNaC::ex number(Rational value) override;
+  GiNaC::ex scalar_leaf(const Node& symbol) override;
+  Pair<GiNaC::ex> vector_leaf(const Node& symbol) override;
+  GiNaC::ex inverse(const GiNaC::ex& x) override { return GiNaC::pow(x, -1); }
+  GiNaC::ex call(Fn fn, std::span<const GiNaC::ex> args) override;
+
+ private:
+  // A symbol that stands for a compound, with the relation that it obeys; it may contain earlier
+  // ones.
+  struct Atom {
+    enum class Kind { square, inverse } kind;  // symbol^2 = operand; symbol operand = 1
+    GiNaC::realsymbol symbol;  // kept as what it is: a copy as plain `symbol` would be another one
+    GiNaC::ex operand;
+  };
+  struct Leaf {
+    GiNaC::realsymbol symbol;
+    GiNaC::ex rate;
+  };
+
+  GiNaC::ex leaf(const std::string& name, const GiNaC::ex& rate);
+  Pair<GiNaC::ex> free_vector(const Node& symbol);
+  bool moves(int body) const { return body >= 0 && body != immovable_; }
+
+  bool replace(const GiNaC::ex& x, const GiNaC::ex& compound);
+  GiNaC::ex atomised(const GiNaC::ex& e);
+  GiNaC::ex atomised_power(const GiNaC::ex& base, const GiNaC::ex& exponent);
+  GiNaC::ex atomised_function(const GiNaC::ex& e);
+  GiNaC::ex inverse_of(const GiNaC::ex& base);
+  GiNaC::ex root_of(const GiNaC::ex& base);
+  GiNaC::ex turned(bool cosine, const GiNaC::ex& angle);
+  GiNaC::ex symbol_for(const GiNaC::ex& compound);
+  GiNaC::ex reduced(const GiNaC::ex& polynomial) const;
+  GiNaC::ex without_inverses(const GiNaC::ex& polynomial) const;
+  bool differs_at_random(const GiNaC::ex& e, std::uint64_t seed);
+
+  const Joint& joint_;
+  Route route_;
+  int immovable_;
+  std::map<std::string, Leaf> leaves_;
+  std::vector<Atom> atoms_;
+  std::vector<Pair<GiNaC::ex>> unit_vectors_;
+  GiNaC::exmap known_;             // compounds that have been replaced, as GiNaC wrote them
+  GiNaC::exmap inverses_, roots_;  // by their operand in normal form
+  std::vector<std::pair<GiNaC::ex, Pair<GiNaC::ex>>> turns_;  // angle -> (cos, sin)
+  GiNaC::exmap change_;  // of variables, before an expression is tested
+  std::string witness_;
+  Evaluation<GiNaC::ex> evaluation_;
+};
+
+}  // namespace cdot::derive

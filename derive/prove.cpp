@@ -1,0 +1,333 @@
+// The laws, one function each: what is derived, and what GiNaC makes of the same C, must differ by
+// nothing.
+#include "derive/prove.hpp"
+
+#include <stdexcept>
+
+#include "derive/finite_field.hpp"
+#include "derive/ginac.hpp"
+#include "derive/prove_momentum.hpp"
+
+namespace cdot::derive {
+namespace {
+
+using GiNaC::ex;
+
+// "the row of J of C3 is 2 C1 - C2"
+std::string dependence_text(const GenericRank::Dependence& d, const Block& block) {
+  const auto name = [&](int row) { return block.rows[static_cast<std::size_t>(row)].name; };
+  if (d.on.empty()) return "the row of J of " + name(d.row) + " is zero";
+  std::string sum;
+  for (const int row : d.on) {
+    if (d.coefs.empty()) {
+      sum += (sum.empty() ? "" : " and ") + name(row);
+      continue;
+    }
+    const Rational coef = -d.coefs[static_cast<std::size_t>(row)];
+    sum += coef.sign() < 0 ? (sum.empty() ? "-" : " - ") : (sum.empty() ? "" : " + ");
+    sum += (abs(coef) == Rational(1) ? "" : abs(coef).text() + " ") + name(row);
+  }
+  if (!d.coefs.empty()) return "the row of J of " + name(d.row) + " is that of " + sum;
+  return "the row of J of " + name(d.row) + " is a combination of those of " + sum +
+         ", with factors that depend on the pose or on parameters";
+}
+
+class Prover {
+ public:
+  Prover(const Joint& joint, const Block& block)
+      : joint_(joint),
+        block_(block),
+        names_(joint, Algebra::Route::names, block.immovable),
+        raw_(joint, Algebra::Route::raw, block.immovable) {
+    for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+      names_.coordinates(static_cast<int>(b));  // in the order of the spec
+      raw_.coordinates(static_cast<int>(b));
+    }
+    for (const ScalarRow& row : block.rows) {
+      const bool position = row.kind != RowKind::velocity;
+      names_.shorten(position ? row.C : row.Cdot);
+      raw_.shorten(position ? row.C : row.Cdot);
+      if (position) names_.of(row.C);
+      names_.of(row.Cdot);
+      Cdot_.push_back(position ? names_.rate(names_.of(row.C)) : names_.of(row.Cdot));
+    }
+  }
+
+  Proof run() {
+    Proof proof;
+    for (int i = 0; i < number_of_laws; ++i) {
+      law_ = Law{};
+      law_.id = static_cast<LawId>(i);
+      try {
+        check(law_.id);
+      } catch (const std::exception&) {  // GiNaC's text is not for the user
+        law_.verdict = Verdict::undecided;
+        law_.text = "the formulas are undefined somewhere on the way";
+      }
+      proof.laws.push_back(law_);
+    }
+    return proof;
+  }
+
+ private:
+  void check(LawId id) {
+    switch (id) {
+      case LawId::rate:
+        return rate();
+      case LawId::linear:
+        return linear();
+      case LawId::jacobian:
+        return jacobian();
+      case LawId::raw:
+        return raw();
+      case LawId::mass:
+        return mass();
+      case LawId::gamma:
+        return gamma();
+      case LawId::stiffness:
+        return stiffness();
+      case LawId::momentum:
+        law_ = conserves_momentum(joint_, block_, names_);
+        return;
+      case LawId::rank:
+        return rank();
+    }
+  }
+
+  // difference = 0, else the law fails at `where`; the first failure is the one that is told.
+  void require_zero(Algebra& algebra, const ex& difference, const ScalarRow& row,
+                    const std::string& where) {
+    if (law_.verdict == Verdict::fails) return;
+    const Algebra::Zero zero = algebra.is_zero(difference);
+    if (zero == Algebra::Zero::yes) return;
+    law_.row = row.row;
+    const bool differs = zero == Algebra::Zero::no;
+    law_.verdict = differs ? Verdict::fails : Verdict::undecided;
+    law_.text = row.name + where +
+                (differs ? ", for instance " + algebra.witness()
+                         : ": equal to 60 digits at random poses, but not proved");
+  }
+
+  bool movable(std::size_t body) const { return static_cast<int>(body) != block_.immovable; }
+
+  void rate() {
+    law_.verdict = Verdict::does_not_apply;
+    for (std::size_t i = 0; i < block_.rows.size(); ++i) {
+      const ScalarRow& row = block_.rows[i];
+      if (row.kind == RowKind::velocity) continue;
+      if (law_.verdict == Verdict::does_not_apply) law_.verdict = Verdict::holds;
+      require_zero(names_, names_.of(row.Cdot) - Cdot_[i], row,
+                   ": Cdot is not the time derivative of C");
+    }
+  }
+
+  // d2 Cdot / dv_i dv_j = 0
+  void linear() {
+    for (std::size_t i = 0; i < block_.rows.size(); ++i) {
+      const std::vector<ex> v = velocities(names_);
+      for (std::size_t j = 0; j < v.size(); ++j) {
+        const ex slope = derivative(Cdot_[i], v[j]);
+        for (std::size_t k = 0; k <= j; ++k) {
+          require_zero(names_, derivative(slope, v[k]), block_.rows[i],
+                       ": Cdot is not linear in the velocities");
+        }
+      }
+    }
+  }
+
+  void jacobian() {
+    for (std::size_t i = 0; i < block_.rows.size(); ++i) {
+      const ScalarRow& row = block_.rows[i];
+      ex Jv = names_.of(row.C_t);
+      for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+        const auto v = names_.velocities(static_cast<int>(b));
+        const auto J = entries(names_, row.J[b]);
+        for (std::size_t k = 0; k < 3; ++k) Jv += J[k] * v[k];
+      }
+      require_zero(names_, Jv - Cdot_[i], row, ": J v + dC/dt is not Cdot");
+    }
+  }
+
+  // Columns of J against dC/dx, dC/dy, dC/dtheta, or at velocity level against dCdot/dv.
+  void raw() {
+    for (const ScalarRow& row : block_.rows) {
+      const bool position = row.kind != RowKind::velocity;
+      const ex source = raw_.of(position ? row.C : row.Cdot);
+      for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+        const auto J = entries(raw_, row.J[b]);
+        const auto q = raw_.coordinates(static_cast<int>(b));
+        const auto v = raw_.velocities(static_cast<int>(b));
+        for (std::size_t k = 0; k < 3; ++k) {
+          const ex expected = !movable(b) ? ex(0) : derivative(source, position ? q[k] : v[k]);
+          require_zero(raw_, J[k] - expected, row,
+                       ", column " + column(b, k) + ": J is not the derivative of C");
+        }
+      }
+    }
+  }
+
+  // Each entry against row i of J times M^-1 times row j of J, and the other way round.
+  void mass() {
+    for (std::size_t i = 0; i < block_.rows.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        const std::string where =
+            ": K(" + std::to_string(i + 1) + "," + std::to_string(j + 1) + ") is not J M^-1 J^T";
+        const ex K = names_.of(block_.K[i][j]);
+        require_zero(names_, K - product(i, j), block_.rows[i], where);
+        if (i != j) require_zero(names_, K - product(j, i), block_.rows[i], where);
+      }
+    }
+  }
+
+  ex product(std::size_t i, std::size_t j) {
+    ex total = 0;
+    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+      if (!movable(b)) continue;
+      const BodySymbols body = body_symbols(joint_, static_cast<int>(b));
+      const ex inv_m = names_.of(body.inv_m), inv_I = names_.of(body.inv_I);
+      const auto Ji = entries(names_, block_.rows[i].J[b]);
+      const auto Jj = entries(names_, block_.rows[j].J[b]);
+      total += Ji[0] * inv_m * Jj[0] + Ji[1] * inv_m * Jj[1] + Ji[2] * inv_I * Jj[2];
+    }
+    return total;
+  }
+
+  void gamma() {
+    for (std::size_t i = 0; i < block_.rows.size(); ++i) {
+      const ScalarRow& row = block_.rows[i];
+      require_zero(names_, names_.of(row.gamma) + names_.rate(Cdot_[i]), row,
+                   ": gamma is not minus the second time derivative of C without accelerations");
+    }
+  }
+
+  // d(J^T lambda)/dq, J^T lambda being the gradient of lambda . C where there is a C.
+  void stiffness() {
+    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const ex force = generalised_force(b, k);
+        for (std::size_t c = 0; c < joint_.bodies.size(); ++c) {
+          const auto q = raw_.coordinates(static_cast<int>(c));
+          for (std::size_t l = 0; l < 3; ++l) {
+            const ex H = raw_.of(block_.stiffness[3 * b + k][3 * c + l]);
+            const ex expected = movable(b) && movable(c) ? derivative(force, q[l]) : ex(0);
+            require_zero(raw_, H - expected, block_.rows.front(),
+                         ", entry (" + column(b, k) + ", " + column(c, l) +
+                             "): the geometric stiffness is not d(J^T lambda)/dq");
+          }
+        }
+      }
+    }
+  }
+
+  ex generalised_force(std::size_t b, std::size_t k) {
+    ex force = 0;
+    if (!movable(b)) return force;
+    for (std::size_t i = 0; i < block_.rows.size(); ++i) {
+      const ScalarRow& row = block_.rows[i];
+      const ex slope = row.kind == RowKind::velocity
+                           ? entries(raw_, row.J[b])[k]
+                           : derivative(raw_.of(row.C), raw_.coordinates(static_cast<int>(b))[k]);
+      force += raw_.of(block_.lambda[i]) * slope;
+    }
+    return force;
+  }
+
+  void rank() {
+    if (block_.immovable >= 0) {  // a row may well speak of that body alone
+      law_.verdict = Verdict::does_not_apply;
+      return;
+    }
+    const GenericRank found = generic_rank(block_.rows);
+    if (found.poses == 0) {
+      law_.verdict = Verdict::undecided;
+      law_.text = "no pose was found at which every row is defined";
+      return;
+    }
+    if (found.dependences.empty()) return;
+    law_.verdict = Verdict::fails;
+    const GenericRank::Dependence& first = found.dependences.front();
+    law_.row = block_.rows[static_cast<std::size_t>(first.row)].row;
+    law_.text = std::to_string(block_.rows.size()) + " rows, but only " +
+                std::to_string(found.rank) + " independent: " + dependence_text(first, block_);
+    law_.fix = "drop one of these rows: the others hold it already";
+  }
+
+  static ex derivative(const ex& e, const ex& symbol) {
+    return GiNaC::is_a<GiNaC::symbol>(symbol) ? e.diff(GiNaC::ex_to<GiNaC::symbol>(symbol)) : 0;
+  }
+
+  std::vector<ex> velocities(Algebra& algebra) const {
+    std::vector<ex> all;
+    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+      for (const ex& v : algebra.velocities(static_cast<int>(b))) all.push_back(v);
+    }
+    return all;
+  }
+
+  static std::array<ex, 3> entries(Algebra& algebra, const JacobianEntry& entry) {
+    const Pair<ex> v = algebra.of_vector(entry.v);
+    return {v[0], v[1], algebra.of(entry.w)};
+  }
+
+  std::string column(std::size_t body, std::size_t k) const {
+    const std::string& name = joint_.bodies[body];
+    return k == 2 ? "w_" + name : "v_" + name + (k == 0 ? ".x" : ".y");
+  }
+
+  const Joint& joint_;
+  const Block& block_;
+  Algebra names_, raw_;
+  std::vector<ex> Cdot_;  // by GiNaC
+  Law law_;
+};
+
+}  // namespace
+
+std::string_view name_of(LawId id) {
+  switch (id) {
+    case LawId::rate:
+      return "Cdot is the time derivative of C";
+    case LawId::linear:
+      return "Cdot is linear in v";
+    case LawId::jacobian:
+      return "J v + dC/dt = Cdot";
+    case LawId::raw:
+      return "J agrees with C in raw coordinates";
+    case LawId::mass:
+      return "K is symmetric and J M^-1 J^T";
+    case LawId::gamma:
+      return "gamma = -Jdot v - d/dt dC/dt";
+    case LawId::stiffness:
+      return "the geometric stiffness is the Hessian of lambda . C";
+    case LawId::momentum:
+      return "momentum is conserved";
+    case LawId::rank:
+      return "the rows are independent";
+  }
+  return "";
+}
+
+std::string_view name_of(Verdict v) {
+  switch (v) {
+    case Verdict::holds:
+      return "holds";
+    case Verdict::fails:
+      return "fails";
+    case Verdict::undecided:
+      return "undecided";
+    case Verdict::does_not_apply:
+      return "does not apply";
+  }
+  return "";
+}
+
+bool Proof::holds() const {
+  for (const Law& law : laws) {
+    if (law.verdict == Verdict::fails || law.verdict == Verdict::undecided) return false;
+  }
+  return true;
+}
+
+Proof prove(const Joint& joint, const Block& block) { return Prover(joint, block).run(); }
+
+}  // namespace cdot::derive

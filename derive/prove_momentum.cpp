@@ -1,0 +1,255 @@
+#include "derive/prove_momentum.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cctype>
+#include <set>
+
+namespace cdot::derive {
+namespace {
+
+using GiNaC::ex;
+
+// What a row of J makes of all bodies moving as one: of a unit velocity, and of a unit spin about
+// the origin.
+struct Felt {
+  Expr translation;  // sum of J_v, a vector
+  Expr rotation;     // sum of J_w + x cross J_v, since v = w cross x
+};
+
+Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
+  Felt felt{zero_vector(*joint.pool), joint.pool->number(0)};
+  for (std::size_t b = 0; b < J.size(); ++b) {
+    felt.translation = felt.translation + J[b].v;
+    felt.rotation =
+        felt.rotation + J[b].w + cross(body_symbols(joint, static_cast<int>(b)).x, J[b].v);
+  }
+  return felt;
+}
+
+// Where C = 0, a centre of mass that stands in C with a number as its factor is a function of
+// everything else: substituting it is how `pa = pb` says that the two points are one.
+GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
+  GiNaC::exmap solved;
+  const auto put = [&](const ex& C) {
+    const ex rest = C.subs(solved, GiNaC::subs_options::no_pattern);
+    for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+      const auto q = names.coordinates(static_cast<int>(b));
+      for (int k = 0; k < 2; ++k) {
+        const ex& x = q[static_cast<std::size_t>(k)];
+        const ex slope = rest.diff(GiNaC::ex_to<GiNaC::symbol>(x));
+        if (!GiNaC::is_a<GiNaC::numeric>(slope) || slope.is_zero()) continue;
+        const ex value = (x - rest / slope).expand();
+        for (auto& [symbol, earlier] : solved) earlier = earlier.subs(x == value).expand();
+        solved[x] = value;
+        return;
+      }
+    }
+  };
+  for (const Row& row : joint.rows) {
+    if (row.kind != RowKind::equality) continue;
+    if (!row.C->vector) {
+      put(names.of(row.C));
+    } else {
+      for (const ex& component : names.of_vector(row.C)) put(component);
+    }
+  }
+  return solved;
+}
+
+class Momentum {
+ public:
+  Momentum(const Joint& joint, Algebra& names)
+      : joint_(joint), names_(names), on_constraint_(on_the_constraint(joint, names)) {}
+
+  bool vanishes(const ex& e) {
+    if (names_.is_zero(e) == Algebra::Zero::yes) return true;
+    const ex there = e.subs(on_constraint_, GiNaC::subs_options::no_pattern);
+    if (names_.is_zero(there) != Algebra::Zero::yes) return false;
+    only_on_constraint_ = true;
+    return true;
+  }
+  bool translation_vanishes(const Felt& felt) {
+    const Pair<ex> t = names_.of_vector(felt.translation);
+    return vanishes(t[0]) && vanishes(t[1]);
+  }
+  bool rotation_vanishes(const Felt& felt) { return vanishes(names_.of(felt.rotation)); }
+  bool only_on_constraint() const { return only_on_constraint_; }
+
+  // The fewest terms of a row whose removal leaves nothing to feel.
+  std::vector<Expr> breaking_terms(const std::vector<Expr>& terms,
+                                   const std::vector<Felt>& felt_by_term) {
+    constexpr std::size_t most_terms = 8;
+    if (terms.size() > most_terms) return terms;
+    std::vector<unsigned> subsets;
+    for (unsigned s = 1; s < 1u << terms.size(); ++s) subsets.push_back(s);
+    std::stable_sort(subsets.begin(), subsets.end(),
+                     [](unsigned a, unsigned b) { return std::popcount(a) < std::popcount(b); });
+    for (const unsigned subset : subsets) {
+      Felt rest{zero_vector(*joint_.pool), joint_.pool->number(0)};
+      std::vector<Expr> removed;
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        if (subset >> i & 1) {
+          removed.push_back(terms[i]);
+        } else {
+          rest = {rest.translation + felt_by_term[i].translation,
+                  rest.rotation + felt_by_term[i].rotation};
+        }
+      }
+      if (translation_vanishes(rest) && rotation_vanishes(rest)) return removed;
+    }
+    return terms;
+  }
+
+ private:
+  const Joint& joint_;
+  Algebra& names_;
+  GiNaC::exmap on_constraint_;
+  bool only_on_constraint_ = false;
+};
+
+// The terms of a scalar row, each with its sign.
+std::vector<Expr> terms_of_row(const ScalarRow& row, Expr written) {
+  Expr whole = row.row == nullptr ? written : row.row->C;
+  std::vector<Expr> terms;
+  for (const Term& term : terms_of(whole)) {
+    const Expr e = term.coef * term.e;
+    const Expr axis = world_x(*e->pool);
+    terms.push_back(!e->vector ? e : dot(row.component == 0 ? axis : perp(axis), e));
+  }
+  return terms;
+}
+
+bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
+
+// Where `what` stands in the text of the file between begin and end, as a whole word.
+void find_all(const std::string& text, Span where, const std::string& what,
+              std::vector<Span>& out) {
+  const auto end = std::min(static_cast<std::size_t>(where.end), text.size());
+  for (auto at = text.find(what, static_cast<std::size_t>(where.begin));
+       at != std::string::npos && at + what.size() <= end; at = text.find(what, at + 1)) {
+    const bool begins = at == 0 || !is_word(text[at - 1]) || !is_word(what.front());
+    const bool ends = at + what.size() >= text.size() || !is_word(text[at + what.size()]) ||
+                      !is_word(what.back());
+    if (begins && ends) {
+      out.push_back({static_cast<int>(at), static_cast<int>(at + what.size())});
+    }
+  }
+}
+
+// How the author may have written what a common motion changes in these terms.
+std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joint, bool rotation) {
+  std::set<std::string> words;
+  const std::vector<Expr> leaves = leaves_of(terms);
+  const auto guilty = [&](Expr leaf) {
+    if (rotation) return leaf->role == Role::angle || leaf == world_x(*joint.pool);
+    return leaf->role == Role::position;
+  };
+  for (const Expr leaf : leaves) {
+    if (!guilty(leaf)) continue;
+    const std::string body =
+        leaf->body < 0 ? "" : joint.bodies[static_cast<std::size_t>(leaf->body)];
+    if (leaf->role == Role::angle)
+      words.insert("angle(" + body + ")");
+    else if (leaf->role == Role::position)
+      words.insert("x(" + body + ")");
+    else
+      words.insert({".x", ".y"});
+    for (const Let& let : joint.lets) {
+      const std::vector<Expr> inside = leaves_of(std::span(&let.value, 1));
+      if (std::find(inside.begin(), inside.end(), leaf) != inside.end()) words.insert(let.name);
+    }
+    for (const Parameter& p : joint.parameters) {
+      const bool point = p.kind == ParameterKind::point && p.body == leaf->body;
+      if (point && leaf->role == Role::position) words.insert(p.name);
+    }
+  }
+  return words;
+}
+
+std::vector<Span> spans_of(const std::vector<Expr>& terms, const Joint& joint, Span where,
+                           bool rotation) {
+  std::vector<Span> spans;
+  if (!joint.file) return spans;
+  for (const std::string& word : spellings(terms, joint, rotation)) {
+    find_all(joint.file->text, where, word, spans);
+  }
+  std::sort(spans.begin(), spans.end(), [](Span a, Span b) { return a.begin < b.begin; });
+  return spans;
+}
+
+// As the author would write it: angle(a) for theta_a, x(a) for x_a.
+std::string said(Expr e, const Joint& joint) {
+  std::map<const Node*, Expr> spelled;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    const std::string& name = joint.bodies[b];
+    spelled.emplace(&*body.theta, joint.pool->symbol("angle(" + name + ")", Role::given));
+    spelled.emplace(&*body.x, joint.pool->vector_symbol("x(" + name + ")", Role::given));
+  }
+  return text(substitute(e, spelled));
+}
+
+std::string listed(const std::vector<Expr>& terms, const Joint& joint) {
+  std::string s;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    s += (i == 0 ? "" : i + 1 == terms.size() ? " and " : ", ") + said(terms[i], joint);
+  }
+  return s;
+}
+
+std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, const Joint& joint) {
+  const char* const changes = row.kind == RowKind::velocity ? " gives " : " changes C by ";
+  if (rotation) {
+    return "angular momentum is not conserved: " + row.name + " resists turning all bodies " +
+           "together, which" + changes + said(felt.rotation, joint) + " per radian";
+  }
+  return "momentum is not conserved: " + row.name + " resists moving all bodies together, which" +
+         changes + said(felt.translation, joint) + " per metre";
+}
+
+Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt,
+           bool rotation, Momentum& momentum) {
+  Expr written;
+  Span where;
+  for (const Coordinate& c : joint.coordinates) {
+    if (c.name == block.name) written = c.value, where = c.where;
+  }
+  if (row.row != nullptr) where = row.row->where;
+  const std::vector<Expr> terms = terms_of_row(row, written);
+  std::vector<Felt> felt_by_term;
+  for (const Expr term : terms) {
+    const bool velocity = row.kind == RowKind::velocity;
+    felt_by_term.push_back(
+        felt_by(isolate_velocities(velocity ? term : time_derivative(term, joint), joint), joint));
+  }
+  const std::vector<Expr> guilty = momentum.breaking_terms(terms, felt_by_term);
+  Law law{LawId::momentum, Verdict::fails, {}, {}, row.row, {}};
+  law.text = sentence(row, felt, rotation, joint);
+  if (terms.size() > 1) law.text += "; it is the doing of " + listed(guilty, joint);
+  law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is "
+                       "fixed in the world"
+                     : "use differences of points, or say which point is fixed in the world";
+  law.parts = spans_of(guilty, joint, where, rotation);
+  return law;
+}
+
+}  // namespace
+
+Law conserves_momentum(const Joint& joint, const Block& block, Algebra& names) {
+  Law law{LawId::momentum, Verdict::does_not_apply, {}, {}, nullptr, {}};
+  if (joint.uses_world || block.immovable >= 0) return law;
+  Momentum momentum(joint, names);
+  for (const ScalarRow& row : block.rows) {
+    const Felt felt = felt_by(row.J, joint);
+    if (!momentum.translation_vanishes(felt)) {
+      return broken(joint, block, row, felt, false, momentum);
+    }
+    if (!momentum.rotation_vanishes(felt)) return broken(joint, block, row, felt, true, momentum);
+  }
+  law.verdict = Verdict::holds;
+  if (momentum.only_on_constraint()) law.text = "where C = 0";
+  return law;
+}
+
+}  // namespace cdot::derive
