@@ -7,18 +7,18 @@
 namespace cdot::derive {
 namespace {
 
-// Names of vectors that are obvious from the kind of the node.
-void name_from_parts(Expr e) {
-  if (!e->name.empty()) return;
-  Pool& pool = *e->pool;
+// A name for a scalar that is obvious from its parts, or "".
+std::string name_from_parts(Expr e) {
+  if (!e->name.empty()) return e->name;
   const auto part = [&](std::size_t i) { return spoken_name(e->args[i]); };
-  if (e->kind == Kind::norm && !part(0).empty()) pool.name(e, part(0) + "_len", false);
-  if (e->kind != Kind::cross && e->kind != Kind::dot) return;
-  if (part(0).empty() || part(1).empty()) return;
-  // A product with the world's axis is a component and needs no name of its own.
-  if (part(0) == "e_x" || part(1) == "e_x") return;
-  pool.name(e, e->kind == Kind::cross ? part(0) + "_x_" + part(1) : "dot_" + part(0) + "_" + part(1),
-            false);
+  if (e->kind == Kind::norm && !part(0).empty()) return part(0) + "_len";
+  if (e->kind != Kind::cross && e->kind != Kind::dot) return "";
+  const Expr x = world_x(*e->pool);
+  for (const Expr arg : e->args) {
+    // A component needs no name beside that of its vector.
+    if (arg == x || arg == perp(x) || spoken_name(arg).empty()) return "";
+  }
+  return e->kind == Kind::cross ? part(0) + "_x_" + part(1) : "dot_" + part(0) + "_" + part(1);
 }
 
 }  // namespace
@@ -41,9 +41,9 @@ std::string spoken_name(Expr e) {
 Expr Components::of(Expr e) {
   assert(!e->vector);
   if (const auto found = scalars_.find(&*e); found != scalars_.end()) return found->second;
-  name_from_parts(e);
   const Expr written_out = scalar_rule(e);
-  if (!e->name.empty()) e->pool->name(written_out, e->name, e->named_by_let);
+  const std::string name = name_from_parts(e);
+  if (!name.empty()) e->pool->name(written_out, name, e->named_by_let);
   scalars_.emplace(&*e, written_out);
   return written_out;
 }

@@ -316,9 +316,10 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
   }
   if (at_velocity_level && immovable >= 0) {
     const BodySymbols body = body_symbols(joint, immovable);
-    row.Cdot = substitute(row.Cdot, {{&*body.v, zero_vector(pool)}, {&*body.w, pool.number(0)}});
+    row.Cdot = substitute(row.Cdot, {{&*body.v, zero_vector(pool)}, {&*body.w, pool.number(0)}},
+                          KeepNames::no);
   }
-  row.C_t = substitute(row.Cdot, at_rest);
+  row.C_t = substitute(row.Cdot, at_rest, KeepNames::no);
   row.J = isolate_velocities(row.Cdot, joint);
   row.gamma = -time_derivative(row.Cdot, joint, immovable);
   return row;

@@ -31,6 +31,7 @@ int rank(const Node& n) {
     case Role::world_vector: return 4;
     case Role::body_vector: return n.unit_length ? 7 : 5;
     case Role::angle: return 6;
+    case Role::parameter: return 9;
     default: return 8;
   }
 }
@@ -136,7 +137,7 @@ Expr Pool::find(std::string_view name) const {
 }
 
 void Pool::name(Expr e, std::string_view name, bool by_let) {
-  if (e->kind == Kind::symbol || e->kind == Kind::number || e->named_by_let) return;
+  if (e->kind == Kind::symbol || e->kind == Kind::number || e->named_by_let || is_zero(e)) return;
   if (!by_let && !e->name.empty()) return;
   e->name = name;
   e->named_by_let = by_let;
@@ -166,14 +167,17 @@ bool depends_on_velocity(Expr e) {
   return false;
 }
 
-Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements) {
+Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements,
+                KeepNames names) {
   std::map<const Node*, Expr> done = replacements;
   for (const Expr n : topological(std::span(&e, 1))) {
     if (done.contains(&*n)) continue;
     std::vector<Expr> args;
     for (const Expr arg : n->args) args.push_back(done.at(&*arg));
     const Expr rebuilt = args == n->args ? n : rebuild(n, args);
-    if (rebuilt != n && !n->name.empty()) n->pool->name(rebuilt, n->name, n->named_by_let);
+    if (names == KeepNames::yes && rebuilt != n && !n->name.empty()) {
+      n->pool->name(rebuilt, n->name, n->named_by_let);
+    }
     done.emplace(&*n, rebuilt);
   }
   return done.at(&*e);

@@ -151,8 +151,10 @@ Expr world_x(Pool& pool);  // the world's x axis (1, 0), a unit vector; perp of 
 
 // Same kind of node with other operands: the builders decide anew. `args` has as many entries as e->args.
 Expr rebuild(Expr e, std::span<const Expr> args);
-// Replaces leaves (or any nodes) bottom-up; names of rebuilt nodes are kept where they still say the truth.
-Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements);
+// Replaces leaves (or any nodes) bottom-up. Names are kept where the replaced leaves mean the same in other terms (an
+// arm by its rotated local vector), and dropped where they do not (velocities by zero).
+enum class KeepNames { yes, no };
+Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements, KeepNames names = KeepNames::yes);
 
 // Every node that e depends on, operands before users, in an order fixed by structure.
 std::vector<Expr> topological(std::span<const Expr> roots);

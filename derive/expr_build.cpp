@@ -34,6 +34,12 @@ Scaled split_scale(Expr v) {
 bool is_perp(Expr v) { return v->kind == Kind::perp; }
 bool is_unit_of(Expr n, Expr u) { return n->kind == Kind::unit && n->args[0] == u; }
 
+// The world's x axis or its y axis, perp of it: products with these are components and stay so.
+bool is_world_axis(Expr v) {
+  const Expr x = v->kind == Kind::perp ? v->args[0] : v;
+  return x->kind == Kind::symbol && x == world_x(*v->pool);
+}
+
 // Levers come before directions in a cross product: cross(ra, t), cross(u, n).
 bool direction_after(Expr u, Expr v) {
   if (u->unit_length != v->unit_length) return !u->unit_length;
@@ -167,8 +173,13 @@ Expr dot(Expr u, Expr v) {
   Pool& pool = *u->pool;
   if (is_zero(factor) || is_zero(a.rest) || is_zero(b.rest)) return pool.number(0);
   if (is_perp(a.rest) && is_perp(b.rest)) return factor * dot(a.rest->args[0], b.rest->args[0]);
-  if (is_perp(a.rest)) return factor * cross(a.rest->args[0], b.rest);
-  if (is_perp(b.rest)) return factor * cross(b.rest->args[0], a.rest);
+  if (is_perp(a.rest) && !is_world_axis(a.rest)) {
+    return factor * cross(a.rest->args[0], b.rest);
+  }
+  if (is_perp(b.rest) && !is_world_axis(b.rest)) {
+    return factor * cross(b.rest->args[0], a.rest);
+  }
+  if (a.rest == perp(b.rest) || b.rest == perp(a.rest)) return pool.number(0);
   if (a.rest == b.rest && a.rest->unit_length) return factor;
   if (is_unit_of(b.rest, a.rest)) return factor * norm(a.rest);
   if (is_unit_of(a.rest, b.rest)) return factor * norm(b.rest);
@@ -189,6 +200,8 @@ Expr cross(Expr u, Expr v) {
   if (a.rest == b.rest || is_unit_of(b.rest, a.rest) || is_unit_of(a.rest, b.rest)) {
     return pool.number(0);
   }
+  if (is_world_axis(b.rest)) return -(factor * dot(a.rest, perp(b.rest)));  // u x e_x = -u_y
+  if (is_world_axis(a.rest)) return factor * dot(perp(a.rest), b.rest);
   if (direction_after(a.rest, b.rest)) return factor * node(Kind::cross, false, {a.rest, b.rest});
   return -(factor * node(Kind::cross, false, {b.rest, a.rest}));
 }
@@ -242,7 +255,7 @@ Expr call(Fn fn, std::span<const Expr> args) {
   return pool.intern(std::move(n));
 }
 
-Expr world_x(Pool& pool) { return pool.vector_symbol("e_x", Role::world_vector, -1, true); }
+Expr world_x(Pool& pool) { return pool.vector_symbol("world.x", Role::world_vector, -1, true); }
 
 Expr rebuild(Expr e, std::span<const Expr> args) {
   Pool& pool = *e->pool;

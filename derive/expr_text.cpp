@@ -20,7 +20,7 @@ class Printer {
       case Kind::scale:
         return wrap(arg(e, 0, in_product) + "*" + arg(e, 1, in_product), level >= in_power);
       case Kind::function: return call(std::string(name_of(e->fn)), e);
-      case Kind::dot: return call("dot", e);
+      case Kind::dot: return dot_text(e);
       case Kind::cross: return call("cross", e);
       case Kind::perp: return call("perp", e);
       case Kind::norm: return call("norm", e);
@@ -42,6 +42,18 @@ class Printer {
     name += "(";
     for (std::size_t i = 0; i < e->args.size(); ++i) name += (i ? ", " : "") + arg(e, i, in_sum);
     return name + ")";
+  }
+
+  // Products with the world's axes are components: u.x, u.y.
+  std::string dot_text(Expr e) const {
+    for (std::size_t i = 0; i < 2; ++i) {
+      const Expr axis = e->args[i];
+      const bool along_y = axis->kind == Kind::perp;
+      if ((along_y ? axis->args[0] : axis) != world_x(*e->pool)) continue;
+      const std::string u = arg(e, 1 - i, in_power);
+      return u + (along_y ? ".y" : ".x");
+    }
+    return call("dot", e);
   }
 
   std::string sum_text(Expr e, Level level) const {

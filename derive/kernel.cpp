@@ -191,7 +191,7 @@ class BlockPlanner {
     };
     std::vector<Expr> y(n), x(n);
     for (std::size_t i = 0; i < n; ++i) {
-      y[i] = pool_.symbol(at("b", i), Role::given);
+      y[i] = pool_.symbol(at("rhs", i), Role::given);
       for (std::size_t k = 0; k < i; ++k) y[i] = y[i] - L(i, k) * y[k];
       y[i] = opaque(y[i], "y" + std::to_string(i + 1));
     }
@@ -202,7 +202,7 @@ class BlockPlanner {
     }
     std::vector<NamedExpr> outputs;
     for (std::size_t i = 0; i < n; ++i) outputs.push_back({at("lambda", i), x[i]});
-    add("solve", "lambda = K^-1 b", outputs);
+    add("solve", "lambda = K^-1 rhs", outputs);
   }
 
   // L's entry vanishes for every pose if K's does and no fill arises.
@@ -352,10 +352,10 @@ PoseInputs::PoseInputs(const Joint& joint) {
   Pool& pool = *joint.pool;
   Components components;
   const auto cosine = [&](int body) {
-    return pool.symbol("c_" + joint.bodies[static_cast<std::size_t>(body)], Role::given, body);
+    return pool.symbol(joint.bodies[static_cast<std::size_t>(body)] + ".c", Role::given, body);
   };
   const auto sine = [&](int body) {
-    return pool.symbol("s_" + joint.bodies[static_cast<std::size_t>(body)], Role::given, body);
+    return pool.symbol(joint.bodies[static_cast<std::size_t>(body)] + ".s", Role::given, body);
   };
   for (const Parameter& parameter : joint.parameters) {
     if (parameter.kind == ParameterKind::scalar || !parameter.symbol) continue;

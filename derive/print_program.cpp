@@ -8,6 +8,8 @@ namespace {
 
 enum Level { in_sum, in_product, in_power };
 
+constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+
 class StatementPrinter {
  public:
   StatementPrinter(const Program& program, const Printing& printing)
@@ -21,10 +23,18 @@ class StatementPrinter {
   }
 
   std::vector<std::string> print() {
+    // Quantities first, then the outputs, so that an argument may be read and written.
+    for (std::size_t i = 0; i < program_.ops.size(); ++i) {
+      if (uses_[i] > 0 && !program_.ops[i].name.empty()) named_[program_.ops[i].name] = static_cast<int>(i);
+    }
     for (const Output& output : program_.outputs) {
       label_ = plain(output.name);
       serial_ = 0;
-      define_operands(output.op);
+      for (const int arg : at(output.op).args) define(arg);
+      if (uses_[index(output.op)] > 1) define(output.op);
+    }
+    for (const Output& output : program_.outputs) {
+      if (printing_.zeroed && is_zero(output.op)) continue;
       emit(output.name + " = " + expression(output.op, in_sum) + ";");
     }
     return std::move(lines_);
@@ -44,13 +54,34 @@ class StatementPrinter {
     return 1;
   }
 
+  bool is_zero(int op) const { return at(op).kind == OpKind::number && at(op).value.is_zero(); }
+
+  // What a nameless quantity of this output is called after: "K21" for "K[1]", "wb" for "J.wb", "g1" for "g[0]".
   static std::string plain(const std::string& output) {
-    std::string s;
-    for (const char c : output) {
-      if (std::isalnum(static_cast<unsigned char>(c)) || c == '_') s += c;
-      if (c == '.') s += '_';
-    }
-    return s;
+    const std::size_t open = output.find('[');
+    if (output.compare(0, 2, "J.") == 0) return output.substr(2);
+    if (output.compare(0, 2, "p.") == 0) return output.substr(2);
+    if (open == std::string::npos) return output;
+    const int i = std::stoi(output.substr(open + 1));
+    if (output[0] != 'K' && output[0] != 'F') return output.substr(0, open) + std::to_string(i + 1);
+    int row = 0;
+    while ((row + 1) * (row + 2) / 2 <= i) ++row;
+    return fmt::format("{}{}{}", output[0], row + 1, i - row * (row + 1) / 2 + 1);
+  }
+
+  // ia_ra_x_t for I_a^-1 (ra x t): products with a body's inverse mass or inertia are called after both.
+  std::string natural_name(const Operation& o) const {
+    if (o.kind != OpKind::product || o.args.size() != 2) return "";
+    if (o.exponents[0] != 1 || o.exponents[1] != 1) return "";
+    const std::string mass = input_text(o.args[0]), other = operand(o.args[1], in_power);
+    const bool inertia = mass.size() == 4 && mass[0] == 'm' && (mass.ends_with(".I") || mass.ends_with(".m"));
+    const std::size_t dot = other.find("J.") == 0 ? 2 : 0;
+    if (!inertia || other.find_first_not_of(letters, dot) != std::string::npos) return "";
+    return fmt::format("{}{}_{}", mass[3] == 'I' ? "i" : "m", mass[1], other.substr(dot));
+  }
+
+  std::string input_text(int op) const {
+    return at(op).kind == OpKind::input ? expression(op, in_sum) : "";
   }
 
   bool is_atom(const Operation& op) const {
@@ -67,21 +98,25 @@ class StatementPrinter {
     return !o.name.empty() || uses_[index(op)] > 1;
   }
 
-  // Everything below `op` that wants a line, operands first; `op` itself too if it is more than this output.
-  void define_operands(int op) {
-    for (const int arg : at(op).args) define(arg);
-    if (wants_variable(op) && (uses_[index(op)] > 1)) define(op);
-  }
-
   void define(int op) {
     if (!variable_[index(op)].empty()) return;
+    define_sibling(at(op).name, "_y", "x");
     for (const int arg : at(op).args) define(arg);
     if (!wants_variable(op)) return;
     std::string name = at(op).name;
+    if (name.empty()) name = natural_name(at(op));
     if (name.empty()) name = fmt::format("{}_{}", label_, ++serial_);
     const std::string value = expression(op, in_sum);
     variable_[index(op)] = unused(std::move(name));
     emit("const T " + variable_[index(op)] + " = " + value + ";");
+    define_sibling(at(op).name, "_x", "y");
+  }
+
+  // The components of a vector come together, x first.
+  void define_sibling(const std::string& name, const char* ending, const char* other) {
+    if (!name.ends_with(ending)) return;
+    const auto sibling = named_.find(name.substr(0, name.size() - 1) + other);
+    if (sibling != named_.end() && begun_.insert(sibling->second).second) define(sibling->second);
   }
 
   std::string unused(std::string name) {
@@ -176,6 +211,8 @@ class StatementPrinter {
   std::vector<std::string> variable_;
   std::set<std::string> used_;
   std::vector<std::string> lines_;
+  std::map<std::string, int> named_;
+  std::set<int> begun_;  // siblings that are being defined
   std::string label_;
   int serial_ = 0;
 };

@@ -14,6 +14,7 @@ struct Printing {
   std::map<std::string, std::string> inputs;  // how an input is read: "x_a_x" -> "a.x"; others stand for themselves
   std::set<std::string> reserved;             // names that a local must not take
   std::string indent;
+  bool zeroed = false;  // the outputs are zero beforehand: those that stay so are not assigned
 };
 
 // The statements that compute the program and assign its outputs.

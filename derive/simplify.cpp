@@ -231,6 +231,32 @@ std::optional<Program> take_out_factor(const Program& program) {
   });
 }
 
+// (x + y) + z = x + y + z, where the inner sum is nobody else's and has no name.
+Program flatten_sums(const Program& program) {
+  const std::vector<int> uses = use_counts(program);
+  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
+                           const std::vector<int>& at) -> std::optional<int> {
+    if (op.kind != OpKind::sum) return std::nullopt;
+    std::vector<int> args;
+    std::vector<Rational> coefs;
+    const auto add = [&](auto&& self, const Operation& sum, Rational factor) -> void {
+      for (std::size_t i = 0; i < sum.args.size(); ++i) {
+        const std::size_t arg = static_cast<std::size_t>(sum.args[i]);
+        const Operation& term = program.ops[arg];
+        const Rational coef = factor * sum.coefs[i];
+        if (term.kind == OpKind::sum && uses[arg] == 1 && term.name.empty()) {
+          self(self, term, coef);
+        } else {
+          args.push_back(at[arg]);
+          coefs.push_back(coef);
+        }
+      }
+    };
+    add(add, op, Rational(1));
+    return builder.sum(std::move(args), std::move(coefs), op.name);
+  });
+}
+
 using Pass = std::optional<Program> (*)(const Program&);
 
 Program exhaust(Program program, Pass pass) {
@@ -257,7 +283,7 @@ Program simplify(const Program& program) {
     const Program start = best;
     for (const auto& order : orders) {
       Program candidate = start;
-      for (const Pass pass : order) candidate = exhaust(std::move(candidate), pass);
+      for (const Pass pass : order) candidate = flatten_sums(exhaust(std::move(candidate), pass));
       if (weight(count(candidate)) >= weight(count(best))) continue;
       best = std::move(candidate);
       improved = true;

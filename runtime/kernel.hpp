@@ -13,7 +13,7 @@
 //   B::jacobian        (q, p, t, C, J)                             C and J together
 //   B::effective_mass  (J, m, K)                                   K = J M^-1 J^T, lower triangle, row by row
 //   B::factor          (K, F)                                      K = L D L^T, guarded; F: D^-1 on the diagonal
-//   B::solve           (F, b, lambda)                              lambda = K^-1 b                      [rows]
+//   B::solve           (F, rhs, lambda)                            lambda = K^-1 rhs                    [rows]
 //   B::velocity        (J, v, Jv)                                  J v, without dC/dt                   [rows]
 //   B::apply           (J, m, lambda, v)                           v += M^-1 J^T lambda
 //   B::dense           (J, D)                                      J with its zeros, D[row][3 body + {x, y, w}]
