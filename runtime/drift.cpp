@@ -20,7 +20,7 @@ constexpr T converged = std::is_same_v<T, double> ? T(1e-13) : T(1e-6);
 // velocities.
 template <class T>
 constexpr T foreign = std::is_same_v<T, double> ? T(1e-8) : T(1e-4);
-constexpr int newton_rounds = 12;
+constexpr int newton_rounds = 20;
 
 template <class S>
 void clear_correction(WorldState<S>& world, Island<S>& island) {
@@ -93,8 +93,8 @@ void move_by_newton(WorldState<S>& world, Island<S>& island) {
   }
 }
 
-// `fresh`: J and K are not yet those of the step. Where the error does not halve they are renewed,
-// and where that does not help the joints contradict each other or round-off is reached.
+// `fresh`: J and K are not yet those of the step. Where the error does not halve they are
+// renewed, and where that does not help the joints contradict each other or round-off is reached.
 template <class S>
 void newton(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   using T = typename S::Scalar;
@@ -118,8 +118,26 @@ void newton(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bo
   }
 }
 
+// The largest error that a sweep met on its way.
+template <class S>
+typename S::Scalar errors_met(const Island<S>& island) {
+  typename S::Scalar worst = 0;
+  for (const Segment<S>& segment : island.segments) {
+    const Batch<S>& batch = *segment.batch;
+    if (batch.law) continue;
+    const int rows = batch.ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
+      worst = std::max(worst, std::abs(batch.C[i]));
+  }
+  return worst;
+}
+
+// Where a sweep meets larger errors than the one before, the directions of the step's J mislead:
+// they are renewed.
 template <class S>
 void sweep_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  T before = std::numeric_limits<T>::infinity();
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
@@ -128,6 +146,12 @@ void sweep_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar tim
       else if (batch.law->error)
         batch.ops->correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
     }
+    const T met = errors_met(island);
+    if (met > before && met > converged<T>) {
+      evaluate_anew(world, island, time);
+      factorize_rows(world, island);
+    }
+    before = met;
   }
   island.residual = find_errors(world, island, time);
 }
@@ -165,6 +189,19 @@ void project_velocities(WorldState<S>& world, Island<S>& island, bool direct) {
                               segment.batch->scratch.data(), all.velocity.data());
 }
 
+// Displacements and their impulses become those of velocities.
+template <class S>
+void add_corrections(WorldState<S>& world, Island<S>& island, typename S::Scalar per_time) {
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies)
+    all.velocity[i] = S::sum(all.velocity[i], all.displacement[i], per_time);
+  for (const Segment<S>& segment : island.segments) {
+    const int rows = segment.batch->ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
+      segment.batch->correction[i] *= per_time;
+  }
+}
+
 }  // namespace
 
 template <class S>
@@ -190,19 +227,16 @@ void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
   const bool direct = world.settings.solver == Solver::direct;
   const T time = T(world.time) + h;
-  Bodies<S>& all = world.bodies;
   clear_correction(world, island);
+  // What the start of the step could not correct (joints that contradict each other, too few
+  // sweeps) is not motion.
+  const T foreign_error = island.residual, error = find_errors(world, island, time);
+  const bool from_motion = foreign_error <= T(0.1) * error;
   if (direct)
     newton(world, island, time, false);
   else
     sweep_poses(world, island, time);
-  for (int i : island.bodies)
-    all.velocity[i] = S::sum(all.velocity[i], all.displacement[i], T(1) / h);
-  for (const Segment<S>& segment : island.segments) {
-    const int rows = segment.batch->ops->rows;
-    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
-      segment.batch->correction[i] /= h;
-  }
+  add_corrections(world, island, from_motion ? T(1) / h : T(0));
   evaluate_anew(world, island, time);
   project_velocities(world, island, direct);
   island.evaluated = true;

@@ -2,6 +2,9 @@
 // what every question about a World is answered from.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "runtime/joint_table.hpp"
 #include "runtime/world_state.hpp"
 
@@ -18,12 +21,23 @@ class Probe {
     const JointEntry<S>& entry = joint_entries<S>()[joint.type];
     ops_ = coordinate < 0 ? entry.rows.general : entry.coordinates[coordinate].general;
     batch_.ops = ops_;
-    batch_.body = joint.bodies;
     batch_.parameters.assign(joint.parameters.begin(), joint.parameters.end());
     batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
     for (auto* array : {&batch_.C, &batch_.bias, &batch_.scratch})
       array->assign(static_cast<size_t>(ops_->rows), T(0));
-    ops_->evaluate(batch_, 0, 1, world_.bodies, T(world_.time));
+    batch_.body.resize(joint.bodies.size());
+    for (auto* array : {&bodies_.velocity, &bodies_.displacement})
+      array->resize(joint.bodies.size());
+    bodies_.pose.resize(joint.bodies.size());
+    bodies_.effective_mass.resize(joint.bodies.size());
+    for (size_t k = 0; k < joint.bodies.size(); ++k) {
+      const auto i = static_cast<size_t>(joint.bodies[k]);
+      batch_.body[k] = static_cast<int>(k);
+      bodies_.pose[k] = world_.bodies.pose[i];
+      bodies_.velocity[k] = world_.bodies.velocity[i];
+      bodies_.effective_mass[k] = world_.bodies.inverse_mass[i];
+    }
+    ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
   }
 
   int rows() const { return ops_->rows; }
@@ -31,9 +45,27 @@ class Probe {
 
   // J v + dC/dt of every row.
   const std::vector<T>& Cdot() {
-    ops_->velocity(batch_, 0, 1, world_.bodies.velocity.data(), batch_.scratch.data());
+    ops_->velocity(batch_, 0, 1, bodies_.velocity.data(), batch_.scratch.data());
     for (int r = 0; r < ops_->rows; ++r) batch_.scratch[r] += batch_.bias[r];
     return batch_.scratch;
+  }
+
+  // True if C, where it holds, has no direction: a step along the row's own M^-1 J^T changes C as
+  // much as one back, so that the C that J promises is not there. That is what a distance of length
+  // 0 is.
+  bool at_kink(int row) {
+    if (!(std::abs(C(row)) <= 1e-9)) return false;
+    std::vector<T> lambda(static_cast<size_t>(ops_->rows), T(0));
+    lambda[row] = T(1);
+    auto& step = bodies_.displacement;
+    std::fill(step.begin(), step.end(), typename S::Velocity{});
+    ops_->apply(batch_, 0, 1, bodies_, lambda.data(), step.data());
+    ops_->velocity(batch_, 0, 1, step.data(), batch_.scratch.data());
+    const T promised = batch_.scratch[row];
+    if (!(promised > T(0))) return false;
+    const T wanted = T(1e-3);
+    const T forth = C_after(wanted / promised, row), back = C_after(-wanted / promised, row);
+    return std::abs(forth - back) < T(0.01) * T(2) * wanted;
   }
 
   // J^T lambda on the body at this position of the joint.
@@ -44,9 +76,19 @@ class Probe {
   }
 
  private:
+  T C_after(T scale, int row) {
+    const auto poses = bodies_.pose;
+    for (size_t k = 0; k < poses.size(); ++k)
+      bodies_.pose[k] = S::moved(poses[k], S::sum({}, bodies_.displacement[k], scale));
+    ops_->position(batch_, 0, 1, bodies_, T(world_.time));
+    bodies_.pose = poses;
+    return batch_.C[row];
+  }
+
   const WorldState<S>& world_;
   const BlockOps<S>* ops_ = nullptr;
-  Batch<S> batch_;
+  Batch<S> batch_;    // one slot
+  Bodies<S> bodies_;  // those of the joint only, in its order
 };
 
 // lambda of a joint's rows in the last substep, drift correction included; zeros where it has none.

@@ -10,6 +10,7 @@
 #include "runtime/joint_table.hpp"
 #include "runtime/laws.hpp"
 #include "runtime/parameters.hpp"
+#include "runtime/probe.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
@@ -54,6 +55,23 @@ void check_joint_bodies(const WorldState<S>& world, const JointType& type,
     for (size_t j = 0; j < i; ++j)
       if (bodies[i] == bodies[j] && !world.bodies.immovable(bodies[i]))
         throw Error(fmt::format("joint `{}` names the same movable body twice", type.name));
+  }
+}
+
+// Refuses rows that have no direction where they hold. A velocity row has no C, a soft one is a
+// spring: both may.
+template <class S>
+void check_directions(const WorldState<S>& world, const JointRecord& record) {
+  const JointType& type = joint_types()[record.type];
+  Probe<S> probe(world);
+  for (size_t r = 0; r < type.row_kinds.size(); ++r) {
+    if (type.row_kinds[r] == RowKind::velocity) continue;
+    probe.look_at(record);
+    if (probe.at_kink(static_cast<int>(r)))
+      throw Error(
+          fmt::format("row {} of joint `{}` has no direction here: C = 0 at its kink, as a "
+                      "distance of length 0. Hold the points together with a `revolute`",
+                      r + 1, type.name));
   }
 }
 
@@ -129,6 +147,7 @@ int World<T>::add_joint(const JointDefinition& definition) {
   double spring[spring_constants_count] = {};
   if (definition.soft) spring_constants(*definition.soft, spring);
 
+  if (!definition.soft) check_directions(*state_, record);
   const int joint = joint_count();
   state_->joints.push_back(record);
   const auto movable = [&](int body) { return !state_->bodies.immovable(body); };
