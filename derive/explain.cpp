@@ -38,17 +38,6 @@ void describe(const Lecture& lecture, const Parameter& p, Step& step) {
   step.list(words, std::move(formulas));
 }
 
-void describe_bodies(const Joint& joint, Step& step) {
-  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
-    step.list("body " + joint.bodies[b] +
-                  ": centre of mass {} [m], angle {} [rad], velocity {} [m/s], angular velocity {} "
-                  "[rad/s], inverse mass {} [1/kg], inverse inertia {} [1/(kg m^2)]",
-              {leaf(body.x), leaf(body.theta), leaf(body.v), leaf(body.w), leaf(body.inv_m),
-               leaf(body.inv_I)});
-  }
-}
-
 std::string joined(const std::vector<std::string>& names) {
   std::string all;
   for (std::size_t i = 0; i < names.size(); ++i) {
@@ -117,7 +106,12 @@ void introduce(Lecture& lecture) {
   if (!joint.includes.empty()) step.say("Composed of the joints " + joined(joint.includes) + ".");
   step.say("Vectors are in world axes; × is the cross product of the plane, "
            "w × r = w perp(r), perp(r) = (-r.y, r.x).");
-  describe_bodies(joint, step);
+  const BodySymbols a = body_symbols(joint, 0);
+  const std::string others = joint.bodies.size() > 1 ? "; likewise the others" : "";
+  step.list((joint.bodies.size() > 1 ? "bodies " : "body ") + joined(joint.bodies) +
+                "; of a: centre of mass {} [m], angle {} [rad], their rates {} [m/s] and {} [rad/s], "
+                "inverse mass {} [1/kg], inverse inertia {} [1/(kg m^2)]" + others,
+            {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
   for (const Parameter& p : joint.parameters) describe(lecture, p, step);
 }
 

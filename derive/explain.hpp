@@ -35,7 +35,6 @@ struct Item {
 };
 
 struct Step {
-  int level = 1;  // 1: a section, 2: a part of it
   std::string heading;
   std::vector<Item> items;
 

@@ -1,6 +1,7 @@
 // Building written formulas, by hand and from expressions. How they look is decided by the writers.
 #include "derive/explain_formula.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace cdot::derive {
@@ -45,9 +46,12 @@ Formula sum(std::vector<SignedFormula> terms) {
   Formula f;
   f.form = Form::sum;
   for (SignedFormula& term : terms) {
-    const bool flips = is_negative(term.formula);
-    f.minus.push_back(term.minus != flips);
-    f.args.push_back(flips ? term.formula.args[0] : std::move(term.formula));
+    // a + (b + c) is written a + b + c; a - (b + c) stays.
+    const bool opens = term.formula.form == Form::sum && (!term.minus || is_negative(term.formula));
+    for (SignedFormula& t : opens ? terms_of(term.formula) : std::vector{term}) {
+      f.minus.push_back(t.minus != (opens && term.minus));
+      f.args.push_back(std::move(t.formula));
+    }
   }
   if (f.args.size() == 1 && !f.minus[0]) return f.args[0];
   return f;
@@ -80,7 +84,7 @@ Formula quotient(Formula above, Formula below) {
 }
 
 Formula power(Formula base, int exponent) {
-  if (exponent == 1) return base;
+  if (exponent == 1 || is_one(base)) return base;
   if (is_negative(base)) {
     Formula positive = power(base.args[0], exponent);
     return exponent % 2 == 0 ? positive : negative(std::move(positive));
@@ -104,10 +108,24 @@ Formula times(Rational magnitude, Formula f) {
   return product({number(magnitude), std::move(f)});
 }
 
-Formula component(Formula u, const char* axis) {
+Formula component(Formula u, std::string axis) {
   Formula f = of_form(Form::component, {std::move(u)});
-  f.name = axis;
+  f.name = std::move(axis);
   return f;
+}
+
+std::vector<SignedFormula> positive_first(std::vector<SignedFormula> terms) {
+  std::stable_partition(terms.begin(), terms.end(),
+                        [](const SignedFormula& term) { return !term.minus; });
+  return terms;
+}
+
+bool same_terms(const Formula& f, const Formula& g) {
+  std::vector<SignedFormula> left = terms_of(f), right = terms_of(g);
+  return std::is_permutation(left.begin(), left.end(), right.begin(), right.end(),
+                             [](const SignedFormula& a, const SignedFormula& b) {
+                               return a.minus == b.minus && a.formula == b.formula;
+                             });
 }
 
 Formula identity() { return of_form(Form::identity, {}); }
@@ -125,6 +143,11 @@ std::vector<SignedFormula> terms_of(const Formula& f) {
   std::vector<SignedFormula> terms;
   for (std::size_t i = 0; i < f.args.size(); ++i) terms.push_back({f.minus[i], f.args[i]});
   return terms;
+}
+
+std::string world_axis(Expr axis) {
+  const Expr ex = world_x(*axis->pool);
+  return axis == ex ? "x" : axis == perp(ex) ? "y" : "";
 }
 
 std::optional<AngleBetween> angle_between(Expr e) {
@@ -148,7 +171,9 @@ bool Notation::has_name(Expr e) {
   return !e->name.empty() && (e->named_by_let || e->name.ends_with("_dot"));
 }
 
-Formula Notation::of(Expr e) const { return has_name(e) ? leaf(e) : written(e); }
+Formula Notation::of(Expr e) const {
+  return has_name(e) && !is_zero(e) ? leaf(e) : written(e);
+}
 Formula Notation::definition(Expr e) const { return written(e); }
 
 Formula Notation::written(Expr e) const {
@@ -159,7 +184,7 @@ Formula Notation::written(Expr e) const {
     case Kind::product: return product_of(e);
     case Kind::scale: return scale_of(e);
     case Kind::dot: return dot_of(e);
-    case Kind::cross: return cross_of(e);
+    case Kind::cross: return cross(of(e->args[0]), of(e->args[1]));
     case Kind::perp: return form(Form::perp, of(e->args[0]));
     case Kind::norm: return form(Form::norm, of(e->args[0]));
     case Kind::unit: return form(Form::unit, of(e->args[0]));
@@ -203,18 +228,7 @@ Formula Notation::sum_of(Expr e) const {
     f = is_one(f) ? number(abs(c)) : times(abs(c), std::move(f));
     terms.push_back({c.sign() < 0, std::move(f)});
   }
-  // The first positive term leads, so that a sum does not open with a minus sign without need.
-  const Formula whole = sum(std::move(terms));
-  if (whole.form != Form::sum) return whole;
-  std::vector<SignedFormula> ordered = terms_of(whole);
-  std::size_t lead = 0;
-  while (lead < ordered.size() && ordered[lead].minus) ++lead;
-  if (lead > 0 && lead < ordered.size()) {
-    SignedFormula first = ordered[lead];
-    ordered.erase(ordered.begin() + static_cast<std::ptrdiff_t>(lead));
-    ordered.insert(ordered.begin(), std::move(first));
-  }
-  return sum(std::move(ordered));
+  return sum(positive_first(std::move(terms)));
 }
 
 Formula Notation::product_of(Expr e) const {
@@ -228,18 +242,10 @@ Formula Notation::product_of(Expr e) const {
 
 // The component along an axis of the world is written u.x; a direction comes first, as in n · u.
 Formula Notation::dot_of(Expr e) const {
-  const Expr ex = world_x(*e->pool), u = e->args[0], v = e->args[1];
-  if (u == ex) return component(of(v), "x");
-  if (v == ex) return component(of(u), "x");
+  const Expr u = e->args[0], v = e->args[1];
+  if (const std::string axis = world_axis(u); !axis.empty()) return component(of(v), axis);
+  if (const std::string axis = world_axis(v); !axis.empty()) return component(of(u), axis);
   return v->unit_length && !u->unit_length ? dot(of(v), of(u)) : dot(of(u), of(v));
-}
-
-// e_x × u = u.y
-Formula Notation::cross_of(Expr e) const {
-  const Expr ex = world_x(*e->pool), u = e->args[0], v = e->args[1];
-  if (u == ex) return component(of(v), "y");
-  if (v == ex) return negative(component(of(u), "y"));
-  return cross(of(u), of(v));
 }
 
 // w perp(r) is written w × r.

@@ -58,7 +58,7 @@ Formula power(Formula base, int exponent);
 Formula dot(Formula u, Formula v);
 Formula cross(Formula u, Formula v);
 Formula form(Form kind, Formula arg);  // perp, norm, unit, transpose, skew
-Formula component(Formula u, const char* axis);
+Formula component(Formula u, std::string axis);
 Formula identity();
 Formula matrix(int columns, std::vector<Formula> entries);
 
@@ -69,8 +69,16 @@ std::vector<SignedFormula> terms_of(const Formula& f);
 // A number times f, f/2 for a half.
 Formula times(Rational magnitude, Formula f);
 
+// Terms with a plus sign first, else in their order.
+std::vector<SignedFormula> positive_first(std::vector<SignedFormula> terms);
+// Whether two formulas have the same terms, in whatever order.
+bool same_terms(const Formula& f, const Formula& g);
+
 // What a formula without matrices equals.
 Expr value_of(const Formula& f, Pool& pool);
+
+// The name of the component that a product with this world axis takes: "x", "y"; empty for other vectors.
+std::string world_axis(Expr axis);
 
 // e as the angle from one vector to another, atan2(u × v, u · v), if it is one.
 struct AngleBetween {
@@ -104,7 +112,6 @@ class Notation {
   Formula sum_of(Expr e) const;
   Formula product_of(Expr e) const;
   Formula dot_of(Expr e) const;
-  Formula cross_of(Expr e) const;
   Formula scale_of(Expr e) const;
 
   std::vector<Point> points_;

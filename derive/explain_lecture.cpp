@@ -25,8 +25,8 @@ Formula column(const Notation& notation, Expr w) {
 
 }  // namespace
 
-Step& Lecture::section(std::string heading, int level) {
-  out.steps.push_back({level, std::move(heading), {}});
+Step& Lecture::section(std::string heading) {
+  out.steps.push_back({std::move(heading), {}});
   return out.steps.back();
 }
 

@@ -32,7 +32,7 @@ struct Lecture {
   Rates rates;
   Explanation out;
 
-  Step& section(std::string heading, int level = 1);
+  Step& section(std::string heading);
 };
 
 Part rows_part(const Joint& joint);

@@ -105,6 +105,9 @@ class MassProduct {
   const Part& part_;
 };
 
+Expr unscaled(Expr v) { return v->kind == Kind::scale ? v->args[1] : v; }
+std::string spoken(Expr e) { return e->name.empty() ? text(e) : e->name; }
+
 // What the builders used to make K simpler than the product: lengths of unit vectors, right angles.
 std::string identities_used(const Lecture& lecture, const Part& part, const Statement& s,
                             const Statement& t) {
@@ -114,13 +117,12 @@ std::string identities_used(const Lecture& lecture, const Part& part, const Stat
     const Expr vi = part.block.rows[s.first].J[b].v, vj = part.block.rows[t.first].J[b].v;
     if (is_zero(vi) || is_zero(vj)) continue;
     const Factors f = factors(vi, vj);
+    const Expr i = unscaled(f.i), j = unscaled(f.j);
     std::string identity;
-    const std::string i = text(f.i), j = text(f.j);
-    const auto spoken = [](Expr e, const std::string& full) { return e->name.empty() ? full : e->name; };
-    if (f.i == f.j && f.i->unit_length) {
-      identity = spoken(f.i, i) + " has length 1: " + spoken(f.i, i) + " · " + spoken(f.i, i) + " = 1";
-    } else if (is_zero(dot(f.i, f.j))) {
-      identity = spoken(f.i, i) + " · " + spoken(f.j, j) + " = 0";
+    if (i == j && i->unit_length) {
+      identity = spoken(i) + " has length 1: " + spoken(i) + " · " + spoken(i) + " = 1";
+    } else if (is_zero(dot(i, j))) {
+      identity = spoken(i) + " · " + spoken(j) + " = 0";
     }
     if (!identity.empty() && used.find(identity) == std::string::npos) {
       used += (used.empty() ? "" : "; ") + identity;
@@ -164,7 +166,7 @@ void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
       Chain chain{name, {}};
       if (part.statements.size() == 1) chain.links.push_back({J_M_J(label("J", s)), ""});
       chain.links.push_back({full, "body by body"});
-      if (result != full) chain.links.push_back({result, identities_used(lecture, part, s, t)});
+      if (!same_terms(result, full)) chain.links.push_back({result, identities_used(lecture, part, s, t)});
       step.show(std::move(chain));
     }
   }

@@ -21,7 +21,12 @@ void append(std::vector<SignedFormula>& terms, std::optional<Formula> f, bool mi
 
 std::vector<Chain> Rates::differentiate(Expr e, Formula left) {
   chains_.clear();
-  chains_.push_back(chain(e, std::move(left)));
+  Chain last = chain(e, std::move(left));
+  // First rates in the order in which the author introduced the names, which never refers ahead.
+  if (!depends_on_velocity(e)) std::stable_sort(chains_.begin(), chains_.end(), [this](const Chain& a, const Chain& b) {
+    return place_of(a.left.name) < place_of(b.left.name);
+  });
+  chains_.push_back(std::move(last));
   return std::exchange(chains_, {});
 }
 
@@ -44,6 +49,14 @@ Chain Rates::chain(Expr e, Formula left) {
   if (all != by_rules) result.links.push_back({all, "the rates above inserted"});
   rules_ = outer;
   return result;
+}
+
+std::size_t Rates::place_of(std::string name) const {
+  while (name.ends_with("_dot")) name.resize(name.size() - 4);
+  const auto let = std::find_if(joint_.lets.begin(), joint_.lets.end(), [&](const Let& l) {
+    return l.name == name || name == l.name + "_x" || name == l.name + "_y";
+  });
+  return let == joint_.lets.end() ? 0 : static_cast<std::size_t>(let - joint_.lets.begin()) + 1;
 }
 
 void Rates::used(const std::string& rule) {
@@ -126,7 +139,7 @@ std::optional<Formula> Rates::sum_rule(Expr e) {
       add(rate(e->args[i], false));
     }
   }
-  return total(std::move(terms));
+  return total(positive_first(std::move(terms)));
 }
 
 // d(x^k y ...)/dt = k x^(k-1) x_dot y ... + ...
@@ -156,12 +169,10 @@ std::optional<Formula> Rates::product_rule(Expr e) {
 std::optional<Formula> Rates::pair_rule(Expr e) {
   Expr u = e->args[0], v = e->args[1];
   const bool scalar_product = e->kind == Kind::dot;
-  const Expr ex = world_x(*e->pool);
-  if (u == ex || v == ex) {
+  const std::string along_u = world_axis(u), along_v = world_axis(v);
+  if (!along_u.empty() || !along_v.empty()) {
     used("component by component");
-    const Formula moved = *rate(u == ex ? v : u, false);
-    if (scalar_product) return component(moved, "x");
-    return u == ex ? component(moved, "y") : negative(component(moved, "y"));
+    return along_v.empty() ? component(*rate(v, false), along_u) : component(*rate(u, false), along_v);
   }
   used("product rule");
   // Written as the product itself is written: a direction first in n · u.

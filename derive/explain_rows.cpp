@@ -22,8 +22,9 @@ void collect(Lecture& lecture, const std::vector<VelocityTerm>& terms, Expr coef
   if (parts.size() < 2) return;
   const BodySymbols symbols = body_symbols(lecture.joint, body);
   const Formula velocity = leaf(spin ? symbols.w : symbols.v);
-  const Formula merged = lecture.notation.of(coefficient), listed = sum(std::move(parts));
-  if (merged == listed) return;
+  const Formula merged = lecture.notation.of(coefficient);
+  const Formula listed = sum(positive_first(std::move(parts)));
+  if (merged.form == Form::sum && merged.args.size() >= listed.args.size()) return;
   std::string rule = "like terms of " + velocity.name + " collected";
   if (merged == number(0)) rule = velocity.name + " cancels";
   step.show({listed, {{merged, std::move(rule)}}});
@@ -65,7 +66,9 @@ void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step
     collect(lecture, terms, row.J[b].v, static_cast<int>(b), false, step);
     collect(lecture, terms, row.J[b].w, static_cast<int>(b), true, step);
   }
-  step.show({label("Cdot", s, row.Cdot), {{isolated(lecture, row), ""}}});
+  const Formula result = isolated(lecture, row);
+  if (same_terms(result, Cdot)) return step.say("They stand alone already.");
+  step.show({label("Cdot", s, row.Cdot), {{result, ""}}});
 }
 
 void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
@@ -84,6 +87,39 @@ void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& 
   }
   step.show({label("Cdot", s, Cdot_of(lecture, part, s)),
              {{sum(std::move(terms)), "w × r = S(r) w, with S(r) = perp(r) as a column"}}});
+}
+
+// Products multiplied out, so that what occurs twice is added up.
+Expr expanded(Expr e) {
+  Pool& pool = *e->pool;
+  if (e->kind == Kind::sum) {
+    std::vector<Term> terms;
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      const bool named = Notation::has_name(e->args[i]);
+      terms.push_back({e->coefs[i], named ? e->args[i] : expanded(e->args[i])});
+    }
+    return sum(pool, terms, e->vector);
+  }
+  if (e->kind != Kind::product && e->kind != Kind::scale) return e;
+  for (std::size_t i = 0; i < e->args.size(); ++i) {
+    const Expr factor = e->args[i];
+    const bool first_power = e->kind == Kind::scale || e->exponents[i] == 1;
+    if (factor->kind != Kind::sum || Notation::has_name(factor) || !first_power) continue;
+    Expr total = e->vector ? zero_vector(pool) : pool.number(0);
+    for (const Term& term : terms_of(factor)) {
+      std::vector<Expr> args = e->args;
+      args[i] = term.coef * term.e;
+      total = total + expanded(rebuild(e, args));
+    }
+    return total;
+  }
+  return e;
+}
+
+// Whether w × (w × r) stands in it.
+bool turns_twice(const Formula& f) {
+  if (f.form == Form::cross && f.args[1].form == Form::cross) return true;
+  return std::any_of(f.args.begin(), f.args.end(), turns_twice);
 }
 
 Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s) {
@@ -111,7 +147,6 @@ void state_constraint(Lecture& lecture, const Part& part) {
   Step& step = lecture.section("Position constraint");
   if (!lecture.joint.lets.empty()) step.say("Names:");
   for (const Let& let : lecture.joint.lets) {
-    if (!let.value || !Notation::has_name(let.value)) continue;
     step.show({leaf(let.value, let.name), {{lecture.notation.definition(let.value), ""}}});
   }
   for (const Statement& s : part.statements) {
@@ -175,14 +210,17 @@ void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
     head(step, part, s);
     const Expr Cdot = Cdot_of(lecture, part, s), gamma = -time_derivative(Cdot, lecture.joint);
     const Formula name = label("gamma", s, gamma);
-    const Formula simplified = lecture.notation.definition(gamma);
-    std::vector<Chain> chains = lecture.rates.differentiate(Cdot, negative(name));
-    for (Chain& chain : chains) {
-      const bool last = &chain == &chains.back();
-      if (last) chain.links.resize(1);
-      const Formula result = last ? number(0) : lecture.notation.definition(chain.left.leaf);
-      if (!last && result != chain.links.back().formula) {
-        chain.links.push_back({result, "w × (w × r) = -w^2 r"});
+    const Formula simplified = lecture.notation.definition(expanded(gamma));
+    if (simplified == number(0)) {
+      step.show({name, {{simplified, "J does not change"}}});
+      continue;
+    }
+    for (Chain& chain : lecture.rates.differentiate(Cdot, negative(name))) {
+      chain.links.resize(1);  // with its names, not with all of them inserted
+      const Formula& f = chain.links[0].formula;
+      const Formula turned = lecture.notation.definition(value_of(f, *lecture.joint.pool));
+      if (chain.left != negative(name) && turns_twice(f)) {
+        chain.links.push_back({turned, "w × (w × r) = -w^2 r"});
       }
       step.show(std::move(chain));
     }

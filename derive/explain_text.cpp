@@ -74,8 +74,14 @@ std::string wrapped(const std::string& words, std::size_t indent) {
 class ChainText {
  public:
   std::string write(const Chain& chain) {
-    const std::string left = "    " + formula_.write(chain.left);
+    std::string left = "    " + formula_.write(chain.left);
     indent_ = width(left);
+    // A long left side keeps its line.
+    if (indent_ > page_width / 2) {
+      out_ += left + "\n";
+      indent_ = 6;
+      left = std::string(indent_, ' ');
+    }
     for (std::size_t i = 0; i < chain.links.size(); ++i) {
       line_ = i == 0 ? left : std::string(indent_, ' ');
       line_ += " = ";
@@ -87,9 +93,7 @@ class ChainText {
 
  private:
   void write_formula(const Formula& f) {
-    if (f.form == Form::matrix && f.args.size() > static_cast<std::size_t>(f.columns)) {
-      return write_rows(f);
-    }
+    if (f.form == Form::matrix) return write_matrix(f);
     for (const std::string& piece : formula_.pieces(f)) {
       if (width(line_) + width(piece) > page_width && width(line_) > indent_ + 3) {
         finish_line();
@@ -97,6 +101,26 @@ class ChainText {
       }
       line_ += piece;
     }
+  }
+
+  void write_matrix(const Formula& f) {
+    const std::string whole = formula_.write(f);
+    const bool one_row = f.args.size() == static_cast<std::size_t>(f.columns);
+    const bool fits = width(line_) + width(whole) <= page_width;
+    if (one_row && fits) line_ += whole;
+    else if (fits || width(whole) / f.args.size() * static_cast<std::size_t>(f.columns) < 80) write_rows(f);
+    else write_entries(f);
+  }
+
+  // An entry a line where a row is too long for one: | before each but a row's first, ; before a new row.
+  void write_entries(const Formula& f) {
+    for (std::size_t i = 0; i < f.args.size(); ++i) {
+      if (i > 0) finish_line();
+      if (i > 0) line_ = std::string(indent_ + 3, ' ');
+      line_ += i == 0 ? "[ " : i % static_cast<std::size_t>(f.columns) == 0 ? "; " : "| ";
+      line_ += formula_.write(f.args[i]);
+    }
+    line_ += " ]";
   }
 
   // A row a line, columns under columns.

@@ -145,10 +145,14 @@ std::optional<std::vector<VectorEntry>> isolate_vector(Expr Cdot, const Joint& j
 Formula multiplied(Expr coefficient, int body, bool spin, const Joint& joint,
                    const Notation& notation) {
   const BodySymbols symbols = body_symbols(joint, body);
-  const Formula c = notation.of(coefficient);
-  if (spin) return product({c, leaf(symbols.w)});
-  if (c.form == Form::sum && c.args.size() == 1) return negative(dot(c.args[0], leaf(symbols.v)));
-  return dot(c, leaf(symbols.v));
+  if (spin) return product({notation.of(coefficient), leaf(symbols.w)});
+  // (s n) · v is written s (n · v).
+  const Term term = split_coefficient(coefficient);
+  const bool scaled = term.e->kind == Kind::scale && !Notation::has_name(term.e);
+  const Formula factor = scaled ? notation.of(term.e->args[0]) : number(1);
+  const Formula along = dot(notation.of(scaled ? term.e->args[1] : term.e), leaf(symbols.v));
+  const Formula f = product({number(abs(term.coef)), factor, along});
+  return term.coef.sign() < 0 ? negative(f) : f;
 }
 
 }  // namespace cdot::derive

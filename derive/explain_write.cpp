@@ -36,7 +36,7 @@ std::vector<std::string> FormulaWriter::pieces(const Formula& f) const {
   if (f.form != Form::sum) return {write(f)};
   std::vector<std::string> out;
   for (std::size_t i = 0; i < f.args.size(); ++i) {
-    out.push_back(sign(f.minus[i], i == 0) + write(f.args[i], Place::term));
+    out.push_back(sign(f.minus[i], i == 0) + write(f.args[i], !f.minus[i] ? Place::term : i == 0 ? Place::opening_minus : Place::negated));
   }
   return out;
 }
@@ -44,8 +44,13 @@ std::vector<std::string> FormulaWriter::pieces(const Formula& f) const {
 bool FormulaWriter::needs_parentheses(const Formula& f, Place place) const {
   switch (f.form) {
     case Form::sum: return place != Place::whole;
-    case Form::dot:
-    case Form::cross: return place >= Place::factor;
+    // -(ra × t), but v_b - w_b × rb; a dot product needs it only if a sum opens it.
+    case Form::cross:
+    case Form::dot: {
+      const bool opened_by_sum = f.args[0].form == Form::sum;
+      return place >= Place::factor || (place >= Place::negated && opened_by_sum) ||
+             (place == Place::opening_minus && f.form == Form::cross);
+    }
     case Form::product: return place >= Place::operand;
     case Form::quotient: return fraction_encloses() ? place == Place::base : place >= Place::factor;
     case Form::power:

@@ -39,7 +39,7 @@ class FormulaWriter {
   virtual std::string parentheses(const std::string& inner) const = 0;
 
  private:
-  enum class Place { whole, term, factor, operand, base };
+  enum class Place { whole, term, negated, opening_minus, factor, operand, base };
 
   std::string write(const Formula& f, Place place) const;
   std::string bare(const Formula& f) const;

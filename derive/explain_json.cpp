@@ -1,0 +1,188 @@
+// The derivation for other programs: every entry as a plain infix expression over documented component names.
+//
+// {
+//   "format": 1, "joint": "line", "title": "...", "source": "...", "dimension": 2, "bodies": ["a", "b"],
+//   "columns": ["v_a_x", "v_a_y", "w_a", "v_b_x", ...],           columns of every J
+//   "symbols": { "r_pa_x": { "kind", "meaning", "unit", "frame", "body", "from" }, ... },
+//       kind: position, velocity, mass (inverse), parameter, derived, time, constant
+//       frame: "world" or the body whose axes the component is along; "body": whose it is; null where it has none
+//       from: for derived ones the expression that gives it from a pose and parameters (r_pa_x from theta_a, pa_local_x)
+//   "intermediates": [ { "name": "u_x", "definition": "..." }, ... ],  in order: each uses only what stands before it
+//   "guards": [ { "where": "u_len = 0", "kernel": "..." } ],           where an entry is undefined and what a kernel does
+//   "rows": [ { "name", "kind": equality | inequality | velocity, "text", "unit" } ],
+//   "C": [ one a row ], "Cdot": [ J v + C_t, before the velocities are isolated ], "C_t": [ dC/dt at fixed bodies ],
+//   "J": [ [ one a column ] a row ], "K": [ [ ] ] square, "gamma": [ ],
+//   "coordinates": [ { "name", "text", "unit", "C", "Cdot", "C_t", "J", "K", "gamma" } ]   as above, with one row each
+// }
+//
+// Operators + - * / ** and parentheses, functions sqrt sin cos tan atan2 exp log abs sign; "0" for what is not there.
+#include <set>
+
+#include "derive/canonical.hpp"
+#include "derive/explain.hpp"
+#include "derive/explain_symbols.hpp"
+
+namespace cdot::derive {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Infix {
+ public:
+  explicit Infix(const Joint& joint) : symbols_(joint) {}
+
+  std::string of(Expr scalar) { return print(components_.of(scalar), Level::sum); }
+
+  const Json& intermediates() const { return intermediates_; }
+  const Json& guards() const { return guards_; }
+  Json symbols() const { return symbols_.json(); }
+
+ private:
+  enum class Level { sum, product, power };
+
+  std::string print(Expr e, Level level) {
+    if (e->kind == Kind::symbol) return symbols_.name(e);
+    if (e->name.empty() || e->kind == Kind::number) return inline_text(e, level);
+    if (const auto found = names_.find(&*e); found != names_.end()) return found->second;
+    const std::string definition = inline_text(e, Level::sum);
+    std::string name = symbols_.reserve(e->name);
+    names_.emplace(&*e, name);
+    intermediates_.push_back({{"name", name}, {"definition", definition}});
+    return name;
+  }
+
+  std::string inline_text(Expr e, Level level) {
+    switch (e->kind) {
+      case Kind::number: return enclosed(e->value.text(), level, e->value.sign() < 0, e->value);
+      case Kind::sum: return sum_text(e, level);
+      case Kind::product: return product_text(e, level);
+      default: return function_text(e, level);
+    }
+  }
+
+  static std::string enclosed(const std::string& text, Level level, bool negative, Rational value) {
+    const bool needs = (negative && level > Level::sum) || (!value.is_integer() && level > Level::sum);
+    return needs ? "(" + text + ")" : text;
+  }
+
+  std::string sum_text(Expr e, Level level) {
+    if (e->args.empty()) return "0";
+    std::string out;
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      const Rational c = e->coefs[i];
+      out += c.sign() < 0 ? (out.empty() ? "-" : " - ") : (out.empty() ? "" : " + ");
+      const bool constant = is_one(e->args[i]);
+      if (constant) out += abs(c).text();
+      else if (abs(c) != Rational(1)) out += enclosed(abs(c).text(), Level::product, false, c) + "*";
+      if (!constant) out += print(e->args[i], Level::product);
+    }
+    return level > Level::sum ? "(" + out + ")" : out;
+  }
+
+  std::string product_text(Expr e, Level level) {
+    std::string out;
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      const int k = e->exponents[i];
+      const std::string base = print(e->args[i], k == 1 ? Level::product : Level::power);
+      out += (out.empty() ? "" : "*") + base + (k == 1 ? "" : "**" + std::to_string(k));
+    }
+    return level == Level::power ? "(" + out + ")" : out;
+  }
+
+  // The guards of a kernel are said aside: here the mathematics stands.
+  std::string function_text(Expr e, Level level) {
+    if (e->fn == Fn::inverse) {
+      const std::string below = print(e->args[0], Level::sum);
+      guard(below + " = 0", "1/(" + below + ") is taken as 0");
+      const std::string out = "1/" + print(e->args[0], Level::power);
+      return level > Level::sum ? "(" + out + ")" : out;
+    }
+    if (e->fn == Fn::select) {
+      const std::string where = print(e->args[0], Level::sum) + " = 0";
+      const std::string out = print(e->args[1], level);
+      guard(where, out + " is taken as " + print(e->args[2], Level::sum));
+      return out;
+    }
+    std::string out = std::string(name_of(e->fn)) + "(";
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      out += (i == 0 ? "" : ", ") + print(e->args[i], Level::sum);
+    }
+    return out + ")";
+  }
+
+  void guard(const std::string& where, const std::string& kernel) {
+    if (guarded_.insert(where + kernel).second) guards_.push_back({{"where", where}, {"kernel", kernel}});
+  }
+
+  ExplainedSymbols symbols_;
+  Components components_;
+  std::map<const Node*, std::string> names_;
+  std::set<std::string> guarded_;
+  Json intermediates_ = Json::array(), guards_ = Json::array();
+};
+
+std::string kind_name(RowKind kind) {
+  return kind == RowKind::equality ? "equality" : kind == RowKind::inequality ? "inequality" : "velocity";
+}
+
+Json J_of(Infix& infix, const Joint& joint, const ScalarRow& row) {
+  const Expr ex = world_x(*joint.pool);
+  Json entries = Json::array();
+  for (const JacobianEntry& entry : row.J) {
+    entries.push_back(infix.of(dot(ex, entry.v)));
+    entries.push_back(infix.of(dot(perp(ex), entry.v)));
+    entries.push_back(infix.of(entry.w));
+  }
+  return entries;
+}
+
+void add_block(Json& out, Infix& infix, const Joint& joint, const Block& block) {
+  for (const char* key : {"C", "Cdot", "C_t", "J", "K", "gamma"}) out[key] = Json::array();
+  for (std::size_t i = 0; i < block.rows.size(); ++i) {
+    const ScalarRow& row = block.rows[i];
+    out["C"].push_back(infix.of(row.C));
+    out["Cdot"].push_back(infix.of(row.Cdot));
+    out["C_t"].push_back(infix.of(row.C_t));
+    out["J"].push_back(J_of(infix, joint, row));
+    out["gamma"].push_back(infix.of(row.gamma));
+    Json entries = Json::array();
+    for (std::size_t j = 0; j < block.rows.size(); ++j) {
+      entries.push_back(infix.of(block.K[std::max(i, j)][std::min(i, j)]));
+    }
+    out["K"].push_back(std::move(entries));
+  }
+}
+
+}  // namespace
+
+nlohmann::ordered_json explanation_json(const Joint& joint) {
+  Infix infix(joint);
+  Json rows, coordinates = Json::array();
+  const Block block = derive_rows(joint);
+  for (const ScalarRow& row : block.rows) {
+    rows["rows"].push_back({{"name", row.name},
+                            {"kind", kind_name(row.kind)},
+                            {"text", row.row->text},
+                            {"unit", text(row.row->unit)}});
+  }
+  add_block(rows, infix, joint, block);
+  for (const Coordinate& c : joint.coordinates) {
+    Json out{{"name", c.name}, {"text", c.text}, {"unit", text(c.unit)}};
+    add_block(out, infix, joint, derive_coordinate(joint, c));
+    coordinates.push_back(std::move(out));
+  }
+  Json columns = Json::array();
+  for (const std::string& b : joint.bodies) {
+    for (const std::string& name : {"v_" + b + "_x", "v_" + b + "_y", "w_" + b}) columns.push_back(name);
+  }
+  Json all{{"format", 1},           {"joint", joint.name}, {"title", joint.title},
+           {"source", joint.source}, {"dimension", 2},      {"bodies", joint.bodies},
+           {"columns", columns},    {"symbols", infix.symbols()}};
+  all["intermediates"] = infix.intermediates();
+  all["guards"] = infix.guards();
+  all.update(rows);
+  all["coordinates"] = std::move(coordinates);
+  return all;
+}
+
+}  // namespace cdot::derive

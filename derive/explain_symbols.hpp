@@ -1,0 +1,38 @@
+// The names that other programs see: one for every component that an expression may contain, with what it means.
+#pragma once
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <string>
+
+#include "derive/joint.hpp"
+
+namespace cdot::derive {
+
+class ExplainedSymbols {
+ public:
+  explicit ExplainedSymbols(const Joint& joint);
+
+  std::string name(Expr symbol);                // of a scalar leaf; arms are renamed: ra_x is r_pa_x
+  std::string reserve(const std::string& wish);  // a name that nothing else has, near the wish
+  nlohmann::ordered_json json() const { return docs_; }
+
+ private:
+  struct Doc {
+    std::string kind, meaning, unit, frame, body, from;
+  };
+  void add(const std::string& leaf, const std::string& wish, const Doc& doc);
+  void add_body(const std::string& body);
+  void add_parameter(const Joint& joint, const Parameter& parameter);
+  void add_turning(const std::string& leaf, const std::string& wish, const std::string& local,
+                   Doc doc);
+  void add_axis(Expr symbol);
+
+  std::vector<std::string> bodies_;
+  std::map<std::string, std::string> names_;  // of leaves
+  std::set<std::string> taken_;
+  nlohmann::ordered_json docs_ = nlohmann::ordered_json::object();
+};
+
+}  // namespace cdot::derive
