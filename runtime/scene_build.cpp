@@ -34,10 +34,17 @@ void add_spring(World<T>& world, SpringDefinition spring) {
   world.add_spring(spring);
 }
 
-std::string row_text(const Inconsistency& row, int rows) {
-  const char* what = row.velocity ? "Cdot" : "C";
-  return rows == 1 ? fmt::format("{} = {:.3g}", what, row.value)
-                   : fmt::format("{}{} = {:.3g}", what, row.row + 1, row.value);
+// "C2 = -0.25, Cdot1 = -3": positions first; rows are numbered where there are several.
+std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::size_t joint_rows) {
+  std::string list;
+  for (const bool velocity : {false, true}) {
+    for (const Inconsistency& row : rows) {
+      if (row.joint != joint || row.velocity != velocity) continue;
+      const std::string number = joint_rows > 1 ? std::to_string(row.row + 1) : "";
+      list += fmt::format("{}{}{} = {:.3g}", list.empty() ? "" : ", ", velocity ? "Cdot" : "C", number, row.value);
+    }
+  }
+  return list;
 }
 
 }  // namespace
@@ -65,16 +72,13 @@ template <class T>
 std::string inconsistency_report(const Scene& scene, const World<T>& world, double tolerance) {
   std::string report;
   const std::vector<Inconsistency> rows = world.inconsistencies(tolerance);
-  for (std::size_t k = 0; k < rows.size();) {
-    const int joint = rows[k].joint;
+  for (int joint = 0; joint < world.joint_count(); ++joint) {
     const SceneJoint& source = scene.joints[static_cast<std::size_t>(joint)];
-    const int joint_rows = static_cast<int>(world.joint_type(joint).row_kinds.size());
-    std::string list;
-    for (; k < rows.size() && rows[k].joint == joint; ++k) {
-      list += (list.empty() ? "" : ", ") + row_text(rows[k], joint_rows);
-    }
+    const std::string list = rows_text(rows, joint, world.joint_type(joint).row_kinds.size());
+    if (list.empty()) continue;
     report += scene.source->paragraph(
-        "warning", source.where, fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name, list),
+        "warning", source.where,
+        fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name, list),
         "correct the pose or velocity, or let project = true move the bodies onto their joints");
   }
   return report;

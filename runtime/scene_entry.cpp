@@ -14,12 +14,26 @@ constexpr int most_copies = 100000;
 
 std::string quoted(const std::string& key) { return fmt::format("`{}`", key); }
 
-// "30 deg" in radians; nothing if the text is no such angle.
-std::optional<double> degrees(std::string_view text) {
+// The number at the start of a text, which then loses it.
+std::optional<double> take_number(std::string_view& text) {
   double value = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || std::string_view(rest, text.data() + text.size()) != " deg") return {};
-  return value * std::numbers::pi / 180;
+  if (error != std::errc{}) return {};
+  text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
+  return value;
+}
+
+// "1/60", and "30 deg" in radians; nothing if the text is neither.
+std::optional<double> number_in_text(std::string_view text, bool angle) {
+  std::optional<double> value = take_number(text);
+  if (value && text.starts_with("/")) {
+    text.remove_prefix(1);
+    const std::optional<double> divisor = take_number(text);
+    if (!divisor) return {};
+    *value /= *divisor;
+  }
+  if (value && angle && text == " deg") return *value * std::numbers::pi / 180;
+  return text.empty() ? value : std::nullopt;
 }
 
 }  // namespace
@@ -119,16 +133,15 @@ void Entry::wrong_type(const toml::node& node, const std::string& key, const std
 }
 
 std::optional<double> Entry::plain_number(const toml::node& node, const std::string& key, Quantity quantity) {
-  std::optional<double> value = node.value<double>();
-  if (node.is_string() && quantity.angle) {
-    value = degrees(*node.value<std::string_view>());
-    if (!value) {
-      error(span_of(node.source()), fmt::format("{} is no angle", quoted(key)), "write 0.5 (rad) or \"30 deg\"");
-      return {};
-    }
-  } else if (!node.is_number()) {
-    wrong_type(node, key, quantity.angle ? "a number, or a text as \"30 deg\"" : "a number");
+  if (node.is_number()) return node.value<double>();
+  if (!node.is_string()) {
+    wrong_type(node, key, "a number");
     return {};
+  }
+  const std::optional<double> value = number_in_text(*node.value<std::string_view>(), quantity.angle);
+  if (!value) {
+    error(span_of(node.source()), fmt::format("{} must be a number, but is a text", quoted(key)),
+          quantity.angle ? "0.5 (rad) or \"30 deg\"" : "0.5, or a fraction as \"1/60\"");
   }
   return value;
 }
@@ -198,10 +211,12 @@ std::optional<int> Entry::whole(const std::string& key, int least) {
   const toml::node* node = find(key);
   if (!node) return {};
   const std::optional<std::int64_t> value = node->value_exact<std::int64_t>();
-  if (!value) {
+  if (!value && node->is_number()) {
+    error(span_of(node->source()), fmt::format("{} is {}: it must be a whole number", quoted(key), *node->value<double>()));
+  } else if (!value) {
     wrong_type(*node, key, "a whole number");
-    return {};
   }
+  if (!value) return {};
   if (*value >= least && *value <= 1'000'000'000) return static_cast<int>(*value);
   error(span_of(node->source()), fmt::format("{} is {}: it must be {} or more", quoted(key), *value, least));
   return {};

@@ -16,7 +16,7 @@
 
 namespace cdot {
 
-// What a number may be. Angles may also be written "30 deg".
+// What a number may be. Any may be written "1/60", angles also "30 deg".
 enum class Sign { any, positive, not_negative };
 struct Quantity {
   Sign sign = Sign::any;

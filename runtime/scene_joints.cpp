@@ -17,6 +17,8 @@ std::string described(const ParameterInfo& parameter) {
                      on_world ? "the world" : fmt::format("body {}", static_cast<char>('a' + parameter.body)));
 }
 
+std::string number_named(std::size_t count) { return fmt::format("{} {}", count, count == 1 ? "is" : "are"); }
+
 const JointType* read_type(Entry& joint) {
   joint.required("type", "type = \"revolute\"");
   const std::optional<std::string> name = joint.text("type");
@@ -35,11 +37,9 @@ std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType&
   joint.required("bodies", one ? "bodies = [\"rod\"]" : "bodies = [\"world\", \"rod\"]");
   const std::optional<std::vector<int>> bodies = names.find(joint, "bodies");
   if (!bodies) return {};
-  const int given = static_cast<int>(bodies->size());
-  if (given != type.bodies) {
-    joint.error(joint.where("bodies"),
-                fmt::format("a {} joint has {} {}, but {} {} named", type.name, type.bodies, one ? "body" : "bodies",
-                            given, given == 1 ? "is" : "are"));
+  if (static_cast<int>(bodies->size()) != type.bodies) {
+    joint.error(joint.where("bodies"), fmt::format("a {} joint has {} {}, but {} named", type.name, type.bodies,
+                                                   one ? "body" : "bodies", number_named(bodies->size())));
     return {};
   }
   if (type.bodies == 2 && (*bodies)[0] == (*bodies)[1]) {
@@ -85,8 +85,8 @@ void read_parameters(Entry& joint, const JointType& type, const BodyNames& names
       definition.parameters.push_back({std::string(parameter.name), *numbers});
     } else if (!given && !parameter.has_default) {
       joint.error(joint.header(), fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
-                  point ? fmt::format("{0} = [x, y] in the frame of \"{1}\", {0} = {{ world = [x, y] }}, or at = [x, y]",
-                                      parameter.name, names.name(body))
+                  point ? fmt::format("{0} = [x, y] in the frame of its body, {0} = {{ world = [x, y] }}, or at = [x, y]",
+                                      parameter.name)
                         : "");
     }
   }
@@ -103,12 +103,14 @@ std::optional<Limit> read_limit(Entry& effects, Quantity quantity) {
     limit.upper = table->number("upper", quantity);
     if (!table->has("lower") && !table->has("upper")) table->error(table->header(), "a limit without `lower` or `upper`");
     table->close();
+  } else if (effects.has("limit") && !effects.is_array("limit")) {
+    effects.error(effects.where("limit"), "`limit` needs two ends", "[lower, upper], { lower = 0 } or { upper = 1 }");
   } else if (const auto both = effects.numbers("limit", 2, quantity)) {
     limit = {(*both)[0], (*both)[1]};
   }
   if (limit.lower && limit.upper && *limit.lower > *limit.upper) {
     effects.error(effects.where("limit"),
-                  fmt::format("the lower limit {} is above the upper limit {}", *limit.lower, *limit.upper));
+                  fmt::format("the lower limit {:.6g} is above the upper limit {:.6g}", *limit.lower, *limit.upper));
   }
   if (!limit.lower && !limit.upper) return {};
   return limit;
@@ -211,7 +213,7 @@ void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
     entry.required("stiffness", "stiffness = 100");
     const std::optional<std::vector<int>> bodies = names.find(entry, "bodies");
     const bool two = bodies && bodies->size() == 2;
-    if (bodies && !two) entry.error(entry.where("bodies"), fmt::format("a spring has 2 bodies, but {} named", bodies->size()));
+    if (bodies && !two) entry.error(entry.where("bodies"), fmt::format("a spring has 2 bodies, but {} named", number_named(bodies->size())));
     SpringDefinition spring;
     spring.body_a = two ? (*bodies)[0] : world_body;
     spring.body_b = two ? (*bodies)[1] : world_body;

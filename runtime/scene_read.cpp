@@ -23,7 +23,9 @@ std::string syntax_error(std::string_view description) {
   if (description.starts_with("Error while parsing ")) {
     description.remove_prefix(std::string_view("Error while parsing ").size());
   }
-  return fmt::format("this is no TOML: {}", description);
+  std::string text(description);
+  if (text.starts_with("Encountered")) text[0] = 'e';
+  return "this is no TOML: " + text;
 }
 
 Vec2 turned(Vec2 v, double angle) {
@@ -45,7 +47,9 @@ void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
 
 BodyNames::BodyNames(const std::vector<SceneBody>& bodies) : bodies_(&bodies) {
   index_["world"] = world_body;
-  for (std::size_t k = 0; k < bodies.size(); ++k) index_.emplace(bodies[k].name, static_cast<int>(k));
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (!bodies[k].name.empty()) index_.emplace(bodies[k].name, static_cast<int>(k));
+  }
   for (const auto& [name, body] : index_) known_.push_back(name);
 }
 
@@ -174,7 +178,8 @@ Scene read_scene(std::string_view text, const std::string& name) {
 Scene read_scene(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
-  if (!file || !(text << file.rdbuf())) {
+  text << file.rdbuf();  // which fails for an empty file, and that is no mistake here
+  if (!file) {
     throw SceneError(fmt::format("{}: error: cannot be read\n", path), 1);
   }
   return read_scene(text.str(), path);

@@ -51,6 +51,35 @@ std::size_t edits(std::string_view from, std::string_view to) {
   return d[from.size()][to.size()];
 }
 
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+bool same_start(std::string_view word, std::string_view candidate) {
+  const auto [end, other] = std::mismatch(word.begin(), word.end(), candidate.begin(), candidate.end());
+  const auto common = static_cast<std::size_t>(end - word.begin());
+  return common >= 4 && 2 * common >= candidate.size();
+}
+
+// What other engines and other people call what a scene calls otherwise.
+std::string_view called_here(std::string_view word) {
+  constexpr std::pair<std::string_view, std::string_view> words[] = {
+      {"omega", "spin"},       {"angular_velocity", "spin"}, {"w", "spin"},       {"rotation", "angle"},
+      {"theta", "angle"},      {"dt", "step"},               {"timestep", "step"}, {"h", "step"},
+      {"time_step", "step"},   {"time", "duration"},         {"until", "duration"}, {"t_end", "duration"},
+      {"bodies", "body"},      {"joints", "joint"},          {"springs", "spring"}, {"g", "gravity"},
+      {"anchor", "at"},        {"anchor_a", "pa"},           {"anchor_b", "pb"},  {"axis", "t"},
+      {"length", "l"},         {"rest_length", "rest"},      {"m", "mass"},       {"I", "inertia"},
+      {"kinematic", "static"}, {"fixed", "static"},          {"count", "repeat"}, {"max_force", "max"},
+      {"max_torque", "max"},   {"break", "breaking"},        {"radius", "shape"}};
+  for (const auto& [elsewhere, here] : words) {
+    if (word == elsewhere) return here;
+  }
+  return {};
+}
+
 }  // namespace
 
 Mistakes::Mistakes(std::string file, std::string_view text) : file_(std::move(file)), lines_(split_lines(text)) {}
@@ -105,12 +134,14 @@ std::string Mistakes::paragraph(std::string_view kind, Span where, std::string_v
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> known) {
   const std::string* best = nullptr;
-  std::size_t best_edits = 1 + std::max<std::size_t>(1, word.size() / 3);
+  // Words of one or two letters resemble everything.
+  std::size_t best_edits = word.size() < 2 ? 1 : word.size() < 3 ? 2 : 2 + word.size() / 4;
+  const std::string_view elsewhere = called_here(word);
   for (const std::string& candidate : known) {
-    if (word.size() > longest_word) break;
-    const std::size_t distance = edits(word, candidate);
-    const bool completes = word.size() >= 3 && candidate.starts_with(word);
-    if (distance < best_edits || (completes && !best)) {
+    if (candidate == elsewhere) return fmt::format("here that is `{}`", candidate);
+    if (word.size() > longest_word) continue;
+    const std::size_t distance = edits(lower(word), lower(candidate));
+    if (distance < best_edits || (!best && same_start(word, candidate))) {
       best = &candidate;
       best_edits = std::min(distance, best_edits);
     }

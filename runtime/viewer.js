@@ -59,7 +59,7 @@ run.times.forEach((_, frame) => {
     const first = 3 * (frame * run.moving.length + k);
     at[body] = [run.poses[first], run.poses[first + 1], run.poses[first + 2]];
   });
-  run.traces.forEach((trace, k) => paths[k].push(pointOf(trace, at).map(v => v.toFixed(1)).join(',')));
+  run.traces.forEach((trace, k) => paths[k].push(pointOf(trace.point, at).map(v => v.toFixed(1)).join(',')));
 });
 
 function addPolyline(parent, kind, points) {
@@ -70,8 +70,9 @@ function addPolyline(parent, kind, points) {
 }
 
 const pasts = paths.map((path, k) => {
-  addPolyline(by('paths'), `trace path t${k % 4}`, path.join(' '));
-  return addPolyline(by('paths'), `trace past t${k % 4}`, '');
+  const colour = `c${run.traces[k].colour}`;
+  addPolyline(by('paths'), `trace path ${colour}`, path.join(' '));
+  return addPolyline(by('paths'), `trace past ${colour}`, '');
 });
 
 // --- plots --------------------------------------------------------------------------------------------------------

@@ -7,12 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 
 namespace cdot {
 
 namespace {
 
-constexpr double coincident = 1.5;  // picture units below which two points are one
+constexpr double coincident = 1.5;     // picture units below which two points are one
+constexpr double rail_overhang = 30;   // by which a rail is longer than it is used
+constexpr double degrees_per_radian = 180 / std::numbers::pi;
 constexpr const char* rigid_link = R"(<line class="rigid" x2="1"/>)";
 constexpr const char* rope_link = R"(<line class="rope" x2="1"/>)";
 constexpr const char* gear_link = R"(<line class="gear" x2="1"/>)";
@@ -32,6 +35,14 @@ class Colours {
   std::map<std::string, int> families_;
 };
 
+// The body (of the spec's a, b, …) that a direction is fixed in: the one that a rail belongs to. -1: no direction.
+int carries_direction(const JointType& type) {
+  for (const ParameterInfo& info : type.parameters) {
+    if (info.kind == ParameterKind::unit || info.kind == ParameterKind::frame) return info.body;
+  }
+  return -1;
+}
+
 struct JointPoint {
   Anchor anchor;
   Vec2 at;  // in the picture at the start
@@ -41,7 +52,7 @@ struct JointPoint {
 class Painter {
  public:
   Painter(const Scene& scene, const std::vector<Frame>& film, Drawing& drawing)
-      : scene_(scene), drawing_(drawing), world_(build_world<double>(scene)),
+      : scene_(scene), film_(film), drawing_(drawing), world_(build_world<double>(scene)),
         start_(places_of(drawing.view, film.front())) {}
 
   void joints();
@@ -52,18 +63,22 @@ class Painter {
  private:
   Anchor anchor(int body, double x, double y) const;
   std::vector<JointPoint> points(int joint) const;
-  void pin(const JointPoint& p, const JointPoint& q, bool welded);
+  void pin(const JointPoint& p, const JointPoint& q, bool grounded, bool welded);
   void link(const JointPoint& p, const JointPoint& q, const char* svg);
-  void rail(int joint, const CoordinateInfo& coordinate, const JointPoint& through);
+  double slide_direction(int joint, const CoordinateInfo& coordinate, int body);
+  void rail(int joint, const CoordinateInfo& coordinate, const JointPoint& base, const JointPoint& rider);
   void between_points(int joint, const std::vector<JointPoint>& points);
   bool is_still(int body) const;
   void mark_ground(const JointPoint& point);
+  void trace(std::size_t body, const Vec2& point);
   std::string body_svg(std::size_t body) const;
 
   const Scene& scene_;
+  const std::vector<Frame>& film_;
   Drawing& drawing_;
   World<double> world_;
   std::vector<Place> start_;
+  Colours colours_;
   std::map<int, std::vector<Vec2>> joint_points_;  // of each body, for bodies without a shape
 };
 
@@ -96,9 +111,9 @@ void Painter::mark_ground(const JointPoint& point) {
                                                    point.at[1], ground_mark)});
 }
 
-void Painter::pin(const JointPoint& p, const JointPoint& q, bool welded) {
+void Painter::pin(const JointPoint& p, const JointPoint& q, bool grounded, bool welded) {
   const JointPoint& moving = is_still(p.anchor.body) ? q : p;
-  if (is_still(p.anchor.body) || is_still(q.anchor.body)) mark_ground(moving);
+  if (grounded && (is_still(p.anchor.body) || is_still(q.anchor.body))) mark_ground(moving);
   const Vec2 at = moving.anchor.local;
   const char* svg = welded ? R"svg(<rect class="pin" x="{0:.2f}" y="{1:.2f}" width="9" height="9" transform="translate(-4.5 -4.5)"/>)svg"
                            : R"(<circle class="pin" cx="{0:.2f}" cy="{1:.2f}" r="5"/>)";
@@ -108,17 +123,12 @@ void Painter::pin(const JointPoint& p, const JointPoint& q, bool welded) {
 void Painter::link(const JointPoint& p, const JointPoint& q, const char* svg) {
   drawing_.links.push_back({p.anchor, q.anchor, svg});
   for (const JointPoint* end : {&p, &q}) {
-    if (is_still(end->anchor.body) && end->anchor.body == world_body) mark_ground(*end);
+    if (end->anchor.body == world_body) mark_ground(*end);
   }
 }
 
-// The direction in which a coordinate [m] grows, by its differences when a body is moved, drawn through a point.
-void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint& through) {
-  int body = -1;
-  for (const int candidate : scene_.joints[static_cast<std::size_t>(joint)].definition.bodies) {
-    if (!is_still(candidate) && candidate != through.anchor.body) body = candidate;
-  }
-  if (body < 0) return;
+// The direction in the picture, in degrees, in which a coordinate [m] grows when `body` is moved: by differences.
+double Painter::slide_direction(int joint, const CoordinateInfo& coordinate, int body) {
   const planar::Pose<double> pose = world_.pose(body);
   const double step = 1e-3 / drawing_.view.scale, before = world_.coordinate(joint, coordinate.name);
   world_.set_pose(body, pose.x + step, pose.y, pose.angle);
@@ -126,15 +136,29 @@ void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint
   world_.set_pose(body, pose.x, pose.y + step, pose.angle);
   const double along_y = world_.coordinate(joint, coordinate.name) - before;
   world_.set_pose(body, pose.x, pose.y, pose.angle);
+  return std::atan2(-along_y, along_x) * degrees_per_radian;
+}
 
-  const Anchor& a = through.anchor;
-  const bool still = is_still(a.body);
-  const double turned = a.body == world_body ? 0 : start_[static_cast<std::size_t>(a.body)].degrees;
-  const double degrees = std::atan2(-along_y, along_x) * 57.29577951308232 - turned;
-  const double half = still ? 2000 : 70;
+// A line on the body of `base` through its point, as long as `rider` uses it in the film.
+void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint& base, const JointPoint& rider) {
+  if (is_still(rider.anchor.body)) return;
+  const auto turned_by = [&](const std::vector<Place>& places) {
+    return base.anchor.body == world_body ? 0 : places[static_cast<std::size_t>(base.anchor.body)].degrees;
+  };
+  const double degrees = slide_direction(joint, coordinate, rider.anchor.body) - turned_by(start_);
+  double least = 0, most = 0;
+  for (const Frame& frame : film_) {
+    const std::vector<Place> places = places_of(drawing_.view, frame);
+    const Vec2 from = position(base.anchor, places), to = position(rider.anchor, places);
+    const double angle = (degrees + turned_by(places)) / degrees_per_radian;
+    const double along = std::cos(angle) * (to[0] - from[0]) + std::sin(angle) * (to[1] - from[1]);
+    least = std::min(least, along);
+    most = std::max(most, along);
+  }
   drawing_.bodies.push_back(
-      {a.body, fmt::format(R"svg(<line class="rail" x1="{:.0f}" x2="{:.0f}" transform="translate({:.2f} {:.2f}) rotate({:.2f})"/>)svg",
-                           -half, half, a.local[0], a.local[1], degrees)});
+      {base.anchor.body,
+       fmt::format(R"svg(<line class="rail" x1="{:.0f}" x2="{:.0f}" transform="translate({:.2f} {:.2f}) rotate({:.2f})"/>)svg",
+                   least - rail_overhang, most + rail_overhang, base.anchor.local[0], base.anchor.local[1], degrees)});
 }
 
 // Two points apart are linked; points of bodies with as many points fixed in the world hang on a rope over those.
@@ -146,9 +170,12 @@ void Painter::between_points(int joint, const std::vector<JointPoint>& all) {
   std::vector<JointPoint> fixed, riding;
   for (const JointPoint& point : all) (point.in_world_frame ? fixed : riding).push_back(point);
   if (fixed.size() == 2 && riding.size() == 2) {
-    link(riding[0], fixed[0], rope_link);
-    link(fixed[0], fixed[1], rope_link);
-    link(riding[1], fixed[1], rope_link);
+    drawing_.links.push_back({riding[0].anchor, fixed[0].anchor, rope_link});
+    drawing_.links.push_back({fixed[0].anchor, fixed[1].anchor, rope_link});
+    drawing_.links.push_back({riding[1].anchor, fixed[1].anchor, rope_link});
+    for (const JointPoint& wheel : fixed) {
+      drawing_.pins.push_back({world_body, fmt::format(R"(<circle class="pin" cx="{:.2f}" cy="{:.2f}" r="9"/>)", wheel.at[0], wheel.at[1])});
+    }
   } else if (all.size() == 2) {
     link(all[0], all[1], svg);
   }
@@ -161,19 +188,17 @@ void Painter::joints() {
     for (const JointPoint& point : all) {
       if (point.anchor.body != world_body) joint_points_[point.anchor.body].push_back(point.anchor.local);
     }
-    const bool directed = std::any_of(type.parameters.begin(), type.parameters.end(), [](const ParameterInfo& info) {
-      return info.kind == ParameterKind::unit || info.kind == ParameterKind::frame;
-    });
     bool slides = false;
     for (const CoordinateInfo& coordinate : type.coordinates) {
-      if (coordinate.unit != "m" || !directed || all.size() != 2) continue;
+      if (coordinate.unit != "m" || carries_direction(type) < 0 || all.size() != 2) continue;
       slides = true;
-      rail(joint, coordinate, is_still(all[0].anchor.body) ? all[0] : all[1]);
+      const bool first_carries = carries_direction(type) == 0;
+      rail(joint, coordinate, all[first_carries ? 0 : 1], all[first_carries ? 1 : 0]);
     }
     const bool pair = all.size() == 2;
     const double apart = pair ? std::hypot(all[0].at[0] - all[1].at[0], all[0].at[1] - all[1].at[1]) : 0;
     if (pair && (slides || apart < coincident)) {
-      pin(all[0], all[1], type.row_kinds.size() == 3 && !type.explicit_time);
+      pin(all[0], all[1], !slides, !slides && type.row_kinds.size() == 3 && !type.explicit_time);
     } else if (!all.empty()) {
       between_points(joint, all);
     } else if (type.bodies >= 2) {
@@ -217,24 +242,25 @@ std::string Painter::body_svg(std::size_t body) const {
 }
 
 void Painter::bodies() {
-  Colours colours;
   for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
     const SceneBody& body = scene_.bodies[k];
-    const std::string kind = body.definition.is_static ? "still" : fmt::format("c{}", colours.of(body.name));
+    const std::string kind = body.definition.is_static ? "still" : fmt::format("c{}", colours_.of(body.name));
     drawing_.bodies.push_back({static_cast<int>(k), fmt::format(R"(<g class="body {}"><title>{}</title>{}</g>)", kind,
                                                                 escaped(body.name), body_svg(k))});
   }
 }
 
+void Painter::trace(std::size_t body, const Vec2& point) {
+  drawing_.traces.push_back({anchor(static_cast<int>(body), point[0], point[1]), colours_.of(scene_.bodies[body].name)});
+}
+
 // What the scene asks for; else the centre of the last body that can move.
 void Painter::traces() {
   for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
-    for (const Vec2& point : scene_.bodies[k].traces) {
-      drawing_.traces.push_back(anchor(static_cast<int>(k), point[0], point[1]));
-    }
+    for (const Vec2& point : scene_.bodies[k].traces) trace(k, point);
   }
   for (std::size_t k = scene_.bodies.size(); k-- > 0 && drawing_.traces.empty();) {
-    if (!scene_.bodies[k].definition.is_static) drawing_.traces.push_back(anchor(static_cast<int>(k), 0, 0));
+    if (!scene_.bodies[k].definition.is_static) trace(k, {});
   }
 }
 

@@ -40,11 +40,16 @@ struct Link {
   std::string svg;
 };
 
+struct Trace {
+  Anchor point;
+  int colour;  // that of its body
+};
+
 struct Drawing {
   View view;
   std::vector<Mark> bodies, pins;  // pins lie above bodies
   std::vector<Link> links;
-  std::vector<Anchor> traces;
+  std::vector<Trace> traces;
 };
 
 Drawing draw(const Scene& scene, const std::vector<Frame>& film);

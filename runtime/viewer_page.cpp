@@ -35,15 +35,18 @@ std::string group(const Mark& mark, const std::vector<Place>& places) {
                      transform(places[static_cast<std::size_t>(mark.body)]), mark.svg);
 }
 
-// All marks at one time.
-std::string placed(const Drawing& drawing, const std::vector<Place>& places) {
+// All marks at one time; of a snapshot among others only what moves.
+std::string placed(const Drawing& drawing, const std::vector<Place>& places, bool with_world = true) {
   std::string svg;
   for (std::size_t k = 0; k < drawing.links.size(); ++k) {
     svg += fmt::format("<g data-link=\"{}\" transform=\"{}\">{}</g>\n", k, link_transform(drawing.links[k], places),
                        drawing.links[k].svg);
   }
-  for (const Mark& mark : drawing.bodies) svg += group(mark, places);
-  for (const Mark& mark : drawing.pins) svg += group(mark, places);
+  for (const std::vector<Mark>* marks : {&drawing.bodies, &drawing.pins}) {
+    for (const Mark& mark : *marks) {
+      if (with_world || mark.body != world_body) svg += group(mark, places);
+    }
+  }
   return svg;
 }
 
@@ -84,7 +87,9 @@ std::string run_json(const Scene& scene, const Drawing& drawing, const std::vect
   run["start"] = run["links"] = run["traces"] = Json::array();
   for (const Place& place : places_of(drawing.view, film.front())) run["start"].push_back(place_json(place));
   for (const Link& link : drawing.links) run["links"].push_back({anchor_json(link.from), anchor_json(link.to)});
-  for (const Anchor& trace : drawing.traces) run["traces"].push_back(anchor_json(trace));
+  for (const Trace& trace : drawing.traces) {
+    run["traces"].push_back({{"point", anchor_json(trace.point)}, {"colour", trace.colour}});
+  }
   add_frames(scene, drawing, film, run);
   std::string text = run.dump();
   // "</script>" in a name must not end the element.
@@ -132,7 +137,7 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
   const std::string facts = fmt::format("{} bodies, {} joints, step {:.4g} s", scene.bodies.size(), scene.joints.size(),
                                         scene.step);
   return filled(viewer_html, {{"title", title},
-                              {"style", std::string(viewer_css) + std::string(viewer_marks_css)},
+                              {"style", std::string(viewer_marks_css) + std::string(viewer_css)},
                               {"facts", facts},
                               {"stage", stage},
                               {"run", run_json(scene, drawing, film)},
@@ -144,18 +149,19 @@ std::string svg_still(const Scene& scene, const std::vector<Frame>& film) {
   std::string svg = svg_head(drawing.view, fmt::format("width=\"{:.0f}\"", 0.8 * drawing.view.width).c_str());
   svg += fmt::format("<style>\n{}@media (prefers-color-scheme: dark) {{ svg {{ --ink: #e6edf3; --paper: #0d1117; }} }}\n</style>\n",
                      viewer_marks_css);
-  for (std::size_t k = 0; k < drawing.traces.size(); ++k) {
-    svg += fmt::format("<polyline class=\"trace t{}\" points=\"", k % 4);
+  for (const Trace& trace : drawing.traces) {
+    svg += fmt::format("<polyline class=\"trace c{}\" points=\"", trace.colour);
     for (const Frame& frame : film) {
-      const Vec2 at = position(drawing.traces[k], places_of(drawing.view, frame));
+      const Vec2 at = position(trace.point, places_of(drawing.view, frame));
       svg += fmt::format("{:.1f},{:.1f} ", at[0], at[1]);
     }
     svg += "\"/>\n";
   }
   for (int k = 0; k < snapshots; ++k) {
     const std::size_t frame = (film.size() - 1) * static_cast<std::size_t>(k) / (snapshots - 1);
-    const double opacity = k == snapshots - 1 ? 1 : 0.12 + 0.06 * k;
-    svg += fmt::format("<g opacity=\"{:.2f}\">\n{}</g>\n", opacity, placed(drawing, places_of(drawing.view, film[frame])));
+    const bool last = k == snapshots - 1;
+    svg += fmt::format("<g class=\"{}\" opacity=\"{:.2f}\">\n{}</g>\n", last ? "now" : "before", last ? 1 : 0.15 + 0.07 * k,
+                       placed(drawing, places_of(drawing.view, film[frame]), last));
   }
   return svg + "</svg>\n";
 }

@@ -1,0 +1,97 @@
+#include "tests/scenes/support.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+namespace cdot::test {
+
+namespace fs = std::filesystem;
+
+fs::path source_dir() { return CDOT_SOURCE_DIR; }
+fs::path scenes_dir() { return source_dir() / "specs" / "scenes"; }
+
+std::string read_text(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, const std::string& ending) {
+  std::vector<fs::path> files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ending) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+TemporaryFolder::TemporaryFolder() {
+  std::string name = (fs::temp_directory_path() / "cdot-XXXXXX").string();
+  path_ = ::mkdtemp(name.data());
+}
+
+TemporaryFolder::~TemporaryFolder() { fs::remove_all(path_); }
+
+std::vector<std::string> TemporaryFolder::contents() const {
+  std::vector<std::string> names;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+CommandResult run_command(const std::string& command) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out", err = folder / "err";
+  const int status = std::system(fmt::format("{} >'{}' 2>'{}'", command, out, err).c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
+}
+
+CommandResult cdot_run(const std::string& arguments) { return run_command(fmt::format("'{}' {}", CDOT_RUN, arguments)); }
+
+Reference read_reference(const std::string& problem, double until) {
+  const auto json = nlohmann::json::parse(read_text(source_dir() / "tests/scenes/reference" / (problem + ".json")));
+  Reference reference{json["error_estimate"], {}};
+  for (const auto& sample : json["samples"]) {
+    if (sample["t"].get<double>() > until) continue;
+    ReferenceSample& added = reference.samples.emplace_back(ReferenceSample{sample["t"], {}});
+    for (const auto& [name, v] : sample["bodies"].items()) added.bodies[name] = {v[0], v[1], v[2], v[3], v[4], v[5]};
+  }
+  return reference;
+}
+
+Distance distance_to(const Reference& reference, const Scene& scene) {
+  Distance worst;
+  std::size_t next = 0;
+  RunOptions options;
+  for (const ReferenceSample& sample : reference.samples) options.row_times.push_back(sample.time);
+  options.row = [&](const Frame& frame) {
+    const ReferenceSample& sample = reference.samples[next++];
+    for (std::size_t k = 0; k < frame.bodies.size(); ++k) {
+      const BodyState &is = frame.bodies[k], &was = sample.bodies.at(scene.bodies[k].name);
+      worst.position = std::max(worst.position, std::hypot(is.x - was.x, is.y - was.y));
+      worst.angle = std::max(worst.angle, std::abs(is.angle - was.angle));
+      worst.velocity = std::max(worst.velocity, std::hypot(is.vx - was.vx, is.vy - was.vy));
+      worst.spin = std::max(worst.spin, std::abs(is.w - was.w));
+    }
+  };
+  Scene run = scene;
+  run.duration = reference.samples.back().time;
+  std::string warnings;
+  const RunResult result = simulate(run, options, warnings);
+  EXPECT_TRUE(result.finite);
+  EXPECT_EQ(warnings, "");
+  EXPECT_EQ(next, reference.samples.size());
+  return worst;
+}
+
+}  // namespace cdot::test

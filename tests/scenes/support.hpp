@@ -1,0 +1,55 @@
+// What the tests of scenes share: paths, running a command, a folder that goes away, reference trajectories.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "runtime/run_simulate.hpp"
+
+namespace cdot::test {
+
+std::filesystem::path source_dir();
+std::filesystem::path scenes_dir();
+std::string read_text(const std::filesystem::path& path);
+// All files with this ending in a folder, by name.
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder, const std::string& ending);
+
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  std::vector<std::string> contents() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+struct CommandResult {
+  int status;
+  std::string out, err;
+};
+CommandResult run_command(const std::string& command);
+CommandResult cdot_run(const std::string& arguments);
+
+struct ReferenceSample {
+  double time;
+  std::map<std::string, BodyState> bodies;
+};
+struct Reference {
+  double accuracy;  // the bound that its source states
+  std::vector<ReferenceSample> samples;
+};
+Reference read_reference(const std::string& problem, double until);
+
+// The largest differences from the reference over its samples and bodies, in SI units.
+struct Distance {
+  double position = 0, angle = 0, velocity = 0, spin = 0;
+  double largest() const { return std::max({position, angle, velocity, spin}); }
+};
+Distance distance_to(const Reference& reference, const Scene& scene);
+
+}  // namespace cdot::test
