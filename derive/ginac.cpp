@@ -1,72 +1,13 @@
-// From expressions to GiNaC, and the decision whether something vanishes: compounds (roots,
-// quotients, sines) become symbols with the relation that they obey; a polynomial in symbols is
-// reduced by the relations, last symbol first.
+// From expressions to GiNaC's, over either set of coordinates, and the chain rule over them.
 #include "derive/ginac.hpp"
 
-#include <fmt/format.h>
-
-#include <algorithm>
 #include <stdexcept>
 
 namespace cdot::derive {
 
 using GiNaC::ex;
 using GiNaC::ex_to;
-using GiNaC::is_a;
 using GiNaC::numeric;
-
-namespace {
-
-constexpr int digits = 80;       // of the numbers that decide what algebra does not
-constexpr int random_poses = 6;  // at which they are taken
-
-ex ginac_number(Rational value) {
-  return numeric(static_cast<long>(value.num())) / numeric(static_cast<long>(value.den()));
-}
-
-ex random_fraction(Random& random) {
-  return numeric(static_cast<long>(random.bits() % 2001) - 1000) / numeric(487);
-}
-
-// A rational point of the unit circle.
-Pair<ex> random_direction(Random& random) {
-  const ex t = random_fraction(random);
-  return {(1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)};
-}
-
-// Powers of `symbol` from two on are replaced by means of symbol^2 = square. The polynomial must be
-// expanded.
-ex square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square) {
-  const int degree = polynomial.degree(symbol);
-  if (degree < 2) return polynomial;
-  ex out = 0;
-  for (int k = 0; k <= degree; ++k) {
-    out += polynomial.coeff(symbol, k) * pow(square, k / 2) * pow(symbol, k % 2);
-  }
-  return out.expand();
-}
-
-// The numerator over the power of `operand` that symbol = 1/operand needs.
-ex inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
-  const int degree = polynomial.degree(symbol);
-  if (degree < 1) return polynomial;
-  ex out = 0;
-  for (int k = 0; k <= degree; ++k) {
-    out += polynomial.coeff(symbol, k) * pow(operand, degree - k);
-  }
-  return out.expand();
-}
-
-ex numeric_factor(const ex& term) {
-  if (is_a<numeric>(term)) return term;
-  if (!is_a<GiNaC::mul>(term)) return 1;
-  for (const ex& factor : term) {
-    if (is_a<numeric>(factor)) return factor;
-  }
-  return 1;
-}
-
-}  // namespace
 
 Algebra::Algebra(const Joint& joint, Route route, int immovable)
     : joint_(joint), route_(route), immovable_(immovable), evaluation_(*this) {}
@@ -98,7 +39,9 @@ ex Algebra::rate(const ex& e) {
   return total;
 }
 
-ex Algebra::number(Rational value) { return ginac_number(value); }
+ex Algebra::number(Rational value) {
+  return numeric(static_cast<long>(value.num())) / numeric(static_cast<long>(value.den()));
+}
 
 ex Algebra::scalar_leaf(const Node& symbol) {
   switch (symbol.role) {
@@ -174,222 +117,6 @@ ex Algebra::call(Fn fn, std::span<const ex> args) {
       break;
   }
   throw std::logic_error("no such function before the components are written out");
-}
-
-// A symbol for a compound about which nothing is known but its name.
-ex Algebra::symbol_for(const ex& compound) {
-  const auto found = known_.find(compound);
-  if (found != known_.end()) return found->second;
-  const ex symbol = GiNaC::realsymbol();
-  known_.emplace(compound, symbol);
-  return symbol;
-}
-
-ex Algebra::atomised(const ex& e) {
-  if (is_a<GiNaC::symbol>(e) || is_a<numeric>(e)) return e;
-  const auto found = known_.find(e);
-  if (found != known_.end()) return found->second;
-  ex result;
-  if (is_a<GiNaC::add>(e)) {
-    result = 0;
-    for (const ex& term : e) result += atomised(term);
-  } else if (is_a<GiNaC::mul>(e)) {
-    result = 1;
-    for (const ex& factor : e) result *= atomised(factor);
-  } else if (is_a<GiNaC::power>(e)) {
-    result = atomised_power(e.op(0), e.op(1));
-  } else {
-    return atomised_function(e);
-  }
-  known_.emplace(e, result);
-  return result;
-}
-
-// x^(-k) = (1/x)^k;  x^(k/2) = root(x)^k;  1/root(x) = root(x)/x
-ex Algebra::atomised_power(const ex& base, const ex& exponent) {
-  const ex b = atomised(base);
-  if (!is_a<numeric>(exponent)) return symbol_for(pow(b, exponent));
-  const numeric& k = ex_to<numeric>(exponent);
-  if (k.is_integer()) return k.is_positive() ? pow(b, k) : pow(inverse_of(b), -k);
-  if (!(k * 2).is_integer()) return symbol_for(pow(b, exponent));
-  const ex root = root_of(b);
-  return k.is_positive() ? pow(root, 2 * k) : pow(root * inverse_of(b), -2 * k);
-}
-
-ex Algebra::atomised_function(const ex& e) {
-  if (GiNaC::is_the_function<GiNaC::sin_SERIAL>(e)) return turned(false, atomised(e.op(0)));
-  if (GiNaC::is_the_function<GiNaC::cos_SERIAL>(e)) return turned(true, atomised(e.op(0)));
-  if (!is_a<GiNaC::function>(e)) return symbol_for(e);
-  GiNaC::exvector args;
-  for (const ex& arg : e) args.push_back(reduced(atomised(arg)));
-  return symbol_for(GiNaC::function(ex_to<GiNaC::function>(e).get_serial(), args));
-}
-
-ex Algebra::inverse_of(const ex& base) {
-  const ex operand = reduced(base);
-  if (operand.is_zero()) throw std::domain_error("division by zero");
-  if (is_a<numeric>(operand)) return 1 / operand;
-  const auto found = inverses_.find(operand);
-  if (found != inverses_.end()) return found->second;
-  for (const Atom& atom : atoms_) {
-    if (atom.kind == Atom::Kind::square && operand.is_equal(atom.symbol)) {
-      return operand * inverse_of(atom.operand);
-    }
-  }
-  if (is_a<GiNaC::mul>(operand)) {
-    ex result = 1;
-    for (const ex& factor : operand) result *= inverse_of(factor);
-    return result;
-  }
-  if (is_a<GiNaC::power>(operand)) return pow(inverse_of(operand.op(0)), operand.op(1));
-  const GiNaC::realsymbol symbol;
-  atoms_.push_back({Atom::Kind::inverse, symbol, operand});
-  inverses_.emplace(operand, symbol);
-  return symbol;
-}
-
-ex Algebra::root_of(const ex& base) {
-  const ex operand = reduced(base);
-  if (is_a<numeric>(operand)) {
-    const ex root = GiNaC::sqrt(operand);
-    if (root.info(GiNaC::info_flags::rational)) return root;
-  }
-  const auto found = roots_.find(operand);
-  if (found != roots_.end()) return found->second;
-  for (const auto& [other, symbol] : roots_) {
-    if (without_inverses(operand - other).is_zero()) return symbol;
-  }
-  const GiNaC::realsymbol symbol;
-  atoms_.push_back({Atom::Kind::square, symbol, operand});
-  roots_.emplace(operand, symbol);
-  return symbol;
-}
-
-// cos or sin of an angle, of a sum of angles by the addition theorems; c^2 + s^2 = 1 for the angle
-// of each term.
-ex Algebra::turned(bool cosine, const ex& angle) {
-  const ex expanded = reduced(angle);
-  ex c = 1, s = 0;
-  const auto turn_by = [&](const ex& c_by, const ex& s_by) {
-    const ex c_before = c;
-    c = c * c_by - s * s_by;
-    s = c_before * s_by + s * c_by;
-  };
-  const bool split = is_a<GiNaC::add>(expanded) &&
-                     std::all_of(expanded.begin(), expanded.end(), [](const ex& term) {
-                       return is_a<GiNaC::symbol>(term / numeric_factor(term));
-                     });
-  const GiNaC::exvector terms =
-      split ? GiNaC::exvector(expanded.begin(), expanded.end()) : GiNaC::exvector{expanded};
-  for (const ex& term : terms) {
-    if (term.is_zero()) continue;
-    const numeric factor = ex_to<numeric>(numeric_factor(term));
-    const bool few = factor.is_integer() && abs(factor) <= 4;
-    const int times = few ? abs(factor).to_int() : 1;
-    const bool negative = factor.is_negative();
-    const ex base = term / (negative ? -times : times);
-    auto known = turns_.begin();
-    while (known != turns_.end() && !known->first.is_equal(base)) ++known;
-    if (known == turns_.end()) {
-      const GiNaC::realsymbol c_base, s_base;
-      atoms_.push_back({Atom::Kind::square, c_base, 1 - s_base * s_base});
-      known = turns_.insert(known, {base, {c_base, s_base}});
-    }
-    for (int i = 0; i < times; ++i) {
-      turn_by(known->second[0], negative ? -known->second[1] : known->second[1]);
-    }
-  }
-  return reduced(cosine ? c : s);
-}
-
-ex Algebra::reduced(const ex& polynomial) const {
-  ex p = polynomial.expand();
-  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    if (atom->kind == Atom::Kind::square) p = square_reduced(p, atom->symbol, atom->operand);
-  }
-  return p;
-}
-
-ex Algebra::without_inverses(const ex& polynomial) const {
-  ex p = polynomial.expand();
-  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    p = atom->kind == Atom::Kind::square ? square_reduced(p, atom->symbol, atom->operand)
-                                         : inverse_removed(p, atom->symbol, atom->operand);
-  }
-  return p;
-}
-
-// A change of variables that keeps polynomials short: where the joint speaks of u = x_a + ra - x_b
-// - rb, u takes the place of x_a, so that |u|^2 has two terms and not twenty.
-void Algebra::shorten(Expr root) {
-  for (const Expr u : topological(std::span(&root, 1))) {
-    if (!u->vector || u->kind != Kind::sum) continue;
-    const Pair<ex> components = of_vector(u);
-    for (const Expr part : u->args) {
-      if (part->kind != Kind::symbol || part->role != Role::position) continue;
-      const Pair<ex> x = of_vector(part);
-      if (replace(x[0], components[0]) && replace(x[1], components[1])) break;
-    }
-  }
-}
-
-// Makes `compound` a variable in place of x, if it contains x times a number.
-bool Algebra::replace(const ex& x, const ex& compound) {
-  if (change_.contains(x)) return false;
-  const ex now = compound.subs(change_, GiNaC::subs_options::no_pattern).expand();
-  const ex slope = now.coeff(x);
-  if (!is_a<numeric>(slope) || slope.is_zero()) return false;
-  const ex value = (GiNaC::realsymbol() - now) / slope + x;
-  for (auto& [symbol, earlier] : change_) {
-    earlier = earlier.subs(x == value, GiNaC::subs_options::no_pattern);
-  }
-  change_[x] = value.expand();
-  return true;
-}
-
-std::optional<ex> Algebra::numerator(const ex& e) try {
-  return without_inverses(atomised(e.subs(change_, GiNaC::subs_options::no_pattern)));
-} catch (const std::exception&) {  // GiNaC's own complaints, say of a pole: no answer
-  return std::nullopt;
-}
-
-// Whether e differs from zero at a random rational pose; leaves the pose behind as the witness.
-bool Algebra::differs_at_random(const ex& e, std::uint64_t seed) try {
-  Random random(seed);
-  GiNaC::exmap pose;
-  for (const auto& [name, leaf] : leaves_) pose[leaf.symbol] = random_fraction(random);
-  for (const Pair<ex>& u : unit_vectors_) {
-    const Pair<ex> direction = random_direction(random);
-    pose[u[0]] = direction[0];
-    pose[u[1]] = direction[1];
-  }
-  const ex value = e.subs(pose, GiNaC::subs_options::no_pattern).evalf();
-  if (!is_a<numeric>(value) || abs(ex_to<numeric>(value)) < pow(numeric(10), -60)) return false;
-  const auto shown = [](const ex& x) {
-    return fmt::format("{:.4g}", real(ex_to<numeric>(x)).to_double());
-  };
-  witness_ = "by " + shown(value) + " at";
-  for (const auto& [name, leaf] : leaves_) {
-    if (e.has(leaf.symbol)) witness_ += " " + name + " = " + shown(pose[leaf.symbol]) + ",";
-  }
-  witness_.pop_back();
-  return true;
-} catch (const std::exception&) {  // undefined at this pose
-  return false;
-}
-
-Algebra::Zero Algebra::is_zero(const ex& e) {
-  if (e.is_zero()) return Zero::yes;
-  const std::optional<ex> p = numerator(e);
-  if (p && p->is_zero()) return Zero::yes;
-  const long before = GiNaC::Digits;
-  GiNaC::Digits = digits;
-  bool differs = false;
-  for (std::uint64_t seed = 1; seed <= random_poses && !differs; ++seed) {
-    differs = differs_at_random(e, seed);
-  }
-  GiNaC::Digits = before;
-  return differs ? Zero::no : Zero::undecided;
 }
 
 }  // namespace cdot::derive

@@ -36,8 +36,13 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   Zero is_zero(const GiNaC::ex& e);
   // After Zero::no: a pose at which it shows, in the joint's names, and how much it is there.
   const std::string& witness() const { return witness_; }
-  // Reduced by the same relations: the numerator as a polynomial. It is zero where e is.
+  // Reduced by the same relations: a numerator as a polynomial, zero where e is; the second one
+  // without what cancels.
   std::optional<GiNaC::ex> numerator(const GiNaC::ex& e);
+  std::optional<GiNaC::ex> reduced_numerator(const GiNaC::ex& e);
+  // A polynomial of these as one of ours, over components (ra_x, u_x, |u|): in an order that
+  // depends on names only.
+  Expr expression(const GiNaC::ex& polynomial) const;
 
   GiNaC::ex number(Rational value) override;
   GiNaC::ex scalar_leaf(const Node& symbol) override;

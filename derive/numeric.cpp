@@ -96,15 +96,17 @@ bool is_body_axis(const Joint& joint, const Node& leaf) {
 
 }  // namespace
 
-double evaluate(Expr scalar, const Values& values) {
-  Doubles doubles(values);
-  return Evaluation<double>(doubles).scalar(scalar);
-}
+struct Numbers::Parts {
+  explicit Parts(Values given) : values(std::move(given)), doubles(values), evaluation(doubles) {}
+  const Values values;
+  Doubles doubles;
+  Evaluation<double> evaluation;
+};
 
-Pair<double> evaluate_vector(Expr vector, const Values& values) {
-  Doubles doubles(values);
-  return Evaluation<double>(doubles).vector(vector);
-}
+Numbers::Numbers(Values values) : parts_(std::make_unique<Parts>(std::move(values))) {}
+Numbers::~Numbers() = default;
+double Numbers::scalar(Expr e) { return parts_->evaluation.scalar(e); }
+Pair<double> Numbers::vector(Expr e) { return parts_->evaluation.vector(e); }
 
 // splitmix64 (Steele, Lea, Flood, 2014).
 std::uint64_t Random::bits() {

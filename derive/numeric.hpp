@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -136,8 +137,18 @@ using Values = std::map<std::string, double>;
 
 // In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is (1, 0).
 // Throws std::out_of_range with the name of a leaf that has no value.
-double evaluate(Expr scalar, const Values& values);
-Pair<double> evaluate_vector(Expr vector, const Values& values);
+class Numbers {
+ public:
+  explicit Numbers(Values values);
+  ~Numbers();
+  double scalar(Expr e);
+  Pair<double> vector(Expr e);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+inline double evaluate(Expr scalar, const Values& values) { return Numbers(values).scalar(scalar); }
 
 // The same numbers from the same seed on any machine.
 class Random {

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <set>
+
+#include "derive/prove_words.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -120,23 +121,6 @@ std::vector<Expr> terms_of_row(const ScalarRow& row, Expr written) {
   return terms;
 }
 
-bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
-// Where `what` stands in the text of the file between begin and end, as a whole word.
-void find_all(const std::string& text, Span where, const std::string& what,
-              std::vector<Span>& out) {
-  const auto end = std::min(static_cast<std::size_t>(where.end), text.size());
-  for (auto at = text.find(what, static_cast<std::size_t>(where.begin));
-       at != std::string::npos && at + what.size() <= end; at = text.find(what, at + 1)) {
-    const bool begins = at == 0 || !is_word(text[at - 1]) || !is_word(what.front());
-    const bool ends = at + what.size() >= text.size() || !is_word(text[at + what.size()]) ||
-                      !is_word(what.back());
-    if (begins && ends) {
-      out.push_back({static_cast<int>(at), static_cast<int>(at + what.size())});
-    }
-  }
-}
-
 // How the author may have written what a common motion changes in these terms.
 std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joint, bool rotation) {
   std::set<std::string> words;
@@ -169,33 +153,8 @@ std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joi
 
 std::vector<Span> spans_of(const std::vector<Expr>& terms, const Joint& joint, Span where,
                            bool rotation) {
-  std::vector<Span> spans;
-  if (!joint.file) return spans;
-  for (const std::string& word : spellings(terms, joint, rotation)) {
-    find_all(joint.file->text, where, word, spans);
-  }
-  std::sort(spans.begin(), spans.end(), [](Span a, Span b) { return a.begin < b.begin; });
-  return spans;
-}
-
-// As the author would write it: angle(a) for theta_a, x(a) for x_a.
-std::string said(Expr e, const Joint& joint) {
-  std::map<const Node*, Expr> spelled;
-  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
-    const std::string& name = joint.bodies[b];
-    spelled.emplace(&*body.theta, joint.pool->symbol("angle(" + name + ")", Role::given));
-    spelled.emplace(&*body.x, joint.pool->vector_symbol("x(" + name + ")", Role::given));
-  }
-  return text(substitute(e, spelled));
-}
-
-std::string listed(const std::vector<Expr>& terms, const Joint& joint) {
-  std::string s;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    s += (i == 0 ? "" : i + 1 == terms.size() ? " and " : ", ") + said(terms[i], joint);
-  }
-  return s;
+  if (!joint.file) return {};
+  return occurrences(*joint.file, where, spellings(terms, joint, rotation));
 }
 
 std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, const Joint& joint) {
@@ -226,7 +185,9 @@ Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const F
   const std::vector<Expr> guilty = momentum.breaking_terms(terms, felt_by_term);
   Law law{LawId::momentum, Verdict::fails, {}, {}, row.row, {}};
   law.text = sentence(row, felt, rotation, joint);
-  if (terms.size() > 1) law.text += "; it is the doing of " + listed(guilty, joint);
+  std::vector<std::string> parts;
+  for (const Expr term : guilty) parts.push_back(said(term, joint));
+  if (terms.size() > 1) law.text += "; it is the doing of " + listed(parts);
   law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is "
                        "fixed in the world"
                      : "use differences of points, or say which point is fixed in the world";

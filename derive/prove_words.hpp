@@ -1,0 +1,25 @@
+// Expressions in the words of the spec, and where those words stand in it: for messages of proofs
+// and checks.
+#pragma once
+
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "derive/joint.hpp"
+
+namespace cdot::derive {
+
+// As the author would write it: by its own name if it has one, else with angle(a) for theta_a, x(a)
+// for x_a.
+std::string said(Expr e, const Joint& joint);
+
+// "x, y and z"
+std::string listed(std::span<const std::string> parts, std::string_view last = " and ");
+
+// Where the words stand in this part of the file, as whole words, in order.
+std::vector<Span> occurrences(const SourceFile& file, Span where,
+                              const std::set<std::string>& words);
+
+}  // namespace cdot::derive
