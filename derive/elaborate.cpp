@@ -8,8 +8,6 @@
 namespace cdot::derive {
 namespace {
 
-constexpr std::size_t largest_file = 1 << 20;
-
 bool valid_name_of_file(const SourceFile& file, const std::string& name) {
   const std::filesystem::path path(file.path);
   return path.extension() != ".joint" || path.stem() == name;
@@ -30,10 +28,8 @@ bool depends_on_bodies(Expr e) {
 }
 
 void parse_source(Source& source) {
-  if (source.file->text.size() > largest_file)
-    return source.diagnostics.error({0, 0}, "the file is larger than 1 MiB",
-                                    "a joint is one page; is this the right file?");
   source.tokens = lex(*source.file, false, source.diagnostics);
+  if (!source.tokens.readable) return;
   source.ast = parse_joint(*source.file, source.tokens, source.diagnostics);
   for (const StatementAst& s : source.ast.statements)
     if (!s.declared.name.text.empty() && s.kind != StatementAst::Kind::coordinate)
@@ -174,14 +170,19 @@ void SourceNames::use_body(int body, Span where) {
 }
 
 std::vector<std::string> SourceNames::known() const {
-  std::vector<std::string> names = {"time", "pi", "world"};
+  std::vector<std::string> names = {"time", "world"};
   for (const auto& [name, entry] : e_.names_) names.push_back(name);
   return names;
 }
 
 std::string SourceNames::hint(const std::string& name) const {
   const auto below = source_.declared_anywhere.find(name);
-  if (below == source_.declared_anywhere.end()) return {};
+  if (below == source_.declared_anywhere.end()) {
+    for (const auto& [other, entry] : e_.names_)
+      if (entry.included && other.ends_with("_" + name))
+        return "did you mean " + quote(other) + ", from the include?";
+    return {};
+  }
   return quote(name) + " is declared only in line " +
          std::to_string(source_.file->line(below->second.begin)) + "; move that up";
 }

@@ -59,6 +59,7 @@ class Elaborator {
   bool default_fits(Source& source, const DeclaredAst& d, Value& given);
   bool build_symbol(Source& source, const DeclaredAst& d, Parameter& p, Value& value);
   void let(Source& source, const DeclaredAst& d);
+  std::string vector_of_component(const std::string& name) const;
   bool name_is_free(Source& source, const Word& word, const std::string& full);
   void enter(Source& source, const std::string& full, std::string kind, Value value, Span where);
   // elaborate_row.cpp

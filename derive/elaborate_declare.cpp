@@ -246,6 +246,10 @@ bool Elaborator::name_is_free(Source& source, const Word& word, const std::strin
     if (o.where != Operator::Where::hand)
       return say(" is the operator " + std::string(o.signature), "choose another name");
   }
+  if (is_word_of_cpp(full))
+    return say(" is a word of C++, in which kernels are written", "choose another name");
+  if (const std::string vector = vector_of_component(full); !vector.empty())
+    return say(" is the name of a component of " + quote(vector), "choose another name");
   if (is_symbol_of_tool(full)) return say(" is a name that the tool needs", "choose another name");
   const auto known = names_.find(full);
   if (known == names_.end()) return true;
@@ -253,11 +257,23 @@ bool Elaborator::name_is_free(Source& source, const Word& word, const std::strin
       source.include ? "include it under a prefix: include ... as left" : "choose another name";
   error(source, word.where,
         known->second.kind == "arm" ? quote(full) + " is already the arm of a point"
-        : known->second.included != source.include.has_value() || source.include
+        : source.include || known->second.included
             ? quote(full) + " means something else in what is included"
             : quote(full) + " is declared twice",
         fix, {known->second.where});
   return false;
+}
+
+// The vector that has `name` as the name of a component in kernels: `t` for `t_x`.
+std::string Elaborator::vector_of_component(const std::string& name) const {
+  const auto is_vector = [](const Value& v) {
+    return v.type == Type::vector || v.type == Type::point || v.type == Type::frame;
+  };
+  if (name.size() > 2 && (name.ends_with("_x") || name.ends_with("_y"))) {
+    const auto base = names_.find(name.substr(0, name.size() - 2));
+    if (base != names_.end() && is_vector(base->second.value)) return base->first;
+  }
+  return {};
 }
 
 void Elaborator::enter(Source& source, const std::string& full, std::string kind, Value value,

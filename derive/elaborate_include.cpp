@@ -33,7 +33,8 @@ bool Elaborator::includable(Source& source, const IncludeAst& item) {
   if (std::find(way.begin(), way.end(), name) != way.end()) {
     std::string circle;
     for (const std::string& step : way) circle += step + " includes ";
-    d.error(item.joint.where, "includes go in a circle: " + circle + name, "remove one of them");
+    error(source, item.joint.where, "includes go in a circle: " + circle + name,
+          "remove one of them");
     return false;
   }
   if (++include_count_ > most_includes) {

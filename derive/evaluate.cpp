@@ -37,7 +37,8 @@ std::string fix_of_units(const Value& a, const Value& b) {
   };
   if (are(length, angle)) return "an arc is radius times angle: multiply the angle by a radius";
   if (are(number, angle)) return "give the number its unit, as in 1.5 [rad] or 90 [deg]";
-  if (are(number, length)) return "give the number, or what it is made of, its unit, as in 2 [m]";
+  if (are(number, length))
+    return "give the number its unit, as in 2 [m], or the parameter, as in vector d [m] on a";
   if (are(length, {.m = 2})) return "take the root of one side, or square the other";
   return "only quantities with the same unit can be added or compared";
 }
@@ -125,14 +126,9 @@ Value Evaluator::name(const Ast& ast) {
 }
 
 Value Evaluator::unknown(const Ast& ast, bool called) {
-  std::vector<std::string> candidates;
-  if (called)
-    for (const Operator& o : operators()) candidates.emplace_back(o.name);
-  else
-    candidates = names_.known();
-  std::string fix = called ? "" : names_.hint(ast.text);
-  if (const std::string near = nearest(ast.text, candidates); fix.empty() && !near.empty())
-    fix = "did you mean " + quote(near) + "?";
+  std::string fix = called ? suggested_operator(ast.text) : names_.hint(ast.text);
+  const std::string near = called ? "" : nearest(ast.text, names_.known());
+  if (fix.empty() && !near.empty()) fix = "did you mean " + quote(near) + "?";
   if (fix.empty() && !called && is_operator(ast.text))
     fix = "it is an operator: " + std::string(operators_named(ast.text)[0]->signature);
   if (fix.empty() && called && names_.find(ast.text))

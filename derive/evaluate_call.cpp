@@ -58,7 +58,7 @@ std::string signatures(std::string_view name) {
 
 std::string given_in_words(const Value& v) {
   if (v.type == Type::body && v.body < 0) return "the world";
-  if (v.type == Type::point && !v.anchored) return "a computed point, which belongs to no body,";
+  if (v.type == Type::point && !v.anchored) return "one that was computed and belongs to no body";
   return std::string(in_words(v.type));
 }
 
@@ -126,15 +126,18 @@ Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast&
   const auto right_count =
       std::find_if(candidates.begin(), candidates.end(),
                    [&](const Operator* o) { return o->takes.size() == arguments.size(); });
-  if (right_count == candidates.end())
-    return error(ast.where,
-                 quote(ast.text) + " takes " + std::to_string(candidates[0]->takes.size()) +
-                     (candidates.back()->takes.size() != candidates[0]->takes.size()
-                          ? " or " + std::to_string(candidates.back()->takes.size())
-                          : "") +
-                     (candidates.back()->takes.size() == 1 ? " argument" : " arguments") +
-                     ", here are " + std::to_string(arguments.size()),
-                 help);
+  if (right_count == candidates.end()) {
+    diagnostics_.error(ast.where,
+                       quote(ast.text) + " takes " + std::to_string(candidates[0]->takes.size()) +
+                           (candidates.back()->takes.size() != candidates[0]->takes.size()
+                                ? " or " + std::to_string(candidates.back()->takes.size())
+                                : "") +
+                           (candidates.back()->takes.size() == 1 ? " argument" : " arguments") +
+                           (arguments.size() == 1 ? ", here is " : ", here are ") +
+                           std::to_string(arguments.size()),
+                       help);
+    return {};
+  }
   const Operator& o = **right_count;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     unsigned allowed = 0;

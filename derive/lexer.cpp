@@ -8,10 +8,14 @@ namespace cdot::derive {
 namespace {
 
 constexpr std::size_t longest_name = 64;
+constexpr std::size_t largest_file = 1 << 20;
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
+bool is_control(char c) {
+  return is_ascii(c) && (c < ' ' || c == 0x7F) && c != '\t' && c != '\n' && c != '\r';
+}
 
 // Characters that a word processor puts in place of those of the language.
 struct LookAlike {
@@ -34,6 +38,8 @@ class Lexer {
 
   Tokens run() {
     if (text_.starts_with("\uFEFF")) at_ = 3;  // a byte order mark
+    tokens_.readable = is_text();
+    if (!tokens_.readable) at_ = text_.size();
     while (at_ < text_.size()) step();
     add(TokenKind::newline, at_, at_);
     add(TokenKind::end, at_, at_);
@@ -41,10 +47,39 @@ class Lexer {
   }
 
  private:
+  // Whether the bytes are worth reading; what is not UTF-8 is told once.
+  bool is_text() {
+    if (text_.size() > largest_file) {
+      diagnostics_.error({0, 0}, "the file is larger than 1 MiB", "is this the right file?");
+      return false;
+    }
+    const std::size_t nul = text_.find('\0');
+    if (nul != std::string_view::npos) {
+      diagnostics_.error(span(nul, nul + 1), "not a text: here is a NUL byte",
+                         "save the file as UTF-8; is this the right file?");
+      return false;
+    }
+    bool control = false;
+    for (std::size_t i = 0; i < text_.size();) {
+      const int length = utf8_length(text_, i);
+      const std::size_t end = i + static_cast<std::size_t>(length > 0 ? length : 1);
+      if (length == 0 && valid_)
+        diagnostics_.error(span(i, end), "here is a byte that is not UTF-8",
+                           "save the file as UTF-8");
+      valid_ = valid_ && length > 0;
+      if (is_control(text_[i]) && !control)
+        diagnostics_.error(span(i, end), "a control character in the text", "remove it");
+      control |= is_control(text_[i]);
+      i = end;
+    }
+    return true;
+  }
+
   void step() {
     const char c = text_[at_];
     if (c == '\n') return newline();
     if (c == ' ' || c == '\t' || c == '\r') return void(++at_);
+    if (is_control(c)) return void(++at_);  // told by is_text
     if (c == '#') return comment();
     if (c == '"') return string();
     if (is_letter(c)) return name();
@@ -142,13 +177,14 @@ class Lexer {
     const std::string digits(text_.substr(begin, std::min<std::size_t>(end_of_number - begin, 20)));
     const std::string rest(
         text_.substr(end_of_number, std::min<std::size_t>(at_ - end_of_number, 20)));
+    tokens_.list.pop_back();
     if (rest.starts_with('.'))
-      diagnostics_.error(span(begin, at_), "this is not a number",
-                         "digits must stand on both sides of the point, as in 1.0");
+      reject(begin, "this is not a number",
+             "digits must stand on both sides of the point, as in 1.0");
     else
-      diagnostics_.error(span(begin, at_), "a name may not start with a digit",
-                         "for a product write " + digits + "*" + rest +
-                             ", for a number with a unit " + digits + " [" + rest + "]");
+      reject(begin, "neither a number nor a name",
+             "names do not start with a digit; a product is " + digits + "*" + rest +
+                 ", and 2 m is 2 [m]");
   }
 
   void bare_fraction() {
@@ -188,19 +224,21 @@ class Lexer {
     const bool ascii = is_ascii(text_[at_]);
     do ++at_;
     while (at_ < text_.size() && !known(text_[at_]) && is_ascii(text_[at_]) == ascii);
-    if (ascii && text_[begin] >= ' ' && text_[begin] != 0x7F)
-      diagnostics_.error(span(begin, at_), "a character that the language does not have",
-                         text_[begin] == '@' || text_[begin] == '|' || text_[begin] == '&' ||
-                                 text_[begin] == '$' || text_[begin] == '%'
-                             ? "remove it"
-                             : "");
+    if (ascii)
+      reject(begin, "the language has no character " + quote(text_.substr(begin, at_ - begin)));
+    else if (valid_)
+      reject(begin, "only plain letters can be used here",
+             "names are of a-z, A-Z, 0-9 and _; other letters may stand in comments and "
+             "\"texts\"");
     else
-      diagnostics_.error(
-          span(begin, at_),
-          ascii ? "a control character in the text" : "only plain letters can be used here",
-          ascii ? "save the file as plain UTF-8 text"
-                : "names are of a-z, A-Z, 0-9 and _; other letters may stand in "
-                  "comments and \"texts\"");
+      tokens_.list.push_back({TokenKind::unknown, span(begin, at_), {}});
+  }
+
+  // What was read since `begin` is no token.
+  void reject(std::size_t begin, std::string message, std::string fix = {}) {
+    const Span where = span(begin, at_);
+    diagnostics_.error(where, std::move(message), std::move(fix));
+    tokens_.list.push_back({TokenKind::unknown, where, {}});
   }
 
   static bool known(char c) {
@@ -218,6 +256,7 @@ class Lexer {
 
   std::string_view text_;
   bool hand_;
+  bool valid_ = true;  // UTF-8 throughout
   Diagnostics& diagnostics_;
   std::size_t at_ = 0;
   int depth_ = 0;

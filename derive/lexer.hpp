@@ -9,7 +9,8 @@
 
 namespace cdot::derive {
 
-enum class TokenKind { name, number, string, symbol, newline, end };
+// `unknown`: what is no token and was reported as such.
+enum class TokenKind { name, number, string, symbol, unknown, newline, end };
 
 struct Token {
   TokenKind kind = TokenKind::end;
@@ -20,6 +21,7 @@ struct Token {
 struct Tokens {
   std::vector<Token> list;     // ends with newline and end
   std::vector<Span> comments;  // of whole lines
+  bool readable = true;        // otherwise not a text, or too large; said so
 };
 
 Tokens lex(const SourceFile& file, bool hand, Diagnostics& diagnostics);

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <map>
 
+#include "derive/source.hpp"
 #include "derive/symbols.hpp"
 
 namespace cdot::derive {
@@ -184,6 +186,43 @@ std::vector<const Operator*> operators_named(std::string_view name) {
   for (const Operator& o : operators())
     if (o.name == name) found.push_back(&o);
   return found;
+}
+
+std::string suggested_operator(std::string_view word) {
+  static const std::map<std::string, std::string> other_words = {{"length", "norm(u)"},
+                                                                 {"magnitude", "norm(u)"},
+                                                                 {"len", "norm(u)"},
+                                                                 {"distance", "norm(p - q)"},
+                                                                 {"dist", "norm(p - q)"},
+                                                                 {"normalize", "unit(u)"},
+                                                                 {"normalise", "unit(u)"},
+                                                                 {"normalized", "unit(u)"},
+                                                                 {"direction", "unit(u)"},
+                                                                 {"position", "x(a)"},
+                                                                 {"center", "x(a)"},
+                                                                 {"centre", "x(a)"},
+                                                                 {"velocity", "v(a)"},
+                                                                 {"omega", "w(a)"},
+                                                                 {"orientation", "angle(a)"},
+                                                                 {"theta", "angle(a)"},
+                                                                 {"rotation", "angle(a)"},
+                                                                 {"perpendicular", "perp(u)"},
+                                                                 {"skew", "perp(u)"},
+                                                                 {"inner", "dot(u, v)"},
+                                                                 {"asin", "atan2(y, x)"},
+                                                                 {"acos", "atan2(y, x)"},
+                                                                 {"atan", "atan2(y, x)"},
+                                                                 {"pow", "s^2"},
+                                                                 {"power", "s^2"},
+                                                                 {"ln", "log(s)"},
+                                                                 {"fabs", "abs(s)"}};
+  std::vector<std::string> candidates;
+  for (const Operator& o : operators()) candidates.emplace_back(o.name);
+  for (const auto& [other, meaning] : other_words) candidates.push_back(other);
+  const std::string near = nearest(word, candidates);
+  if (near.empty()) return {};
+  const auto other = other_words.find(near);
+  return "did you mean `" + (other == other_words.end() ? near : other->second) + "`?";
 }
 
 std::string operators_help() {

@@ -43,6 +43,8 @@ struct Operator {
 const std::vector<Operator>& operators();
 bool is_operator(std::string_view name);
 std::vector<const Operator*> operators_named(std::string_view name);
+// What somebody who wrote `word(...)` may have meant; empty if there is no telling.
+std::string suggested_operator(std::string_view word);
 std::string operators_help();
 
 }  // namespace cdot::derive

@@ -10,7 +10,6 @@ namespace {
 
 using Kind = HandItemAst::Kind;
 
-constexpr std::size_t largest_file = 1 << 20;
 constexpr std::array<std::string_view, 5> quantities = {"C", "Cdot", "J", "K", "b"};
 
 bool is_quantity(std::string_view word) {
@@ -25,8 +24,10 @@ class HandParser {
   void run() {
     skip_blank_lines();
     for (; !p_.at_end(); skip_blank_lines()) {
+      const std::size_t before = out_.entries.empty() ? 0 : entry().items.size();
       statement();
-      p_.end_of_statement();
+      if (p_.end_of_statement()) continue;
+      for (std::size_t i = before; i < entry().items.size(); ++i) entry().items[i].broken = true;
     }
     for (const HandEntryAst& e : out_.entries) check(e);
   }
@@ -252,12 +253,8 @@ class HandParser {
 HandFile read_hand(std::shared_ptr<const SourceFile> file) {
   HandFile out;
   out.file = std::move(file);
-  if (out.file->text.size() > largest_file) {
-    out.diagnostics.error({0, 0}, "the file is larger than 1 MiB");
-    return out;
-  }
   const Tokens tokens = lex(*out.file, true, out.diagnostics);
-  HandParser(out, tokens).run();
+  if (tokens.readable) HandParser(out, tokens).run();
   out.diagnostics.sort();
   return out;
 }

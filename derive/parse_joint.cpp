@@ -22,8 +22,9 @@ class JointParser {
       diagnostics_.error(p_.peek().where, "the header is missing: " + p_.found(),
                          "start with `joint NAME planar`");
     for (; !p_.at_end(); skip_blank_lines()) {
+      const std::size_t before = joint_.statements.size();
       statement();
-      p_.end_of_statement();
+      if (!p_.end_of_statement()) spoil(before);
     }
     comment();
     return std::move(joint_);
@@ -32,6 +33,16 @@ class JointParser {
  private:
   void skip_blank_lines() {
     while (p_.peek().kind == TokenKind::newline) p_.take();
+  }
+
+  // A statement that went on wrongly is not to be trusted; but its names are declared, so that
+  // their uses are no errors.
+  void spoil(std::size_t first) {
+    auto& all = joint_.statements;
+    for (std::size_t i = first; i < all.size(); ++i) all[i].declared.broken = true;
+    const auto is_row = [](const StatementAst& s) { return s.kind == StatementAst::Kind::row; };
+    all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), is_row),
+              all.end());
   }
 
   void statement() {
@@ -52,6 +63,13 @@ class JointParser {
                      "`keep` chooses among redundant rows of spatial joints, "
                      "which are not supported yet",
                      "in the plane write the independent rows themselves");
+    for (const char* kind :
+         {"point", "vector", "unit", "frame", "scalar", "let", "coordinate", "include", "joint"})
+      if (p_.at_word(kind) && !p_.at_symbol("(", 1) && !p_.at_symbol(":", 1)) {
+        p_.take();
+        return p_.fail(p_.peek().where,
+                       "a name is missing after " + quote(kind) + ": " + p_.found());
+      }
     if (p_.at_name() && (declares || p_.peek(1).kind == TokenKind::string) &&
         !p_.at_word("velocity"))
       return unknown_statement();
@@ -99,7 +117,7 @@ class JointParser {
         p_.take();
         s.include.prefix = p_.name("the prefix for its names");
       }
-      s.include.where = finish(s);
+      finish(s);
     } while (p_.accept(","));
   }
 
@@ -183,6 +201,8 @@ class JointParser {
       p_.take();
       s.velocity = true;
     }
+    if (!s.label.text.empty() && p_.at_symbol("="))
+      p_.fail(p_.peek().where, "`:=` is not a relation of this language", "write =");
     s.left = p_.expression();
     relation(s);
     s.right = p_.expression();
@@ -205,6 +225,8 @@ class JointParser {
               "write " + std::string(t.text) + "=");
     else if (p_.at_symbol("+=") || p_.at_symbol("-="))
       p_.fail(t.where, quote(t.text) + " changes something; a row says what holds", "write =");
+    else if (p_.at_symbol(")") || p_.at_symbol("]"))
+      p_.fail(t.where, quote(t.text) + " closes nothing", "remove it, or open it before");
     else if (p_.at_end_of_statement())
       p_.fail(s.left.where, "a row is an equation, and this has no `=`",
               "write ... = 0; to give a part a name: let NAME = ...");
@@ -247,17 +269,15 @@ class JointParser {
     return s;
   }
 
-  Span finish(StatementAst& s) {
+  void finish(StatementAst& s) {
     s.end_token = p_.position();
     if (s.end_token > s.first_token) s.where.end = p_.peek(-1).where.end;
-    s.declared.where = s.where;
-    const Span where = s.where;
+    s.declared.where = s.include.where = s.where;
     const bool row = s.kind == StatementAst::Kind::row;
     const bool named = !s.declared.name.text.empty();
-    if (p_.failed() && (row || s.kind == StatementAst::Kind::include)) return where;
-    if (!row && s.kind != StatementAst::Kind::include && !named) return where;
-    joint_.statements.push_back(std::move(s));
-    return where;
+    const bool include = s.kind == StatementAst::Kind::include;
+    if (p_.failed() && (row || include)) return;
+    if (row || include || named) joint_.statements.push_back(std::move(s));
   }
 
   // The comment lines above the header; if there are none, those right under it.

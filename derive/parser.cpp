@@ -1,76 +1,12 @@
 #include "derive/parser.hpp"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <utility>
 
 namespace cdot::derive {
 namespace {
 
 constexpr int deepest_nesting = 200;
-constexpr int largest_exponent = 400;  // of ten, before the exact value is even tried
-
-// digits [ "." digits ] [ "e" integer ] as an exact fraction.
-Rational exact_number(std::string_view text) {
-  const std::size_t e = std::min(text.find_first_of("eE"), text.size());
-  int exponent = 0;
-  if (e < text.size()) {
-    std::string_view digits = text.substr(e + 1);
-    if (digits.starts_with('+')) digits.remove_prefix(1);
-    const auto [end, problem] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
-    if (problem != std::errc() || std::abs(exponent) > largest_exponent) throw NumberTooLarge();
-  }
-  std::string mantissa(text.substr(0, e));
-  if (const std::size_t point = mantissa.find('.'); point != std::string::npos) {
-    mantissa.erase(mantissa.find_last_not_of('0') + 1);  // 1.500 is 1.5
-    exponent -= static_cast<int>(mantissa.size() - point - 1);
-    mantissa.erase(point, 1);
-  }
-  Rational value(0);
-  for (const char c : mantissa) value = value * Rational(10) + Rational(c - '0');
-  if (value.is_zero()) return value;
-  if (std::abs(exponent) > largest_exponent) throw NumberTooLarge();
-  return value * pow(Rational(10), exponent);
-}
-
-struct NamedUnit {
-  std::string_view name;
-  Unit unit;
-  int degrees;
-};
-const std::array<NamedUnit, 7> known_units = {{{"m", {.m = 1}, 0},
-                                               {"rad", {.rad = 1}, 0},
-                                               {"s", {.s = 1}, 0},
-                                               {"kg", {.kg = 1}, 0},
-                                               {"N", {.m = 1, .s = -2, .kg = 1}, 0},
-                                               {"J", {.m = 2, .s = -2, .kg = 1}, 0},
-                                               {"deg", {.rad = 1}, 1}}};
-
-std::string unit_fix(std::string_view word) {
-  static const std::array<std::pair<std::string_view, std::string_view>, 13> others = {
-      {{"cm", "0.01 m"},
-       {"mm", "0.001 m"},
-       {"km", "1000 m"},
-       {"g", "0.001 kg"},
-       {"ms", "0.001 s"},
-       {"Hz", "1/s"},
-       {"hz", "1/s"},
-       {"meter", "m"},
-       {"metre", "m"},
-       {"second", "s"},
-       {"radians", "rad"},
-       {"degrees", "deg"},
-       {"Nm", "N*m"}}};
-  for (const auto& [name, meaning] : others)
-    if (name == word) return "in the language's units that is " + std::string(meaning);
-  std::vector<std::string> names;
-  for (const NamedUnit& u : known_units) names.emplace_back(u.name);
-  const std::string near = nearest(word, names);
-  return (near.empty() ? "" : "did you mean " + quote(near) + "? ") +
-         "The units are m, rad, s, kg, N, J and deg, joined by * / ^";
-}
 
 }  // namespace
 
@@ -110,7 +46,10 @@ bool Parser::expect(std::string_view symbol, std::string_view where) {
 }
 
 void Parser::fail(Span where, std::string message, std::string fix, std::vector<Span> also) {
-  if (!failed_) diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
+  // What is no token was reported by the lexer.
+  const bool reported = peek().kind == TokenKind::unknown;
+  if (!failed_ && !reported)
+    diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
   failed_ = true;
 }
 
@@ -120,7 +59,7 @@ void Parser::next_statement() {
   failed_ = false;
 }
 
-void Parser::end_of_statement() {
+bool Parser::end_of_statement() {
   if (!failed_ && !at_end_of_statement()) {
     const Token& t = peek();
     if (t.kind == TokenKind::name || t.kind == TokenKind::number || at_symbol("("))
@@ -129,9 +68,12 @@ void Parser::end_of_statement() {
     else if (at_symbol(")") || at_symbol("]"))
       fail(t.where, quote(t.text) + " closes nothing", "remove it, or open it before");
     else
-      fail(t.where, "the statement should end here, but there is " + quote(t.text));
+      fail(t.where, "the statement should end here, but there is " + quote(t.text),
+           t.text == ";" ? "a statement ends with its line" : "");
   }
+  const bool good = !failed_;
   next_statement();
+  return good;
 }
 
 Span Parser::from(const Token& first) const {
@@ -140,6 +82,7 @@ Span Parser::from(const Token& first) const {
 }
 
 std::string Parser::found() const {
+  if (at_end()) return "the file ends here";
   if (at_end_of_statement()) return "the line ends here";
   if (peek().kind == TokenKind::string) return "there is a text in quotes";
   return "there is " + quote(peek().text);
@@ -161,42 +104,6 @@ std::string Parser::string(std::string_view after) {
   fail(peek().where, "after `" + std::string(after) + "` stands a text in quotes: " + found(),
        "write " + std::string(after) + " \"...\"");
   return {};
-}
-
-// unit = "[" ( "1" | UNIT [ "^" INTEGER ] ) { ( "*" | "/" ) UNIT [ "^" INTEGER ] } "]"
-std::optional<WrittenUnit> Parser::unit() {
-  if (failed_ || !at_symbol("[")) return {};
-  const Token first = take();
-  WrittenUnit result;
-  if (peek().kind == TokenKind::number && peek().text == "1")
-    take();
-  else
-    unit_factor(result, false);
-  while (!failed_ && (at_symbol("*") || at_symbol("/"))) unit_factor(result, take().text == "/");
-  expect("]", "after the unit");
-  result.where = from(first);
-  return result;
-}
-
-void Parser::unit_factor(WrittenUnit& result, bool divided) {
-  const Word word = name("a unit such as m, rad or kg*m^2");
-  if (failed_) return;
-  const auto known = std::find_if(known_units.begin(), known_units.end(),
-                                  [&](const NamedUnit& u) { return u.name == word.text; });
-  if (known == known_units.end())
-    return fail(word.where, "there is no unit " + quote(word.text), unit_fix(word.text));
-  int exponent = 1;
-  if (accept("^")) {
-    const int sign = accept("-") ? -1 : 1;
-    const std::string digits(peek().text);
-    if (peek().kind != TokenKind::number || digits.size() != 1)
-      return fail(peek().where, "the power of a unit is a whole number from 1 to 9");
-    take();
-    exponent = sign * (digits[0] - '0');
-  }
-  if (divided) exponent = -exponent;
-  result.unit = result.unit * pow(known->unit, exponent);
-  result.degrees += known->degrees * exponent;
 }
 
 // expression = term { ( "+" | "-" ) term }
@@ -318,6 +225,18 @@ Ast Parser::nothing_here() {
   return {};
 }
 
+// The next token is not the closing bracket that it should be.
+void Parser::not_closed(const Token& open, std::string_view closing) {
+  const Token& next = peek();
+  const bool new_line = file_.line(next.where.begin) != file_.line(peek(-1).where.begin);
+  if (at_end_of_statement() || new_line)
+    fail(open.where, "this bracket is not closed", "add the missing " + std::string(closing));
+  else if (at_name() || next.kind == TokenKind::number || at_symbol("("))
+    fail(next.where, "an operator or a comma is missing before " + quote(next.text));
+  else
+    fail(next.where, quote(closing) + " is missing here: " + found(), "", {open.where});
+}
+
 Ast Parser::brackets() {
   const Token open = take();
   Ast inner = expression();
@@ -325,29 +244,12 @@ Ast Parser::brackets() {
     if (at_symbol(","))
       fail(peek().where, "a comma between round brackets without an operator before them",
            "a vector is written with perp, unit vectors or a parameter, not as (x, y)");
-    else if (at_end_of_statement())
-      fail(open.where, "this bracket is not closed", "add the missing )");
     else
-      expect(")", "here");
+      not_closed(open, ")");
   }
   accept(")");
   inner.where = from(open);
   return failed_ ? Ast{} : std::move(inner);
-}
-
-Ast Parser::number() {
-  const Token t = take();
-  Ast result;
-  result.kind = Ast::Kind::number;
-  try {
-    result.value = exact_number(t.text);
-  } catch (const NumberTooLarge&) {
-    fail(t.where, "the number has too many digits: it must be a fraction of 64-bit integers",
-         "use at most 18 digits, and powers of ten from e-18 to e18");
-  }
-  result.unit = unit();
-  result.where = from(t);
-  return failed_ ? Ast{} : std::move(result);
 }
 
 // NAME "(" expression { "," expression } ")"
@@ -361,12 +263,7 @@ Ast Parser::call(const Token& name) {
     while (accept(","));
   }
   if (!failed_ && !at_symbol(")")) {
-    if (at_end_of_statement())
-      fail(open.where, "this bracket is not closed", "add the missing )");
-    else if (at_name() || peek().kind == TokenKind::number)
-      fail(peek().where, "an operator or a comma is missing before " + quote(peek().text));
-    else
-      expect(")", "after the arguments of " + quote(name.text));
+    not_closed(open, ")");
   }
   accept(")");
   result.where = from(name);
@@ -386,9 +283,8 @@ Ast Parser::matrix() {
     if (!accept(";")) break;
     result.row_lengths.push_back(0);
   }
-  if (!failed_ && at_end_of_statement())
-    fail(open.where, "this bracket is not closed", "add the missing ]");
-  expect("]", "after the blocks of the matrix");
+  if (!failed_ && !at_symbol("]")) not_closed(open, "]");
+  accept("]");
   result.where = from(open);
   return failed_ ? Ast{} : std::move(result);
 }

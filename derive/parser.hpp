@@ -33,8 +33,9 @@ class Parser {
   // The first error of a statement; what follows it in the same statement is not worth a message.
   void fail(Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
   bool failed() const { return failed_; }
-  void next_statement();    // skips what is left of this one
-  void end_of_statement();  // complains about what is left of this one, and skips it
+  void next_statement();  // skips what is left of this one
+  // Complains about what is left of this one, and skips it. Whether all was well.
+  bool end_of_statement();
 
   int position() const { return static_cast<int>(at_); }
   Span from(const Token& first) const;  // from that token to the last one taken
@@ -51,6 +52,7 @@ class Parser {
   Ast matrix();
   Ast brackets();
   Ast nothing_here();
+  void not_closed(const Token& open, std::string_view closing);
   Ast chain(Ast::Kind kind, std::string_view operators, Ast (Parser::*part)());
   void unit_factor(WrittenUnit& unit, bool divided);
 

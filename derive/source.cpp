@@ -13,7 +13,7 @@ constexpr int shown_columns = 96;  // of a long line
 
 struct Character {
   int length = 1;  // bytes
-  bool printable = false;
+  bool valid = false, printable = false;
 };
 
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
@@ -25,7 +25,7 @@ std::uint32_t smallest_of_length(int length) {
 
 Character character_at(std::string_view s, std::size_t i) {
   const auto lead = static_cast<unsigned char>(s[i]);
-  if (lead < 0x80) return {1, lead >= 0x20 && lead != 0x7F};
+  if (lead < 0x80) return {1, true, lead >= 0x20 && lead != 0x7F};
   const int length = lead >= 0xF0 && lead < 0xF8   ? 4
                      : lead >= 0xE0 && lead < 0xF0 ? 3
                      : lead >= 0xC2 && lead < 0xE0 ? 2
@@ -41,7 +41,7 @@ Character character_at(std::string_view s, std::size_t i) {
   if (code < smallest_of_length(length) || code > 0x10FFFF || surrogate) return {};
   const bool control = code < 0xA0 || (code >= 0x200B && code <= 0x200F) ||
                        (code >= 0x2028 && code <= 0x202E) || code == 0xFEFF;
-  return {length, !control};
+  return {length, true, !control};
 }
 
 // One line of a file for display: its text between two columns, and what stands under them.
@@ -146,6 +146,12 @@ std::string lower_case(std::string_view s) {
 }
 
 }  // namespace
+
+int utf8_length(std::string_view text, std::size_t i) {
+  const Character c = character_at(text, i);
+  const bool ascii = static_cast<unsigned char>(text[i]) < 0x80;
+  return ascii || c.valid ? c.length : 0;
+}
 
 SourceFile::SourceFile(std::string path_, std::string text_)
     : path(std::move(path_)), text(std::move(text_)), line_starts{0} {

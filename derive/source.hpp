@@ -3,11 +3,15 @@
 // them.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace cdot::derive {
+
+// Length in bytes of the UTF-8 character at byte i; 0 if there is none.
+int utf8_length(std::string_view text, std::size_t i);
 
 // Bytes [begin, end) of a file.
 struct Span {

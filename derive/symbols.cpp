@@ -1,5 +1,6 @@
 #include "derive/symbols.hpp"
 
+#include <algorithm>
 #include <array>
 
 namespace cdot::derive {
@@ -45,10 +46,26 @@ Expr time_symbol(Pool& pool) { return pool.symbol("time", Role::time); }
 Expr pi_symbol(Pool& pool) { return pool.symbol("pi", Role::constant); }
 
 bool is_symbol_of_tool(std::string_view name) {
-  if (name == "time" || name == "pi" || name == "e_x" || name == "e_y") return true;
+  if (name == "time" || name == "pi") return true;
   for (const std::string_view stem : stems)
     if (name.starts_with(stem) && body_of_letter(name.substr(stem.size())) >= 0) return true;
   return false;
+}
+
+bool is_word_of_cpp(std::string_view name) {
+  static constexpr auto words = std::to_array<std::string_view>(
+      {"alignas",   "alignof",   "and",       "asm",       "auto",     "bool",     "break",
+       "case",      "catch",     "char",      "class",     "concept",  "const",    "consteval",
+       "constexpr", "constinit", "continue",  "decltype",  "default",  "delete",   "do",
+       "double",    "else",      "enum",      "explicit",  "export",   "extern",   "false",
+       "float",     "for",       "friend",    "goto",      "if",       "inline",   "int",
+       "long",      "mutable",   "namespace", "new",       "noexcept", "not",      "nullptr",
+       "operator",  "or",        "private",   "protected", "public",   "register", "requires",
+       "return",    "short",     "signed",    "sizeof",    "static",   "struct",   "switch",
+       "template",  "this",      "throw",     "true",      "try",      "typedef",  "typeid",
+       "typename",  "union",     "unsigned",  "using",     "virtual",  "void",     "volatile",
+       "while",     "xor"});
+  return std::find(words.begin(), words.end(), name) != words.end();
 }
 
 std::string arm_name(std::string_view prefix, std::string_view point) {

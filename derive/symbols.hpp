@@ -24,6 +24,8 @@ Expr pi_symbol(Pool& pool);
 
 // Names that these and the world's axes take, so that an author may not.
 bool is_symbol_of_tool(std::string_view name);
+// Words of C++, in which kernels are written with the author's names.
+bool is_word_of_cpp(std::string_view name);
 // The arm of a point: `ra` of `pa`, `r_q` of `q`; a prefix from an include stays in front.
 std::string arm_name(std::string_view prefix, std::string_view point);
 

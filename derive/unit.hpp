@@ -1,4 +1,5 @@
-// Units as products of metres, radians, seconds and kilograms with rational exponents (roots halve them).
+// Units as products of metres, radians, seconds and kilograms with rational exponents (roots halve
+// them).
 #pragma once
 
 #include <optional>
@@ -9,7 +10,8 @@
 
 namespace cdot::derive {
 
-// Radians are kept only where nothing but seconds stands beside them: an arc, radius times angle, is in metres.
+// Radians are kept only where nothing but seconds stands beside them: an arc, radius times angle,
+// is in metres.
 struct Unit {
   Rational m{}, rad{}, s{}, kg{};
 
@@ -19,7 +21,8 @@ struct Unit {
 Unit operator*(const Unit& a, const Unit& b);
 Unit operator/(const Unit& a, const Unit& b);
 Unit pow(const Unit& u, Rational exponent);
-std::string text(const Unit& u);    // "m", "rad/s", "kg*m^2", "1"
-std::string spoken(const Unit& u);  // "metres", "radians", "metres per second", "a pure number", else text
+std::string text(const Unit& u);  // "m", "rad/s", "kg*m^2", "1"
+std::string spoken(
+    const Unit& u);  // "metres", "radians", "metres per second", "a pure number", else text
 
 }  // namespace cdot::derive
