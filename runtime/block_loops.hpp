@@ -219,8 +219,9 @@ struct BlockLoops {
     for (int k = 0; k < bodies; ++k) one[k] = S::unit_mass();
     T lambda[rows];
     for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
-    for (int k = 0; k < bodies; ++k) impulse[k] = Velocity{};
-    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), one, lambda, impulse);
+    Velocity sum[bodies] = {};
+    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), one, lambda, sum);
+    for (int k = 0; k < bodies; ++k) impulse[k] = sum[k];
   }
 
   static void add_stiffness(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time,

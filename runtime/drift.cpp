@@ -137,7 +137,7 @@ typename S::Scalar errors_met(const Island<S>& island) {
 template <class S>
 void sweep_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
-  T before = std::numeric_limits<T>::infinity();
+  T first = std::numeric_limits<T>::infinity();
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
@@ -147,11 +147,12 @@ void sweep_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar tim
         batch.ops->correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
     }
     const T met = errors_met(island);
-    if (met > before && met > converged<T>) {
+    if (sweep == 0) first = met;
+    if (met > T(2) * first) {
       evaluate_anew(world, island, time);
       factorize_rows(world, island);
+      first = met;
     }
-    before = met;
   }
   island.residual = find_errors(world, island, time);
 }

@@ -33,8 +33,10 @@ template <class S>
 struct JointEntry {
   BlockVariants<S> rows;
   std::vector<BlockVariants<S>> coordinates;  // in the order of JointType::coordinates
-  // Writes the default of parameter `index`, computed from the poses and the parameters before it.
-  void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters);
+  // Writes the default of parameter `index`, computed from the poses, the parameters before it and
+  // the time.
+  void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters,
+                        typename S::Scalar time);
 };
 
 template <class S, class Joint, class Block>
@@ -58,9 +60,11 @@ JointEntry<S> joint_entry() {
   [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {
     (entry.coordinates.push_back(block_variants<S, Joint, Coordinates>()), ...);
   }(std::type_identity<typename Joint::Coordinates>{});
-  entry.default_value = [](int index, const typename S::Pose* q, T* parameters) {
+  entry.default_value = [](int index, const typename S::Pose* q, T* parameters, T time) {
     using Parameters = typename Joint::template Parameters<T>;
-    Joint::default_value(index, q, *reinterpret_cast<Parameters*>(parameters));
+    using Poses = const typename S::Pose[Joint::bodies];
+    Joint::default_value(index, reinterpret_cast<Poses&>(*q),
+                         *reinterpret_cast<Parameters*>(parameters), time);
   };
   return entry;
 }

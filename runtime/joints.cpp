@@ -13,7 +13,10 @@ template <class Joint>
 JointType describe() {
   JointType type;
   type.name = Joint::name;
+  type.title = Joint::title;
   type.bodies = Joint::bodies;
+  type.body_names.assign(Joint::body_names.begin(), Joint::body_names.end());
+  type.row_names.assign(Joint::row_names.begin(), Joint::row_names.end());
   type.row_kinds.assign(Joint::row_kinds.begin(), Joint::row_kinds.end());
   type.parameters.assign(Joint::parameters.begin(), Joint::parameters.end());
   [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {

@@ -17,7 +17,10 @@ struct CoordinateInfo {
 
 struct JointType {
   std::string_view name;
+  std::string_view title;  // what it does, in a sentence
   int bodies;
+  std::vector<std::string_view> body_names;  // "a", "b", ...
+  std::vector<std::string_view> row_names;
   std::vector<RowKind> row_kinds;
   std::vector<ParameterInfo> parameters;
   std::vector<CoordinateInfo> coordinates;

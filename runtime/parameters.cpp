@@ -48,7 +48,7 @@ void normalise(const JointType& type, const ParameterInfo& info, double* numbers
 }  // namespace
 
 std::vector<double> parameter_numbers(int type_index, const std::vector<NamedValue>& given,
-                                     const planar::Pose<double>* poses) {
+                                      const planar::Pose<double>* poses, double time) {
   const JointType& type = joint_types()[static_cast<size_t>(type_index)];
   const auto& entry = joint_entries<Planar<double>>()[static_cast<size_t>(type_index)];
   std::vector<double> numbers(static_cast<size_t>(type.parameter_size), 0.0);
@@ -69,7 +69,7 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
       std::copy(value_of[i]->numbers.begin(), value_of[i]->numbers.end(), at);
       normalise(type, info, at);
     } else if (info.has_default) {
-      entry.default_value(static_cast<int>(i), poses, numbers.data());
+      entry.default_value(static_cast<int>(i), poses, numbers.data(), time);
     } else {
       throw Error(fmt::format("joint `{}` needs its parameter `{}` (it has no default)", type.name,
                               info.name));

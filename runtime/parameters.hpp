@@ -12,6 +12,6 @@ namespace cdot {
 // All numbers of Parameters<double>: given ones checked and normalised, the others by the spec's
 // default from the poses of the joint's bodies. Throws Error.
 std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given,
-                                     const planar::Pose<double>* poses);
+                                      const planar::Pose<double>* poses, double time);
 
 }  // namespace cdot

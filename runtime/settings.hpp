@@ -86,4 +86,10 @@ struct SpringDefinition {
   double damping = 0;                     // [N s/m]
 };
 
+// What was accepted but does nothing, in a sentence about that joint.
+struct Note {
+  int joint;
+  std::string text;
+};
+
 }  // namespace cdot

@@ -143,7 +143,8 @@ int World<T>::add_joint(const JointDefinition& definition) {
       static_cast<int>(type - joint_types().data()), definition.bodies, {}, {}, false};
   std::vector<planar::Pose<double>> poses;
   for (int body : record.bodies) poses.push_back(exact_pose(*state_, body));
-  record.parameters = parameter_numbers(record.type, definition.parameters, poses.data());
+  record.parameters =
+      parameter_numbers(record.type, definition.parameters, poses.data(), state_->time);
   double spring[spring_constants_count] = {};
   if (definition.soft) spring_constants(*definition.soft, spring);
 
@@ -152,9 +153,7 @@ int World<T>::add_joint(const JointDefinition& definition) {
   state_->joints.push_back(record);
   const auto movable = [&](int body) { return !state_->bodies.immovable(body); };
   if (std::none_of(record.bodies.begin(), record.bodies.end(), movable)) {
-    state_->notes.push_back(
-        fmt::format("joint number {} (`{}`) connects only immovable bodies and does nothing", joint,
-                    type->name));
+    state_->notes.push_back({joint, "connects only immovable bodies and does nothing"});
     return joint;
   }
   using S = Planar<T>;

@@ -69,8 +69,7 @@ class World {
   // Moves the bodies onto C = 0 and their velocities onto Cdot = 0 by the least mass-weighted
   // change. False if that did not succeed: the joints contradict each other.
   bool project(double tolerance);
-  // Sentences about what was accepted but does nothing (a joint between static bodies).
-  const std::vector<std::string>& notes() const;
+  const std::vector<Note>& notes() const;
   // Analyses islands and patterns now rather than in the next step(), which then does not allocate.
   void prepare();
 

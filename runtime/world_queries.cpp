@@ -75,7 +75,7 @@ const Settings& World<T>::settings() const {
   return state_->settings;
 }
 template <class T>
-const std::vector<std::string>& World<T>::notes() const {
+const std::vector<Note>& World<T>::notes() const {
   return state_->notes;
 }
 template <class T>

@@ -4,7 +4,6 @@
 
 #include <limits>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -75,7 +74,7 @@ struct WorldState {
   std::vector<Drag<S>> drags;
   std::vector<std::pair<int, double>> breaking_loads;  // by joint
   std::vector<Hook> after_substep;
-  std::vector<std::string> notes;
+  std::vector<Note> notes;
 
   bool prepared = false;  // islands, order of slots and patterns are those of the present joints
   std::vector<Island<S>> islands;

@@ -137,7 +137,7 @@ TEST(ClosedForms, CoordinateSpringIsTheDampedOscillator) {
     expect_first_order(2e-3, [&](double h) {
       World<double> world(settings(solver));
       const int wheel = world.add_body({.angle = 1, .mass = 1, .inertia = 2});
-      const int joint = revolute(world, wheel, world.ground(), 0, 0, 0, 0);
+      const int joint = revolute(world, world.ground(), wheel, 0, 0, 0, 0);
       add_spring(world, joint, "angle",
                  {.softness = {.by_frequency = false, .stiffness = 50, .damping = 2}, .rest = 0});
       run(world, 2, h);

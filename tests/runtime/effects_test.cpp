@@ -6,11 +6,11 @@ namespace {
 
 constexpr Solver both[] = {Solver::direct, Solver::iterative};
 
-// A wheel on a fixed axle; its angle counts from b to a, so the wheel is a.
+// A wheel on a fixed axle. The angle of a revolute is that of b seen from a, so the wheel is b.
 template <class T>
 int add_wheel(World<T>& world, double inertia, int* wheel, double torque = 0) {
   *wheel = world.add_body({.mass = 1, .inertia = inertia, .torque = torque});
-  return revolute(world, *wheel, world.ground(), 0, 0, 0, 0);
+  return revolute(world, world.ground(), *wheel, 0, 0, 0, 0);
 }
 
 TEST(Motor, ReachesItsSpeedAtOnceIfItsForceIsUnlimited) {
