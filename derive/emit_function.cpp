@@ -139,10 +139,15 @@ std::string FunctionWriter::arguments(const std::vector<std::string>& names,
     }
     list += (list.empty() ? "" : ", ") + declaration;
   }
-  list = replaced(list, "[BODIES]", fmt::format("[{}]", bodies_));
-  list = replaced(list, "[COLUMNS]", fmt::format("[{}]", 3 * bodies_));
-  list = replaced(list, "[TRIANGLE]", fmt::format("[{}]", rows * (rows + 1) / 2));
-  return replaced(list, "[ROWS]", fmt::format("[{}]", rows));
+  return sized(std::move(list), rows);
+}
+
+// The contract's array sizes in numbers.
+std::string FunctionWriter::sized(std::string declaration, std::size_t rows) const {
+  declaration = replaced(declaration, "[BODIES]", fmt::format("[{}]", bodies_));
+  declaration = replaced(declaration, "[COLUMNS]", fmt::format("[{}]", 3 * bodies_));
+  declaration = replaced(declaration, "[TRIANGLE]", fmt::format("[{}]", rows * (rows + 1) / 2));
+  return replaced(declaration, "[ROWS]", fmt::format("[{}]", rows));
 }
 
 std::vector<std::string> FunctionWriter::body(const Program& program, bool in_place, bool zeroed,
@@ -171,10 +176,10 @@ std::vector<std::string> FunctionWriter::function(const std::string& name, const
   const Signature& signature = signatures().at(name);
   std::vector<std::string> names = signature.inputs;
   const std::string list = arguments(names, inputs_read(program, printing_), rows);
-  std::string output = replaced(signature.output, "[BODIES]", fmt::format("[{}]", bodies_));
-  output = replaced(output, "[COLUMNS]", fmt::format("[{}]", 3 * bodies_));
-  output = replaced(output, "[TRIANGLE]", fmt::format("[{}]", rows * (rows + 1) / 2));
-  output = replaced(output, "[ROWS]", fmt::format("[{}]", rows));
+  std::string output = sized(signature.output, rows);
+  const bool writes_jacobian = std::any_of(program.outputs.begin(), program.outputs.end(),
+                                           [](const Output& o) { return o.name.starts_with("J."); });
+  if (!writes_jacobian) output = replaced(output, "Jacobian<T>& J", "Jacobian<T>&");
   std::vector<std::string> lines = {indent(depth) + "template <class T>"};
   append(lines, wrapped(fmt::format("{}static void {}({}, {}) {{", indent(depth), name, list, output)));
   const bool zeroed = is_cleared(name);

@@ -36,6 +36,7 @@ class FunctionWriter {
                                 int depth) const;
   std::string arguments(const std::vector<std::string>& names, const std::set<std::string>& read,
                         std::size_t rows) const;
+  std::string sized(std::string declaration, std::size_t rows) const;
   bool reads(const std::set<std::string>& read, const std::string& argument) const;
 
   std::size_t bodies_ = 0;

@@ -238,7 +238,7 @@ std::set<std::string> inputs_read(const Program& program, const Printing& printi
   return read;
 }
 
-std::vector<std::string> wrapped(std::string line) {
+std::vector<std::string> wrapped(std::string line, Break where) {
   constexpr std::size_t columns = 100;
   std::vector<std::string> lines;
   const std::size_t indent = line.find_first_not_of(' ');
@@ -248,10 +248,10 @@ std::vector<std::string> wrapped(std::string line) {
     for (std::size_t i = indent; i < columns; ++i) {
       if (line[i] == '(' || line[i] == '[') ++depth;
       if (line[i] == ')' || line[i] == ']') --depth;
-      const bool after_operator =
-          line[i] == ' ' && i + 1 < line.size() && i > indent &&
-          (line[i - 1] == '+' || line[i - 1] == '-' || line[i - 1] == '*' || line[i - 1] == ',');
-      if (after_operator && depth <= best_depth && i > columns / 3) best = i, best_depth = depth;
+      const bool after_operator = i > indent && std::string_view("+-*,|").find(line[i - 1]) != std::string_view::npos;
+      const bool allowed = line[i] == ' ' && i > columns / 3 &&
+                           (where == Break::at_spaces || (after_operator && depth <= best_depth));
+      if (allowed) best = i, best_depth = depth;
     }
     if (best == std::string::npos) break;
     lines.push_back(line.substr(0, best));
