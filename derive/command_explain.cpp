@@ -4,7 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <memory>
 
 #include "derive/commands.hpp"
@@ -24,9 +23,10 @@ constexpr const char* json_schema =
     "  format         1, the version of this schema\n"
     "  joint, title, source, dimension, bodies\n"
     "  columns        of every J: v_a_x, v_a_y, w_a, v_b_x, ...\n"
-    "  symbols        name -> {kind, meaning, unit, frame, body, from}; kind is position, velocity, mass,\n"
+    "  symbols        name -> {kind, meaning, unit, frame, body, from, unit_length}; kind is position, velocity, mass,\n"
     "                 parameter, derived, time or constant; `from` gives a derived one from the pose and\n"
-    "                 the parameters: r_pa_x = cos(theta_a)*pa_local_x - sin(theta_a)*pa_local_y\n"
+    "                 the parameters: r_pa_x = cos(theta_a)*pa_local_x - sin(theta_a)*pa_local_y;\n"
+    "                 unit_length: true for components of a vector of length 1\n"
     "  intermediates  [{name, definition}], in order: each uses only what stands before it\n"
     "  guards         [{where, kernel}]: where an entry is undefined and what a kernel does there\n"
     "  rows           [{name, kind, text, unit}], kind is equality, inequality or velocity\n"

@@ -32,7 +32,8 @@ void describe(const Lecture& lecture, const Parameter& p, Step& step) {
     formulas.push_back(leaf(body_symbols(lecture.joint, p.body).x));
   }
   if (p.default_value) {
-    words += "; by default {} at the start";
+    const bool constant = p.default_value->kind == Kind::number;
+    words += constant ? "; by default {}" : "; by default {} at the start";
     formulas.push_back(lecture.notation.of(p.default_value));
   }
   step.list(words, std::move(formulas));

@@ -46,6 +46,7 @@ std::string greek(const std::string& letter) {
 
 std::string row(const std::string& inner) { return "<mrow>" + inner + "</mrow>"; }
 std::string sign_of(const std::string& s) { return "<mo>" + s + "</mo>"; }
+std::string fence(const std::string& s) { return "<mo stretchy=\"true\" fence=\"true\">" + s + "</mo>"; }
 
 class MathML : public FormulaWriter {
  public:
@@ -77,7 +78,8 @@ class MathML : public FormulaWriter {
     return minus ? sign_of("−") : first ? "" : sign_of("+");
   }
   std::string between(Form form) const override {
-    return sign_of(form == Form::dot ? "·" : form == Form::cross ? "×" : "&#8290;");
+    if (form == Form::product) return "<mspace width=\"0.17em\" />";
+    return sign_of(form == Form::dot ? "·" : "×");
   }
   std::string fraction(const std::string& above, const std::string& below) const override {
     return "<mfrac>" + row(above) + row(below) + "</mfrac>";
@@ -92,8 +94,7 @@ class MathML : public FormulaWriter {
     return row("<mi mathvariant=\"normal\">" + f + "</mi>" + sign_of("&#8289;") + parentheses(inner));
   }
   std::string norm(const std::string& arg) const override {
-    const std::string bar = "<mo stretchy=\"true\">|</mo>";
-    return row(bar + arg + bar);
+    return row(fence("|") + arg + fence("|"));
   }
   std::string component(const std::string& arg, const std::string& axis) const override {
     return "<msub>" + row(arg) + "<mi>" + axis + "</mi></msub>";
@@ -109,10 +110,10 @@ class MathML : public FormulaWriter {
       if (column == 0) rows += i == 0 ? "<mtr>" : "</mtr><mtr>";
       rows += "<mtd>" + entries[i] + "</mtd>";
     }
-    return row(sign_of("[") + "<mtable class=\"matrix\">" + rows + "</mtr></mtable>" + sign_of("]"));
+    return row(fence("[") + "<mtable class=\"matrix\">" + rows + "</mtr></mtable>" + fence("]"));
   }
   std::string parentheses(const std::string& inner) const override {
-    return row(sign_of("(") + inner + sign_of(")"));
+    return row(fence("(") + inner + fence(")"));
   }
 
  private:

@@ -3,10 +3,11 @@
 // {
 //   "format": 1, "joint": "line", "title": "...", "source": "...", "dimension": 2, "bodies": ["a", "b"],
 //   "columns": ["v_a_x", "v_a_y", "w_a", "v_b_x", ...],           columns of every J
-//   "symbols": { "r_pa_x": { "kind", "meaning", "unit", "frame", "body", "from" }, ... },
+//   "symbols": { "r_pa_x": { "kind", "meaning", "unit", "frame", "body", "from", "unit_length" }, ... },
 //       kind: position, velocity, mass (inverse), parameter, derived, time, constant
 //       frame: "world" or the body whose axes the component is along; "body": whose it is; null where it has none
 //       from: for derived ones the expression that gives it from a pose and parameters (r_pa_x from theta_a, pa_local_x)
+//       unit_length: true for the components of a vector of length 1, which K relies on
 //   "intermediates": [ { "name": "u_x", "definition": "..." }, ... ],  in order: each uses only what stands before it
 //   "guards": [ { "where": "u_len = 0", "kernel": "..." } ],           where an entry is undefined and what a kernel does
 //   "rows": [ { "name", "kind": equality | inequality | velocity, "text", "unit" } ],
@@ -16,6 +17,7 @@
 // }
 //
 // Operators + - * / ** and parentheses, functions sqrt sin cos tan atan2 exp log abs sign; "0" for what is not there.
+#include <algorithm>
 #include <set>
 
 #include "derive/canonical.hpp"

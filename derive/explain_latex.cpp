@@ -64,7 +64,8 @@ class Latex : public FormulaWriter {
     }
     std::string out = letter_of(s.letter, leaf.leaf && leaf.leaf->vector);
     if (s.dots > 0) out = (s.dots == 1 ? "\\dot{" : "\\ddot{") + out + "}";
-    if (!s.index.empty()) out += "_{\\text{" + escaped(s.index) + "}}";
+    const bool word = s.index.size() > 1;
+    if (!s.index.empty()) out += word ? "_{\\text{" + escaped(s.index) + "}}" : "_{" + s.index + "}";
     return inverse ? out + "^{-1}" : out;
   }
   std::string number(Rational value) const override {

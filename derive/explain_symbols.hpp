@@ -21,6 +21,7 @@ class ExplainedSymbols {
  private:
   struct Doc {
     std::string kind, meaning, unit, frame, body, from;
+    bool unit_length = false;
   };
   void add(const std::string& leaf, const std::string& wish, const Doc& doc);
   void add_body(const std::string& body);

@@ -1,0 +1,159 @@
+"""Evaluates what `cdot explain --json` wrote, with sympy and 40 digits, and checks it against itself at random poses:
+J and dC/dt are the finite differences of C, Cdot is J v + dC/dt, K is J M^-1 J^T, gamma is minus the rate of Cdot at
+constant velocities. Exit status 0 if all of it holds for all files of a folder."""
+import glob
+import json
+import os
+import random
+import re
+import sys
+
+import sympy
+from mpmath import mp, mpf
+
+mp.dps = 40
+STEP = mpf(10) ** -12
+TOLERANCE = mpf(10) ** -18
+NAME = re.compile(r"[A-Za-z_]\w*")
+FUNCTIONS = {"sqrt", "sin", "cos", "tan", "atan2", "exp", "log", "abs", "sign"}
+
+
+class Program:
+    """One file: symbols, intermediates, entries, as functions of a dictionary of values."""
+
+    def __init__(self, data):
+        self.data = data
+        self.symbols = data["symbols"]
+        self.known = list(self.symbols)
+        self.derived = [(n, self.compiled(s["from"])) for n, s in self.symbols.items() if s["from"]]
+        self.intermediates = []
+        for item in data["intermediates"]:
+            self.intermediates.append((item["name"], self.compiled(item["definition"])))
+            assert item["name"] not in self.known, item["name"] + " is defined twice"
+            self.known.append(item["name"])
+
+    def compiled(self, text):
+        unknown = set(NAME.findall(text)) - set(self.known) - FUNCTIONS
+        assert not unknown, f"{text}: undocumented or not yet defined: {unknown}"
+        names = sorted(set(NAME.findall(text)) - FUNCTIONS)
+        symbols = {name: sympy.Symbol(name, real=True) for name in names}
+        expression = sympy.sympify(text, locals={**symbols, "abs": sympy.Abs})
+        function = sympy.lambdify([symbols[n] for n in names], expression, modules="mpmath")
+        return lambda values: mpf(function(*(values[n] for n in names)))
+
+    def values(self, state):
+        values = dict(state)
+        for name, function in self.derived + self.intermediates:
+            values[name] = function(values)
+        return values
+
+    def random_state(self, rng):
+        state = {}
+        for name, symbol in self.symbols.items():
+            if symbol["kind"] == "constant":
+                state[name] = mp.pi
+            elif symbol["kind"] in ("mass", "parameter", "time"):
+                state[name] = mpf(rng.uniform(0.5, 2))
+            elif symbol["kind"] in ("position", "velocity"):
+                state[name] = mpf(rng.uniform(-2, 2))
+        for name, symbol in self.symbols.items():
+            if symbol["unit_length"] and name in state and name.endswith("_x"):
+                angle = mpf(rng.uniform(-3, 3))
+                state[name], state[name[:-1] + "y"] = mp.cos(angle), mp.sin(angle)
+        return state
+
+
+def close(a, b):
+    return abs(a - b) <= TOLERANCE * (1 + abs(a) + abs(b))
+
+
+class Checks:
+    def __init__(self, program, block, kinds, where):
+        self.program, self.kinds, self.where = program, kinds, where
+        self.failures, self.done = [], 0
+        matrix = lambda rows: [[program.compiled(e) for e in row] for row in rows]
+        vector = lambda entries: [program.compiled(e) for e in entries]
+        self.C, self.Cdot, self.C_t = vector(block["C"]), vector(block["Cdot"]), vector(block["C_t"])
+        self.J, self.K, self.gamma = matrix(block["J"]), matrix(block["K"]), vector(block["gamma"])
+        self.text = block
+        columns = program.data["columns"]
+        self.coordinates = [re.sub(r"^v_", "x_", c) if c.startswith("v_") else "theta_" + c[2:] for c in columns]
+        self.inverse_masses = [f"inv_{'I_' + c[2:] if c[0] == 'w' else 'm_' + c[2:-2]}" for c in columns]
+
+    def expect(self, name, a, b):
+        self.done += 1
+        if not close(a, b):
+            self.failures.append(f"{self.where}: {name}: {mp.nstr(a, 12)} is not {mp.nstr(b, 12)}")
+
+    def moved(self, state, direction, step):
+        return self.program.values({**state, **{n: state[n] + step * d for n, d in direction.items()}})
+
+    def difference(self, function, state, direction):
+        there, back = self.moved(state, direction, STEP), self.moved(state, direction, -STEP)
+        return (function(there) - function(back)) / (2 * STEP)
+
+    def at(self, state):
+        columns = self.program.data["columns"]
+        values = self.program.values(state)
+        motion = {q: state[v] for q, v in zip(self.coordinates, columns)}
+        if "time" in state:
+            motion["time"] = mpf(1)
+        J = [[f(values) for f in row] for row in self.J]
+        for i, kind in enumerate(self.kinds):
+            if kind != "velocity":
+                for j, q in enumerate(self.coordinates):
+                    self.expect(f"J[{i}][{j}]", J[i][j], self.difference(self.C[i], state, {q: mpf(1)}))
+                C_t = self.difference(self.C[i], state, {"time": mpf(1)}) if "time" in state else mpf(0)
+                self.expect(f"C_t[{i}]", self.C_t[i](values), C_t)
+                self.expect(f"Cdot[{i}] along the motion", self.Cdot[i](values),
+                            self.difference(self.C[i], state, motion))
+            Jv = sum(J[i][j] * state[c] for j, c in enumerate(columns))
+            self.expect(f"Cdot[{i}]", self.Cdot[i](values), Jv + self.C_t[i](values))
+            self.expect(f"gamma[{i}]", self.gamma[i](values), -self.difference(self.Cdot[i], state, motion))
+            assert len(self.K) == len(self.K[i]) == len(self.kinds), "K is not square"
+            for k in range(len(self.kinds)):
+                K = sum(J[i][j] * state[m] * J[k][j] for j, m in enumerate(self.inverse_masses))
+                self.expect(f"K[{i}][{k}]", self.K[i][k](values), K)
+        return J
+
+    def zeros(self, Js):
+        """What is zero at every pose is written 0."""
+        for i, row in enumerate(self.text["J"]):
+            for j, text in enumerate(row):
+                if all(J[i][j] == 0 for J in Js) and text != "0":
+                    self.failures.append(f"{self.where}: J[{i}][{j}] is zero but says {text}")
+
+
+def check(path):
+    with open(path) as file:
+        data = json.load(file)
+    program = Program(data)
+    for name, symbol in data["symbols"].items():
+        assert symbol["meaning"] and symbol["unit"], f"{name} is not documented"
+    blocks = [Checks(program, data, [r["kind"] for r in data["rows"]], data["joint"])]
+    for c in data["coordinates"]:
+        blocks.append(Checks(program, c, ["equality"], data["joint"] + "." + c["name"]))
+    rng = random.Random(7)
+    states = [program.random_state(rng) for _ in range(3)]
+    for block in blocks:
+        block.zeros([block.at(state) for state in states])
+    return sum(b.done for b in blocks), [f for b in blocks for f in b.failures]
+
+
+def main():
+    files = sorted(glob.glob(os.path.join(sys.argv[1], "*.json")))
+    assert files, "no file to check"
+    failures, done = [], 0
+    for path in files:
+        try:
+            count, wrong = check(path)
+            assert count > 0, "nothing was checked"
+        except AssertionError as e:
+            count, wrong = 0, [f"{path}: {e}"]
+        done += count
+        failures += wrong
+    print("\n".join(failures + [f"sympy {sympy.__version__}: {done} values in {len(files)} files, {len(failures)} wrong"]))
+    return 1 if failures else 0
+
+
+sys.exit(main())

@@ -1,0 +1,174 @@
+// What the derivation says is true: each chain of equal formulas is equal in numbers, J v is Cdot; and it reads as it
+// was read by a person (golden texts; CDOT_UPDATE=1 rewrites them).
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "formula_value.hpp"
+#include "support.hpp"
+
+using namespace cdot::derive;
+
+namespace {
+
+struct Told {
+  int equations = 0;
+  std::string wrong;  // what was found false
+};
+
+// Every formula of a chain that stands for numbers equals every other.
+void check_chain(const std::string& heading, const Chain& chain, const Values& values, Told& told) {
+  std::vector<const Formula*> formulas{&chain.left};
+  for (const Link& link : chain.links) formulas.push_back(&link.formula);
+  std::vector<Array> known;
+  for (const Formula* f : formulas) {
+    try {
+      known.push_back(value_of_formula(*f, values));
+    } catch (const NoValue&) {
+    }
+  }
+  for (std::size_t i = 1; i < known.size(); ++i) {
+    ++told.equations;
+    if (difference(known[0], known[i]) > 1e-9) {
+      told.wrong += heading + ": formula " + std::to_string(i) + " of a chain differs from its first\n";
+    }
+  }
+}
+
+// J, block by block, times the velocities.
+std::vector<double> J_times_v(const Formula& J, const Joint& joint, const Values& values) {
+  std::vector<double> result;
+  const std::size_t columns = static_cast<std::size_t>(J.columns);
+  for (std::size_t row = 0; row * columns < J.args.size(); ++row) {
+    std::vector<double> sum(1, 0.0);
+    for (std::size_t k = 0; k < columns; ++k) {
+      const BodySymbols body = body_symbols(joint, static_cast<int>(k / 2));
+      const Array block = value_of_formula(J.args[row * columns + k], values);
+      const Pair<double> v = Numbers(values).vector(body.v);
+      const std::vector<double> velocity =
+          k % 2 == 1 ? std::vector{evaluate(body.w, values)} : std::vector{v[0], v[1]};
+      if (block.entries == std::vector{0.0}) continue;
+      if (block.columns != velocity.size()) throw std::logic_error("a block of J is too wide or too narrow");
+      sum.resize(block.rows);
+      for (std::size_t i = 0; i < block.rows; ++i) {
+        for (std::size_t j = 0; j < block.columns; ++j) sum[i] += block.at(i, j) * velocity[j];
+      }
+    }
+    result.insert(result.end(), sum.begin(), sum.end());
+  }
+  return result;
+}
+
+void check_J(const Formula& J, const Joint& joint, const Block& block, const Values& values, Told& told) {
+  const std::vector<double> Jv = J_times_v(J, joint, values);
+  if (Jv.size() != block.rows.size()) {
+    told.wrong += "J has " + std::to_string(Jv.size()) + " rows\n";
+    return;
+  }
+  for (std::size_t i = 0; i < Jv.size(); ++i) {
+    const double Cdot = evaluate(block.rows[i].Cdot, values) - evaluate(block.rows[i].C_t, values);
+    ++told.equations;
+    if (std::abs(Jv[i] - Cdot) > 1e-9 * (1 + std::abs(Cdot))) told.wrong += "J v differs from Cdot\n";
+  }
+}
+
+Values values_for(const Joint& joint, const Explanation& explanation, std::uint64_t seed) {
+  std::vector<Expr> leaves;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    leaves.insert(leaves.end(), {body.v, body.w});
+  }
+  for (const Step& step : explanation.steps) {
+    for (const Item& item : step.items) {
+      collect_leaves(item.chain.left, leaves);
+      for (const Link& link : item.chain.links) collect_leaves(link.formula, leaves);
+    }
+  }
+  return world_values(joint, random_sample(joint, leaves, seed));
+}
+
+Told check(const Joint& joint, const Explanation& explanation) {
+  Told told;
+  const Block rows = derive_rows(joint);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const Values values = values_for(joint, explanation, seed);
+    for (const Step& step : explanation.steps) {
+      for (const Item& item : step.items) {
+        if (item.kind != Item::Kind::chain) continue;
+        check_chain(step.heading, item.chain, values, told);
+        if (item.chain.left.name == "J") {
+          check_J(item.chain.links[0].formula, joint, rows, values, told);
+        }
+      }
+    }
+  }
+  return told;
+}
+
+std::string content(const std::string& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream all;
+  all << in.rdbuf();
+  return all.str();
+}
+
+}  // namespace
+
+TEST(Explain, EveryEquationOfTheCatalogueIsTrue) {
+  int equations = 0;
+  for (const std::string& name : spec_names()) {
+    const Joint joint = read_spec(name);
+    const Told told = check(joint, explain(joint));
+    EXPECT_EQ(told.wrong, "") << name;
+    EXPECT_GT(told.equations, 0) << name;
+    equations += told.equations;
+  }
+  std::cout << equations << " equations checked, at three poses each counted\n";
+}
+
+TEST(Explain, EveryEquationOfUnusualJointsIsTrue) {
+  for (const auto& [name, text] : unusual_specs()) {
+    const Joint joint = read_text(name, text);
+    const Told told = check(joint, explain(joint));
+    EXPECT_EQ(told.wrong, "") << name << "\n" << explanation_text(explain(joint));
+    EXPECT_GT(told.equations, 0) << name;
+  }
+}
+
+// The check can fail: a sign flipped anywhere in a derivation is found.
+TEST(Explain, AFlippedSignIsFound) {
+  const Joint joint = read_spec("line");
+  const Explanation right = explain(joint);
+  int flipped = 0, found = 0;
+  for (std::size_t s = 0; s < right.steps.size(); ++s) {
+    for (std::size_t i = 0; i < right.steps[s].items.size(); ++i) {
+      const Item& item = right.steps[s].items[i];
+      if (item.kind != Item::Kind::chain || item.chain.left.name.starts_with("J_")) continue;
+      Explanation wrong = right;
+      Formula& f = wrong.steps[s].items[i].chain.links.back().formula;
+      f = f.form == Form::matrix ? matrix(f.columns, {negative(f.args[0]), f.args[1], f.args[2], f.args[3]})
+                                 : negative(f);
+      ++flipped;
+      if (!check(joint, wrong).wrong.empty()) ++found;
+    }
+  }
+  EXPECT_GT(flipped, 15);
+  EXPECT_EQ(found, flipped);
+}
+
+TEST(Explain, ReadsAsItWasRead) {
+  const bool update = std::getenv("CDOT_UPDATE") != nullptr;
+  for (const std::string name : {"line", "revolute", "distance", "driven_crank", "pulley"}) {
+    const std::string path = std::string(CDOT_EXPLAIN_TESTS) + "/golden/" + name + ".txt";
+    const std::string text = explanation_text(explain(read_spec(name)));
+    if (update) std::ofstream(path, std::ios::binary) << text;
+    EXPECT_EQ(text, content(path)) << path << " (CDOT_UPDATE=1 rewrites it)";
+  }
+}
+
+// The same text from every run: nothing depends on addresses or on what was derived before.
+TEST(Explain, SaysTheSameTwice) {
+  for (const std::string& name : spec_names()) {
+    EXPECT_EQ(explanation_text(explain(read_spec(name))), explanation_text(explain(read_spec(name)))) << name;
+  }
+}

@@ -1,0 +1,151 @@
+#include "formula_value.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace cdot::derive;
+
+namespace {
+
+Array scalar(double x) { return {1, 1, {x}}; }
+Array column(double x, double y) { return {2, 1, {x, y}}; }
+
+Array times(double s, Array a) {
+  for (double& x : a.entries) x *= s;
+  return a;
+}
+
+Array added(Array a, const Array& b, double sign) {
+  if (a.entries.size() == 1 && a.entries[0] == 0) return times(sign, b);
+  if (a.entries.size() != b.entries.size()) throw std::logic_error("a sum of different shapes");
+  for (std::size_t i = 0; i < a.entries.size(); ++i) a.entries[i] += sign * b.entries[i];
+  return a;
+}
+
+Array multiplied(const Array& a, const Array& b) {
+  if (a.entries.size() == 1) return times(a.entries[0], b);
+  if (b.entries.size() == 1) return times(b.entries[0], a);
+  if (a.columns != b.rows) throw std::logic_error("a product of shapes that do not fit");
+  Array c{a.rows, b.columns, std::vector<double>(a.rows * b.columns)};
+  for (std::size_t i = 0; i < a.rows; ++i) {
+    for (std::size_t j = 0; j < b.columns; ++j) {
+      for (std::size_t k = 0; k < a.columns; ++k) c.entries[i * c.columns + j] += a.at(i, k) * b.at(k, j);
+    }
+  }
+  return c;
+}
+
+Array transposed(const Array& a) {
+  Array t{a.columns, a.rows, std::vector<double>(a.entries.size())};
+  for (std::size_t i = 0; i < a.rows; ++i) {
+    for (std::size_t j = 0; j < a.columns; ++j) t.entries[j * t.columns + i] = a.at(i, j);
+  }
+  return t;
+}
+
+Array cross_product(const Array& u, const Array& v) {
+  if (u.entries.size() == 1) return column(-u.entries[0] * v.entries[1], u.entries[0] * v.entries[0]);
+  return scalar(u.entries[0] * v.entries[1] - u.entries[1] * v.entries[0]);
+}
+
+// Blocks side by side and one under the other; a 0 fills whatever its place asks for.
+Array assembled(const Formula& f, const std::vector<Array>& blocks) {
+  const std::size_t n = static_cast<std::size_t>(f.columns), m = blocks.size() / n;
+  std::vector<std::size_t> heights(m, 1), widths(n, 1), tops(m + 1), lefts(n + 1);
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    heights[k / n] = std::max(heights[k / n], blocks[k].rows);
+    widths[k % n] = std::max(widths[k % n], blocks[k].columns);
+  }
+  for (std::size_t i = 0; i < m; ++i) tops[i + 1] = tops[i] + heights[i];
+  for (std::size_t j = 0; j < n; ++j) lefts[j + 1] = lefts[j] + widths[j];
+  Array a{tops[m], lefts[n], std::vector<double>(tops[m] * lefts[n])};
+  for (std::size_t k = 0; k < blocks.size(); ++k) {
+    for (std::size_t i = 0; i < blocks[k].rows; ++i) {
+      for (std::size_t j = 0; j < blocks[k].columns; ++j) {
+        a.entries[(tops[k / n] + i) * a.columns + lefts[k % n] + j] = blocks[k].at(i, j);
+      }
+    }
+  }
+  return a;
+}
+
+double called(const std::string& name, const std::vector<Array>& args) {
+  const double x = args[0].entries[0];
+  if (name == "sqrt") return std::sqrt(x);
+  if (name == "sin") return std::sin(x);
+  if (name == "cos") return std::cos(x);
+  if (name == "tan") return std::tan(x);
+  if (name == "exp") return std::exp(x);
+  if (name == "log") return std::log(x);
+  if (name == "abs") return std::fabs(x);
+  if (name == "sign") return x > 0 ? 1 : x < 0 ? -1 : 0;
+  if (name == "atan2") return std::atan2(x, args[1].entries[0]);
+  if (name == "angle") {
+    return std::atan2(cross_product(args[0], args[1]).entries[0],
+                      multiplied(transposed(args[0]), args[1]).entries[0]);
+  }
+  throw std::logic_error("unknown function " + name);
+}
+
+Array leaf_value(const Formula& f, const Values& values) {
+  if (!f.leaf) throw NoValue(f.name);
+  if (!f.leaf->vector) return scalar(evaluate(f.leaf, values));
+  const Pair<double> v = Numbers(values).vector(f.leaf);
+  return column(v[0], v[1]);
+}
+
+}  // namespace
+
+Array value_of_formula(const Formula& f, const Values& values) {
+  std::vector<Array> args;
+  for (const Formula& arg : f.args) args.push_back(value_of_formula(arg, values));
+  const auto length = [&] { return std::hypot(args[0].entries[0], args[0].entries[1]); };
+  switch (f.form) {
+    case Form::leaf: return leaf_value(f, values);
+    case Form::number: return scalar(f.number.value());
+    case Form::sum: {
+      Array total = scalar(0);
+      for (std::size_t i = 0; i < args.size(); ++i) total = added(total, args[i], f.minus[i] ? -1 : 1);
+      return total;
+    }
+    case Form::product: {
+      Array total = scalar(1);
+      for (const Array& arg : args) total = multiplied(total, arg);
+      return total;
+    }
+    case Form::quotient: return times(1 / args[1].entries[0], args[0]);
+    case Form::power: return scalar(std::pow(args[0].entries[0], f.exponent));
+    case Form::dot: return multiplied(transposed(args[0]), args[1]);
+    case Form::cross: return cross_product(args[0], args[1]);
+    case Form::perp:
+    case Form::skew: return column(-args[0].entries[1], args[0].entries[0]);
+    case Form::norm: return scalar(length());
+    case Form::unit: return times(1 / length(), args[0]);
+    case Form::component: return scalar(args[0].entries[f.name == "x" ? 0 : 1]);
+    case Form::call: return scalar(called(f.name, args));
+    case Form::transpose: return transposed(args[0]);
+    case Form::identity: return {2, 2, {1, 0, 0, 1}};
+    case Form::matrix: return assembled(f, args);
+  }
+  throw std::logic_error("unknown form");
+}
+
+void collect_leaves(const Formula& f, std::vector<Expr>& leaves) {
+  if (f.leaf) leaves.push_back(f.leaf);
+  for (const Formula& arg : f.args) collect_leaves(arg, leaves);
+}
+
+double difference(const Array& a, const Array& b) {
+  const auto is_zero = [](const Array& m) {
+    return std::all_of(m.entries.begin(), m.entries.end(), [](double x) { return x == 0; });
+  };
+  if (is_zero(a) && is_zero(b)) return 0;
+  if (a.entries.size() != b.entries.size()) return std::numeric_limits<double>::infinity();
+  double largest = 1, worst = 0;
+  for (std::size_t i = 0; i < a.entries.size(); ++i) {
+    largest = std::max(largest, std::fabs(a.entries[i]));
+    worst = std::max(worst, std::fabs(a.entries[i] - b.entries[i]));
+  }
+  return worst / largest;
+}

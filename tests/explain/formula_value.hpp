@@ -1,0 +1,26 @@
+// Written formulas as numbers, on a way of their own: no builder of the generator is asked what a formula equals.
+#pragma once
+
+#include <stdexcept>
+#include <vector>
+
+#include "derive/explain.hpp"
+#include "derive/numeric.hpp"
+
+struct Array {
+  std::size_t rows = 1, columns = 1;
+  std::vector<double> entries;  // row by row
+
+  double at(std::size_t i, std::size_t j) const { return entries[i * columns + j]; }
+};
+
+// A formula with a leaf that stands for no expression (J, M).
+struct NoValue : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+Array value_of_formula(const cdot::derive::Formula& f, const cdot::derive::Values& values);
+void collect_leaves(const cdot::derive::Formula& f, std::vector<cdot::derive::Expr>& leaves);
+
+// The largest difference of two entries, relative to the largest entry; infinite if the shapes differ.
+double difference(const Array& a, const Array& b);

@@ -1,0 +1,30 @@
+// The catalogue's specs, read for the tests.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "derive/explain.hpp"
+#include "derive/specs_folder.hpp"
+
+inline std::vector<std::string> spec_names() {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& path : cdot::derive::SpecsFolder(CDOT_SPECS).all()) {
+    names.push_back(path.stem().string());
+  }
+  return names;
+}
+
+inline cdot::derive::Joint read_spec(const std::string& name) {
+  const cdot::derive::SpecsFolder folder(CDOT_SPECS);
+  const cdot::derive::ReadResult read = folder.read(folder.find(name));
+  if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
+  return *read.joint;
+}
+
+// Further joints that use what the catalogue does not: angles between directions, functions, velocity rows, roots.
+std::vector<std::pair<std::string, std::string>> unusual_specs();
+cdot::derive::Joint read_text(const std::string& name, const std::string& text);
