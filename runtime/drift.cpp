@@ -190,6 +190,21 @@ void project_velocities(WorldState<S>& world, Island<S>& island, bool direct) {
                               segment.batch->scratch.data(), all.velocity.data());
 }
 
+// What bends a path back onto its curve is a small part of the way: 2 |displacement| <= |h v| in
+// the metric of the masses. More than that (a passage through a singular pose, a step far too
+// large) would be thrown in as energy.
+template <class S>
+bool bends_the_path(const WorldState<S>& world, const Island<S>& island, double h) {
+  const Bodies<S>& all = world.bodies;
+  double moved = 0, way = 0;
+  for (int i : island.bodies) {
+    const auto& m = all.inverse_mass[i];
+    moved += S::dot(S::force(m, all.displacement[i]), all.displacement[i]);
+    way += S::dot(S::force(m, all.velocity[i]), all.velocity[i]);
+  }
+  return 4 * moved <= h * h * way;
+}
+
 // Displacements and their impulses become those of velocities.
 template <class S>
 void add_corrections(WorldState<S>& world, Island<S>& island, typename S::Scalar per_time) {
@@ -237,7 +252,8 @@ void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h
     newton(world, island, time, false);
   else
     sweep_poses(world, island, time);
-  add_corrections(world, island, from_motion ? T(1) / h : T(0));
+  const bool keep = from_motion && bends_the_path(world, island, double(h));
+  add_corrections(world, island, keep ? T(1) / h : T(0));
   evaluate_anew(world, island, time);
   project_velocities(world, island, direct);
   island.evaluated = true;
