@@ -7,7 +7,8 @@ extern long allocations;  // counting_new.cpp
 
 namespace {
 
-// Every kind of row and force there is, a joint that breaks and an island that falls asleep on the way.
+// Every kind of row and force there is, a joint that breaks and an island that falls asleep on the
+// way.
 template <class T>
 void add_everything(World<T>& world) {
   const auto rods = add_chain(world, 10, -0.4);
@@ -19,10 +20,8 @@ void add_everything(World<T>& world) {
   distance(world, rods[0], rods[5], 4,
            Softness{.by_frequency = true, .frequency = 3, .damping_ratio = 0.2});
   world.add_spring({.body_a = rods[1], .body_b = rods[9], .stiffness = 5, .rest_length = 3});
-  world.add_joint({"max_distance",
-                   {rods[2], rods[6]},
-                   {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {4.0}}},
-                   {}});
+  world.add_joint(
+      {"max_distance", {rods[2], rods[6]}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {4.0}}}, {}});
   add_chain(world, 3, -pi / 2);
 }
 

@@ -1,4 +1,5 @@
-// What no solver may create or destroy: momentum, angular momentum, and (slowly, at first order) energy.
+// What no solver may create or destroy: momentum, angular momentum, and (slowly, at first order)
+// energy.
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
@@ -24,7 +25,8 @@ Momentum momentum(const World<T>& world) {
   return sum;
 }
 
-// A chain of five links in free space, pushed: revolutes, a distance, a motor, a soft joint, a spring between points.
+// A chain of five links in free space, pushed: revolutes, a distance, a motor, a soft joint, a
+// spring between points.
 template <class T>
 void add_free_mechanism(World<T>& world) {
   std::vector<int> rods;
@@ -35,8 +37,12 @@ void add_free_mechanism(World<T>& world) {
   distance(world, rods[0], rods[2], 2,
            Softness{.by_frequency = true, .frequency = 3, .damping_ratio = 0.2});
   revolute(world, rods[3], rods[4], 0.5, 0, -0.5, 0);
-  world.add_spring({.body_a = rods[0], .body_b = rods[4], .ay = 0.2, .stiffness = 5,
-                    .rest_length = 3, .damping = 0.3});
+  world.add_spring({.body_a = rods[0],
+                    .body_b = rods[4],
+                    .ay = 0.2,
+                    .stiffness = 5,
+                    .rest_length = 3,
+                    .damping = 0.3});
   world.apply_impulse(rods[0], 1, 2, 0.5);
   world.apply_impulse(rods[4], -3, 1, -0.2);
 }
@@ -55,8 +61,9 @@ TEST(Conservation, MomentumOfAFreeMechanism) {
   }
 }
 
-// Impulses act along one line, as long as the two points of a joint coincide: round-off for the direct solver, which
-// closes the gaps, also in the correction of the drift. The iterative one leaves gaps, and with them a torque.
+// Impulses act along one line, as long as the two points of a joint coincide: round-off for the
+// direct solver, which closes the gaps, also in the correction of the drift. The iterative one
+// leaves gaps, and with them a torque.
 TEST(Conservation, AngularMomentumOfAFreeMechanism) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     World<double> world(settings(solver, Drift::projection));
@@ -67,7 +74,8 @@ TEST(Conservation, AngularMomentumOfAFreeMechanism) {
   }
 }
 
-// Energy of an undamped double pendulum: wavers at first order in h, with no drift over many periods.
+// Energy of an undamped double pendulum: wavers at first order in h, with no drift over many
+// periods.
 TEST(Conservation, EnergyOfTheDoublePendulumHasNoDrift) {
   double before = 0;
   for (double h : {2e-3, 1e-3, 5e-4}) {

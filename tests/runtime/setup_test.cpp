@@ -1,4 +1,5 @@
-// Setting a World up: what is refused and how it is said, what is accepted but does nothing, inconsistent starts.
+// Setting a World up: what is refused and how it is said, what is accepted but does nothing,
+// inconsistent starts.
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
@@ -71,11 +72,11 @@ TEST(Setup, DirectionsAreNormalised) {
   for (double scale : {1.0, 10.0, 1e-6, 1e-200}) {
     World<double> world;
     const int b = world.add_body({.mass = 1, .inertia = 1});
-    const int joint = world.add_joint(
-        {"prismatic",
-         {b, world.ground()},
-         {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0.6 * scale, 0.8 * scale}}},
-         {}});
+    const int joint =
+        world.add_joint({"prismatic",
+                         {b, world.ground()},
+                         {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0.6 * scale, 0.8 * scale}}},
+                         {}});
     const auto p = world.joint_parameters(joint);
     const int offset = world.joint_type(joint).parameters[2].offset;
     EXPECT_NEAR(p[offset], 0.6, 1e-15);

@@ -1,4 +1,5 @@
-// Islands at rest fall asleep, and whatever touches one wakes it. (That a sleeping one costs nothing: cost_test.cpp.)
+// Islands at rest fall asleep, and whatever touches one wakes it. (That a sleeping one costs
+// nothing: cost_test.cpp.)
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {

@@ -1,4 +1,5 @@
-// The direct solver is exact, the iterative one tends to it, both do the same to the bit every time.
+// The direct solver is exact, the iterative one tends to it, both do the same to the bit every
+// time.
 #include <Eigen/Cholesky>
 #include <random>
 
@@ -9,7 +10,8 @@ namespace cdot::test {
 namespace {
 
 // A sparse positive matrix with the pattern of a random graph.
-Eigen::MatrixXd random_matrix(int n, std::mt19937& random, std::vector<std::pair<int, int>>* entries) {
+Eigen::MatrixXd random_matrix(int n, std::mt19937& random,
+                              std::vector<std::pair<int, int>>* entries) {
   std::uniform_real_distribution<double> uniform(-1, 1);
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n, n);
   for (int i = 0; i < n; ++i) {

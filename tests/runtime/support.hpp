@@ -44,7 +44,8 @@ inline BodyDefinition rod(double x, double y, double angle, double mass = 1) {
   return d;
 }
 
-// Rods of length 1 end to end from the origin; joint i holds rod i to the one before, joint 0 to the ground.
+// Rods of length 1 end to end from the origin; joint i holds rod i to the one before, joint 0 to
+// the ground.
 template <class T>
 std::vector<int> add_chain(World<T>& world, int links, double angle, double mass = 1) {
   std::vector<int> rods;
