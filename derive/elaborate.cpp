@@ -132,12 +132,11 @@ void Elaborator::warn_unused(Source& spec) {
     if (entry.used || entry.included || entry.kind == "arm" || entry.value.type == Type::poison ||
         spec.diagnostics.has_errors())
       continue;
-    const auto arm = std::find_if(names_.begin(), names_.end(), [&](const auto& other) {
-      return other.second.kind == "arm" && other.second.used &&
-             other.second.where.begin == entry.where.begin;
+    const int at = entry.where.begin;
+    const bool arm_used = std::any_of(names_.begin(), names_.end(), [at](const auto& other) {
+      return other.second.kind == "arm" && other.second.used && other.second.where.begin == at;
     });
-    if (arm != names_.end() || (entry.kind == "let" && arises_in_derivative(entry.value.e)))
-      continue;
+    if (arm_used || (entry.kind == "let" && arises_in_derivative(entry.value.e))) continue;
     spec.diagnostics.warning(entry.where, "the " + entry.kind + " " + quote(name) + " is not used",
                              "remove it");
   }
