@@ -1,0 +1,73 @@
+// A small program whose steps cost_test.cpp counts instruction by instruction. Built twice: with
+// CDOT_LINK_EFFECTS the code of the effects is linked in, and used if asked to.
+//
+//   cost_scene direct|iterative PENDULUMS [none|limit|motor|friction|spring|breaking|sleep]
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+
+#include "runtime/world.hpp"
+#ifdef CDOT_LINK_EFFECTS
+#include "runtime/effects.hpp"
+#endif
+
+namespace {
+
+using cdot::World;
+
+// Two links from the ground; returns its second joint.
+int add_pendulum(World<double>& world, double x, bool hanging) {
+  int before = world.ground(), joint = -1;
+  for (int i = 0; i < 2; ++i) {
+    const int link = world.add_body({.x = hanging ? x : x + 0.5 + i,
+                                     .y = hanging ? -0.5 - i : 0.0,
+                                     .angle = hanging ? -1.5707963267948966 : 0.0,
+                                     .mass = 1,
+                                     .inertia = 1.0 / 12});
+    const double anchor = i ? 0.5 : x, y = 0;
+    joint =
+        world.add_joint({"revolute", {before, link}, {{"pa", {anchor, y}}, {"pb", {-0.5, 0}}}, {}});
+    before = link;
+  }
+  return joint;
+}
+
+#ifdef CDOT_LINK_EFFECTS
+// Each so weak or so far away that the motion stays what it was, to the bit.
+void add_effect(World<double>& world, int joint, const std::string& effect) {
+  if (effect == "limit") add_limit(world, joint, "angle", {.lower = -1e9, .upper = 1e9});
+  if (effect == "motor") add_motor(world, joint, "angle", {.speed = 1, .max_force = 0});
+  if (effect == "friction") add_friction(world, joint, "angle", {.max_force = 0});
+  if (effect == "spring")
+    add_spring(world, joint, "angle",
+               {.softness = {.by_frequency = false, .damping = 1e-300}, .rest = 0});
+  if (effect == "breaking") set_breaking_load(world, joint, 1e300);
+}
+#endif
+
+}  // namespace
+
+// What is counted. Not inlined and not renamed, so that valgrind finds it.
+extern "C" __attribute__((noinline)) void measured_steps(World<double>& world) {
+  for (int i = 0; i < 20; ++i) world.step(1e-3);
+}
+
+int main(int count, char** arguments) {
+  if (count < 3) return 2;
+  const std::string effect = count > 3 ? arguments[3] : "none";
+  cdot::Settings settings;
+  settings.solver =
+      std::string(arguments[1]) == "direct" ? cdot::Solver::direct : cdot::Solver::iterative;
+  settings.gravity_y = -9.81;
+  settings.sleep_after = 0.05;
+  World<double> world(settings);
+  const int joint = add_pendulum(world, 0, false);
+  for (int i = 1; i < std::atoi(arguments[2]); ++i) add_pendulum(world, 4.0 * i, effect == "sleep");
+#ifdef CDOT_LINK_EFFECTS
+  add_effect(world, joint, effect);
+#endif
+  for (int i = 0; i < 100; ++i) world.step(1e-3);
+  measured_steps(world);
+  std::printf("joint %d, hash %llx, asleep %d\n", joint,
+              static_cast<unsigned long long>(world.hash()), world.sleeping_islands());
+}
