@@ -53,8 +53,15 @@ struct NotLinear : std::runtime_error {
 
 // d e/dt along the motion: dx/dt = v, ds/dt = w x s for what is fixed in a body, dtheta/dt = w. Velocities themselves
 // count as constant, so that applied twice it gives C's second derivative without the accelerations.
-// With `immovable` >= 0 that body stands still.
-Expr time_derivative(Expr e, const Joint& joint, int immovable = -1);
+// With `immovable` >= 0 that body stands still; with `only` nothing moves but that leaf: one term of the product rule.
+Expr time_derivative(Expr e, const Joint& joint, int immovable = -1, Expr only = {});
+
+// Terms r x t + s x t as (r + s) x t, and likewise for dot: shorter, and how people write.
+Expr collected(Expr e);
+
+// K = J M^-1 J^T of these rows, lower triangle.
+std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vector<ScalarRow>& rows,
+                                              int immovable = -1);
 
 // The coefficients of the velocities in an expression that is linear in them: transposition, node by node.
 std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint);

@@ -12,24 +12,27 @@ namespace {
 
 class TimeDerivative {
  public:
-  TimeDerivative(const Joint& joint, int immovable) : joint_(joint), immovable_(immovable) {}
+  TimeDerivative(const Joint& joint, int immovable, Expr only)
+      : joint_(joint), immovable_(immovable), only_(only) {}
 
   Expr of(Expr e) {
     if (const auto found = done_.find(&*e); found != done_.end()) return found->second;
     const Expr result = e->vector ? vector_rule(e) : scalar_rule(e);
-    if (!e->name.empty()) e->pool->name(result, e->name + "_dot", false);
+    if (!e->name.empty() && !only_) e->pool->name(result, e->name + "_dot", false);
     done_.emplace(&*e, result);
     return result;
   }
 
  private:
-  bool moves(int body) const { return body >= 0 && body != immovable_; }
+  bool moves(Expr leaf) const {
+    return leaf->body >= 0 && leaf->body != immovable_ && (!only_ || only_ == leaf);
+  }
 
   Expr vector_rule(Expr e) {
     Pool& pool = *e->pool;
     switch (e->kind) {
       case Kind::symbol:
-        if (!moves(e->body)) return zero_vector(pool);
+        if (!moves(e)) return zero_vector(pool);
         if (e->role == Role::position) return body_symbols(joint_, e->body).v;
         // ds/dt = w x s for a vector fixed in a body.
         if (e->role == Role::body_vector) return cross(body_symbols(joint_, e->body).w, e);
@@ -51,8 +54,8 @@ class TimeDerivative {
     switch (e->kind) {
       case Kind::number: return pool.number(0);
       case Kind::symbol:
-        if (e->role == Role::angle && moves(e->body)) return body_symbols(joint_, e->body).w;
-        return pool.number(e->role == Role::time ? 1 : 0);
+        if (e->role == Role::angle && moves(e)) return body_symbols(joint_, e->body).w;
+        return pool.number(e->role == Role::time && !only_ ? 1 : 0);
       case Kind::sum: return sum_rule(e);
       case Kind::product: return product_rule(e);
       // d(u . v)/dt = udot . v + u . vdot, and the same for u x v
@@ -123,6 +126,7 @@ class TimeDerivative {
 
   const Joint& joint_;
   int immovable_;
+  Expr only_;
   std::map<const Node*, Expr> done_;
 };
 
@@ -249,33 +253,6 @@ bool merge_pair(std::vector<Term>& terms) {
   return false;
 }
 
-Expr merge_pairs(Expr e) {
-  if (e->vector || e->kind != Kind::sum || !e->name.empty()) return e;
-  std::vector<Term> terms = terms_of(e);
-  while (merge_pair(terms)) {
-  }
-  return sum(*e->pool, terms, false);
-}
-
-// K = J M^-1 J^T, entry by entry: sum over the bodies of v_i . v_j / m + w_i w_j / I.
-std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const Block& block) {
-  std::vector<std::vector<Expr>> K(block.rows.size());
-  for (std::size_t i = 0; i < block.rows.size(); ++i) {
-    for (std::size_t j = 0; j <= i; ++j) {
-      Expr entry = joint.pool->number(0);
-      for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-        if (static_cast<int>(b) == block.immovable) continue;
-        const BodySymbols body = body_symbols(joint, static_cast<int>(b));
-        const JacobianEntry& Ji = block.rows[i].J[b];
-        const JacobianEntry& Jj = block.rows[j].J[b];
-        entry = entry + body.inv_m * dot(Ji.v, Jj.v) + body.inv_I * (Ji.w * Jj.w);
-      }
-      K[i].push_back(entry);
-    }
-  }
-  return K;
-}
-
 // d(J^T lambda)/dq: each component of the generalised force, differentiated along the motion at fixed time and
 // lambda; what multiplies v_x, v_y and w of a body is its column.
 std::vector<std::vector<Expr>> geometric_stiffness(const Joint& joint, Block& block) {
@@ -326,7 +303,7 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
 }
 
 Block finished(const Joint& joint, Block block) {
-  block.K = effective_mass(joint, block);
+  block.K = effective_mass(joint, block.rows, block.immovable);
   block.stiffness = geometric_stiffness(joint, block);
   return block;
 }
@@ -344,8 +321,36 @@ BodySymbols body_symbols(const Joint& joint, int body) {
           pool.symbol("inv_I_" + name, Role::inverse_inertia, body)};
 }
 
-Expr time_derivative(Expr e, const Joint& joint, int immovable) {
-  return TimeDerivative(joint, immovable).of(e);
+Expr time_derivative(Expr e, const Joint& joint, int immovable, Expr only) {
+  return TimeDerivative(joint, immovable, only).of(e);
+}
+
+Expr collected(Expr e) {
+  if (e->vector || e->kind != Kind::sum || !e->name.empty()) return e;
+  std::vector<Term> terms = terms_of(e);
+  while (merge_pair(terms)) {
+  }
+  return sum(*e->pool, terms, false);
+}
+
+// Entry by entry the sum over the bodies of v_i . v_j / m + w_i w_j / I.
+std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vector<ScalarRow>& rows,
+                                              int immovable) {
+  std::vector<std::vector<Expr>> K(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      Expr entry = joint.pool->number(0);
+      for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+        if (static_cast<int>(b) == immovable) continue;
+        const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+        const JacobianEntry& Ji = rows[i].J[b];
+        const JacobianEntry& Jj = rows[j].J[b];
+        entry = entry + body.inv_m * dot(Ji.v, Jj.v) + body.inv_I * (Ji.w * Jj.w);
+      }
+      K[i].push_back(entry);
+    }
+  }
+  return K;
 }
 
 std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint) {
@@ -353,7 +358,7 @@ std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint) {
   std::vector<JacobianEntry> J;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
-    J.push_back({transposed.coefficient(body.v), merge_pairs(transposed.coefficient(body.w))});
+    J.push_back({transposed.coefficient(body.v), collected(transposed.coefficient(body.w))});
   }
   return J;
 }

@@ -37,11 +37,11 @@ fs::path SpecsFolder::find(const std::string& spec) const {
                                near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
 }
 
-ReadResult SpecsFolder::read(const fs::path& spec) const {
+ReadResult SpecsFolder::read(const fs::path& spec, const ReadOptions& options) const {
   const fs::path beside = spec.has_parent_path() ? spec.parent_path() : fs::path(".");
   Library library = load_library(folder_ / "planar");
   library.merge(load_library(beside));
-  return read_joint(load_source(spec), library);
+  return read_joint(load_source(spec), library, std::make_shared<Pool>(), options);
 }
 
 }  // namespace cdot::derive

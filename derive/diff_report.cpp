@@ -1,0 +1,67 @@
+// Judgements as text for people and as JSON for programs.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "derive/diff.hpp"
+
+namespace cdot::derive {
+
+std::string to_text(const DiffReport& report, bool all) {
+  std::string s;
+  for (const Judgement& j : report.judgements) {
+    if (!all && j.agreement != Agreement::differs) continue;
+    s += fmt::format("{:<8} {:<10} {}\n", j.id, name_of(j.agreement), j.title);
+    if (!j.condition.empty()) {
+      s += fmt::format("         {} {}\n", j.agreement == Agreement::listed ? "not judged:" : "if", j.condition);
+    }
+    if (j.agreement == Agreement::differs) {
+      s += fmt::format("         {}:{}, after {}\n", report.file->path, report.file->line(j.where.begin), j.source);
+    }
+    for (const Difference& d : j.differences) {
+      s += fmt::format("         {}: {}\n", d.kind, d.sentence);
+      if (d.generated.empty()) {
+        s += fmt::format("           published   {}\n", d.hand);
+        continue;
+      }
+      s += fmt::format("           generated   {}\n           published   {}\n           difference  {}\n",
+                       d.generated, d.hand, d.difference);
+      if (!d.confirmed.empty()) s += fmt::format("           {}\n", d.confirmed);
+    }
+    for (const std::string& remark : j.remarks) s += fmt::format("         note: {}\n", remark);
+  }
+  return s;
+}
+
+std::string to_json(const std::vector<DiffReport>& reports) {
+  nlohmann::ordered_json array = nlohmann::ordered_json::array();
+  for (const DiffReport& report : reports) {
+    for (const Judgement& j : report.judgements) {
+      nlohmann::ordered_json entry = {{"id", j.id},
+                                      {"joint", j.joint},
+                                      {"title", j.title},
+                                      {"source", j.source},
+                                      {"verdict", name_of(j.agreement)}};
+      if (!j.condition.empty()) {
+        entry[j.agreement == Agreement::listed ? "reason" : "condition"] = j.condition;
+      }
+      entry["items"] = nlohmann::ordered_json::array();
+      for (const Difference& d : j.differences) {
+        entry["items"].push_back({{"what", d.what},
+                                  {"row", d.row},
+                                  {"column", d.column},
+                                  {"kind", d.kind},
+                                  {"generated", d.generated},
+                                  {"hand", d.hand},
+                                  {"difference", d.difference},
+                                  {"sentence", d.sentence},
+                                  {"confirmed", d.confirmed}});
+      }
+      entry["remarks"] = j.remarks;
+      array.push_back(std::move(entry));
+    }
+  }
+  return array.dump(2) + "\n";
+}
+
+}  // namespace cdot::derive
