@@ -44,7 +44,10 @@ Elaborator::Elaborator(const Library& library, std::shared_ptr<Pool> pool,
 
 void Elaborator::error(Source& source, Span where, std::string message, std::string fix,
                        std::vector<Span> also) {
-  if (source.include) where = *source.include;
+  if (source.include) {
+    where = *source.include;
+    source.clashed = true;
+  }
   spec_diagnostics_->error(where, std::move(message), std::move(fix), std::move(also));
 }
 

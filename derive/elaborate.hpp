@@ -25,6 +25,7 @@ struct Source {
   std::optional<Span> include;         // where the spec includes it; empty: it is the spec
   std::vector<std::string> including;  // the files on the way to it
   Diagnostics diagnostics;
+  bool clashed = false;  // with names of the spec: what follows from that is not worth a message
   std::map<std::string, Span> declared_anywhere;  // also further down
 };
 

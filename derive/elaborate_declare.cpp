@@ -278,6 +278,13 @@ std::string Elaborator::vector_of_component(const std::string& name) const {
 
 void Elaborator::enter(Source& source, const std::string& full, std::string kind, Value value,
                        Span where) {
+  if (value.type == Type::vector || value.type == Type::point || value.type == Type::frame)
+    for (const char* component : {"_x", "_y"})
+      if (const auto taken = names_.find(full + component); taken != names_.end())
+        error(source, where,
+              "a component of " + quote(full) + " is called " + quote(full + component) +
+                  ", which is another name",
+              "choose another name", {taken->second.where});
   names_[full] = {std::move(value), std::move(kind), in_spec(source, where),
                   source.include.has_value(), false};
 }

@@ -77,7 +77,8 @@ class EntryElaborator final : public Scope {
   bool name_is_free(const Word& word);
   Value evaluate(const Ast& ast, bool rows_of_J = false);
   void store(const Value& v, std::optional<Matrix>& matrix, Expr& expression);
-  std::string problem() const;
+  std::string problem(const Ast& ast, std::size_t since) const;
+  std::size_t findings() const { return findings_.list.size(); }
   HandItem begin(const HandItemAst& item, HandItem::Kind kind) const;
 
   const HandEntryAst& ast_;
@@ -89,9 +90,10 @@ class EntryElaborator final : public Scope {
   Diagnostics& diagnostics_;
   HandEntry entry_;
   Diagnostics findings_;
-  std::map<std::string, Value> names_;      // lets and free symbols of the entry
-  std::map<std::string, Value> said_;       // C, Cdot, J, K, lambda of this part
-  std::optional<Generated> generated_now_;  // of this part's rows
+  std::map<std::string, Value> names_;          // lets and free symbols of the entry
+  std::map<std::string, std::string> reasons_;  // why a name of the entry has no value
+  std::map<std::string, Value> said_;           // C, Cdot, J, K, lambda of this part
+  std::optional<Generated> generated_now_;      // of this part's rows
 };
 
 void EntryElaborator::elaborate(const HandItemAst& item) {
@@ -184,15 +186,23 @@ Value EntryElaborator::evaluate(const Ast& ast, bool rows_of_J) {
   return {};
 }
 
-// What the last error among the findings says.
-std::string EntryElaborator::problem() const {
-  for (auto d = findings_.list.rbegin(); d != findings_.list.rend(); ++d)
-    if (d->severity == Severity::error)
-      return d->message + ": " +
-             quote(std::string_view(file_.file->text)
-                       .substr(static_cast<std::size_t>(d->where.begin),
-                               static_cast<std::size_t>(d->where.end - d->where.begin)));
-  return "it rests on something that has no value";
+// Why the value of `ast` is missing: the last error among the findings since then, or what a name
+// in it rests on.
+std::string EntryElaborator::problem(const Ast& ast, std::size_t since) const {
+  for (std::size_t i = findings_.list.size(); i-- > since;) {
+    const Diagnostic& d = findings_.list[i];
+    if (d.severity != Severity::error) continue;
+    const auto length = static_cast<std::size_t>(d.where.end - d.where.begin);
+    const std::string_view text = file_.file->text;
+    return d.message + ": " + quote(text.substr(static_cast<std::size_t>(d.where.begin), length));
+  }
+  if (ast.kind == Ast::Kind::name) {
+    const auto reason = reasons_.find(ast.text);
+    return reason == reasons_.end() ? "" : reason->second;
+  }
+  for (const Ast& a : ast.args)
+    if (const std::string reason = problem(a, findings()); !reason.empty()) return reason;
+  return {};
 }
 
 void EntryElaborator::store(const Value& v, std::optional<Matrix>& matrix, Expr& expression) {
@@ -232,7 +242,9 @@ bool EntryElaborator::name_is_free(const Word& word) {
 
 // let NAME = expression
 void EntryElaborator::let(const HandItemAst& item) {
+  const std::size_t before = findings();
   Value v = evaluate(item.right);
+  if (v.type == Type::poison) reasons_[item.word.text] = problem(item.right, before);
   if (v.type == Type::point) v = vector(v.e, v.unit);
   if (v.zero) v.unit.reset();
   v.zero = false;
@@ -295,8 +307,9 @@ void EntryElaborator::assume(const HandItemAst& item) {
 void EntryElaborator::quantity(const HandItemAst& item) {
   HandItem out =
       begin(item, item.kind == Kind::lambda ? HandItem::Kind::lambda : HandItem::Kind::quantity);
+  const std::size_t before = findings();
   const Value v = evaluate(item.right, item.word.text == "J");
-  if (v.type == Type::poison) out.problem = problem();
+  if (v.type == Type::poison) out.problem = reasons_[item.word.text] = problem(item.right, before);
   store(v, out.value, out.expression);
   if (item.word.text != "b") said_[item.word.text] = v;
   entry_.parts.back().items.push_back(std::move(out));
@@ -311,11 +324,12 @@ void EntryElaborator::update(const HandItemAst& item) {
   out.body = body(item.body.text);
   if (out.body < 0)
     return diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
+  const std::size_t before = findings();
   const Value v = evaluate(item.right);
   store(v, out.value, out.expression);
   const int rows = item.word.text == "v" || item.word.text == "x" ? 2 : 1;
   if (v.type == Type::poison)
-    out.problem = problem();
+    out.problem = problem(item.right, before);
   else if (out.value->rows != rows || out.value->columns != 1) {
     out.problem =
         std::string(in_words(v.type)) + " is added to " + (rows == 2 ? "a vector" : "a number");
@@ -337,6 +351,7 @@ void EntryElaborator::bound(const HandItemAst& item) {
 void EntryElaborator::claim(const HandItemAst& item) {
   HandItem out = begin(item, HandItem::Kind::claim);
   const bool J = item.word.text == "J";
+  const std::size_t before = findings();
   const Value left = evaluate(item.left, J), right = evaluate(item.right, J);
   if (!same_unit(left, right, true))
     findings_.warning(item.right.where,
@@ -344,7 +359,7 @@ void EntryElaborator::claim(const HandItemAst& item) {
                       {item.left.where});
   store(left, out.value, out.expression);
   store(right, out.right, out.right_expression);
-  if (!out.value || !out.right) out.problem = problem();
+  if (!out.value || !out.right) out.problem = problem(out.value ? item.right : item.left, before);
   entry_.parts.back().items.push_back(std::move(out));
 }
 

@@ -76,7 +76,7 @@ void Elaborator::report_included(Source& source, const IncludeAst& item, const S
   const auto& list = inner.diagnostics.list;
   const auto first = std::find_if(
       list.begin(), list.end(), [](const Diagnostic& d) { return d.severity == Severity::error; });
-  if (first == list.end()) return;
+  if (first == list.end() || inner.clashed) return;
   const SourceFile& file = *inner.file;
   const int at = first->where.begin;
   source.diagnostics.error(item.joint.where,

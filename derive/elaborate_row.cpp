@@ -159,7 +159,7 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
 // A row or the right side of a coordinate as its author wrote it, in one line, with the names that
 // things have here.
 std::string Elaborator::written(const Source& source, const StatementAst& s) const {
-  std::string out;
+  std::string out = s.velocity ? "velocity " : "";
   int end = -1;
   const int begin =
       s.kind == StatementAst::Kind::row ? s.left.where.begin : s.declared.value->where.begin;

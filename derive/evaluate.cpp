@@ -308,6 +308,9 @@ Value Evaluator::power(const Ast& ast) {
       abs(n->value) > Rational(largest_power))
     return error(ast.args[1].where, "an exponent must be a whole number, at most 64",
                  "for a root write sqrt(...), for other powers exp(s * log(...))");
+  if (exponent.unit && *exponent.unit != Unit{})
+    return error(ast.args[1].where,
+                 "an exponent is a pure number, not in " + spoken(*exponent.unit));
   const int power = static_cast<int>(n->value.num());
   if (base.type == Type::matrix) return matrix_power(base, power, ast);
   if (base.type != Type::scalar)

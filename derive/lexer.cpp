@@ -197,7 +197,8 @@ class Lexer {
   }
 
   bool symbol() {
-    static constexpr std::array<std::string_view, 5> pairs = {"==", "<=", ">=", "+=", "-="};
+    static constexpr std::array<std::string_view, 7> pairs = {
+        "==", "<=", ">=", "+=", "-=", "=>", "=<"};
     const auto two = text_.substr(at_, 2);
     const bool pair = std::find(pairs.begin(), pairs.end(), two) != pairs.end();
     static constexpr std::string_view singles = "()[]{},.:;=<>+-*/^'";

@@ -51,7 +51,7 @@ Value build_arm(Pool&, Arguments a) { return vector(a[0].arm); }
 Value build_velocity(Pool& pool, Arguments a) {
   if (a[0].body < 0) return vector(zero_vector(pool));
   const Expr centre = body_velocity(pool, a[0].body);
-  if (a[0].type == Type::body) return vector(centre);
+  if (a[0].type == Type::body || is_zero(a[0].arm)) return vector(centre);
   return vector(centre + cross(body_spin(pool, a[0].body), a[0].arm));
 }
 

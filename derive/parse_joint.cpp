@@ -220,6 +220,9 @@ class JointParser {
     if (p_.accept("=") || p_.accept("<=") || p_.accept(">=")) return;
     if (p_.at_symbol("=="))
       p_.fail(t.where, "`==` is not a relation of this language", "write a single =");
+    else if (p_.at_symbol("=>") || p_.at_symbol("=<"))
+      p_.fail(t.where, quote(t.text) + " is not a relation of this language",
+              t.text == "=>" ? "write >=" : "write <=");
     else if (p_.at_symbol("<") || p_.at_symbol(">"))
       p_.fail(t.where, quote(t.text) + " is not a relation of this language",
               "write " + std::string(t.text) + "=");

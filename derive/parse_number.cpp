@@ -84,6 +84,9 @@ std::optional<WrittenUnit> Parser::unit() {
   else
     unit_factor(result, false);
   while (!failed_ && (at_symbol("*") || at_symbol("/"))) unit_factor(result, take().text == "/");
+  if (!failed_ && at_name())
+    fail(peek().where, "`*` or `/` is missing between units: " + found(),
+         "write for example [m/s]");
   expect("]", "after the unit");
   result.where = from(first);
   return result;

@@ -1,5 +1,6 @@
 #include "derive/read.hpp"
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
@@ -7,6 +8,14 @@
 #include "derive/elaborate.hpp"
 
 namespace cdot::derive {
+namespace {
+
+bool has_body(const Joint& joint, const std::string& body) {
+  return body == "world" ||
+         std::find(joint.bodies.begin(), joint.bodies.end(), body) != joint.bodies.end();
+}
+
+}  // namespace
 
 std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -26,6 +35,15 @@ Library load_library(const std::filesystem::path& folder) {
 
 ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library,
                       std::shared_ptr<Pool> pool, const ReadOptions& options) {
+  if (!options.anchors.empty()) {
+    // An anchor on a body that the joint does not have is for the caller to report.
+    const ReadResult plain = read_joint(file, library);
+    ReadOptions possible;
+    for (const auto& [name, body] : options.anchors)
+      if (plain.joint && has_body(*plain.joint, body)) possible.anchors.emplace(name, body);
+    if (possible.anchors.size() != options.anchors.size())
+      return read_joint(std::move(file), library, std::move(pool), possible);
+  }
   ReadResult result;
   result.file = file;
   Source spec;
