@@ -12,11 +12,16 @@ std::string kind_of(const Joint& joint, const Parameter& p) {
   const std::string where =
       p.body < 0 ? "the world" : joint.bodies[static_cast<std::size_t>(p.body)];
   switch (p.kind) {
-    case ParameterKind::point: return "a point fixed in " + where;
-    case ParameterKind::vector: return "a vector fixed in " + where;
-    case ParameterKind::unit: return "a direction (a vector of length 1) fixed in " + where;
-    case ParameterKind::frame: return "the x axis of a frame fixed in " + where;
-    case ParameterKind::scalar: break;
+    case ParameterKind::point:
+      return "a point fixed in " + where;
+    case ParameterKind::vector:
+      return "a vector fixed in " + where;
+    case ParameterKind::unit:
+      return "a direction (a vector of length 1) fixed in " + where;
+    case ParameterKind::frame:
+      return "the x axis of a frame fixed in " + where;
+    case ParameterKind::scalar:
+      break;
   }
   return "a number";
 }
@@ -61,14 +66,16 @@ void explain_rows(Lecture& lecture, const Part& part) {
   read_jacobian(lecture, part, jacobian);
 
   Step& mass = lecture.section("The effective mass");
-  mass.say("K = J M^-1 J', with each body's inv_m and inv_I on the diagonal of M^-1. "
-           "K lambda = -Cdot gives the impulse lambda that makes Cdot vanish, J' lambda what it "
-           "does to the bodies.");
+  mass.say(
+      "K = J M^-1 J', with each body's inv_m and inv_I on the diagonal of M^-1. "
+      "K lambda = -Cdot gives the impulse lambda that makes Cdot vanish, J' lambda what it "
+      "does to the bodies.");
   multiply_mass(lecture, part, mass);
 
   Step& gamma = lecture.section("The acceleration level");
-  gamma.say("Once more differentiated, the velocities themselves held fixed: J times the "
-            "accelerations must equal gamma, minus what is left.");
+  gamma.say(
+      "Once more differentiated, the velocities themselves held fixed: J times the "
+      "accelerations must equal gamma, minus what is left.");
   differentiate_again(lecture, part, gamma);
 }
 
@@ -104,15 +111,21 @@ void introduce(Lecture& lecture) {
   Step& step = lecture.section("The joint");
   if (!joint.title.empty()) step.say(joint.title);
   if (!joint.source.empty()) step.say("Source: " + joint.source);
-  if (!joint.includes.empty()) step.say("Composed of the joints " + joined(joint.includes) + ".");
-  step.say("Vectors are in world axes; × is the cross product of the plane, "
-           "w × r = w perp(r), perp(r) = (-r.y, r.x).");
+  if (!joint.includes.empty()) {
+    const std::string word = joint.includes.size() > 1 ? "joints " : "joint ";
+    step.say("Composed of the " + word + joined(joint.includes) + ".");
+  }
+  step.say(
+      "Vectors are in world axes; × is the cross product of the plane, "
+      "w × r = w perp(r), perp(r) = (-r.y, r.x).");
   const BodySymbols a = body_symbols(joint, 0);
   const std::string others = joint.bodies.size() > 1 ? "; likewise the others" : "";
-  step.list((joint.bodies.size() > 1 ? "bodies " : "body ") + joined(joint.bodies) +
-                "; of a: centre of mass {} [m], angle {} [rad], their rates {} [m/s] and {} [rad/s], "
-                "inverse mass {} [1/kg], inverse inertia {} [1/(kg m^2)]" + others,
-            {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
+  step.list(
+      (joint.bodies.size() > 1 ? "bodies " : "body ") + joined(joint.bodies) +
+          "; of a: centre of mass {} [m], angle {} [rad], their rates {} [m/s] and {} [rad/s], "
+          "inverse mass {} [1/kg], inverse inertia {} [1/(kg m^2)]" +
+          others,
+      {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
   for (const Parameter& p : joint.parameters) describe(lecture, p, step);
 }
 

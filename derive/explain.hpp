@@ -1,5 +1,6 @@
-// The derivation of a joint as a good teacher writes it: steps with headings, chains of equal formulas, and the rule
-// that leads from each to the next. One source of steps, one writer for each format.
+// The derivation of a joint as a good teacher writes it: steps with headings, chains of equal
+// formulas, and the rule that leads from each to the next. One source of steps, one writer for each
+// format.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -52,10 +53,12 @@ struct Explanation {
 Explanation explain(const Joint& joint);
 
 std::string explanation_text(const Explanation& explanation);
-std::string explanation_html(const Explanation& explanation);   // one file, no links to elsewhere
-std::string explanation_latex(const Explanation& explanation);  // an article that needs amsmath only
+std::string explanation_html(const Explanation& explanation);  // one file, no links to elsewhere
+std::string explanation_latex(
+    const Explanation& explanation);  // an article that needs amsmath only
 
-// C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain_json.cpp gives the schema.
+// C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain_json.cpp
+// gives the schema.
 nlohmann::ordered_json explanation_json(const Joint& joint);
 
 }  // namespace cdot::derive

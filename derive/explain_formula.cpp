@@ -68,8 +68,10 @@ Formula product(std::vector<Formula> factors) {
       f = Formula(f.args[0]);
     }
     if (is_one(f)) continue;
-    if (f.form == Form::product) kept.insert(kept.end(), f.args.begin(), f.args.end());
-    else kept.push_back(std::move(f));
+    if (f.form == Form::product)
+      kept.insert(kept.end(), f.args.begin(), f.args.end());
+    else
+      kept.push_back(std::move(f));
   }
   Formula result = kept.empty()       ? number(1)
                    : kept.size() == 1 ? std::move(kept[0])
@@ -105,6 +107,7 @@ Formula form(Form kind, Formula arg) {
 
 Formula times(Rational magnitude, Formula f) {
   if (magnitude.num() == 1) return quotient(std::move(f), number(magnitude.den()));
+  if (f.form == Form::quotient) return quotient(times(magnitude, f.args[0]), f.args[1]);
   return product({number(magnitude), std::move(f)});
 }
 
@@ -171,24 +174,33 @@ bool Notation::has_name(Expr e) {
   return !e->name.empty() && (e->named_by_let || e->name.ends_with("_dot"));
 }
 
-Formula Notation::of(Expr e) const {
-  return has_name(e) && !is_zero(e) ? leaf(e) : written(e);
-}
+Formula Notation::of(Expr e) const { return has_name(e) && !is_zero(e) ? leaf(e) : written(e); }
 Formula Notation::definition(Expr e) const { return written(e); }
 
 Formula Notation::written(Expr e) const {
   switch (e->kind) {
-    case Kind::number: return e->value.sign() < 0 ? negative(number(-e->value)) : number(e->value);
-    case Kind::symbol: return leaf(e);
-    case Kind::sum: return sum_of(e);
-    case Kind::product: return product_of(e);
-    case Kind::scale: return scale_of(e);
-    case Kind::dot: return dot_of(e);
-    case Kind::cross: return cross(of(e->args[0]), of(e->args[1]));
-    case Kind::perp: return form(Form::perp, of(e->args[0]));
-    case Kind::norm: return form(Form::norm, of(e->args[0]));
-    case Kind::unit: return form(Form::unit, of(e->args[0]));
-    case Kind::function: break;
+    case Kind::number:
+      return e->value.sign() < 0 ? negative(number(-e->value)) : number(e->value);
+    case Kind::symbol:
+      return leaf(e);
+    case Kind::sum:
+      return sum_of(e);
+    case Kind::product:
+      return product_of(e);
+    case Kind::scale:
+      return scale_of(e);
+    case Kind::dot:
+      return dot_of(e);
+    case Kind::cross:
+      return cross(of(e->args[0]), of(e->args[1]));
+    case Kind::perp:
+      return form(Form::perp, of(e->args[0]));
+    case Kind::norm:
+      return form(Form::norm, of(e->args[0]));
+    case Kind::unit:
+      return form(Form::unit, of(e->args[0]));
+    case Kind::function:
+      break;
   }
   if (const auto angle = angle_between(e)) {
     Formula f = of_form(Form::call, {of(angle->from), of(angle->to)});
@@ -201,7 +213,8 @@ Formula Notation::written(Expr e) const {
 }
 
 Notation::PointTerms Notation::points_among(Expr sum) const {
-  PointTerms found{std::vector<const Point*>(sum->args.size()), std::vector<bool>(sum->args.size())};
+  PointTerms found{std::vector<const Point*>(sum->args.size()),
+                   std::vector<bool>(sum->args.size())};
   for (std::size_t i = 0; i < sum->args.size(); ++i) {
     for (std::size_t j = 0; j < sum->args.size() && !found.at[i]; ++j) {
       if (found.used[j] || sum->coefs[i] != sum->coefs[j]) continue;
@@ -222,7 +235,7 @@ Formula Notation::sum_of(Expr e) const {
   for (std::size_t i = 0; i < e->args.size(); ++i) {
     if (points.used[i]) continue;
     const Rational c = e->coefs[i];
-    Formula f = points.at[i]        ? leaf(points.at[i]->value, points.at[i]->name)
+    Formula f = points.at[i]         ? leaf(points.at[i]->value, points.at[i]->name)
                 : is_one(e->args[i]) ? number(1)
                                      : of(e->args[i]);
     f = is_one(f) ? number(abs(c)) : times(abs(c), std::move(f));
@@ -260,8 +273,10 @@ Expr value_of(const Formula& f, Pool& pool) {
   std::vector<Expr> args;
   for (const Formula& arg : f.args) args.push_back(value_of(arg, pool));
   switch (f.form) {
-    case Form::leaf: return f.leaf;
-    case Form::number: return pool.number(f.number);
+    case Form::leaf:
+      return f.leaf;
+    case Form::number:
+      return pool.number(f.number);
     case Form::sum: {
       Expr total = f.minus[0] ? -args[0] : args[0];
       for (std::size_t i = 1; i < args.size(); ++i) {
@@ -274,22 +289,30 @@ Expr value_of(const Formula& f, Pool& pool) {
       for (std::size_t i = 1; i < args.size(); ++i) total = total * args[i];
       return total;
     }
-    case Form::quotient: return args[0] / args[1];
-    case Form::power: return pow(args[0], f.exponent);
-    case Form::dot: return dot(args[0], args[1]);
-    case Form::cross: return cross(args[0], args[1]);
-    case Form::perp: return perp(args[0]);
-    case Form::norm: return norm(args[0]);
-    case Form::unit: return unit(args[0]);
+    case Form::quotient:
+      return args[0] / args[1];
+    case Form::power:
+      return pow(args[0], f.exponent);
+    case Form::dot:
+      return dot(args[0], args[1]);
+    case Form::cross:
+      return cross(args[0], args[1]);
+    case Form::perp:
+      return perp(args[0]);
+    case Form::norm:
+      return norm(args[0]);
+    case Form::unit:
+      return unit(args[0]);
     case Form::component:
       return dot(f.name == "x" ? world_x(pool) : perp(world_x(pool)), args[0]);
-    default: break;
+    default:
+      break;
   }
   if (f.form == Form::call && f.name == "angle") {
     return call(Fn::atan2, std::vector{cross(args[0], args[1]), dot(args[0], args[1])});
   }
-  for (const Fn fn : {Fn::sqrt, Fn::sin, Fn::cos, Fn::tan, Fn::exp, Fn::log, Fn::abs, Fn::sign,
-                      Fn::atan2}) {
+  for (const Fn fn :
+       {Fn::sqrt, Fn::sin, Fn::cos, Fn::tan, Fn::exp, Fn::log, Fn::abs, Fn::sign, Fn::atan2}) {
     if (f.form == Form::call && f.name == name_of(fn)) return call(fn, args);
   }
   throw std::logic_error("a matrix has no scalar or vector value");

@@ -1,5 +1,5 @@
-// The derivation as one page that needs nothing else: MathML, which browsers set themselves, and a style sheet for
-// light and dark.
+// The derivation as one page that needs nothing else: MathML, which browsers set themselves, and a
+// style sheet for light and dark.
 #include <map>
 
 #include "derive/explain_write.hpp"
@@ -11,11 +11,20 @@ std::string escaped(const std::string& s) {
   std::string out;
   for (const char c : s) {
     switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
   return out;
@@ -38,15 +47,18 @@ std::string prose(const std::string& s) {
 
 std::string greek(const std::string& letter) {
   static const std::map<std::string, std::string> letters = {
-      {"alpha", "α"}, {"beta", "β"},   {"gamma", "γ"}, {"delta", "δ"}, {"theta", "θ"}, {"lambda", "λ"},
-      {"mu", "μ"},    {"phi", "φ"},    {"psi", "ψ"},   {"omega", "ω"}, {"pi", "π"}};
+      {"alpha", "α"}, {"beta", "β"},   {"gamma", "γ"}, {"delta", "δ"},
+      {"theta", "θ"}, {"lambda", "λ"}, {"mu", "μ"},    {"phi", "φ"},
+      {"psi", "ψ"},   {"omega", "ω"},  {"pi", "π"}};
   const auto found = letters.find(letter);
   return found == letters.end() ? letter : found->second;
 }
 
 std::string row(const std::string& inner) { return "<mrow>" + inner + "</mrow>"; }
 std::string sign_of(const std::string& s) { return "<mo>" + s + "</mo>"; }
-std::string fence(const std::string& s) { return "<mo stretchy=\"true\" fence=\"true\">" + s + "</mo>"; }
+std::string fence(const std::string& s) {
+  return "<mo stretchy=\"true\" fence=\"true\">" + s + "</mo>";
+}
 
 class MathML : public FormulaWriter {
  public:
@@ -86,12 +98,14 @@ class MathML : public FormulaWriter {
   }
   std::string power(const std::string& base, int exponent) const override {
     const std::string magnitude = "<mn>" + std::to_string(std::abs(exponent)) + "</mn>";
-    return "<msup>" + row(base) + (exponent < 0 ? row(sign_of("−") + magnitude) : magnitude) + "</msup>";
+    return "<msup>" + row(base) + (exponent < 0 ? row(sign_of("−") + magnitude) : magnitude) +
+           "</msup>";
   }
   std::string call(const std::string& f, const std::vector<std::string>& args) const override {
     std::string inner;
     for (std::size_t i = 0; i < args.size(); ++i) inner += (i ? sign_of(",") : "") + args[i];
-    return row("<mi mathvariant=\"normal\">" + f + "</mi>" + sign_of("&#8289;") + parentheses(inner));
+    return row("<mi mathvariant=\"normal\">" + f + "</mi>" + sign_of("&#8289;") +
+               parentheses(inner));
   }
   std::string norm(const std::string& arg) const override {
     return row(fence("|") + arg + fence("|"));
@@ -126,22 +140,41 @@ class MathML : public FormulaWriter {
 };
 
 constexpr const char* style = R"(
-:root { color-scheme: light dark; --ink: #1c1c1e; --paper: #fdfdfb; --soft: #6a6a70; --line: #dcdcd6; --block: #f3f3ee; }
+:root {
+  color-scheme: light dark;
+  --ink: #1c1c1e; --paper: #fdfdfb; --soft: #6a6a70; --line: #dcdcd6; --block: #f3f3ee;
+}
 @media (prefers-color-scheme: dark) {
   :root { --ink: #e8e8e3; --paper: #17181a; --soft: #9a9aa2; --line: #34363a; --block: #202225; }
 }
-body { margin: 0 auto; max-width: 60rem; padding: 2rem 1.2rem 4rem; color: var(--ink); background: var(--paper);
-  font: 1.05rem/1.55 Georgia, "Times New Roman", serif; }
+body {
+  margin: 0 auto; max-width: 60rem; padding: 2rem 1.2rem 4rem;
+  color: var(--ink); background: var(--paper);
+  font: 1.05rem/1.55 Georgia, "Times New Roman", serif;
+}
 h1 { font-size: 1.9rem; margin: 0 0 1rem; }
-h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; padding-top: .8rem; border-top: 1px solid var(--line); }
-ul { padding-left: 1.3rem; } li { margin: .25rem 0; }
-code { font: .92em/1.4 ui-monospace, Menlo, Consolas, monospace; background: var(--block); padding: .1em .3em;
-  border-radius: 3px; }
-.chain { overflow-x: auto; margin: .35rem 0; padding: .3rem 0 .3rem 1rem; border-left: 3px solid var(--line); }
-.chain table { border-collapse: collapse; } .chain td { padding: .12rem .3rem; vertical-align: baseline; }
-.chain td.left { text-align: right; white-space: nowrap; } .chain td.rule { color: var(--soft); font-size: .86rem;
-  font-style: italic; padding-left: 1.4rem; min-width: 12rem; }
-math { font-size: 1.08em; } mi.vector { font-weight: bold; } .matrix mtd { padding: .15em .5em; }
+h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; padding-top: .8rem; }
+h2 { border-top: 1px solid var(--line); }
+ul { padding-left: 1.3rem; }
+li { margin: .25rem 0; }
+code {
+  font: .92em/1.4 ui-monospace, Menlo, Consolas, monospace;
+  background: var(--block); padding: .1em .3em; border-radius: 3px;
+}
+.chain {
+  overflow-x: auto; margin: .35rem 0; padding: .3rem 0 .3rem 1rem;
+  border-left: 3px solid var(--line);
+}
+.chain table { border-collapse: collapse; }
+.chain td { padding: .12rem .3rem; vertical-align: baseline; }
+.chain td.left { text-align: right; white-space: nowrap; }
+.chain td.rule {
+  color: var(--soft); font-size: .86rem; font-style: italic;
+  padding-left: 1.4rem; min-width: 12rem;
+}
+math { font-size: 1.08em; }
+mi.vector { font-weight: bold; }
+.matrix mtd { padding: .15em .5em; }
 )";
 
 std::string math(const std::string& inner) { return "<math>" + row(inner) + "</math>"; }
@@ -150,9 +183,9 @@ std::string chain_html(const Chain& chain, const MathML& formula) {
   std::string out = "<div class=\"chain\"><table>\n";
   for (std::size_t i = 0; i < chain.links.size(); ++i) {
     const Link& link = chain.links[i];
-    out += "<tr><td class=\"left\">" + (i == 0 ? math(formula.write(chain.left)) : "") + "</td><td>" +
-           math(sign_of("=") + formula.write(link.formula)) + "</td><td class=\"rule\">" +
-           escaped(link.rule) + "</td></tr>\n";
+    out += "<tr><td class=\"left\">" + (i == 0 ? math(formula.write(chain.left)) : "") +
+           "</td><td>" + math(sign_of("=") + formula.write(link.formula)) +
+           "</td><td class=\"rule\">" + escaped(link.rule) + "</td></tr>\n";
   }
   return out + "</table></div>\n";
 }
@@ -161,9 +194,10 @@ class Page {
  public:
   explicit Page(const Explanation& explanation) : formula_(explanation.bodies) {
     const std::string title = escaped(explanation.title);
-    out_ = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
-           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
-           title + "</title>\n<style>" + style + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n";
+    out_ =
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
+        title + "</title>\n<style>" + style + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n";
     int number = 0;
     for (const Step& step : explanation.steps) {
       out_ += "<h2>" + std::to_string(++number) + ". " + escaped(step.heading) + "</h2>\n";

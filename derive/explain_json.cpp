@@ -1,22 +1,24 @@
-// The derivation for other programs: every entry as a plain infix expression over documented component names.
+// The derivation for other programs: every entry as a plain infix expression over documented
+// component names.
 //
 // {
-//   "format": 1, "joint": "line", "title": "...", "source": "...", "dimension": 2, "bodies": ["a", "b"],
-//   "columns": ["v_a_x", "v_a_y", "w_a", "v_b_x", ...],           columns of every J
-//   "symbols": { "r_pa_x": { "kind", "meaning", "unit", "frame", "body", "from", "unit_length" }, ... },
+//   "format": 1, "joint": "line", "title", "source", "dimension": 2, "bodies": ["a", "b"],
+//   "columns": ["v_a_x", "v_a_y", "w_a", "v_b_x", ...],   of every J
+//   "symbols": { "r_pa_x": { "kind", "meaning", "unit", "frame", "body", "from", "unit_length" } },
 //       kind: position, velocity, mass (inverse), parameter, derived, time, constant
-//       frame: "world" or the body whose axes the component is along; "body": whose it is; null where it has none
-//       from: for derived ones the expression that gives it from a pose and parameters (r_pa_x from theta_a, pa_local_x)
-//       unit_length: true for the components of a vector of length 1, which K relies on
-//   "intermediates": [ { "name": "u_x", "definition": "..." }, ... ],  in order: each uses only what stands before it
-//   "guards": [ { "where": "u_len = 0", "kernel": "..." } ],           where an entry is undefined and what a kernel does
+//       frame: "world" or the body whose axes the component is along; body: whose it is; or null
+//       from: of derived ones, how they follow from the pose and the parameters; else null
+//       unit_length: true for components of a vector of length 1, which K relies on
+//   "intermediates": [ { "name", "definition" } ],   each uses only what stands before it
+//   "guards": [ { "where": "u_len = 0", "kernel" } ],   where an entry is undefined
 //   "rows": [ { "name", "kind": equality | inequality | velocity, "text", "unit" } ],
-//   "C": [ one a row ], "Cdot": [ J v + C_t, before the velocities are isolated ], "C_t": [ dC/dt at fixed bodies ],
-//   "J": [ [ one a column ] a row ], "K": [ [ ] ] square, "gamma": [ ],
-//   "coordinates": [ { "name", "text", "unit", "C", "Cdot", "C_t", "J", "K", "gamma" } ]   as above, with one row each
+//   "C", "Cdot", "C_t", "gamma": [ one a row ],   C_t = dC/dt with the bodies at rest
+//   "J": [ [ one a column ] a row ], "K": [ [ ] ] square,
+//   "coordinates": [ { "name", "text", "unit", "C", "Cdot", "C_t", "J", "K", "gamma" } ]   one row
 // }
 //
-// Operators + - * / ** and parentheses, functions sqrt sin cos tan atan2 exp log abs sign; "0" for what is not there.
+// Operators + - * / ** and parentheses, functions sqrt sin cos tan atan2 exp log abs sign; "0" for
+// what is not there.
 #include <algorithm>
 #include <set>
 
@@ -55,15 +57,20 @@ class Infix {
 
   std::string inline_text(Expr e, Level level) {
     switch (e->kind) {
-      case Kind::number: return enclosed(e->value.text(), level, e->value.sign() < 0, e->value);
-      case Kind::sum: return sum_text(e, level);
-      case Kind::product: return product_text(e, level);
-      default: return function_text(e, level);
+      case Kind::number:
+        return enclosed(e->value.text(), level, e->value.sign() < 0, e->value);
+      case Kind::sum:
+        return sum_text(e, level);
+      case Kind::product:
+        return product_text(e, level);
+      default:
+        return function_text(e, level);
     }
   }
 
   static std::string enclosed(const std::string& text, Level level, bool negative, Rational value) {
-    const bool needs = (negative && level > Level::sum) || (!value.is_integer() && level > Level::sum);
+    const bool needs =
+        (negative && level > Level::sum) || (!value.is_integer() && level > Level::sum);
     return needs ? "(" + text + ")" : text;
   }
 
@@ -74,8 +81,10 @@ class Infix {
       const Rational c = e->coefs[i];
       out += c.sign() < 0 ? (out.empty() ? "-" : " - ") : (out.empty() ? "" : " + ");
       const bool constant = is_one(e->args[i]);
-      if (constant) out += abs(c).text();
-      else if (abs(c) != Rational(1)) out += enclosed(abs(c).text(), Level::product, false, c) + "*";
+      if (constant)
+        out += abs(c).text();
+      else if (abs(c) != Rational(1))
+        out += enclosed(abs(c).text(), Level::product, false, c) + "*";
       if (!constant) out += print(e->args[i], Level::product);
     }
     return level > Level::sum ? "(" + out + ")" : out;
@@ -113,7 +122,8 @@ class Infix {
   }
 
   void guard(const std::string& where, const std::string& kernel) {
-    if (guarded_.insert(where + kernel).second) guards_.push_back({{"where", where}, {"kernel", kernel}});
+    if (guarded_.insert(where + kernel).second)
+      guards_.push_back({{"where", where}, {"kernel", kernel}});
   }
 
   ExplainedSymbols symbols_;
@@ -124,7 +134,9 @@ class Infix {
 };
 
 std::string kind_name(RowKind kind) {
-  return kind == RowKind::equality ? "equality" : kind == RowKind::inequality ? "inequality" : "velocity";
+  return kind == RowKind::equality     ? "equality"
+         : kind == RowKind::inequality ? "inequality"
+                                       : "velocity";
 }
 
 Json J_of(Infix& infix, const Joint& joint, const ScalarRow& row) {
@@ -175,11 +187,13 @@ nlohmann::ordered_json explanation_json(const Joint& joint) {
   }
   Json columns = Json::array();
   for (const std::string& b : joint.bodies) {
-    for (const std::string& name : {"v_" + b + "_x", "v_" + b + "_y", "w_" + b}) columns.push_back(name);
+    for (const std::string& name : {"v_" + b + "_x", "v_" + b + "_y", "w_" + b})
+      columns.push_back(name);
   }
-  Json all{{"format", 1},           {"joint", joint.name}, {"title", joint.title},
-           {"source", joint.source}, {"dimension", 2},      {"bodies", joint.bodies},
-           {"columns", columns},    {"symbols", infix.symbols()}};
+  Json all{{"format", 1},          {"joint", joint.name},
+           {"title", joint.title}, {"source", joint.source},
+           {"dimension", 2},       {"bodies", joint.bodies},
+           {"columns", columns},   {"symbols", infix.symbols()}};
   all["intermediates"] = infix.intermediates();
   all["guards"] = infix.guards();
   all.update(rows);

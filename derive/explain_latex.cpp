@@ -13,12 +13,26 @@ std::string escaped(const std::string& s) {
   std::string out;
   for (const char c : s) {
     switch (c) {
-      case '\\': out += "\\textbackslash{}"; break;
-      case '^': out += "\\textasciicircum{}"; break;
-      case '~': out += "\\textasciitilde{}"; break;
-      case '&': case '%': case '$': case '#': case '_': case '{': case '}': out += '\\';
+      case '\\':
+        out += "\\textbackslash{}";
+        break;
+      case '^':
+        out += "\\textasciicircum{}";
+        break;
+      case '~':
+        out += "\\textasciitilde{}";
+        break;
+      case '&':
+      case '%':
+      case '$':
+      case '#':
+      case '_':
+      case '{':
+      case '}':
+        out += '\\';
         [[fallthrough]];
-      default: out += c;
+      default:
+        out += c;
     }
   }
   return out;
@@ -42,8 +56,8 @@ std::string prose(const std::string& s) {
 }
 
 std::string letter_of(const std::string& letter, bool vector) {
-  static const std::set<std::string> greek = {"alpha", "beta",  "gamma", "delta", "theta", "lambda",
-                                              "mu",    "varphi", "psi",   "omega", "pi"};
+  static const std::set<std::string> greek = {
+      "alpha", "beta", "gamma", "delta", "theta", "lambda", "mu", "varphi", "psi", "omega", "pi"};
   const std::string name = letter == "phi" ? "varphi" : letter;
   if (greek.contains(name)) return "\\" + name;
   if (vector) return "\\mathbf{" + escaped(letter) + "}";
@@ -65,7 +79,8 @@ class Latex : public FormulaWriter {
     std::string out = letter_of(s.letter, leaf.leaf && leaf.leaf->vector);
     if (s.dots > 0) out = (s.dots == 1 ? "\\dot{" : "\\ddot{") + out + "}";
     const bool word = s.index.size() > 1;
-    if (!s.index.empty()) out += word ? "_{\\text{" + escaped(s.index) + "}}" : "_{" + s.index + "}";
+    if (!s.index.empty())
+      out += word ? "_{\\text{" + escaped(s.index) + "}}" : "_{" + s.index + "}";
     return inverse ? out + "^{-1}" : out;
   }
   std::string number(Rational value) const override {
@@ -95,7 +110,9 @@ class Latex : public FormulaWriter {
   std::string component(const std::string& arg, const std::string& axis) const override {
     return "{" + arg + "}_{" + axis + "}";
   }
-  std::string transpose(const std::string& arg) const override { return "{" + arg + "}^{\\mathsf T}"; }
+  std::string transpose(const std::string& arg) const override {
+    return "{" + arg + "}^{\\mathsf T}";
+  }
   std::string identity() const override { return "E"; }
   std::string matrix(int columns, const std::vector<std::string>& entries) const override {
     std::string form, body;
@@ -125,6 +142,18 @@ std::size_t set_width(const std::string& latex) {
   return width;
 }
 
+// Rules stand under their formula, one a line, where they never run off the page.
+std::vector<std::string> rule_lines(const std::string& rules) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < rules.size();) {
+    const std::size_t end = std::min(rules.find("; ", at), rules.size());
+    lines.push_back((at == 0 ? "(" : "") + rules.substr(at, end - at) +
+                    (end == rules.size() ? ")" : ";"));
+    at = end + 2;
+  }
+  return lines;
+}
+
 std::string chain_latex(const Chain& chain, const Latex& formula) {
   std::string out = "\\begin{align*}\n  " + formula.write(chain.left);
   for (std::size_t i = 0; i < chain.links.size(); ++i) {
@@ -140,8 +169,9 @@ std::string chain_latex(const Chain& chain, const Latex& formula) {
       out += piece;
       used += width;
     }
-    // A rule stands under its formula, where it never runs off the page.
-    if (!link.rule.empty()) out += " \\\\\n  &\\quad \\text{\\small(" + prose(link.rule) + ")}";
+    for (const std::string& line : rule_lines(link.rule)) {
+      out += " \\\\\n  &\\quad \\text{\\small " + prose(line) + "}";
+    }
   }
   return out + "\n\\end{align*}\n";
 }
@@ -150,9 +180,10 @@ std::string chain_latex(const Chain& chain, const Latex& formula) {
 
 std::string explanation_latex(const Explanation& explanation) {
   const Latex formula(explanation.bodies);
-  std::string out = "\\documentclass[a4paper]{article}\n\\usepackage{amsmath}\n\\allowdisplaybreaks\n"
-                    "\\setlength{\\parindent}{0pt}\n\\title{" + escaped(explanation.title) +
-                    "}\n\\author{}\n\\date{}\n\\begin{document}\n\\maketitle\n";
+  std::string out =
+      "\\documentclass[a4paper]{article}\n\\usepackage{amsmath}\n\\allowdisplaybreaks\n"
+      "\\setlength{\\parindent}{0pt}\n\\title{" +
+      escaped(explanation.title) + "}\n\\author{}\n\\date{}\n\\begin{document}\n\\maketitle\n";
   for (const Step& step : explanation.steps) {
     out += "\n\\section{" + escaped(step.heading) + "}\n";
     bool in_list = false;
@@ -164,9 +195,10 @@ std::string explanation_latex(const Explanation& explanation) {
         out += chain_latex(item.chain, formula);
         continue;
       }
-      out += (bullet ? "\\item " : "\n") + fill(item.words, prose, [&formula](const Formula& f) {
-               return "$" + formula.write(f) + "$";
-             }) + (bullet ? "\n" : "\n\n");
+      out += (bullet ? "\\item " : "\n") +
+             fill(item.words, prose,
+                  [&formula](const Formula& f) { return "$" + formula.write(f) + "$"; }) +
+             (bullet ? "\n" : "\n\n");
     }
     if (in_list) out += "\\end{itemize}\n";
   }

@@ -9,7 +9,16 @@ namespace {
 Expr left_side(const ScalarRow& row) { return row.kind == RowKind::velocity ? row.Cdot : row.C; }
 
 Statement scalar_statement(const ScalarRow& row, std::size_t index) {
-  return {row.name, row.row, row.kind, left_side(row), index, {}};
+  return {row.name, row.row, row.kind, left_side(row), index, row.C_t, {}};
+}
+
+// What a vector Cdot keeps when no body moves.
+Expr at_rest(Expr Cdot) {
+  std::vector<Term> terms;
+  for (const Term& term : terms_of(Cdot)) {
+    if (!depends_on_velocity(term.e)) terms.push_back(term);
+  }
+  return sum(*Cdot->pool, terms, true);
 }
 
 // S(r) for perp(r), term by term; other columns as they are.
@@ -42,7 +51,7 @@ Part rows_part(const Joint& joint) {
       part.statements.push_back(scalar_statement(rows[i], i));
       continue;
     }
-    part.statements.push_back({row.name, &row, row.kind, row.C, i, *entries});
+    part.statements.push_back({row.name, &row, row.kind, row.C, i, at_rest(Cdot), *entries});
     ++i;  // its second component
   }
   if (part.statements.size() == 1) part.statements[0].name.clear();
@@ -70,8 +79,7 @@ Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& s) {
   return s.kind == RowKind::velocity ? s.C : time_derivative(s.C, lecture.joint);
 }
 
-Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s,
-                   std::size_t body) {
+Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
   if (s.vector()) {
     const Expr v = s.entries[body].v;
     return is_zero(v) ? number(0) : product({lecture.notation.of(v), identity()});
@@ -80,8 +88,7 @@ Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s,
   return is_zero(v) ? number(0) : form(Form::transpose, lecture.notation.of(v));
 }
 
-Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s,
-                   std::size_t body) {
+Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
   if (s.vector()) return column(lecture.notation, s.entries[body].w);
   return lecture.notation.of(part.block.rows[s.first].J[body].w);
 }

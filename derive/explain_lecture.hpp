@@ -1,4 +1,5 @@
-// What the sections of an explanation share: the joint's statements with their derivation, and how things are called.
+// What the sections of an explanation share: the joint's statements with their derivation, and how
+// things are called.
 #pragma once
 
 #include "derive/explain_rates.hpp"
@@ -6,13 +7,15 @@
 
 namespace cdot::derive {
 
-// One equation as the author wrote it: a scalar row, or a vector row with its two components kept together.
+// One equation as the author wrote it: a scalar row, or a vector row with its two components kept
+// together.
 struct Statement {
-  std::string name;              // "line"; empty if it is the only one
-  const Row* row = nullptr;      // null for a coordinate
+  std::string name;          // "line"; empty if it is the only one
+  const Row* row = nullptr;  // null for a coordinate
   RowKind kind = RowKind::equality;
-  Expr C;                        // scalar or vector; a velocity row: its velocity expression
-  std::size_t first = 0;         // its first scalar row in the block
+  Expr C;                            // scalar or vector; a velocity row: its velocity expression
+  std::size_t first = 0;             // its first scalar row in the block
+  Expr C_t;                          // dC/dt with the bodies at rest
   std::vector<VectorEntry> entries;  // J of a vector row, by body
 
   bool vector() const { return C->vector; }
@@ -42,7 +45,8 @@ Part coordinate_part(const Joint& joint, const Coordinate& coordinate);
 Formula label(const std::string& letter, const Statement& statement, Expr e = {});
 
 Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& statement);
-// What stands in a statement's row of J for one body: the block of v and the block of w; 0 where nothing does.
+// What stands in a statement's row of J for one body: the block of v and the block of w; 0 where
+// nothing does.
 Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
 Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
 

@@ -1,4 +1,5 @@
-// What a derivation takes for granted, and where it ends: zero lengths, divisions, roots, angles that wrap.
+// What a derivation takes for granted, and where it ends: zero lengths, divisions, roots, angles
+// that wrap.
 #include <set>
 #include <utility>
 
@@ -26,31 +27,38 @@ class Limits {
   void of_direction(Expr e) {
     const Formula u = notation_.of(e->args[0]), n = notation_.of(e);
     const std::string rest = " has no direction where {} = 0; the kernel takes (1, 0) there.";
-    if (n.form == Form::leaf) limits.list("{}" + rest, {n, form(Form::norm, u)});
-    else limits.list("{}" + rest, {u, form(Form::norm, u)});
+    if (n.form == Form::leaf)
+      limits.list("{}" + rest, {n, form(Form::norm, u)});
+    else
+      limits.list("{}" + rest, {u, form(Form::norm, u)});
   }
 
   void of_product(Expr e) {
     for (std::size_t i = 0; i < e->args.size(); ++i) {
       if (e->exponents[i] > 0 || !divided_by_.insert(&*e->args[i]).second) continue;
       const Formula below = notation_.of(e->args[i]);
-      limits.list("A division by {}: where it is 0 the kernel takes 1/0 as 0, so that term vanishes.",
-                  {below});
+      limits.list(
+          "A division by {}: where it is 0 the kernel takes 1/0 as 0, so that term vanishes.",
+          {below});
     }
   }
 
   void of_function(Expr e) {
     const std::vector<Formula> args{notation_.of(e->args[0])};
     switch (e->fn) {
-      case Fn::sqrt: return limits.list("sqrt is defined for {} ≥ 0 only.", args);
-      case Fn::log: return limits.list("log is defined for {} > 0 only.", args);
-      case Fn::tan: return limits.list("tan has poles where {} is an odd multiple of pi/2.", args);
+      case Fn::sqrt:
+        return limits.list("sqrt is defined for {} ≥ 0 only.", args);
+      case Fn::log:
+        return limits.list("log is defined for {} > 0 only.", args);
+      case Fn::tan:
+        return limits.list("tan has poles where {} is an odd multiple of pi/2.", args);
       case Fn::abs:
         return limits.list("abs has a corner at {} = 0; its derivative is taken as 0 there.", args);
       case Fn::atan2:
         return limits.list("{} is an angle in (-pi, pi]: it jumps where the turn is complete.",
                            {notation_.of(e)});
-      default: return;
+      default:
+        return;
     }
   }
 
@@ -78,10 +86,14 @@ void assume(const Joint& joint, Step& step) {
       step.list("Row `" + row.name + "` acts only where C reaches 0.");
     }
   }
-  step.list("A body that cannot move has inverse mass and inverse inertia 0; its terms of K vanish.");
-  step.list("If all of K vanishes (no body can move), the kernel's guarded factorisation gives no impulse.");
+  step.list(
+      "A body that cannot move has inverse mass and inverse inertia 0; its terms of K vanish.");
+  step.list(
+      "If all of K vanishes (no body can move), the kernel's guarded factorisation gives no "
+      "impulse.");
   if (joint.uses_world) {
-    step.list("Something is fixed in the world, which takes any impulse: momentum is not conserved.");
+    step.list(
+        "Something is fixed in the world, which takes any impulse: momentum is not conserved.");
   }
 }
 

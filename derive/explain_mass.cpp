@@ -29,8 +29,7 @@ void add_scalar_product(const Notation& notation, Expr inverse_mass, Expr vi, Ex
   if (is_zero(vi) || is_zero(vj)) return;
   const Factors f = factors(vi, vj);
   const Formula written = dot(notation.of(f.i), notation.of(f.j));
-  terms.push_back(
-      {f.coef.sign() < 0, product({number(abs(f.coef)), leaf(inverse_mass), written})});
+  terms.push_back({f.coef.sign() < 0, product({number(abs(f.coef)), leaf(inverse_mass), written})});
 }
 
 void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj,
@@ -73,8 +72,8 @@ class MassProduct {
   static Formula transposed(const Formula& f) {
     if (f.form == Form::transpose) return f.args[0];
     if (f.form == Form::sum && f.args.size() == 1) return negative(transposed(f.args[0]));
-    const bool symmetric = f.form == Form::identity || f.form == Form::number ||
-                           (f.leaf && !f.leaf->vector);
+    const bool symmetric =
+        f.form == Form::identity || f.form == Form::number || (f.leaf && !f.leaf->vector);
     return symmetric ? f : form(Form::transpose, f);
   }
 
@@ -166,15 +165,16 @@ void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
       Chain chain{name, {}};
       if (part.statements.size() == 1) chain.links.push_back({J_M_J(label("J", s)), ""});
       chain.links.push_back({full, "body by body"});
-      if (!same_terms(result, full)) chain.links.push_back({result, identities_used(lecture, part, s, t)});
+      if (!same_terms(result, full))
+        chain.links.push_back({result, identities_used(lecture, part, s, t)});
       step.show(std::move(chain));
     }
   }
   if (part.statements.size() < 2 || coordinate) return;
   const int columns = static_cast<int>(part.statements.size());
   step.say("Together, with what lies below the diagonal by symmetry:");
-  step.show({leaf({}, "K"),
-             {{J_M_J(leaf({}, "J")), ""}, {matrix(columns, std::move(blocks)), ""}}});
+  step.show(
+      {leaf({}, "K"), {{J_M_J(leaf({}, "J")), ""}, {matrix(columns, std::move(blocks)), ""}}});
 }
 
 }  // namespace cdot::derive

@@ -23,9 +23,10 @@ std::vector<Chain> Rates::differentiate(Expr e, Formula left) {
   chains_.clear();
   Chain last = chain(e, std::move(left));
   // First rates in the order in which the author introduced the names, which never refers ahead.
-  if (!depends_on_velocity(e)) std::stable_sort(chains_.begin(), chains_.end(), [this](const Chain& a, const Chain& b) {
-    return place_of(a.left.name) < place_of(b.left.name);
-  });
+  if (!depends_on_velocity(e))
+    std::stable_sort(chains_.begin(), chains_.end(), [this](const Chain& a, const Chain& b) {
+      return place_of(a.left.name) < place_of(b.left.name);
+    });
   chains_.push_back(std::move(last));
   return std::exchange(chains_, {});
 }
@@ -83,13 +84,19 @@ std::optional<Formula> Rates::rate(Expr e, bool root) {
 
 std::optional<Formula> Rates::rule(Expr e) {
   switch (e->kind) {
-    case Kind::number: return {};
-    case Kind::symbol: return symbol_rule(e);
-    case Kind::sum: return sum_rule(e);
-    case Kind::product: return product_rule(e);
+    case Kind::number:
+      return {};
+    case Kind::symbol:
+      return symbol_rule(e);
+    case Kind::sum:
+      return sum_rule(e);
+    case Kind::product:
+      return product_rule(e);
     case Kind::dot:
-    case Kind::cross: return pair_rule(e);
-    case Kind::scale: return scale_rule(e);
+    case Kind::cross:
+      return pair_rule(e);
+    case Kind::scale:
+      return scale_rule(e);
     case Kind::perp: {
       used("a quarter turn of the rate");
       return form(Form::perp, *rate(e->args[0], false));
@@ -98,13 +105,17 @@ std::optional<Formula> Rates::rule(Expr e) {
       used("derivative of a length: |u|_dot = unit(u) · u_dot");
       return dot(notation_.of(unit(e->args[0])), *rate(e->args[0], false));
     }
-    case Kind::unit: return unit_rule(e);
-    case Kind::function: return function_rule(e);
+    case Kind::unit:
+      return unit_rule(e);
+    case Kind::function:
+      return function_rule(e);
   }
   return {};
 }
 
-Formula Rates::turned(Expr s) const { return cross(leaf(body_symbols(joint_, s->body).w), leaf(s)); }
+Formula Rates::turned(Expr s) const {
+  return cross(leaf(body_symbols(joint_, s->body).w), leaf(s));
+}
 
 std::optional<Formula> Rates::symbol_rule(Expr e) {
   if (e->role == Role::time) return number(1);
@@ -172,7 +183,8 @@ std::optional<Formula> Rates::pair_rule(Expr e) {
   const std::string along_u = world_axis(u), along_v = world_axis(v);
   if (!along_u.empty() || !along_v.empty()) {
     used("component by component");
-    return along_v.empty() ? component(*rate(v, false), along_u) : component(*rate(u, false), along_v);
+    return along_v.empty() ? component(*rate(v, false), along_u)
+                           : component(*rate(u, false), along_v);
   }
   used("product rule");
   // Written as the product itself is written: a direction first in n · u.
@@ -240,7 +252,8 @@ Formula Rates::function_rate(Expr e, Formula x_dot) {
       return negative(product({of(Fn::sin), std::move(x_dot)}));
     case Fn::tan:
       rule("tan(x)_dot = (1 + tan(x)^2) x_dot");
-      return product({sum({{false, number(1)}, {false, power(notation_.of(e), 2)}}), std::move(x_dot)});
+      return product(
+          {sum({{false, number(1)}, {false, power(notation_.of(e), 2)}}), std::move(x_dot)});
     case Fn::exp:
       rule("exp(x)_dot = exp(x) x_dot");
       return product({notation_.of(e), std::move(x_dot)});
@@ -250,14 +263,17 @@ Formula Rates::function_rate(Expr e, Formula x_dot) {
     case Fn::abs:
       rule("|x|_dot = sign(x) x_dot");
       return product({of(Fn::sign), std::move(x_dot)});
-    default: break;
+    default:
+      break;
   }
   throw std::logic_error("no rule for the derivative of " + std::string(name_of(e->fn)));
 }
 
 // The angle from u to v grows as v turns and falls as u turns.
 std::optional<Formula> Rates::angle_rule(const AngleBetween& angle) {
-  used("derivative of an angle between directions: how fast the second turns, less how fast the first does");
+  used(
+      "derivative of an angle between directions: how fast the second turns, less how fast the "
+      "first does");
   std::vector<SignedFormula> terms;
   append(terms, turning(angle.to));
   append(terms, turning(angle.from), true);

@@ -1,5 +1,6 @@
-// Time derivatives rule by rule: the forms that differentiate.cpp's rules have before they are simplified, each with
-// its name. What has a name is differentiated once and then called by it (u_dot).
+// Time derivatives rule by rule: the forms that differentiate.cpp's rules have before they are
+// simplified, each with its name. What has a name is differentiated once and then called by it
+// (u_dot).
 #pragma once
 
 #include <set>
@@ -12,8 +13,8 @@ class Rates {
  public:
   Rates(const Joint& joint, const Notation& notation) : joint_(joint), notation_(notation) {}
 
-  // left = d e/dt by its rules = the same with all names inserted. Before it come the chains of the names it needs
-  // that no earlier call has introduced.
+  // left = d e/dt by its rules = the same with all names inserted. Before it come the chains of the
+  // names it needs that no earlier call has introduced.
   std::vector<Chain> differentiate(Expr e, Formula left);
 
   // d e/dt with all names inserted: a form in which only v and w move.

@@ -1,4 +1,5 @@
-// From C to J: the constraint, its derivative, the velocities isolated, the Jacobian read off, and gamma.
+// From C to J: the constraint, its derivative, the velocities isolated, the Jacobian read off, and
+// gamma.
 #include <algorithm>
 #include <utility>
 
@@ -37,14 +38,13 @@ Formula isolated(const Lecture& lecture, const ScalarRow& row) {
     const int body = static_cast<int>(b);
     const auto add = [&](Expr coefficient, bool spin) {
       if (is_zero(coefficient)) return;
-      terms.push_back({false, multiplied(coefficient, body, spin, lecture.joint, lecture.notation)});
+      terms.push_back(
+          {false, multiplied(coefficient, body, spin, lecture.joint, lecture.notation)});
     };
     add(row.J[b].v, false);
     add(row.J[b].w, true);
   }
-  if (!is_zero(row.C_t)) {
-    for (SignedFormula& t : terms_of(lecture.notation.of(row.C_t))) terms.push_back(std::move(t));
-  }
+  if (!is_zero(row.C_t)) terms.push_back({false, lecture.notation.of(row.C_t)});
   return sum(std::move(terms));
 }
 
@@ -85,6 +85,7 @@ void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& 
     add(block_of_v(lecture, part, s, b), body.v);
     add(block_of_w(lecture, part, s, b), body.w);
   }
+  if (!is_zero(s.C_t)) terms.push_back({false, lecture.notation.of(s.C_t)});
   step.show({label("Cdot", s, Cdot_of(lecture, part, s)),
              {{sum(std::move(terms)), "w × r = S(r) w, with S(r) = perp(r) as a column"}}});
 }
@@ -169,8 +170,11 @@ void state_constraint(Lecture& lecture, const Part& part) {
 
 void differentiate(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
-    if (s.kind == RowKind::velocity) continue;
     head(step, part, s);
+    if (s.kind == RowKind::velocity) {
+      step.say("Nothing to differentiate: it is written with velocities.");
+      continue;
+    }
     const Expr Cdot = Cdot_of(lecture, part, s);
     for (Chain& chain : lecture.rates.differentiate(s.C, label("Cdot", s, Cdot))) {
       step.show(std::move(chain));
@@ -181,8 +185,10 @@ void differentiate(Lecture& lecture, const Part& part, Step& step) {
 void isolate_velocities(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    if (s.vector()) isolate_rows_together(lecture, part, s, step);
-    else isolate_scalar(lecture, part, s, step);
+    if (s.vector())
+      isolate_rows_together(lecture, part, s, step);
+    else
+      isolate_scalar(lecture, part, s, step);
   }
 }
 
@@ -191,9 +197,9 @@ void read_jacobian(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
     list_columns(lecture, part, s, step);
-    const Expr C_t = part.block.rows[s.first].C_t;
-    if (!s.vector() && !is_zero(C_t)) {
-      step.list("no velocity, so it is dC/dt at rest: {}", {lecture.notation.of(C_t)});
+    if (!is_zero(s.C_t)) {
+      step.list("without a velocity, so no part of J but dC/dt with the bodies at rest: {}",
+                {lecture.notation.of(s.C_t)});
     }
     const Formula row = row_of_J(lecture, part, s);
     all.insert(all.end(), row.args.begin(), row.args.end());
@@ -217,10 +223,9 @@ void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
     }
     for (Chain& chain : lecture.rates.differentiate(Cdot, negative(name))) {
       chain.links.resize(1);  // with its names, not with all of them inserted
-      const Formula& f = chain.links[0].formula;
-      const Formula turned = lecture.notation.definition(value_of(f, *lecture.joint.pool));
-      if (chain.left != negative(name) && turns_twice(f)) {
-        chain.links.push_back({turned, "w × (w × r) = -w^2 r"});
+      if (chain.left != negative(name) && turns_twice(chain.links[0].formula)) {
+        const Expr turned = value_of(chain.links[0].formula, *lecture.joint.pool);
+        chain.links.push_back({lecture.notation.definition(turned), "w × (w × r) = -w^2 r"});
       }
       step.show(std::move(chain));
     }

@@ -1,4 +1,5 @@
-// The names that other programs see: one for every component that an expression may contain, with what it means.
+// The names that other programs see: one for every component that an expression may contain, with
+// what it means.
 #pragma once
 
 #include <map>
@@ -14,7 +15,7 @@ class ExplainedSymbols {
  public:
   explicit ExplainedSymbols(const Joint& joint);
 
-  std::string name(Expr symbol);                // of a scalar leaf; arms are renamed: ra_x is r_pa_x
+  std::string name(Expr symbol);  // of a scalar leaf; arms are renamed: ra_x is r_pa_x
   std::string reserve(const std::string& wish);  // a name that nothing else has, near the wish
   nlohmann::ordered_json json() const { return docs_; }
 

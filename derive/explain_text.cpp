@@ -1,4 +1,5 @@
-// The derivation for a terminal: one equation a line, the rule behind it, long sums broken between terms.
+// The derivation for a terminal: one equation a line, the rule behind it, long sums broken between
+// terms.
 #include <algorithm>
 
 #include "derive/explain_write.hpp"
@@ -107,12 +108,16 @@ class ChainText {
     const std::string whole = formula_.write(f);
     const bool one_row = f.args.size() == static_cast<std::size_t>(f.columns);
     const bool fits = width(line_) + width(whole) <= page_width;
-    if (one_row && fits) line_ += whole;
-    else if (fits || width(whole) / f.args.size() * static_cast<std::size_t>(f.columns) < 80) write_rows(f);
-    else write_entries(f);
+    if (one_row && fits)
+      line_ += whole;
+    else if (fits || width(whole) / f.args.size() * static_cast<std::size_t>(f.columns) < 80)
+      write_rows(f);
+    else
+      write_entries(f);
   }
 
-  // An entry a line where a row is too long for one: | before each but a row's first, ; before a new row.
+  // An entry a line where a row is too long for one: | before each but a row's first, ; before a
+  // new row.
   void write_entries(const Formula& f) {
     for (std::size_t i = 0; i < f.args.size(); ++i) {
       if (i > 0) finish_line();
@@ -134,28 +139,34 @@ class ChainText {
     }
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::size_t column = i % columns;
-      if (i == 0) line_ += "[ ";
-      else if (column == 0) line_ = std::string(indent_ + 3, ' ') + "  ";
-      else line_ += " | ";
+      if (i == 0)
+        line_ += "[ ";
+      else if (column == 0)
+        line_ = std::string(indent_ + 3, ' ') + "  ";
+      else
+        line_ += " | ";
       const bool last_of_row = column + 1 == columns, last = i + 1 == cells.size();
       line_ += cells[i];
       if (!last_of_row || last) line_ += std::string(widths[column] - width(cells[i]), ' ');
-      if (last) line_ += " ]";
-      else if (last_of_row) finish_line();
+      if (last)
+        line_ += " ]";
+      else if (last_of_row)
+        finish_line();
     }
   }
 
+  // Beside the formula if there is room, else below it.
   void write_rule(const std::string& rule) {
     if (!rule.empty()) {
-      const std::size_t used = width(line_), length = width(rule) + 2;
-      const std::size_t column = used + 2 < rule_column ? rule_column : used + 2;
-      if (column + length > page_width + 20) {
-        finish_line();
-        line_ = std::string(indent_ + 5, ' ');
+      const std::string words = "(" + rule + ")";
+      const std::size_t used = width(line_), beside = std::max(used + 2, rule_column);
+      if (beside + width(words) <= page_width + 20) {
+        line_ += std::string(beside - used, ' ') + words;
       } else {
-        line_ += std::string(column - used, ' ');
+        finish_line();
+        const std::size_t below = std::min<std::size_t>(indent_ + 5, page_width / 2);
+        line_ = std::string(below, ' ') + wrapped(words, below);
       }
-      line_ += "(" + rule + ")";
     }
     finish_line();
   }
@@ -173,9 +184,9 @@ class ChainText {
 std::string item_text(const Item& item) {
   if (item.kind == Item::Kind::chain) return ChainText().write(item.chain);
   const TextFormula formula;
-  const std::string words =
-      fill(item.words, [](const std::string& s) { return s; },
-           [&formula](const Formula& f) { return formula.write(f); });
+  const std::string words = fill(
+      item.words, [](const std::string& s) { return s; },
+      [&formula](const Formula& f) { return formula.write(f); });
   if (item.kind == Item::Kind::bullet) return "  - " + wrapped(words, 4) + "\n";
   return "  " + wrapped(words, 2) + "\n";
 }

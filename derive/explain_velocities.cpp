@@ -1,4 +1,5 @@
-// Multiplying out keeps the shape of what it multiplies, so that each term can be recognised in Cdot.
+// Multiplying out keeps the shape of what it multiplies, so that each term can be recognised in
+// Cdot.
 #include "derive/explain_velocities.hpp"
 
 #include <utility>
@@ -30,7 +31,8 @@ class Distribution {
           g.args = std::move(args);
           return g;
         });
-      default: return {{false, f}};
+      default:
+        return {{false, f}};
     }
   }
 
@@ -72,7 +74,8 @@ bool is_turning(const Formula& f) {  // w × r
   return f.form == Form::cross && f.args[0].form == Form::leaf && !f.args[0].leaf->vector;
 }
 
-// The identity that brings the innermost product with a velocity into the form "coefficient times velocity".
+// The identity that brings the innermost product with a velocity into the form "coefficient times
+// velocity".
 std::string identity_in(const Formula& f, const Distribution& distribution) {
   for (const Formula& arg : f.args) {
     if (is_turning(f) || !distribution.moves(arg) || arg.form == Form::leaf) continue;
@@ -100,7 +103,8 @@ std::vector<VelocityTerm> isolate(const Formula& Cdot, const Joint& joint) {
   const Distribution distribution;
   std::vector<VelocityTerm> terms;
   for (const SignedFormula& part : distribution.of(Cdot)) {
-    VelocityTerm term{part.minus, part.formula, -1, false, {}, identity_in(part.formula, distribution)};
+    VelocityTerm term{part.minus, part.formula, -1,
+                      false,      {},           identity_in(part.formula, distribution)};
     const Expr value = value_of(part.formula, pool);
     const std::vector<JacobianEntry> J = isolate_velocities(part.minus ? -value : value, joint);
     for (std::size_t b = 0; b < J.size(); ++b) {

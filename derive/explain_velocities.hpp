@@ -1,5 +1,5 @@
-// Isolating the velocities: Cdot multiplied out until each term holds one v or w, and the identity that turns the term
-// into "something times that velocity".
+// Isolating the velocities: Cdot multiplied out until each term holds one v or w, and the identity
+// that turns the term into "something times that velocity".
 #pragma once
 
 #include "derive/explain.hpp"
@@ -8,11 +8,11 @@ namespace cdot::derive {
 
 struct VelocityTerm {
   bool minus = false;
-  Formula written;      // as it stands in Cdot: t · (w_a × ra)
-  int body = -1;        // whose velocity it holds; -1: none, the term belongs to dC/dt
-  bool spin = false;    // w, else v
-  Expr coefficient;     // with the sign: what multiplies the velocity; 0 if the term vanishes
-  std::string identity; // why; empty if the term shows it already
+  Formula written;       // as it stands in Cdot: t · (w_a × ra)
+  int body = -1;         // whose velocity it holds; -1: none, the term belongs to dC/dt
+  bool spin = false;     // w, else v
+  Expr coefficient;      // with the sign: what multiplies the velocity; 0 if the term vanishes
+  std::string identity;  // why; empty if the term shows it already
 };
 
 // A scalar Cdot as a sum of such terms.

@@ -36,14 +36,17 @@ std::vector<std::string> FormulaWriter::pieces(const Formula& f) const {
   if (f.form != Form::sum) return {write(f)};
   std::vector<std::string> out;
   for (std::size_t i = 0; i < f.args.size(); ++i) {
-    out.push_back(sign(f.minus[i], i == 0) + write(f.args[i], !f.minus[i] ? Place::term : i == 0 ? Place::opening_minus : Place::negated));
+    out.push_back(sign(f.minus[i], i == 0) + write(f.args[i], !f.minus[i] ? Place::term
+                                                              : i == 0    ? Place::opening_minus
+                                                                          : Place::negated));
   }
   return out;
 }
 
 bool FormulaWriter::needs_parentheses(const Formula& f, Place place) const {
   switch (f.form) {
-    case Form::sum: return place != Place::whole;
+    case Form::sum:
+      return place != Place::whole;
     // -(ra × t), but v_b - w_b × rb; a dot product needs it only if a sum opens it.
     case Form::cross:
     case Form::dot: {
@@ -51,12 +54,16 @@ bool FormulaWriter::needs_parentheses(const Formula& f, Place place) const {
       return place >= Place::factor || (place >= Place::negated && opened_by_sum) ||
              (place == Place::opening_minus && f.form == Form::cross);
     }
-    case Form::product: return place >= Place::operand;
-    case Form::quotient: return fraction_encloses() ? place == Place::base : place >= Place::factor;
+    case Form::product:
+      return place >= Place::operand;
+    case Form::quotient:
+      return fraction_encloses() ? place == Place::base : place >= Place::factor;
     case Form::power:
     case Form::transpose:
-    case Form::number: return place == Place::base && (f.form != Form::number || !f.number.is_integer());
-    default: return false;
+    case Form::number:
+      return place == Place::base && (f.form != Form::number || !f.number.is_integer());
+    default:
+      return false;
   }
 }
 
@@ -76,33 +83,46 @@ std::string FormulaWriter::fraction_of(const Formula& f) const {
   const bool enclosed = fraction_encloses();
   const Formula& below = f.args[1];
   return fraction(write(f.args[0], enclosed ? Place::whole : Place::factor),
-                  write(below, enclosed                          ? Place::whole
+                  write(below, enclosed                    ? Place::whole
                                : below.form == Form::power ? Place::factor
-                                                                 : Place::base));
+                                                           : Place::base));
 }
 
 std::string FormulaWriter::bare(const Formula& f) const {
   std::vector<std::string> args;
   switch (f.form) {
-    case Form::leaf: return name(f);
-    case Form::number: return number(f.number);
+    case Form::leaf:
+      return name(f);
+    case Form::number:
+      return number(f.number);
     case Form::sum: {
       std::string out;
       for (const std::string& piece : pieces(f)) out += piece;
       return out;
     }
-    case Form::product: return joined(f, Place::factor);
+    case Form::product:
+      return joined(f, Place::factor);
     case Form::dot:
-    case Form::cross: return joined(f, Place::operand);
-    case Form::quotient: return fraction_of(f);
-    case Form::power: return power(write(f.args[0], Place::base), f.exponent);
-    case Form::norm: return norm(write(f.args[0]));
-    case Form::component: return component(write(f.args[0], Place::base), f.name);
-    case Form::transpose: return transpose(write(f.args[0], Place::base));
-    case Form::identity: return identity();
-    case Form::perp: return call("perp", {write(f.args[0])});
-    case Form::unit: return call("unit", {write(f.args[0])});
-    case Form::skew: return call("S", {write(f.args[0])});
+    case Form::cross:
+      return joined(f, Place::operand);
+    case Form::quotient:
+      return fraction_of(f);
+    case Form::power:
+      return power(write(f.args[0], Place::base), f.exponent);
+    case Form::norm:
+      return norm(write(f.args[0]));
+    case Form::component:
+      return component(write(f.args[0], Place::base), f.name);
+    case Form::transpose:
+      return transpose(write(f.args[0], Place::base));
+    case Form::identity:
+      return identity();
+    case Form::perp:
+      return call("perp", {write(f.args[0])});
+    case Form::unit:
+      return call("unit", {write(f.args[0])});
+    case Form::skew:
+      return call("S", {write(f.args[0])});
     case Form::call:
       for (const Formula& arg : f.args) args.push_back(write(arg));
       return call(f.name, args);

@@ -1,12 +1,13 @@
-// From formulas to text, once for all formats: where parentheses stand is decided here, what the signs look like by
-// each format.
+// From formulas to text, once for all formats: where parentheses stand is decided here, what the
+// signs look like by each format.
 #pragma once
 
 #include "derive/explain.hpp"
 
 namespace cdot::derive {
 
-// A name taken apart: `ua_dot` is u with index a and one dot, `K[pin, line]` is K with the index "pin, line".
+// A name taken apart: `ua_dot` is u with index a and one dot, `K[pin, line]` is K with the index
+// "pin, line".
 struct SpelledName {
   std::string letter, index;
   int dots = 0;
@@ -48,7 +49,8 @@ class FormulaWriter {
   std::string joined(const Formula& f, Place inner) const;
 };
 
-// The words with each {} replaced by what `formula` writes, and the rest by what `plain` makes of it.
+// The words with each {} replaced by what `formula` writes, and the rest by what `plain` makes of
+// it.
 template <class Plain, class Written>
 std::string fill(const Words& words, Plain plain, Written formula) {
   std::string out;

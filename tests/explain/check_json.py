@@ -1,6 +1,9 @@
-"""Evaluates what `cdot explain --json` wrote, with sympy and 40 digits, and checks it against itself at random poses:
-J and dC/dt are the finite differences of C, Cdot is J v + dC/dt, K is J M^-1 J^T, gamma is minus the rate of Cdot at
-constant velocities. Exit status 0 if all of it holds for all files of a folder."""
+"""Evaluates with sympy and 40 digits what `cdot explain --json` wrote, and checks it.
+
+At random poses J and dC/dt are the finite differences of C, Cdot is J v + dC/dt, K is J M^-1 J^T,
+gamma is minus the rate of Cdot at constant velocities. Exit status 0 if all of it holds for all
+files of a folder.
+"""
 import glob
 import json
 import os
@@ -73,12 +76,14 @@ class Checks:
         self.failures, self.done = [], 0
         matrix = lambda rows: [[program.compiled(e) for e in row] for row in rows]
         vector = lambda entries: [program.compiled(e) for e in entries]
-        self.C, self.Cdot, self.C_t = vector(block["C"]), vector(block["Cdot"]), vector(block["C_t"])
+        self.C, self.Cdot, self.C_t = (vector(block[key]) for key in ("C", "Cdot", "C_t"))
         self.J, self.K, self.gamma = matrix(block["J"]), matrix(block["K"]), vector(block["gamma"])
         self.text = block
         columns = program.data["columns"]
-        self.coordinates = [re.sub(r"^v_", "x_", c) if c.startswith("v_") else "theta_" + c[2:] for c in columns]
-        self.inverse_masses = [f"inv_{'I_' + c[2:] if c[0] == 'w' else 'm_' + c[2:-2]}" for c in columns]
+        spins = [c.startswith("w_") for c in columns]  # the others are v_a_x, v_a_y
+        self.coordinates = [("theta_" if w else "x_") + c[2:] for w, c in zip(spins, columns)]
+        masses = zip(spins, columns)
+        self.inverse_masses = ["inv_I_" + c[2:] if w else "inv_m_" + c[2:-2] for w, c in masses]
 
     def expect(self, name, a, b):
         self.done += 1
@@ -86,7 +91,8 @@ class Checks:
             self.failures.append(f"{self.where}: {name}: {mp.nstr(a, 12)} is not {mp.nstr(b, 12)}")
 
     def moved(self, state, direction, step):
-        return self.program.values({**state, **{n: state[n] + step * d for n, d in direction.items()}})
+        there = {name: state[name] + step * d for name, d in direction.items()}
+        return self.program.values({**state, **there})
 
     def difference(self, function, state, direction):
         there, back = self.moved(state, direction, STEP), self.moved(state, direction, -STEP)
@@ -102,14 +108,17 @@ class Checks:
         for i, kind in enumerate(self.kinds):
             if kind != "velocity":
                 for j, q in enumerate(self.coordinates):
-                    self.expect(f"J[{i}][{j}]", J[i][j], self.difference(self.C[i], state, {q: mpf(1)}))
-                C_t = self.difference(self.C[i], state, {"time": mpf(1)}) if "time" in state else mpf(0)
+                    rate = self.difference(self.C[i], state, {q: mpf(1)})
+                    self.expect(f"J[{i}][{j}]", J[i][j], rate)
+                in_time = {"time": mpf(1)} if "time" in state else {}
+                C_t = self.difference(self.C[i], state, in_time)
                 self.expect(f"C_t[{i}]", self.C_t[i](values), C_t)
                 self.expect(f"Cdot[{i}] along the motion", self.Cdot[i](values),
                             self.difference(self.C[i], state, motion))
             Jv = sum(J[i][j] * state[c] for j, c in enumerate(columns))
             self.expect(f"Cdot[{i}]", self.Cdot[i](values), Jv + self.C_t[i](values))
-            self.expect(f"gamma[{i}]", self.gamma[i](values), -self.difference(self.Cdot[i], state, motion))
+            rate = self.difference(self.Cdot[i], state, motion)
+            self.expect(f"gamma[{i}]", self.gamma[i](values), -rate)
             assert len(self.K) == len(self.K[i]) == len(self.kinds), "K is not square"
             for k in range(len(self.kinds)):
                 K = sum(J[i][j] * state[m] * J[k][j] for j, m in enumerate(self.inverse_masses))
@@ -152,7 +161,8 @@ def main():
             count, wrong = 0, [f"{path}: {e}"]
         done += count
         failures += wrong
-    print("\n".join(failures + [f"sympy {sympy.__version__}: {done} values in {len(files)} files, {len(failures)} wrong"]))
+    summary = f"{done} values in {len(files)} files, {len(failures)} wrong"
+    print("\n".join(failures + [f"sympy {sympy.__version__}: {summary}"]))
     return 1 if failures else 0
 
 

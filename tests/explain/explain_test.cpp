@@ -1,5 +1,5 @@
-// What the derivation says is true: each chain of equal formulas is equal in numbers, J v is Cdot; and it reads as it
-// was read by a person (golden texts; CDOT_UPDATE=1 rewrites them).
+// What the derivation says is true: each chain of equal formulas is equal in numbers, J v is Cdot;
+// and it reads as it was read by a person (golden texts; CDOT_UPDATE=1 rewrites them).
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -30,7 +30,8 @@ void check_chain(const std::string& heading, const Chain& chain, const Values& v
   for (std::size_t i = 1; i < known.size(); ++i) {
     ++told.equations;
     if (difference(known[0], known[i]) > 1e-9) {
-      told.wrong += heading + ": formula " + std::to_string(i) + " of a chain differs from its first\n";
+      told.wrong +=
+          heading + ": formula " + std::to_string(i) + " of a chain differs from its first\n";
     }
   }
 }
@@ -48,7 +49,8 @@ std::vector<double> J_times_v(const Formula& J, const Joint& joint, const Values
       const std::vector<double> velocity =
           k % 2 == 1 ? std::vector{evaluate(body.w, values)} : std::vector{v[0], v[1]};
       if (block.entries == std::vector{0.0}) continue;
-      if (block.columns != velocity.size()) throw std::logic_error("a block of J is too wide or too narrow");
+      if (block.columns != velocity.size())
+        throw std::logic_error("a block of J is too wide or too narrow");
       sum.resize(block.rows);
       for (std::size_t i = 0; i < block.rows; ++i) {
         for (std::size_t j = 0; j < block.columns; ++j) sum[i] += block.at(i, j) * velocity[j];
@@ -59,7 +61,8 @@ std::vector<double> J_times_v(const Formula& J, const Joint& joint, const Values
   return result;
 }
 
-void check_J(const Formula& J, const Joint& joint, const Block& block, const Values& values, Told& told) {
+void check_J(const Formula& J, const Joint& joint, const Block& block, const Values& values,
+             Told& told) {
   const std::vector<double> Jv = J_times_v(J, joint, values);
   if (Jv.size() != block.rows.size()) {
     told.wrong += "J has " + std::to_string(Jv.size()) + " rows\n";
@@ -68,7 +71,8 @@ void check_J(const Formula& J, const Joint& joint, const Block& block, const Val
   for (std::size_t i = 0; i < Jv.size(); ++i) {
     const double Cdot = evaluate(block.rows[i].Cdot, values) - evaluate(block.rows[i].C_t, values);
     ++told.equations;
-    if (std::abs(Jv[i] - Cdot) > 1e-9 * (1 + std::abs(Cdot))) told.wrong += "J v differs from Cdot\n";
+    if (std::abs(Jv[i] - Cdot) > 1e-9 * (1 + std::abs(Cdot)))
+      told.wrong += "J v differs from Cdot\n";
   }
 }
 
@@ -146,8 +150,9 @@ TEST(Explain, AFlippedSignIsFound) {
       if (item.kind != Item::Kind::chain || item.chain.left.name.starts_with("J_")) continue;
       Explanation wrong = right;
       Formula& f = wrong.steps[s].items[i].chain.links.back().formula;
-      f = f.form == Form::matrix ? matrix(f.columns, {negative(f.args[0]), f.args[1], f.args[2], f.args[3]})
-                                 : negative(f);
+      f = f.form == Form::matrix
+              ? matrix(f.columns, {negative(f.args[0]), f.args[1], f.args[2], f.args[3]})
+              : negative(f);
       ++flipped;
       if (!check(joint, wrong).wrong.empty()) ++found;
     }
@@ -169,6 +174,8 @@ TEST(Explain, ReadsAsItWasRead) {
 // The same text from every run: nothing depends on addresses or on what was derived before.
 TEST(Explain, SaysTheSameTwice) {
   for (const std::string& name : spec_names()) {
-    EXPECT_EQ(explanation_text(explain(read_spec(name))), explanation_text(explain(read_spec(name)))) << name;
+    EXPECT_EQ(explanation_text(explain(read_spec(name))),
+              explanation_text(explain(read_spec(name))))
+        << name;
   }
 }

@@ -1,5 +1,5 @@
-// The other formats: HTML is well-formed and needs nothing from elsewhere, LaTeX compiles or at least balances, and the
-// JSON says the truth when another program evaluates it.
+// The other formats: HTML is well-formed and needs nothing from elsewhere, LaTeX compiles or at
+// least balances, and the JSON says the truth when another program evaluates it.
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -24,7 +24,8 @@ Ran run(const std::string& command) {
   FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return ran;
   char buffer[4096];
-  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) ran.output.append(buffer, n);
+  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+    ran.output.append(buffer, n);
   const int status = pclose(pipe);
   ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return ran;
@@ -32,13 +33,16 @@ Ran run(const std::string& command) {
 
 // An empty folder of this test's own.
 fs::path folder(const std::string& name) {
-  const fs::path path = fs::temp_directory_path() / ("cdot_explain_" + name + "_" + std::to_string(getpid()));
+  const fs::path path =
+      fs::temp_directory_path() / ("cdot_explain_" + name + "_" + std::to_string(getpid()));
   fs::remove_all(path);
   fs::create_directories(path);
   return path;
 }
 
-void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+void write(const fs::path& path, const std::string& text) {
+  std::ofstream(path, std::ios::binary) << text;
+}
 
 // Braces, environments and \left ... \right open and close in order.
 std::string imbalance(const std::string& latex) {
@@ -47,16 +51,24 @@ std::string imbalance(const std::string& latex) {
   for (std::sregex_iterator it(latex.begin(), latex.end(), token), end; it != end; ++it) {
     const std::string text = it->str();
     std::string opens, closes;
-    if (text.starts_with("\\begin{")) opens = (*it)[1];
-    else if (text.starts_with("\\end{")) closes = (*it)[2];
-    else if (text == "\\left") opens = "left";
-    else if (text == "\\right") closes = "left";
-    else if (text == "{") opens = "{";
-    else if (text == "}") closes = "{";
-    else if (text == "$") (!open.empty() && open.back() == "$" ? closes : opens) = "$";
+    if (text.starts_with("\\begin{"))
+      opens = (*it)[1];
+    else if (text.starts_with("\\end{"))
+      closes = (*it)[2];
+    else if (text == "\\left")
+      opens = "left";
+    else if (text == "\\right")
+      closes = "left";
+    else if (text == "{")
+      opens = "{";
+    else if (text == "}")
+      closes = "{";
+    else if (text == "$")
+      (!open.empty() && open.back() == "$" ? closes : opens) = "$";
     if (!opens.empty()) open.push_back(opens);
     if (closes.empty()) continue;
-    if (open.empty() || open.back() != closes) return "`" + text + "` at " + std::to_string(it->position());
+    if (open.empty() || open.back() != closes)
+      return "`" + text + "` at " + std::to_string(it->position());
     open.pop_back();
   }
   return open.empty() ? "" : "`" + open.back() + "` stays open";
@@ -80,10 +92,12 @@ TEST(ExplainHtml, IsWellFormedAndNeedsNothingFromElsewhere) {
     EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos) << name;
     write(pages / (name + ".html"), page);
   }
-  const Ran parsed = run(python + " -c \"import sys, glob, xml.etree.ElementTree as E\n"
+  const Ran parsed = run(python +
+                         " -c \"import sys, glob, xml.etree.ElementTree as E\n"
                          "files = glob.glob(sys.argv[1] + '/*.html')\n"
                          "assert len(files) > 15\n"
-                         "[E.parse(f) for f in files]\" " + quoted(pages));
+                         "[E.parse(f) for f in files]\" " +
+                         quoted(pages));
   EXPECT_EQ(parsed.status, 0) << parsed.output;
   fs::remove_all(pages);
 }
@@ -94,11 +108,13 @@ TEST(ExplainLatex, BalancesAndCompilesWhereATexIsInstalled) {
   for (const std::string& name : spec_names()) {
     const std::string latex = explanation_latex(explain(read_spec(name)));
     EXPECT_EQ(imbalance(latex), "") << name;
-    for (const char c : latex) ASSERT_LT(static_cast<unsigned char>(c), 128) << name << ": not ASCII";
+    for (const char c : latex)
+      ASSERT_LT(static_cast<unsigned char>(c), 128) << name << ": not ASCII";
     if (!has_tex) continue;
     write(papers / (name + ".tex"), latex);
-    const Ran compiled = run("cd " + quoted(papers) + " && pdflatex -interaction=nonstopmode -halt-on-error " +
-                             name + ".tex");
+    const Ran compiled =
+        run("cd " + quoted(papers) + " && pdflatex -interaction=nonstopmode -halt-on-error " +
+            name + ".tex");
     EXPECT_EQ(compiled.status, 0) << compiled.output;
   }
   std::cout << (has_tex ? "compiled by pdflatex\n" : "no pdflatex here: balance checked only\n");
@@ -120,7 +136,8 @@ TEST(ExplainJson, IsTrueWhenSympyEvaluatesIt) {
   for (const auto& [name, text] : unusual_specs()) {
     write(files / (name + ".json"), explanation_json(read_text(name, text)).dump(1));
   }
-  const Ran ran = run(python + " " + quoted(fs::path(CDOT_EXPLAIN_TESTS) / "check_json.py") + " " + quoted(files));
+  const Ran ran = run(python + " " + quoted(fs::path(CDOT_EXPLAIN_TESTS) / "check_json.py") + " " +
+                      quoted(files));
   EXPECT_EQ(ran.status, 0) << ran.output;
   std::cout << ran.output;
   fs::remove_all(files);
@@ -136,7 +153,8 @@ TEST(ExplainJson, TheCheckFindsAWrongEntry) {
     nlohmann::ordered_json& entry = json[key][0].is_array() ? json[key][0][0] : json[key][0];
     entry = "-(" + entry.get<std::string>() + ")";
     write(files / "line.json", json.dump(1));
-    const Ran ran = run(python + " " + quoted(fs::path(CDOT_EXPLAIN_TESTS) / "check_json.py") + " " + quoted(files));
+    const Ran ran = run(python + " " + quoted(fs::path(CDOT_EXPLAIN_TESTS) / "check_json.py") +
+                        " " + quoted(files));
     EXPECT_EQ(ran.status, 1) << key << "\n" << ran.output;
     EXPECT_NE(ran.output.find("line"), std::string::npos) << ran.output;
   }
@@ -149,7 +167,8 @@ TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
   const Ran text = run(cdot + " explain line" + specs);
   EXPECT_EQ(text.status, 0);
   EXPECT_EQ(text.output, explanation_text(explain(read_spec("line"))));
-  const Ran page = run(cdot + " explain line --format html -o " + quoted(out / "line.html") + specs);
+  const Ran page =
+      run(cdot + " explain line --format html -o " + quoted(out / "line.html") + specs);
   EXPECT_EQ(page.status, 0) << page.output;
   EXPECT_TRUE(fs::exists(out / "line.html"));
   const Ran json = run(cdot + " explain line --json" + specs);

@@ -30,7 +30,8 @@ Array multiplied(const Array& a, const Array& b) {
   Array c{a.rows, b.columns, std::vector<double>(a.rows * b.columns)};
   for (std::size_t i = 0; i < a.rows; ++i) {
     for (std::size_t j = 0; j < b.columns; ++j) {
-      for (std::size_t k = 0; k < a.columns; ++k) c.entries[i * c.columns + j] += a.at(i, k) * b.at(k, j);
+      for (std::size_t k = 0; k < a.columns; ++k)
+        c.entries[i * c.columns + j] += a.at(i, k) * b.at(k, j);
     }
   }
   return c;
@@ -45,7 +46,8 @@ Array transposed(const Array& a) {
 }
 
 Array cross_product(const Array& u, const Array& v) {
-  if (u.entries.size() == 1) return column(-u.entries[0] * v.entries[1], u.entries[0] * v.entries[0]);
+  if (u.entries.size() == 1)
+    return column(-u.entries[0] * v.entries[1], u.entries[0] * v.entries[0]);
   return scalar(u.entries[0] * v.entries[1] - u.entries[1] * v.entries[0]);
 }
 
@@ -102,11 +104,14 @@ Array value_of_formula(const Formula& f, const Values& values) {
   for (const Formula& arg : f.args) args.push_back(value_of_formula(arg, values));
   const auto length = [&] { return std::hypot(args[0].entries[0], args[0].entries[1]); };
   switch (f.form) {
-    case Form::leaf: return leaf_value(f, values);
-    case Form::number: return scalar(f.number.value());
+    case Form::leaf:
+      return leaf_value(f, values);
+    case Form::number:
+      return scalar(f.number.value());
     case Form::sum: {
       Array total = scalar(0);
-      for (std::size_t i = 0; i < args.size(); ++i) total = added(total, args[i], f.minus[i] ? -1 : 1);
+      for (std::size_t i = 0; i < args.size(); ++i)
+        total = added(total, args[i], f.minus[i] ? -1 : 1);
       return total;
     }
     case Form::product: {
@@ -114,19 +119,31 @@ Array value_of_formula(const Formula& f, const Values& values) {
       for (const Array& arg : args) total = multiplied(total, arg);
       return total;
     }
-    case Form::quotient: return times(1 / args[1].entries[0], args[0]);
-    case Form::power: return scalar(std::pow(args[0].entries[0], f.exponent));
-    case Form::dot: return multiplied(transposed(args[0]), args[1]);
-    case Form::cross: return cross_product(args[0], args[1]);
+    case Form::quotient:
+      return times(1 / args[1].entries[0], args[0]);
+    case Form::power:
+      return scalar(std::pow(args[0].entries[0], f.exponent));
+    case Form::dot:
+      return multiplied(transposed(args[0]), args[1]);
+    case Form::cross:
+      return cross_product(args[0], args[1]);
     case Form::perp:
-    case Form::skew: return column(-args[0].entries[1], args[0].entries[0]);
-    case Form::norm: return scalar(length());
-    case Form::unit: return times(1 / length(), args[0]);
-    case Form::component: return scalar(args[0].entries[f.name == "x" ? 0 : 1]);
-    case Form::call: return scalar(called(f.name, args));
-    case Form::transpose: return transposed(args[0]);
-    case Form::identity: return {2, 2, {1, 0, 0, 1}};
-    case Form::matrix: return assembled(f, args);
+    case Form::skew:
+      return column(-args[0].entries[1], args[0].entries[0]);
+    case Form::norm:
+      return scalar(length());
+    case Form::unit:
+      return times(1 / length(), args[0]);
+    case Form::component:
+      return scalar(args[0].entries[f.name == "x" ? 0 : 1]);
+    case Form::call:
+      return scalar(called(f.name, args));
+    case Form::transpose:
+      return transposed(args[0]);
+    case Form::identity:
+      return {2, 2, {1, 0, 0, 1}};
+    case Form::matrix:
+      return assembled(f, args);
   }
   throw std::logic_error("unknown form");
 }

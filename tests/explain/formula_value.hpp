@@ -1,4 +1,5 @@
-// Written formulas as numbers, on a way of their own: no builder of the generator is asked what a formula equals.
+// Written formulas as numbers, on a way of their own: no builder of the generator is asked what a
+// formula equals.
 #pragma once
 
 #include <stdexcept>
@@ -22,5 +23,6 @@ struct NoValue : std::runtime_error {
 Array value_of_formula(const cdot::derive::Formula& f, const cdot::derive::Values& values);
 void collect_leaves(const cdot::derive::Formula& f, std::vector<cdot::derive::Expr>& leaves);
 
-// The largest difference of two entries, relative to the largest entry; infinite if the shapes differ.
+// The largest difference of two entries, relative to the largest entry; infinite if the shapes
+// differ.
 double difference(const Array& a, const Array& b);

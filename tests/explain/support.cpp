@@ -12,7 +12,8 @@ std::vector<std::pair<std::string, std::string>> unusual_specs() {
        "  point pa on a\n  point pb on b\n  unit s on a\n  let u = pb - pa\n  angle(s, u) = 0\n"},
       {"functions",
        "joint functions planar\n  \"Every function once.\"\n"
-       "  point pa on a\n  point pb on b\n  scalar l [m]\n  let u = pa - pb\n  let q = norm(u) / l\n"
+       "  point pa on a\n  point pb on b\n  scalar l [m]\n  let u = pa - pb\n  let q = norm(u) / "
+       "l\n"
        "  sqrt(q) + exp(q) - log(q) + tan(q / 4) + abs(cos(q)) + atan2(u.y, l) * q ^ 3 = 1\n"
        "  let half = unit(u) / 2\n  dot(half, x(a) - pb) + dot(perp(u), arm(pa)) / norm(u) = 0\n"},
       {"knife",
@@ -20,10 +21,16 @@ std::vector<std::pair<std::string, std::string>> unusual_specs() {
        "  point pa on a\n  unit n on a\n  velocity dot(v(pa), n) = 0\n"},
       {"driven_slide",
        "joint driven_slide planar\n  \"A slide that swings in time.\"\n"
-       "  point pa on a\n  point pb on b\n  unit t on b\n  scalar amplitude [m]\n  scalar rate [rad/s]\n"
+       "  point pa on a\n  point pb on b\n  unit t on b\n  scalar amplitude [m]\n  scalar rate "
+       "[rad/s]\n"
        "  dot(t, pa - pb) = amplitude * sin(rate * time)\n"},
+      {"towed",
+       "joint towed planar\n  \"A point of a moves through the world at a given velocity.\"\n"
+       "  point pa on a\n  point start on world\n  vector speed [m/s] on world\n"
+       "  pa = start + time * speed\n"},
       {"direction_row",
-       "joint direction_row planar\n  \"A vector row that no number multiplies: K in components.\"\n"
+       "joint direction_row planar\n  \"A vector row that no number multiplies: K in "
+       "components.\"\n"
        "  point pa on a\n  point pb on b\n  unit t on b\n  unit(pa - pb) = t\n"}};
 }
 

@@ -25,6 +25,7 @@ inline cdot::derive::Joint read_spec(const std::string& name) {
   return *read.joint;
 }
 
-// Further joints that use what the catalogue does not: angles between directions, functions, velocity rows, roots.
+// Further joints that use what the catalogue does not: angles between directions, functions,
+// velocity rows, roots.
 std::vector<std::pair<std::string, std::string>> unusual_specs();
 cdot::derive::Joint read_text(const std::string& name, const std::string& text);
