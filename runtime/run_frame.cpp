@@ -5,10 +5,12 @@
 namespace cdot {
 namespace {
 
-// The cubic with values p, q and slopes u, v at the ends of a step of length h, at the share s of it.
+// The cubic with values p, q and slopes u, v at the ends of a step of length h, at the share s of
+// it.
 double cubic(double p, double u, double q, double v, double h, double s) {
   const double s2 = s * s, s3 = s2 * s;
-  return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * h * u + (3 * s2 - 2 * s3) * q + (s3 - s2) * h * v;
+  return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * h * u + (3 * s2 - 2 * s3) * q +
+         (s3 - s2) * h * v;
 }
 
 double linear(double p, double q, double s) { return (1 - s) * p + s * q; }
@@ -45,8 +47,11 @@ Frame between(const Frame& before, const Frame& after, double time) {
   frame.time = time;
   for (std::size_t k = 0; k < frame.bodies.size(); ++k) {
     const BodyState &a = before.bodies[k], &b = after.bodies[k];
-    frame.bodies[k] = {cubic(a.x, a.vx, b.x, b.vx, h, s), cubic(a.y, a.vy, b.y, b.vy, h, s),
-                       cubic(a.angle, a.w, b.angle, b.w, h, s), linear(a.vx, b.vx, s), linear(a.vy, b.vy, s),
+    frame.bodies[k] = {cubic(a.x, a.vx, b.x, b.vx, h, s),
+                       cubic(a.y, a.vy, b.y, b.vy, h, s),
+                       cubic(a.angle, a.w, b.angle, b.w, h, s),
+                       linear(a.vx, b.vx, s),
+                       linear(a.vy, b.vy, s),
                        linear(a.w, b.w, s)};
   }
   frame.energy = linear(before.energy, after.energy, s);

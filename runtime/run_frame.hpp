@@ -1,5 +1,5 @@
-// The state of a scene at one time, and frames picked at the times that somebody asked for. Steps are never shortened
-// to hit such a time: what is written does not change what is simulated.
+// The state of a scene at one time, and frames picked at the times that somebody asked for. Steps
+// are never shortened to hit such a time: what is written does not change what is simulated.
 #pragma once
 
 #include <functional>
@@ -23,8 +23,8 @@ struct Frame {
 Frame frame_of(const World<double>& world, double time, int bodies);
 bool finite(const Frame& frame);
 
-// Between two steps: positions by the cubic that has both ends' positions and velocities, the rest linear. Its error
-// is of fourth order in the step, that of the step itself of first.
+// Between two steps: positions by the cubic that has both ends' positions and velocities, the rest
+// linear. Its error is of fourth order in the step, that of the step itself of first.
 Frame between(const Frame& before, const Frame& after, double time);
 
 // Hands on the frames at given times as the steps go by.

@@ -47,17 +47,18 @@ std::string body_name(const ParameterInfo& parameter) {
 std::string list_text() {
   std::string text;
   for (const JointType& type : joint_types()) {
-    text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, type.bodies == 1 ? "body" : "bodies",
-                        type.row_kinds.size(), type.row_kinds.size() == 1 ? "" : "s");
+    text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies,
+                        type.bodies == 1 ? "body" : "bodies", type.row_kinds.size(),
+                        type.row_kinds.size() == 1 ? "" : "s");
     for (const ParameterInfo& parameter : type.parameters) {
       const std::string body = body_name(parameter);
-      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_name(parameter.kind), parameter.unit,
-                          body.empty() ? "" : " on " + body,
-                          parameter.has_default ? ", if not given: from the start" : "");
+      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_name(parameter.kind),
+                          parameter.unit, body.empty() ? "" : " on " + body,
+                          parameter.has_default ? ", optional" : "");
     }
     for (const CoordinateInfo& coordinate : type.coordinates) {
-      text += fmt::format("    {:<12} coordinate [{}]: limit, motor, spring, damper, friction\n", coordinate.name,
-                          coordinate.unit);
+      text += fmt::format("    {:<12} coordinate [{}]: limit, motor, spring, damper, friction\n",
+                          coordinate.name, coordinate.unit);
     }
   }
   return text;

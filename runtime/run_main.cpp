@@ -40,31 +40,44 @@ The format of scenes is described in specs/scenes/README.md.)";
 void add_simulate(CLI::App& app, Arguments& arguments) {
   CLI::App* simulate = app.add_subcommand("simulate", "Run a scene and say how it went");
   simulate->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
-  simulate->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
+  simulate
+      ->add_option("--until", arguments.until,
+                   "end at this time [s], in place of the scene's duration")
       ->check(CLI::PositiveNumber);
   simulate->add_option("--step", arguments.step, "the time step [s]")->check(CLI::PositiveNumber);
   simulate->add_option("--solver", arguments.solver, "direct or iterative")
       ->check(CLI::IsMember({"direct", "iterative"}));
-  simulate->add_option("--drift", arguments.drift, "what keeps joints together: projection, baumgarte or none")
+  simulate
+      ->add_option("--drift", arguments.drift,
+                   "what keeps joints together: projection, baumgarte or none")
       ->check(CLI::IsMember({"projection", "baumgarte", "none"}));
   simulate->add_option("--iterations", arguments.iterations, "of the iterative solver, per substep")
       ->check(CLI::PositiveNumber);
   simulate->add_option("--substeps", arguments.substeps, "per step")->check(CLI::PositiveNumber);
-  simulate->add_option("--tolerance", arguments.tolerance, "joint error from which the run has failed [m, rad]")
+  simulate
+      ->add_option("--tolerance", arguments.tolerance,
+                   "joint error from which the run has failed [m, rad]")
       ->check(CLI::PositiveNumber);
-  simulate->add_flag("--project", arguments.project, "move a start that does not fit onto its joints");
-  simulate->add_option("-o,--output", arguments.csv,
-                       "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name");
-  auto* every = simulate->add_option("--every", arguments.every, "a CSV row each so many seconds; else one per step")
+  simulate->add_flag("--project", arguments.project,
+                     "move a start that does not fit onto its joints");
+  simulate->add_option(
+      "-o,--output", arguments.csv,
+      "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name");
+  auto* every = simulate
+                    ->add_option("--every", arguments.every,
+                                 "a CSV row each so many seconds; else one per step")
                     ->check(CLI::PositiveNumber);
   simulate->add_option("--times", arguments.times, "CSV rows at these times: 0,0.5,2")
       ->delimiter(',')
       ->check(CLI::NonNegativeNumber)
       ->excludes(every);
-  simulate->add_option("--html", arguments.html, "write a page that plays the mechanism, all in one file");
-  simulate->add_option("--svg", arguments.svg, "write a picture of the mechanism at several times, with its traces");
+  simulate->add_option("--html", arguments.html,
+                       "write a page that plays the mechanism, all in one file");
+  simulate->add_option("--svg", arguments.svg,
+                       "write a picture of the mechanism at several times, with its traces");
   simulate->add_flag("--json", arguments.json, "the summary as JSON");
-  simulate->add_flag("--progress", arguments.progress, "show progress even where stderr is no terminal");
+  simulate->add_flag("--progress", arguments.progress,
+                     "show progress even where stderr is no terminal");
   simulate->footer(footer);
 }
 
@@ -83,7 +96,8 @@ void override_scene(const Arguments& arguments, cdot::Scene& scene) {
   if (arguments.drift == "none") settings.drift = cdot::Drift::none;
 }
 
-cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene, cdot::OutputFile* csv) {
+cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene,
+                            cdot::OutputFile* csv) {
   cdot::RunOptions options;
   if (csv) {
     csv->write(cdot::csv_head(scene));
@@ -92,7 +106,8 @@ cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene
   options.row_times = arguments.times;
   std::sort(options.row_times.begin(), options.row_times.end());
   if (arguments.every > 0) options.row_times = cdot::every(arguments.every, scene.duration);
-  if (!arguments.html.empty() || !arguments.svg.empty()) options.film_times = cdot::film_times(scene);
+  if (!arguments.html.empty() || !arguments.svg.empty())
+    options.film_times = cdot::film_times(scene);
   options.progress = arguments.progress || ::isatty(STDERR_FILENO) != 0;
   return options;
 }
@@ -110,22 +125,27 @@ int simulate(const Arguments& arguments) {
   if (result.interrupted) return stopped;
 
   if (csv) csv->commit();
-  if (!arguments.html.empty()) cdot::write_file(arguments.html, cdot::html_page(scene, result.film));
+  if (!arguments.html.empty())
+    cdot::write_file(arguments.html, cdot::html_page(scene, result.film));
   if (!arguments.svg.empty()) cdot::write_file(arguments.svg, cdot::svg_still(scene, result.film));
-  fmt::print("{}", arguments.json ? cdot::summary_json(scene, result) : cdot::summary_text(scene, result));
+  fmt::print(
+      "{}", arguments.json ? cdot::summary_json(scene, result) : cdot::summary_text(scene, result));
   return cdot::failure(scene, result).empty() ? well : answer_is_no;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Runs mechanisms: bodies, and joints whose kernels were derived from their position constraints.");
+  CLI::App app(
+      "Runs mechanisms: bodies, and joints whose kernels were derived from their position "
+      "constraints.");
   app.name("cdot-run");
   app.require_subcommand(1);
   app.footer(footer);
   Arguments arguments;
   add_simulate(app, arguments);
-  CLI::App* list = app.add_subcommand("list", "Show the joints that a scene may name, with their parameters");
+  CLI::App* list =
+      app.add_subcommand("list", "Show the joints that a scene may name, with their parameters");
   list->add_flag("--json", arguments.json, "as JSON");
   try {
     app.parse(argc, argv);
@@ -135,7 +155,8 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? well : bad_input;
   } catch (const cdot::SceneError& error) {
-    fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes, error.mistakes == 1 ? "" : "s");
+    fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes,
+               error.mistakes == 1 ? "" : "s");
   } catch (const std::exception& error) {
     fmt::print(stderr, "cdot-run: {}\n", error.what());
   }

@@ -10,7 +10,8 @@
 
 namespace cdot {
 
-// Writes beside the path and takes its name when all is there. Throws cdot::Error when the disk does not obey.
+// Writes beside the path and takes its name when all is there. Throws cdot::Error when the disk
+// does not obey.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);
@@ -29,7 +30,8 @@ class OutputFile {
 
 void write_file(const std::string& path, std::string_view text);
 
-// time, then x, y, angle, vx, vy, omega of every body by name: "rod.x". Numbers read back to the same bits.
+// time, then x, y, angle, vx, vy, omega of every body by name: "rod.x". Numbers read back to the
+// same bits.
 std::string csv_head(const Scene& scene);
 std::string csv_row(const Frame& frame);
 

@@ -9,7 +9,8 @@
 namespace cdot {
 namespace {
 
-constexpr double start_tolerance = 1e-6;  // [m], [rad], and per second: what a start may be off unreported
+constexpr double start_tolerance =
+    1e-6;  // [m], [rad], and per second: what a start may be off unreported
 
 volatile std::sig_atomic_t interrupted = 0;
 void interrupt(int) { interrupted = 1; }
@@ -24,7 +25,9 @@ double cpu_now() {
 World<double> world_at_start(const Scene& scene, std::string& warnings) {
   World<double> world = build_world<double>(scene);
   if (scene.project && !world.project(start_tolerance * start_tolerance)) {
-    warnings += fmt::format("{}: warning: the start could not be projected: joints contradict each other\n", scene.file);
+    warnings +=
+        fmt::format("{}: warning: the start could not be projected: joints contradict each other\n",
+                    scene.file);
   }
   warnings += inconsistency_report(scene, world, start_tolerance);
   world.prepare();
@@ -74,7 +77,10 @@ void finish(const Scene& scene, const World<double>& world, RunResult& result) {
     if (world.broken(static_cast<int>(k))) result.broken_joints.push_back(scene.joints[k].name);
   }
   result.redundant_rows = world.redundant_rows();
-  result.notes = world.notes();
+  for (const Note& note : world.notes()) {
+    const std::string& joint = scene.joints[static_cast<std::size_t>(note.joint)].name;
+    result.notes.push_back(fmt::format("joint \"{}\" {}", joint, note.text));
+  }
   result.interrupted = interrupted != 0;
 }
 
@@ -83,7 +89,8 @@ void finish(const Scene& scene, const World<double>& world, RunResult& result) {
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
   World<double> world = world_at_start(scene, warnings);
-  Sampler rows(options.row_times, options.row ? options.row : [](const Frame&) {});
+  Sampler rows(
+      options.row_times, options.row ? options.row : [](const Frame&) {});
   Sampler film(options.film_times, [&](const Frame& frame) { result.film.push_back(frame); });
   const bool every_step = options.row && options.row_times.empty();
   Progress progress(options.progress, scene.duration);

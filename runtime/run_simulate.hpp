@@ -22,14 +22,16 @@ struct RunResult {
   double cpu = 0;  // spent in step() [s]
   double worst_error = 0, worst_error_time = 0;
   std::string worst_joint;
-  double energy_start = 0, energy_end = 0, energy_drift = 0;  // [J]; drift: the largest |E - E_start|
+  double energy_start = 0, energy_end = 0,
+         energy_drift = 0;  // [J]; drift: the largest |E - E_start|
   int redundant_rows = 0;
   std::vector<std::string> broken_joints, notes;
   bool finite = true, interrupted = false;
   std::vector<Frame> film;
 };
 
-// `warnings` receives what was odd but not wrong (an inconsistent start), in the lines of the scene.
+// `warnings` receives what was odd but not wrong (an inconsistent start), in the lines of the
+// scene.
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings);
 
 // Why the answer is no; empty if the run stayed finite and its joints held.

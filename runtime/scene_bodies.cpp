@@ -14,7 +14,8 @@ Shape read_shape(Entry& body) {
   std::optional<Entry> entry = body.table("shape", "`shape` of " + body.what());
   if (!entry) {
     if (body.has("shape")) {
-      body.error(body.where("shape"), "`shape` must be a table", "shape = { rod = 1.0 }, { box = [1, 0.5] } or { disc = 0.2 }");
+      body.error(body.where("shape"), "`shape` must be a table",
+                 "shape = { rod = 1.0 }, { box = [1, 0.5] } or { disc = 0.2 }");
     }
     return shape;
   }
@@ -24,8 +25,10 @@ Shape read_shape(Entry& body) {
   }
   const Quantity size{Sign::positive};
   if (const auto length = entry->number("rod", size)) shape = {Shape::rod, *length, 0.06 * *length};
-  if (const auto sides = entry->numbers("box", 2, size)) shape = {Shape::box, (*sides)[0], (*sides)[1]};
-  if (const auto radius = entry->number("disc", size)) shape = {Shape::disc, 2 * *radius, 2 * *radius};
+  if (const auto sides = entry->numbers("box", 2, size))
+    shape = {Shape::box, (*sides)[0], (*sides)[1]};
+  if (const auto radius = entry->number("disc", size))
+    shape = {Shape::disc, 2 * *radius, 2 * *radius};
   if (const auto width = entry->number("width", size)) {
     if (!rod) entry->error(entry->where("width"), "`width` belongs to a rod");
     shape.width = *width;
@@ -56,8 +59,10 @@ void read_mass(Entry& body, const Shape& shape, BodyDefinition& definition) {
   definition.mass = body.number("mass", {Sign::positive}).value_or(0);
   const std::optional<double> inertia = body.number("inertia", {Sign::not_negative});
   if (definition.is_static) return;
-  if (!mass_given) body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
-  definition.inertia = inertia_given ? inertia.value_or(1) : uniform_inertia(shape, definition.mass);
+  if (!mass_given)
+    body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
+  definition.inertia =
+      inertia_given ? inertia.value_or(1) : uniform_inertia(shape, definition.mass);
   if (definition.fixed_rotation || definition.inertia > 0) return;
   if (inertia_given) {
     body.error(body.where("inertia"), "`inertia` is 0, but the body is free to turn",
@@ -121,7 +126,8 @@ void read_bodies(Entry& top, Scene& scene) {
     entry.close();
     scene.bodies.push_back(std::move(body));
   }
-  if (!top.has("body")) top.error({}, "a scene needs at least one body", "start with a line [[body]]");
+  if (!top.has("body"))
+    top.error({}, "a scene needs at least one body", "start with a line [[body]]");
 }
 
 }  // namespace cdot

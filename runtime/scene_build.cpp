@@ -1,4 +1,5 @@
-// From a scene to a World: the names are gone, what the World refuses is reported in the lines of the scene.
+// From a scene to a World: the names are gone, what the World refuses is reported in the lines of
+// the scene.
 #include <fmt/format.h>
 
 #include "runtime/scene.hpp"
@@ -30,7 +31,8 @@ void add_joint(World<T>& world, const SceneJoint& source) {
 
 template <class T>
 void add_spring(World<T>& world, SpringDefinition spring) {
-  for (int* body : {&spring.body_a, &spring.body_b}) *body = *body == world_body ? world.ground() : *body;
+  for (int* body : {&spring.body_a, &spring.body_b})
+    *body = *body == world_body ? world.ground() : *body;
   world.add_spring(spring);
 }
 
@@ -41,7 +43,8 @@ std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::si
     for (const Inconsistency& row : rows) {
       if (row.joint != joint || row.velocity != velocity) continue;
       const std::string number = joint_rows > 1 ? std::to_string(row.row + 1) : "";
-      list += fmt::format("{}{}{} = {:.3g}", list.empty() ? "" : ", ", velocity ? "Cdot" : "C", number, row.value);
+      list += fmt::format("{}{}{} = {:.3g}", list.empty() ? "" : ", ", velocity ? "Cdot" : "C",
+                          number, row.value);
     }
   }
   return list;
@@ -59,7 +62,8 @@ World<T> build_world(const Scene& scene) {
     try {
       add_joint(world, joint);
     } catch (const Error& error) {
-      report += scene.source->paragraph("error", joint.where, fmt::format("{}: {}", joint.name, error.what()), "");
+      report += scene.source->paragraph("error", joint.where,
+                                        fmt::format("{}: {}", joint.name, error.what()), "");
       ++mistakes;
     }
   }
@@ -78,7 +82,8 @@ std::string inconsistency_report(const Scene& scene, const World<T>& world, doub
     if (list.empty()) continue;
     report += scene.source->paragraph(
         "warning", source.where,
-        fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name, list),
+        fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name,
+                    list),
         "correct the pose or velocity, or let project = true move the bodies onto their joints");
   }
   return report;

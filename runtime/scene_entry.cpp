@@ -39,7 +39,8 @@ std::optional<double> number_in_text(std::string_view text, bool angle) {
 }  // namespace
 
 Span span_of(const toml::source_region& region) {
-  const int line = static_cast<int>(region.begin.line), begin = static_cast<int>(region.begin.column);
+  const int line = static_cast<int>(region.begin.line),
+            begin = static_cast<int>(region.begin.column);
   // A value over several lines is marked from its start to the end of that line.
   const bool one_line = region.end.line == region.begin.line;
   return {line, begin, one_line ? static_cast<int>(region.end.column) : 1 << 20};
@@ -67,25 +68,30 @@ std::vector<Entry> Entry::list(const std::string& key) {
     return entries;
   }
   for (const toml::node& element : *node->as_array()) {
-    Entry entry(*element.as_table(), span_of(element.source()), fmt::format("[[{}]]", key), *mistakes_);
+    Entry entry(*element.as_table(), span_of(element.source()), fmt::format("[[{}]]", key),
+                *mistakes_);
     const toml::node* repeat = entry.find("repeat");
     const int copies = repeat ? entry.whole("repeat", 1).value_or(1) : 1;
     entry.repeated_ = repeat != nullptr;
     entry.check_repeat(copies);
-    for (entry.copy_ = 0; entry.copy_ < std::min(copies, most_copies); ++entry.copy_) entries.push_back(entry);
+    for (entry.copy_ = 0; entry.copy_ < std::min(copies, most_copies); ++entry.copy_)
+      entries.push_back(entry);
   }
   return entries;
 }
 
-// `shift` adds something from copy to copy, `each` gives a value per copy; both make sense only with `repeat`.
+// `shift` adds something from copy to copy, `each` gives a value per copy; both make sense only
+// with `repeat`.
 void Entry::check_repeat(int copies) {
   for (const char* key : {"shift", "each"}) {
     const toml::node* node = find(key);
     if (!node) continue;
-    if (!repeated_) error(where(key), fmt::format("`{}` without `repeat`", key), "say how often: repeat = 10");
+    if (!repeated_)
+      error(where(key), fmt::format("`{}` without `repeat`", key), "say how often: repeat = 10");
     if (!node->is_table()) wrong_type(*node, key, "a table, as { position = [1, 0] }");
   }
-  if (copies > most_copies) error(where("repeat"), fmt::format("`repeat` is more than {}", most_copies));
+  if (copies > most_copies)
+    error(where("repeat"), fmt::format("`repeat` is more than {}", most_copies));
   const toml::table* each = table_->get_as<toml::table>("each");
   if (!each) return;
   for (auto&& [key, values] : *each) {
@@ -104,7 +110,8 @@ const toml::node* Entry::find(const std::string& key) {
   asked_.insert(key);
   const toml::table* each = repeated_ ? table_->get_as<toml::table>("each") : nullptr;
   const toml::array* values = each ? each->get_as<toml::array>(key) : nullptr;
-  if (values && copy_ < static_cast<int>(values->size())) return values->get(static_cast<std::size_t>(copy_));
+  if (values && copy_ < static_cast<int>(values->size()))
+    return values->get(static_cast<std::size_t>(copy_));
   return table_->get(key);
 }
 
@@ -128,17 +135,21 @@ void Entry::error(Span where, const std::string& cause, const std::string& fix) 
   mistakes_->add(where, cause, fix);
 }
 
-void Entry::wrong_type(const toml::node& node, const std::string& key, const std::string& wanted) const {
-  error(span_of(node.source()), fmt::format("`{}` must be {}, but is {}", key, wanted, type_of(node)));
+void Entry::wrong_type(const toml::node& node, const std::string& key,
+                       const std::string& wanted) const {
+  error(span_of(node.source()),
+        fmt::format("`{}` must be {}, but is {}", key, wanted, type_of(node)));
 }
 
-std::optional<double> Entry::plain_number(const toml::node& node, const std::string& key, Quantity quantity) {
+std::optional<double> Entry::plain_number(const toml::node& node, const std::string& key,
+                                          Quantity quantity) {
   if (node.is_number()) return node.value<double>();
   if (!node.is_string()) {
     wrong_type(node, key, "a number");
     return {};
   }
-  const std::optional<double> value = number_in_text(*node.value<std::string_view>(), quantity.angle);
+  const std::optional<double> value =
+      number_in_text(*node.value<std::string_view>(), quantity.angle);
   if (!value) {
     error(span_of(node.source()), fmt::format("{} must be a number, but is a text", quoted(key)),
           quantity.angle ? "0.5 (rad) or \"30 deg\"" : "0.5, or a fraction as \"1/60\"");
@@ -163,9 +174,10 @@ std::optional<double> Entry::shift_of(const std::string& key, std::size_t index)
 }
 
 // `node` as a number in its range; `index` says which element of a list it is.
-std::optional<double> Entry::shifted_number(const toml::node& node, const std::string& key, std::size_t index,
-                                            Quantity quantity) {
-  const std::optional<double> start = plain_number(node, key, quantity), shift = shift_of(key, index);
+std::optional<double> Entry::shifted_number(const toml::node& node, const std::string& key,
+                                            std::size_t index, Quantity quantity) {
+  const std::optional<double> start = plain_number(node, key, quantity),
+                              shift = shift_of(key, index);
   if (!start || !shift) return {};
   const double value = *start + *shift;
   const char* wrong = nullptr;
@@ -183,13 +195,15 @@ std::optional<double> Entry::number(const std::string& key, Quantity quantity) {
   return shifted_number(*node, key, 0, quantity);
 }
 
-std::optional<std::vector<double>> Entry::numbers(const std::string& key, std::size_t size, Quantity quantity) {
+std::optional<std::vector<double>> Entry::numbers(const std::string& key, std::size_t size,
+                                                  Quantity quantity) {
   const toml::node* node = find(key);
   if (!node) return {};
   const toml::array* array = node->as_array();
   if (!array || array->size() != size) {
     const std::string found = array ? fmt::format("has {}", array->size()) : "is " + type_of(*node);
-    error(span_of(node->source()), fmt::format("{} must be a list of {} numbers, but {}", quoted(key), size, found));
+    error(span_of(node->source()),
+          fmt::format("{} must be a list of {} numbers, but {}", quoted(key), size, found));
     return {};
   }
   std::vector<double> values;
@@ -212,13 +226,15 @@ std::optional<int> Entry::whole(const std::string& key, int least) {
   if (!node) return {};
   const std::optional<std::int64_t> value = node->value_exact<std::int64_t>();
   if (!value && node->is_number()) {
-    error(span_of(node->source()), fmt::format("{} is {}: it must be a whole number", quoted(key), *node->value<double>()));
+    error(span_of(node->source()),
+          fmt::format("{} is {}: it must be a whole number", quoted(key), *node->value<double>()));
   } else if (!value) {
     wrong_type(*node, key, "a whole number");
   }
   if (!value) return {};
   if (*value >= least && *value <= 1'000'000'000) return static_cast<int>(*value);
-  error(span_of(node->source()), fmt::format("{} is {}: it must be {} or more", quoted(key), *value, least));
+  error(span_of(node->source()),
+        fmt::format("{} is {}: it must be {} or more", quoted(key), *value, least));
   return {};
 }
 
@@ -238,9 +254,11 @@ std::optional<std::string> Entry::substituted(const std::string& text, Span wher
     result += text.substr(at, open - at);
     if (open == text.size()) break;
     const std::size_t close = text.find('}', open);
-    const std::string inside = close == std::string::npos ? "" : text.substr(open + 1, close - open - 1);
+    const std::string inside =
+        close == std::string::npos ? "" : text.substr(open + 1, close - open - 1);
     int offset = 0;
-    const char *first = inside.data() + (inside.starts_with("i+") ? 2 : 1), *last = inside.data() + inside.size();
+    const char *first = inside.data() + (inside.starts_with("i+") ? 2 : 1),
+               *last = inside.data() + inside.size();
     const bool plain = inside == "i";
     const bool offset_fine = inside.size() > 2 && inside.size() < 10 && inside[0] == 'i' &&
                              (inside[1] == '+' || inside[1] == '-') &&
@@ -311,7 +329,8 @@ bool Entry::is_array(const std::string& key) {
   return node && node->is_array();
 }
 
-std::optional<std::string> Entry::choice(const std::string& key, const std::vector<std::string>& allowed) {
+std::optional<std::string> Entry::choice(const std::string& key,
+                                         const std::vector<std::string>& allowed) {
   const std::optional<std::string> value = text(key);
   if (!value || std::find(allowed.begin(), allowed.end(), *value) != allowed.end()) return value;
   error(where(key), fmt::format("unknown {} \"{}\"", key, *value), did_you_mean(*value, allowed));
@@ -331,7 +350,8 @@ void Entry::close(const std::vector<std::string>& also_known) const {
   for (auto&& [key, node] : *table_) {
     const std::string name(key.str());
     if (asked_.contains(name)) continue;
-    error(span_of(key.source()), fmt::format("unknown key `{}` in {}", name, what_), did_you_mean(name, known));
+    error(span_of(key.source()), fmt::format("unknown key `{}` in {}", name, what_),
+          did_you_mean(name, known));
   }
   const std::vector<std::string> shiftable(asked_.begin(), asked_.end());
   for (const char* list : {"shift", "each"}) {

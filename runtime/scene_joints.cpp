@@ -1,5 +1,5 @@
-// The [[joint]] and [[spring]] entries of a scene. Which parameters and coordinates a joint has is asked of the table
-// of joint types; nothing here knows a joint by name.
+// The [[joint]] and [[spring]] entries of a scene. Which parameters and coordinates a joint has is
+// asked of the table of joint types; nothing here knows a joint by name.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -11,13 +11,18 @@ namespace {
 
 // "the point pa on body a", "the direction t on the world", "the scalar l [m]"
 std::string described(const ParameterInfo& parameter) {
-  if (parameter.kind == ParameterKind::scalar) return fmt::format("the scalar {} [{}]", parameter.name, parameter.unit);
+  if (parameter.kind == ParameterKind::scalar)
+    return fmt::format("the scalar {} [{}]", parameter.name, parameter.unit);
   const bool on_world = parameter.body < 0;
-  return fmt::format("the {} {} on {}", parameter.kind == ParameterKind::point ? "point" : "direction", parameter.name,
-                     on_world ? "the world" : fmt::format("body {}", static_cast<char>('a' + parameter.body)));
+  return fmt::format(
+      "the {} {} on {}", parameter.kind == ParameterKind::point ? "point" : "direction",
+      parameter.name,
+      on_world ? "the world" : fmt::format("body {}", static_cast<char>('a' + parameter.body)));
 }
 
-std::string number_named(std::size_t count) { return fmt::format("{} {}", count, count == 1 ? "is" : "are"); }
+std::string number_named(std::size_t count) {
+  return fmt::format("{} {}", count, count == 1 ? "is" : "are");
+}
 
 const JointType* read_type(Entry& joint) {
   joint.required("type", "type = \"revolute\"");
@@ -27,31 +32,37 @@ const JointType* read_type(Entry& joint) {
   if (type) return type;
   std::vector<std::string> known;
   for (const JointType& other : joint_types()) known.emplace_back(other.name);
-  joint.error(joint.where("type"), fmt::format("no joint is called \"{}\"", *name), did_you_mean(*name, known));
+  joint.error(joint.where("type"), fmt::format("no joint is called \"{}\"", *name),
+              did_you_mean(*name, known));
   return nullptr;
 }
 
 // The bodies in the order of the spec; nothing if their number is wrong.
-std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType& type, const BodyNames& names) {
+std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType& type,
+                                                  const BodyNames& names) {
   const bool one = type.bodies == 1;
   joint.required("bodies", one ? "bodies = [\"rod\"]" : "bodies = [\"world\", \"rod\"]");
   const std::optional<std::vector<int>> bodies = names.find(joint, "bodies");
   if (!bodies) return {};
   if (static_cast<int>(bodies->size()) != type.bodies) {
-    joint.error(joint.where("bodies"), fmt::format("a {} joint has {} {}, but {} named", type.name, type.bodies,
-                                                   one ? "body" : "bodies", number_named(bodies->size())));
+    joint.error(joint.where("bodies"),
+                fmt::format("a {} joint has {} {}, but {} named", type.name, type.bodies,
+                            one ? "body" : "bodies", number_named(bodies->size())));
     return {};
   }
   if (type.bodies == 2 && (*bodies)[0] == (*bodies)[1]) {
-    joint.error(joint.where("bodies"), fmt::format("a joint between \"{}\" and itself", names.name((*bodies)[0])));
+    joint.error(joint.where("bodies"),
+                fmt::format("a joint between \"{}\" and itself", names.name((*bodies)[0])));
     return {};
   }
   return bodies;
 }
 
-// The numbers of one parameter in the frame of its body; nothing if it is left to its default, or wrong.
-std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter, int body,
-                                                  std::optional<Vec2> at, const BodyNames& names) {
+// The numbers of one parameter in the frame of its body; nothing if it is left to its default, or
+// wrong.
+std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter,
+                                                  int body, std::optional<Vec2> at,
+                                                  const BodyNames& names) {
   const std::string key(parameter.name);
   if (parameter.kind == ParameterKind::scalar) {
     const std::optional<double> value = joint.number(key, {Sign::any, parameter.unit == "rad"});
@@ -65,33 +76,40 @@ std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterI
     vector = read_direction(joint, key, body, names);
     const bool direction = parameter.kind != ParameterKind::vector;
     if (direction && vector && std::hypot((*vector)[0], (*vector)[1]) == 0) {
-      joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key), "any other length will do: [1, 0]");
+      joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key),
+                  "any other length will do: [1, 0]");
     }
   }
   if (!vector) return {};
   return std::vector<double>{(*vector)[0], (*vector)[1]};
 }
 
-void read_parameters(Entry& joint, const JointType& type, const BodyNames& names, JointDefinition& definition) {
+void read_parameters(Entry& joint, const JointType& type, const BodyNames& names,
+                     JointDefinition& definition) {
   const std::optional<Vec2> at = joint.vec2("at");
   bool has_point = false;
   for (const ParameterInfo& parameter : type.parameters) {
     const bool on_body = parameter.body >= 0;
-    const int body = on_body ? definition.bodies[static_cast<std::size_t>(parameter.body)] : world_body;
+    const int body =
+        on_body ? definition.bodies[static_cast<std::size_t>(parameter.body)] : world_body;
     const bool point = parameter.kind == ParameterKind::point;
     const bool given = joint.has(std::string(parameter.name)) || (point && joint.has("at"));
     has_point = has_point || point;
     if (const auto numbers = read_parameter(joint, parameter, body, at, names)) {
       definition.parameters.push_back({std::string(parameter.name), *numbers});
     } else if (!given && !parameter.has_default) {
-      joint.error(joint.header(), fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
-                  point ? fmt::format("{0} = [x, y] in the frame of its body, {0} = {{ world = [x, y] }}, or at = [x, y]",
-                                      parameter.name)
-                        : "");
+      joint.error(
+          joint.header(),
+          fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
+          point ? fmt::format("{0} = [x, y] in the frame of its body, {0} = {{ world = [x, y] }}, "
+                              "or at = [x, y]",
+                              parameter.name)
+                : "");
     }
   }
   if (joint.has("at") && !has_point) {
-    joint.error(joint.where("at"), fmt::format("a {} joint has no points that `at` could place", type.name));
+    joint.error(joint.where("at"),
+                fmt::format("a {} joint has no points that `at` could place", type.name));
   }
 }
 
@@ -101,16 +119,19 @@ std::optional<Limit> read_limit(Entry& effects, Quantity quantity) {
   if (std::optional<Entry> table = effects.table("limit", "`limit` of " + effects.what())) {
     limit.lower = table->number("lower", quantity);
     limit.upper = table->number("upper", quantity);
-    if (!table->has("lower") && !table->has("upper")) table->error(table->header(), "a limit without `lower` or `upper`");
+    if (!table->has("lower") && !table->has("upper"))
+      table->error(table->header(), "a limit without `lower` or `upper`");
     table->close();
   } else if (effects.has("limit") && !effects.is_array("limit")) {
-    effects.error(effects.where("limit"), "`limit` needs two ends", "[lower, upper], { lower = 0 } or { upper = 1 }");
+    effects.error(effects.where("limit"), "`limit` needs two ends",
+                  "[lower, upper], { lower = 0 } or { upper = 1 }");
   } else if (const auto both = effects.numbers("limit", 2, quantity)) {
     limit = {(*both)[0], (*both)[1]};
   }
   if (limit.lower && limit.upper && *limit.lower > *limit.upper) {
     effects.error(effects.where("limit"),
-                  fmt::format("the lower limit {:.6g} is above the upper limit {:.6g}", *limit.lower, *limit.upper));
+                  fmt::format("the lower limit {:.6g} is above the upper limit {:.6g}",
+                              *limit.lower, *limit.upper));
   }
   if (!limit.lower && !limit.upper) return {};
   return limit;
@@ -119,7 +140,8 @@ std::optional<Limit> read_limit(Entry& effects, Quantity quantity) {
 std::optional<Motor> read_motor(Entry& effects, Quantity quantity) {
   std::optional<Entry> table = effects.table("motor", "`motor` of " + effects.what());
   if (!table) {
-    if (effects.has("motor")) effects.error(effects.where("motor"), "`motor` must be a table", "{ speed = 2, max = 10 }");
+    if (effects.has("motor"))
+      effects.error(effects.where("motor"), "`motor` must be a table", "{ speed = 2, max = 10 }");
     return {};
   }
   Motor motor;
@@ -137,7 +159,8 @@ std::vector<SceneSpring> read_coordinate_springs(Entry& effects, Quantity quanti
     if (const auto softness = read_softness(*table)) springs.push_back({*softness, rest});
     table->close();
   } else if (effects.has("spring")) {
-    effects.error(effects.where("spring"), "`spring` must be a table", "{ frequency = 2, damping_ratio = 0.5 }");
+    effects.error(effects.where("spring"), "`spring` must be a table",
+                  "{ frequency = 2, damping_ratio = 0.5 }");
   }
   if (const auto damping = effects.number("damper", {Sign::not_negative})) {
     Softness softness;
@@ -165,7 +188,8 @@ void read_effects(Entry& joint, const JointType& type, std::vector<SceneEffects>
     effects.limit = read_limit(*entry, quantity);
     effects.motor = read_motor(*entry, quantity);
     effects.springs = read_coordinate_springs(*entry, quantity);
-    if (const auto force = entry->number("friction", {Sign::not_negative})) effects.friction = DryFriction{*force};
+    if (const auto force = entry->number("friction", {Sign::not_negative}))
+      effects.friction = DryFriction{*force};
     entry->close();
     all.push_back(std::move(effects));
   }
@@ -174,7 +198,9 @@ void read_effects(Entry& joint, const JointType& type, std::vector<SceneEffects>
 std::optional<Softness> read_soft(Entry& joint) {
   std::optional<Entry> table = joint.table("soft", "`soft` of " + joint.what());
   if (!table) {
-    if (joint.has("soft")) joint.error(joint.where("soft"), "`soft` must be a table", "{ frequency = 2, damping_ratio = 0.5 }");
+    if (joint.has("soft"))
+      joint.error(joint.where("soft"), "`soft` must be a table",
+                  "{ frequency = 2, damping_ratio = 0.5 }");
     return {};
   }
   const std::optional<Softness> softness = read_softness(*table);
@@ -195,7 +221,8 @@ void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
     if (!type) continue;  // what else it may say depends on the type
     joint.definition.type = type->name;
     const std::optional<std::vector<int>> bodies = read_joint_bodies(entry, *type, names);
-    joint.definition.bodies = bodies.value_or(std::vector<int>(static_cast<std::size_t>(type->bodies), world_body));
+    joint.definition.bodies =
+        bodies.value_or(std::vector<int>(static_cast<std::size_t>(type->bodies), world_body));
     read_parameters(entry, *type, names, joint.definition);
     read_effects(entry, *type, joint.effects);
     joint.definition.soft = read_soft(entry);
@@ -213,7 +240,9 @@ void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
     entry.required("stiffness", "stiffness = 100");
     const std::optional<std::vector<int>> bodies = names.find(entry, "bodies");
     const bool two = bodies && bodies->size() == 2;
-    if (bodies && !two) entry.error(entry.where("bodies"), fmt::format("a spring has 2 bodies, but {} named", number_named(bodies->size())));
+    if (bodies && !two)
+      entry.error(entry.where("bodies"),
+                  fmt::format("a spring has 2 bodies, but {} named", number_named(bodies->size())));
     SpringDefinition spring;
     spring.body_a = two ? (*bodies)[0] : world_body;
     spring.body_b = two ? (*bodies)[1] : world_body;

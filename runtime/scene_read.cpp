@@ -13,7 +13,8 @@ namespace {
 
 bool fits_a_column(const std::string& name) {
   const auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+           c == '-';
   };
   return !name.empty() && std::all_of(name.begin(), name.end(), fits);
 }
@@ -103,7 +104,8 @@ std::optional<Vec2> in_body_or_world(Entry& entry, const std::string& key, FromW
   std::optional<Entry> table = entry.table(key, fmt::format("`{}` of {}", key, entry.what()));
   if (!table) return entry.vec2(key);
   const std::optional<Vec2> world = table->vec2("world");
-  if (!table->has("world")) table->error(table->header(), fmt::format("`{}` has no `world`", key), "{ world = [x, y] }");
+  if (!table->has("world"))
+    table->error(table->header(), fmt::format("`{}` has no `world`", key), "{ world = [x, y] }");
   table->close();
   if (!world) return {};
   return from_world(*world);
@@ -111,12 +113,15 @@ std::optional<Vec2> in_body_or_world(Entry& entry, const std::string& key, FromW
 
 }  // namespace
 
-std::optional<Vec2> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names) {
+std::optional<Vec2> read_point(Entry& entry, const std::string& key, int body,
+                               const BodyNames& names) {
   return in_body_or_world(entry, key, [&](Vec2 position) { return names.to_body(body, position); });
 }
 
-std::optional<Vec2> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names) {
-  return in_body_or_world(entry, key, [&](Vec2 direction) { return names.turned_to_body(body, direction); });
+std::optional<Vec2> read_direction(Entry& entry, const std::string& key, int body,
+                                   const BodyNames& names) {
+  return in_body_or_world(entry, key,
+                          [&](Vec2 direction) { return names.turned_to_body(body, direction); });
 }
 
 std::optional<Softness> read_softness(Entry& entry) {
@@ -129,7 +134,8 @@ std::optional<Softness> read_softness(Entry& entry) {
   softness.damping = entry.number("damping", {Sign::not_negative}).value_or(0);
   const bool mixed = frequency ? stiffness || entry.has("damping") : entry.has("damping_ratio");
   if (frequency == stiffness || mixed) {
-    entry.error(entry.header(), fmt::format("{} needs either a frequency or a stiffness", entry.what()),
+    entry.error(entry.header(),
+                fmt::format("{} needs either a frequency or a stiffness", entry.what()),
                 "{ frequency = 2, damping_ratio = 0.5 } or { stiffness = 100, damping = 1 }");
     return {};
   }
@@ -154,9 +160,11 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
   if (is_new) return name;
   const Span first = earlier->second;
   const bool same_place = first == where;
-  entry.error(where, first.line == 0 ? fmt::format("\"{}\" is the name of what never moves", *name)
-                     : same_place    ? fmt::format("all copies are called \"{}\"", *name)
-                                     : fmt::format("\"{}\" is the name of line {} already", *name, first.line),
+  entry.error(where,
+              first.line == 0 ? fmt::format("\"{}\" is the name of what never moves", *name)
+              : same_place
+                  ? fmt::format("all copies are called \"{}\"", *name)
+                  : fmt::format("\"{}\" is the name of line {} already", *name, first.line),
               same_place && first.line > 0 ? fmt::format("name = \"{}{{i}}\"", *name) : "");
   return {};
 }

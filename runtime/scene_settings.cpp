@@ -10,8 +10,8 @@ void read_time(Entry& top, Scene& scene) {
   scene.duration = top.number("duration", {Sign::positive}).value_or(scene.duration);
   scene.step = top.number("step", {Sign::positive}).value_or(scene.step);
   if (scene.step > scene.duration) {
-    top.error(top.where("step"), fmt::format("the step of {} s is longer than the duration of {} s", scene.step,
-                                             scene.duration));
+    top.error(top.where("step"), fmt::format("the step of {} s is longer than the duration of {} s",
+                                             scene.step, scene.duration));
   }
 }
 
@@ -28,9 +28,11 @@ void read_method(Entry& top, Settings& settings) {
   settings.substeps = top.whole("substeps", 1).value_or(settings.substeps);
   settings.baumgarte = top.number("baumgarte", {Sign::positive}).value_or(settings.baumgarte);
   settings.warm_start = top.flag("warm_start").value_or(settings.warm_start);
-  settings.geometric_stiffness = top.flag("geometric_stiffness").value_or(settings.geometric_stiffness);
+  settings.geometric_stiffness =
+      top.flag("geometric_stiffness").value_or(settings.geometric_stiffness);
   if (settings.baumgarte > 1) {
-    top.error(top.where("baumgarte"), "`baumgarte` is the share of the error removed per step: at most 1");
+    top.error(top.where("baumgarte"),
+              "`baumgarte` is the share of the error removed per step: at most 1");
   }
 }
 
@@ -47,7 +49,8 @@ void read_settings(Entry& top, Scene& scene) {
   read_time(top, scene);
   read_method(top, scene.settings);
   scene.settings.sleep_after = top.number("sleep_after", {Sign::not_negative}).value_or(0);
-  scene.settings.sleep_speed = top.number("sleep_speed", {Sign::positive}).value_or(scene.settings.sleep_speed);
+  scene.settings.sleep_speed =
+      top.number("sleep_speed", {Sign::positive}).value_or(scene.settings.sleep_speed);
   scene.tolerance = top.number("tolerance", {Sign::positive}).value_or(scene.tolerance);
   scene.project = top.flag("project").value_or(false);
 }

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t longest_shown = 100;  // characters of a line that a message shows
 constexpr int most_reported = 50;
-constexpr std::size_t longest_word = 60;    // longer words are no misspelling of a name
+constexpr std::size_t longest_word = 60;  // longer words are no misspelling of a name
 
 bool starts_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }
 
@@ -35,7 +35,8 @@ std::vector<std::string> split_lines(std::string_view text) {
   return lines;
 }
 
-// The number of single-letter edits (insert, delete, replace, swap of neighbours) from `from` to `to`.
+// The number of single-letter edits (insert, delete, replace, swap of neighbours) from `from` to
+// `to`.
 std::size_t edits(std::string_view from, std::string_view to) {
   std::vector<std::vector<std::size_t>> d(from.size() + 1, std::vector<std::size_t>(to.size() + 1));
   for (std::size_t i = 0; i <= from.size(); ++i) d[i][0] = i;
@@ -58,7 +59,8 @@ std::string lower(std::string_view text) {
 }
 
 bool same_start(std::string_view word, std::string_view candidate) {
-  const auto [end, other] = std::mismatch(word.begin(), word.end(), candidate.begin(), candidate.end());
+  const auto [end, other] =
+      std::mismatch(word.begin(), word.end(), candidate.begin(), candidate.end());
   const auto common = static_cast<std::size_t>(end - word.begin());
   return common >= 4 && 2 * common >= candidate.size();
 }
@@ -66,14 +68,22 @@ bool same_start(std::string_view word, std::string_view candidate) {
 // What other engines and other people call what a scene calls otherwise.
 std::string_view called_here(std::string_view word) {
   constexpr std::pair<std::string_view, std::string_view> words[] = {
-      {"omega", "spin"},       {"angular_velocity", "spin"}, {"w", "spin"},       {"rotation", "angle"},
-      {"theta", "angle"},      {"dt", "step"},               {"timestep", "step"}, {"h", "step"},
-      {"time_step", "step"},   {"time", "duration"},         {"until", "duration"}, {"t_end", "duration"},
-      {"bodies", "body"},      {"joints", "joint"},          {"springs", "spring"}, {"g", "gravity"},
-      {"anchor", "at"},        {"anchor_a", "pa"},           {"anchor_b", "pb"},  {"axis", "t"},
-      {"length", "l"},         {"rest_length", "rest"},      {"m", "mass"},       {"I", "inertia"},
-      {"kinematic", "static"}, {"fixed", "static"},          {"count", "repeat"}, {"max_force", "max"},
-      {"max_torque", "max"},   {"break", "breaking"},        {"radius", "shape"}};
+      {"omega", "spin"},       {"angular_velocity", "spin"},
+      {"w", "spin"},           {"rotation", "angle"},
+      {"theta", "angle"},      {"dt", "step"},
+      {"timestep", "step"},    {"h", "step"},
+      {"time_step", "step"},   {"time", "duration"},
+      {"until", "duration"},   {"t_end", "duration"},
+      {"bodies", "body"},      {"joints", "joint"},
+      {"springs", "spring"},   {"g", "gravity"},
+      {"anchor", "at"},        {"anchor_a", "pa"},
+      {"anchor_b", "pb"},      {"axis", "t"},
+      {"length", "l"},         {"rest_length", "rest"},
+      {"m", "mass"},           {"I", "inertia"},
+      {"kinematic", "static"}, {"fixed", "static"},
+      {"count", "repeat"},     {"max_force", "max"},
+      {"max_torque", "max"},   {"break", "breaking"},
+      {"radius", "shape"}};
   for (const auto& [elsewhere, here] : words) {
     if (word == elsewhere) return here;
   }
@@ -82,7 +92,8 @@ std::string_view called_here(std::string_view word) {
 
 }  // namespace
 
-Mistakes::Mistakes(std::string file, std::string_view text) : file_(std::move(file)), lines_(split_lines(text)) {}
+Mistakes::Mistakes(std::string file, std::string_view text)
+    : file_(std::move(file)), lines_(split_lines(text)) {}
 
 void Mistakes::add(Span where, std::string cause, std::string fix) {
   found_.push_back({where, std::move(cause), std::move(fix)});
@@ -113,13 +124,16 @@ std::string Mistakes::paragraph(std::string_view kind, Span where, std::string_v
                                 std::string_view fix) const {
   const std::string last = fix.empty() ? "" : fmt::format("  fix: {}\n", fix);
   if (where.line < 1) return fmt::format("{}: {}: {}\n{}", file_, kind, cause, last);
-  const std::string head = fmt::format("{}:{}:{}: {}: {}\n", file_, where.line, where.begin, kind, cause);
+  const std::string head =
+      fmt::format("{}:{}:{}: {}: {}\n", file_, where.line, where.begin, kind, cause);
   if (where.line > static_cast<int>(lines_.size())) return head + last;
 
-  const std::vector<std::string> line = characters(lines_[static_cast<std::size_t>(where.line - 1)]);
-  const std::size_t begin = std::min(static_cast<std::size_t>(std::max(where.begin, 1) - 1), line.size());
-  const std::size_t end = std::clamp(static_cast<std::size_t>(std::max(where.end, 1) - 1), begin + 1,
-                                     std::max(line.size(), begin + 1));
+  const std::vector<std::string> line =
+      characters(lines_[static_cast<std::size_t>(where.line - 1)]);
+  const std::size_t begin =
+      std::min(static_cast<std::size_t>(std::max(where.begin, 1) - 1), line.size());
+  const std::size_t end = std::clamp(static_cast<std::size_t>(std::max(where.end, 1) - 1),
+                                     begin + 1, std::max(line.size(), begin + 1));
   // A long line is cut to a window that starts a little before the mistake.
   const std::size_t first = end <= longest_shown ? 0 : begin - std::min<std::size_t>(begin, 20);
   const std::size_t stop = std::min(line.size(), first + longest_shown);

@@ -1,5 +1,5 @@
-// Pictures of a run: a page that plays it, and a still. Both are made of one list of marks (what is drawn on which
-// body), so that a mechanism looks the same in both.
+// Pictures of a run: a page that plays it, and a still. Both are made of one list of marks (what is
+// drawn on which body), so that a mechanism looks the same in both.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
-// The files viewer.html, viewer.css, viewer_marks.css and viewer.js as text: viewer_assets.cpp is made of them by CMake.
+// The files viewer.html, viewer.css, viewer_marks.css and viewer.js as text: viewer_assets.cpp is
+// made of them by CMake.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,5 @@
-// What is drawn of a scene: marks that ride on bodies, links stretched between two points, traces. In picture
-// coordinates: x right, y down, the longer side of the mechanism about a thousand wide.
+// What is drawn of a scene: marks that ride on bodies, links stretched between two points, traces.
+// In picture coordinates: x right, y down, the longer side of the mechanism about a thousand wide.
 #pragma once
 
 #include <string>
@@ -10,7 +10,8 @@
 
 namespace cdot {
 
-// World to picture: X = scale (x - left), Y = scale (top - y); angles turn the other way and are in degrees.
+// World to picture: X = scale (x - left), Y = scale (top - y); angles turn the other way and are in
+// degrees.
 struct View {
   double left = 0, top = 0, scale = 1;
   double width = 0, height = 0;  // of the picture

@@ -1,9 +1,9 @@
-// The page that plays a film, and the still: the drawing of viewer_marks.cpp placed once per frame or snapshot.
+// The page that plays a film, and the still: the drawing of viewer_marks.cpp placed once per frame
+// or snapshot.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-
 #include <nlohmann/json.hpp>
 
 #include "runtime/viewer.hpp"
@@ -19,7 +19,9 @@ constexpr int most_frames = 3000;
 constexpr double most_poses = 200000;  // frames times bodies that a page carries
 constexpr int snapshots = 7;           // of a still
 
-double rounded(double value, double steps_per_unit) { return std::round(value * steps_per_unit) / steps_per_unit; }
+double rounded(double value, double steps_per_unit) {
+  return std::round(value * steps_per_unit) / steps_per_unit;
+}
 
 Json anchor_json(const Anchor& anchor) {
   return {anchor.body, rounded(anchor.local[0], 100), rounded(anchor.local[1], 100)};
@@ -36,11 +38,12 @@ std::string group(const Mark& mark, const std::vector<Place>& places) {
 }
 
 // All marks at one time; of a snapshot among others only what moves.
-std::string placed(const Drawing& drawing, const std::vector<Place>& places, bool with_world = true) {
+std::string placed(const Drawing& drawing, const std::vector<Place>& places,
+                   bool with_world = true) {
   std::string svg;
   for (std::size_t k = 0; k < drawing.links.size(); ++k) {
-    svg += fmt::format("<g data-link=\"{}\" transform=\"{}\">{}</g>\n", k, link_transform(drawing.links[k], places),
-                       drawing.links[k].svg);
+    svg += fmt::format("<g data-link=\"{}\" transform=\"{}\">{}</g>\n", k,
+                       link_transform(drawing.links[k], places), drawing.links[k].svg);
   }
   for (const std::vector<Mark>* marks : {&drawing.bodies, &drawing.pins}) {
     for (const Mark& mark : *marks) {
@@ -60,8 +63,10 @@ double playing_speed(double duration) {
   return best;
 }
 
-void add_frames(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film, Json& run) {
-  Json moving = Json::array(), times = Json::array(), poses = Json::array(), energy = Json::array(), error = Json::array();
+void add_frames(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film,
+                Json& run) {
+  Json moving = Json::array(), times = Json::array(), poses = Json::array(), energy = Json::array(),
+       error = Json::array();
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     if (!scene.bodies[k].definition.is_static) moving.push_back(k);
   }
@@ -70,12 +75,17 @@ void add_frames(const Scene& scene, const Drawing& drawing, const std::vector<Fr
     energy.push_back(frame.energy);
     error.push_back(frame.worst.value);
     for (const Json& body : moving) {
-      for (const Json& number : place_json(place_of(drawing.view, frame.bodies[body.get<std::size_t>()]))) {
+      for (const Json& number :
+           place_json(place_of(drawing.view, frame.bodies[body.get<std::size_t>()]))) {
         poses.push_back(number);
       }
     }
   }
-  run.update({{"moving", moving}, {"times", times}, {"poses", poses}, {"energy", energy}, {"error", error}});
+  run.update({{"moving", moving},
+              {"times", times},
+              {"poses", poses},
+              {"energy", energy},
+              {"error", error}});
 }
 
 std::string run_json(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film) {
@@ -85,20 +95,24 @@ std::string run_json(const Scene& scene, const Drawing& drawing, const std::vect
               {"decimals", duration < 2 ? 4 : 2},
               {"tail", std::max<std::size_t>(film.size() / 8, 1)}};
   run["start"] = run["links"] = run["traces"] = Json::array();
-  for (const Place& place : places_of(drawing.view, film.front())) run["start"].push_back(place_json(place));
-  for (const Link& link : drawing.links) run["links"].push_back({anchor_json(link.from), anchor_json(link.to)});
+  for (const Place& place : places_of(drawing.view, film.front()))
+    run["start"].push_back(place_json(place));
+  for (const Link& link : drawing.links)
+    run["links"].push_back({anchor_json(link.from), anchor_json(link.to)});
   for (const Trace& trace : drawing.traces) {
     run["traces"].push_back({{"point", anchor_json(trace.point)}, {"colour", trace.colour}});
   }
   add_frames(scene, drawing, film, run);
   std::string text = run.dump();
   // "</script>" in a name must not end the element.
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;)
+    text.replace(at, 1, "\\u003c");
   return text;
 }
 
 // Fills the places {{name}} of the template, each once and from left to right.
-std::string filled(std::string_view page, const std::vector<std::pair<std::string, std::string>>& values) {
+std::string filled(std::string_view page,
+                   const std::vector<std::pair<std::string, std::string>>& values) {
   std::string result;
   while (!page.empty()) {
     const std::size_t open = std::min(page.find("{{"), page.size());
@@ -115,8 +129,9 @@ std::string filled(std::string_view page, const std::vector<std::pair<std::strin
 }
 
 std::string svg_head(const View& view, const char* attributes) {
-  return fmt::format("<svg {} xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n", attributes,
-                     view.width, view.height);
+  return fmt::format(
+      "<svg {} xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n", attributes,
+      view.width, view.height);
 }
 
 }  // namespace
@@ -134,8 +149,8 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
   const std::string stage = svg_head(drawing.view, "id=\"stage\"") + "<g id=\"paths\"></g>\n" +
                             placed(drawing, places_of(drawing.view, film.front())) + "</svg>";
   const std::string title = escaped(scene.title.empty() ? scene.file : scene.title);
-  const std::string facts = fmt::format("{} bodies, {} joints, step {:.4g} s", scene.bodies.size(), scene.joints.size(),
-                                        scene.step);
+  const std::string facts = fmt::format("{} bodies, {} joints, step {:.4g} s", scene.bodies.size(),
+                                        scene.joints.size(), scene.step);
   return filled(viewer_html, {{"title", title},
                               {"style", std::string(viewer_marks_css) + std::string(viewer_css)},
                               {"facts", facts},
@@ -146,9 +161,12 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
 
 std::string svg_still(const Scene& scene, const std::vector<Frame>& film) {
   const Drawing drawing = draw(scene, film);
-  std::string svg = svg_head(drawing.view, fmt::format("width=\"{:.0f}\"", 0.8 * drawing.view.width).c_str());
-  svg += fmt::format("<style>\n{}@media (prefers-color-scheme: dark) {{ svg {{ --ink: #e6edf3; --paper: #0d1117; }} }}\n</style>\n",
-                     viewer_marks_css);
+  std::string svg =
+      svg_head(drawing.view, fmt::format("width=\"{:.0f}\"", 0.8 * drawing.view.width).c_str());
+  svg += fmt::format(
+      "<style>\n{}@media (prefers-color-scheme: dark) {{ svg {{ --ink: #e6edf3; --paper: #0d1117; "
+      "}} }}\n</style>\n",
+      viewer_marks_css);
   for (const Trace& trace : drawing.traces) {
     svg += fmt::format("<polyline class=\"trace c{}\" points=\"", trace.colour);
     for (const Frame& frame : film) {
@@ -160,7 +178,8 @@ std::string svg_still(const Scene& scene, const std::vector<Frame>& film) {
   for (int k = 0; k < snapshots; ++k) {
     const std::size_t frame = (film.size() - 1) * static_cast<std::size_t>(k) / (snapshots - 1);
     const bool last = k == snapshots - 1;
-    svg += fmt::format("<g class=\"{}\" opacity=\"{:.2f}\">\n{}</g>\n", last ? "now" : "before", last ? 1 : 0.15 + 0.07 * k,
+    svg += fmt::format("<g class=\"{}\" opacity=\"{:.2f}\">\n{}</g>\n", last ? "now" : "before",
+                       last ? 1 : 0.15 + 0.07 * k,
                        placed(drawing, places_of(drawing.view, film[frame]), last));
   }
   return svg + "</svg>\n";

@@ -8,9 +8,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
-
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace cdot::test {
 
@@ -44,7 +43,8 @@ TemporaryFolder::~TemporaryFolder() { fs::remove_all(path_); }
 
 std::vector<std::string> TemporaryFolder::contents() const {
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) names.push_back(entry.path().filename());
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_))
+    names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -56,15 +56,19 @@ CommandResult run_command(const std::string& command) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, read_text(out), read_text(err)};
 }
 
-CommandResult cdot_run(const std::string& arguments) { return run_command(fmt::format("'{}' {}", CDOT_RUN, arguments)); }
+CommandResult cdot_run(const std::string& arguments) {
+  return run_command(fmt::format("'{}' {}", CDOT_RUN, arguments));
+}
 
 Reference read_reference(const std::string& problem, double until) {
-  const auto json = nlohmann::json::parse(read_text(source_dir() / "tests/scenes/reference" / (problem + ".json")));
+  const auto json = nlohmann::json::parse(
+      read_text(source_dir() / "tests/scenes/reference" / (problem + ".json")));
   Reference reference{json["error_estimate"], {}};
   for (const auto& sample : json["samples"]) {
     if (sample["t"].get<double>() > until) continue;
     ReferenceSample& added = reference.samples.emplace_back(ReferenceSample{sample["t"], {}});
-    for (const auto& [name, v] : sample["bodies"].items()) added.bodies[name] = {v[0], v[1], v[2], v[3], v[4], v[5]};
+    for (const auto& [name, v] : sample["bodies"].items())
+      added.bodies[name] = {v[0], v[1], v[2], v[3], v[4], v[5]};
   }
   return reference;
 }

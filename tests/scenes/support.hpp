@@ -1,4 +1,5 @@
-// What the tests of scenes share: paths, running a command, a folder that goes away, reference trajectories.
+// What the tests of scenes share: paths, running a command, a folder that goes away, reference
+// trajectories.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,8 @@ std::filesystem::path source_dir();
 std::filesystem::path scenes_dir();
 std::string read_text(const std::filesystem::path& path);
 // All files with this ending in a folder, by name.
-std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder, const std::string& ending);
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
+                                            const std::string& ending);
 
 class TemporaryFolder {
  public:

@@ -1,16 +1,16 @@
-// The page runs in a real browser: its script draws, plays, scrubs and answers keys, without asking the network for
-// anything. The still is well-formed and shows what the scene holds.
+// The page runs in a real browser: its script draws, plays, scrubs and answers keys, without asking
+// the network for anything. The still is well-formed and shows what the scene holds.
+#include "runtime/viewer.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <numbers>
 
-#include <nlohmann/json.hpp>
-
 #include "runtime/run_output.hpp"
-#include "runtime/viewer.hpp"
 #include "runtime/viewer_marks.hpp"
 #include "tests/scenes/support.hpp"
 
@@ -31,18 +31,21 @@ Scene short_scene(const char* name, double duration) {
 }
 
 // The page's document after its script ran for so many milliseconds of its own time.
-std::string rendered(const TemporaryFolder& folder, const std::string& page, const std::string& fragment) {
+std::string rendered(const TemporaryFolder& folder, const std::string& page,
+                     const std::string& fragment) {
   const std::string path = folder / "page.html", profile = folder / "profile";
   write_file(path, page);
   const CommandResult result = run_command(fmt::format(
       "'{}' --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
-      "--disable-component-update --disable-sync --user-data-dir='{}' --virtual-time-budget=3000 --dump-dom 'file://{}{}'",
+      "--disable-component-update --disable-sync --user-data-dir='{}' --virtual-time-budget=3000 "
+      "--dump-dom 'file://{}{}'",
       CDOT_CHROMIUM, profile, path, fragment));
   EXPECT_EQ(result.status, 0) << result.err;
   return result.out;
 }
 
-std::string attribute(const std::string& document, const std::string& element, const std::string& name) {
+std::string attribute(const std::string& document, const std::string& element,
+                      const std::string& name) {
   const std::size_t at = document.find(element);
   if (at == std::string::npos) return "no " + element;
   const std::size_t start = document.find(name + "=\"", at);
@@ -53,7 +56,9 @@ std::string attribute(const std::string& document, const std::string& element, c
 
 class Page : public testing::Test {
  protected:
-  void SetUp() override { ASSERT_STRNE(CDOT_CHROMIUM, "CDOT_CHROMIUM-NOTFOUND") << "this test needs chromium"; }
+  void SetUp() override {
+    ASSERT_STRNE(CDOT_CHROMIUM, "CDOT_CHROMIUM-NOTFOUND") << "this test needs chromium";
+  }
   TemporaryFolder folder_;
 };
 
@@ -64,11 +69,14 @@ TEST_F(Page, ScriptRunsAndShowsTheTimeAskedFor) {
   EXPECT_EQ(attribute(document, "<html", "data-ready"), std::to_string(film.size()));
   EXPECT_EQ(attribute(document, "<html", "data-time"), "0.5");
   const View view = view_of(scene, film);
-  const Frame& middle = *std::find_if(film.begin(), film.end(), [](const Frame& f) { return f.time > 0.4999; });
+  const Frame& middle =
+      *std::find_if(film.begin(), film.end(), [](const Frame& f) { return f.time > 0.4999; });
   for (std::size_t body = 0; body < 2; ++body) {
     double x = 0, y = 0, degrees = 0;
-    const std::string shown = attribute(document, fmt::format("data-body=\"{}\"", body), "transform");
-    ASSERT_EQ(std::sscanf(shown.c_str(), "translate(%lf %lf) rotate(%lf)", &x, &y, &degrees), 3) << shown;
+    const std::string shown =
+        attribute(document, fmt::format("data-body=\"{}\"", body), "transform");
+    ASSERT_EQ(std::sscanf(shown.c_str(), "translate(%lf %lf) rotate(%lf)", &x, &y, &degrees), 3)
+        << shown;
     const Place place = place_of(view, middle.bodies[body]);
     EXPECT_NEAR(x, place.x, 0.5);
     EXPECT_NEAR(y, place.y, 0.5);
@@ -105,7 +113,8 @@ TEST_F(Page, PlaysScrubsAndAnswersKeys) {
   const std::string document = rendered(folder_, page, "");
   const std::size_t start = document.find("<pre id=\"seen\">{");
   ASSERT_NE(start, std::string::npos);
-  const auto seen = nlohmann::json::parse(document.substr(start + 15, document.find("</pre>", start) - start - 15));
+  const auto seen = nlohmann::json::parse(
+      document.substr(start + 15, document.find("</pre>", start) - start - 15));
   EXPECT_FALSE(seen.contains("error")) << seen;
   EXPECT_GT(seen["played"], 0.0);
   EXPECT_EQ(seen["paused"], "Play");
@@ -123,12 +132,14 @@ TEST_F(Page, PlaysScrubsAndAnswersKeys) {
 
 TEST_F(Page, DrawsOnTheScreen) {
   const Scene scene = short_scene("four_bar", 1);
-  const std::string path = folder_ / "page.html", picture = folder_ / "picture.png", profile = folder_ / "profile";
+  const std::string path = folder_ / "page.html", picture = folder_ / "picture.png",
+                    profile = folder_ / "profile";
   write_file(path, html_page(scene, film_of(scene)));
-  run_command(fmt::format("'{}' --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
-                          "--disable-component-update --disable-sync --user-data-dir='{}' --window-size=900,600 "
-                          "--virtual-time-budget=500 --screenshot='{}' 'file://{}#t=0.5'",
-                          CDOT_CHROMIUM, profile, picture, path));
+  run_command(fmt::format(
+      "'{}' --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
+      "--disable-component-update --disable-sync --user-data-dir='{}' --window-size=900,600 "
+      "--virtual-time-budget=500 --screenshot='{}' 'file://{}#t=0.5'",
+      CDOT_CHROMIUM, profile, picture, path));
   // A page of one colour compresses to about 3 kB.
   EXPECT_GT(read_text(picture).size(), 15000u);
 }
@@ -138,7 +149,8 @@ TEST(Pictures, PageIsSelfContained) {
   const std::string page = html_page(scene, film_of(scene));
   std::string rest = page;
   for (const char* name : {"http://www.w3.org/2000/svg"}) {  // a name, not a place to fetch from
-    for (std::size_t at; (at = rest.find(name)) != std::string::npos;) rest.erase(at, std::string(name).size());
+    for (std::size_t at; (at = rest.find(name)) != std::string::npos;)
+      rest.erase(at, std::string(name).size());
   }
   for (const char* outside : {"http:", "https:", "src=", "@import", "url(", "fetch(", "{{"}) {
     EXPECT_EQ(rest.find(outside), std::string::npos) << outside;
@@ -171,8 +183,10 @@ TEST(Pictures, StillIsWellFormed) {
   const TemporaryFolder folder;
   const std::string path = folder / "still.svg";
   write_file(path, svg_still(scene, film_of(scene)));
-  const CommandResult result = run_command(fmt::format(
-      "python3 -c \"import sys, xml.dom.minidom as d; print(len(d.parse(sys.argv[1]).getElementsByTagName('rect')))\" '{}'", path));
+  const CommandResult result = run_command(
+      fmt::format("python3 -c \"import sys, xml.dom.minidom as d; "
+                  "print(len(d.parse(sys.argv[1]).getElementsByTagName('rect')))\" '{}'",
+                  path));
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, "21\n");  // three rods at seven times
 }
