@@ -131,15 +131,15 @@ bool Elaborator::arises_in_derivative(Expr e) const {
 }
 
 void Elaborator::warn_unused(Source& spec) {
+  if (spec.diagnostics.has_errors()) return;
+  std::set<int> used_arms;  // a point is used if its arm is
+  for (const auto& [name, entry] : names_)
+    if (entry.kind == "arm" && entry.used) used_arms.insert(entry.where.begin);
   for (const auto& [name, entry] : names_) {
     if (entry.used || entry.included || entry.kind == "arm" || entry.value.type == Type::poison ||
-        spec.diagnostics.has_errors())
+        used_arms.contains(entry.where.begin))
       continue;
-    const int at = entry.where.begin;
-    const bool arm_used = std::any_of(names_.begin(), names_.end(), [at](const auto& other) {
-      return other.second.kind == "arm" && other.second.used && other.second.where.begin == at;
-    });
-    if (arm_used || (entry.kind == "let" && arises_in_derivative(entry.value.e))) continue;
+    if (entry.kind == "let" && arises_in_derivative(entry.value.e)) continue;
     spec.diagnostics.warning(entry.where, "the " + entry.kind + " " + quote(name) + " is not used",
                              "remove it");
   }

@@ -27,7 +27,7 @@ std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path)
 
 Library load_library(const std::filesystem::path& folder) {
   Library library;
-  for (const auto& file : std::filesystem::directory_iterator(folder))
+  for (const auto& file : std::filesystem::directory_iterator(folder.empty() ? "." : folder))
     if (file.path().extension() == ".joint")
       library.emplace(file.path().stem().string(), load_source(file.path()));
   return library;

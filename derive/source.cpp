@@ -70,7 +70,26 @@ int first_shown(int columns, int focus) {
   return std::clamp(focus - shown_columns / 3, 0, columns - shown_columns);
 }
 
-ShownLine show(std::string_view line, const std::vector<Mark>& marks) {
+// Keeps only the neighbourhood of the first mark of a very long line; whether something is gone on
+// the left.
+bool cut_far_left(std::string_view& line, std::vector<Mark>& marks) {
+  constexpr int kept =
+      8 * shown_columns;  // bytes on either side, plenty for the columns that are shown
+  const int focus = marks.front().begin, size = static_cast<int>(line.size());
+  line = line.substr(0, static_cast<std::size_t>(std::min(size, focus + kept)));
+  int begin = std::max(0, focus - kept);
+  while (begin > 0 && begin < focus && is_continuation(line[static_cast<std::size_t>(begin)]))
+    ++begin;
+  line.remove_prefix(static_cast<std::size_t>(begin));
+  for (Mark& m : marks) {
+    m.begin -= begin;
+    m.end -= begin;
+  }
+  return begin > 0;
+}
+
+ShownLine show(std::string_view line, std::vector<Mark> marks) {
+  const bool cut = cut_far_left(line, marks);
   struct Cell {
     std::string text;
     char mark;
@@ -95,7 +114,7 @@ ShownLine show(std::string_view line, const std::vector<Mark>& marks) {
   const int columns = static_cast<int>(cells.size());
   const int first = first_shown(columns, focus), last = std::min(columns, first + shown_columns);
   ShownLine shown;
-  if (first > 0) shown = {"...", "   "};
+  if (first > 0 || cut) shown = {"...", "   "};
   for (int k = first; k < last; ++k) {
     const Cell& cell = cells[static_cast<std::size_t>(k)];
     shown.text += cell.text;
