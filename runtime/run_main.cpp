@@ -26,9 +26,9 @@ struct Arguments {
 constexpr const char* footer = R"(
 Examples
   cdot-run simulate specs/scenes/four_bar.toml
-  cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html      then open the page
+  cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html then open the page
   cdot-run simulate specs/scenes/four_bar.toml --step 0.0001 --every 0.1 -o four_bar.csv
-  cdot-run list                                                          the joints that a scene may name
+  cdot-run list                                                     the joints that a scene may name
 
 Exit status
   0  all well

@@ -46,7 +46,7 @@ std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType&
   if (!bodies) return {};
   if (static_cast<int>(bodies->size()) != type.bodies) {
     joint.error(joint.where("bodies"),
-                fmt::format("a {} joint has {} {}, but {} named", type.name, type.bodies,
+                fmt::format("a joint of type {} has {} {}, but {} named", type.name, type.bodies,
                             one ? "body" : "bodies", number_named(bodies->size())));
     return {};
   }
@@ -104,12 +104,12 @@ void read_parameters(Entry& joint, const JointType& type, const BodyNames& names
           point ? fmt::format("{0} = [x, y] in the frame of its body, {0} = {{ world = [x, y] }}, "
                               "or at = [x, y]",
                               parameter.name)
-                : "");
+                : fmt::format("{} = 1", parameter.name));
     }
   }
   if (joint.has("at") && !has_point) {
     joint.error(joint.where("at"),
-                fmt::format("a {} joint has no points that `at` could place", type.name));
+                fmt::format("a joint of type {} has no points that `at` could place", type.name));
   }
 }
 

@@ -21,7 +21,7 @@ constexpr const char* rigid_link = R"(<line class="rigid" x2="1"/>)";
 constexpr const char* rope_link = R"(<line class="rope" x2="1"/>)";
 constexpr const char* gear_link = R"(<line class="gear" x2="1"/>)";
 constexpr const char* spring_link =
-    R"(<polyline class="spring" points="0,0 .15,0 .2,-9 .3,9 .4,-9 .5,9 .6,-9 .7,9 .8,-9 .85,0 1,0"/>)";
+    R"(<polyline class="spring" points="0,0 .2,0 .25,-9 .4,9 .5,-9 .6,9 .75,-9 .8,0 1,0"/>)";
 constexpr const char* ground_mark = R"(<path class="ground" d="M0 0L-11 17H11ZM-17 17H17"/>)";
 
 // One colour for all bodies whose names differ only in their last digits: the links of a chain.
@@ -124,10 +124,10 @@ void Painter::pin(const JointPoint& p, const JointPoint& q, bool grounded, bool 
   const JointPoint& moving = is_still(p.anchor.body) ? q : p;
   if (grounded && (is_still(p.anchor.body) || is_still(q.anchor.body))) mark_ground(moving);
   const Vec2 at = moving.anchor.local;
-  const char* svg =
-      welded
-          ? R"svg(<rect class="pin" x="{0:.2f}" y="{1:.2f}" width="9" height="9" transform="translate(-4.5 -4.5)"/>)svg"
-          : R"(<circle class="pin" cx="{0:.2f}" cy="{1:.2f}" r="5"/>)";
+  const char* svg = welded
+                        ? R"svg(<rect class="pin" x="{0:.2f}" y="{1:.2f}" width="9" height="9" )svg"
+                          R"svg(transform="translate(-4.5 -4.5)"/>)svg"
+                        : R"(<circle class="pin" cx="{0:.2f}" cy="{1:.2f}" r="5"/>)";
   drawing_.pins.push_back({moving.anchor.body, fmt::format(fmt::runtime(svg), at[0], at[1])});
 }
 
@@ -173,10 +173,10 @@ void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint
   }
   drawing_.bodies.push_back(
       {base.anchor.body,
-       fmt::format(
-           R"svg(<line class="rail" x1="{:.0f}" x2="{:.0f}" transform="translate({:.2f} {:.2f}) rotate({:.2f})"/>)svg",
-           least - rail_overhang, most + rail_overhang, base.anchor.local[0], base.anchor.local[1],
-           degrees)});
+       fmt::format(R"svg(<line class="rail" x1="{:.0f}" x2="{:.0f}" )svg"
+                   R"svg(transform="translate({:.2f} {:.2f}) rotate({:.2f})"/>)svg",
+                   least - rail_overhang, most + rail_overhang, base.anchor.local[0],
+                   base.anchor.local[1], degrees)});
 }
 
 // Two points apart are linked; points of bodies with as many points fixed in the world hang on a

@@ -91,17 +91,20 @@ TEST_F(Page, PlaysScrubsAndAnswersKeys) {
   const std::string person = R"(<pre id="seen"></pre><script>
     const seen = {}, root2 = document.documentElement, at = () => +root2.dataset.time;
     const place = () => document.querySelector('[data-body="0"]').getAttribute('transform');
-    const key = (k, more) => document.dispatchEvent(new KeyboardEvent('keydown', {key: k, ...more}));
+    const key = k => document.dispatchEvent(new KeyboardEvent('keydown', {key: k}));
     const click = id => document.getElementById(id).click();
     window.addEventListener('error', e => { seen.error = e.message; });
     setTimeout(() => {
       seen.played = at();
       click('play'); seen.paused = document.getElementById('play').textContent;
       const slider = document.getElementById('scrub');
-      slider.value = 0.75; slider.dispatchEvent(new Event('input')); seen.scrubbed = at(); seen.placeScrubbed = place();
+      slider.value = 0.75; slider.dispatchEvent(new Event('input'));
+      seen.scrubbed = at(); seen.placeScrubbed = place();
       slider.value = 0.1; slider.dispatchEvent(new Event('input')); seen.placeElsewhere = place();
-      key('End'); seen.end = at(); key('ArrowLeft'); seen.back = at(); key('Home'); seen.home = at();
-      const dark = root2.classList.contains('dark'); key('d'); seen.toggled = root2.classList.contains('dark') !== dark;
+      key('End'); seen.end = at(); key('ArrowLeft'); seen.back = at();
+      key('Home'); seen.home = at();
+      const dark = root2.classList.contains('dark'); key('d');
+      seen.toggled = root2.classList.contains('dark') !== dark;
       key('t'); seen.tracesOff = document.getElementById('traces').getAttribute('aria-pressed');
       seen.trace = document.querySelector('.path').getAttribute('points').length;
       seen.plots = document.querySelectorAll('.plot polyline').length;
