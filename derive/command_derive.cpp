@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "derive/commands.hpp"
+#include "derive/diff.hpp"
 #include "derive/generate.hpp"
 #include "derive/prove.hpp"
 #include "derive/specs_folder.hpp"
@@ -53,6 +54,20 @@ std::vector<Joint> read_and_prove(const std::vector<fs::path>& paths, const Spec
   }
   if (failed) joints.clear();
   return joints;
+}
+
+// The costs of the published derivations beside these specs, as far as they are right.
+std::vector<LedgerRow> hand_costs(const std::vector<fs::path>& specs, const SpecsFolder& folder) {
+  std::vector<LedgerRow> rows;
+  for (const fs::path& spec : specs) {
+    fs::path hand = spec;
+    hand.replace_extension(".hand");
+    if (!fs::exists(hand)) continue;
+    const DiffReport report = judge(hand, spec, folder);
+    std::cerr << render(*report.file, report.diagnostics);
+    for (const Judgement& j : report.judgements) rows.insert(rows.end(), j.costs.begin(), j.costs.end());
+  }
+  return rows;
 }
 
 // What stands below `root` and is ours: everything that `cdot derive` could have written.
@@ -144,7 +159,7 @@ int run(const Options& options) {
     fmt::print(stderr, "nothing was written\n");
     return 2;
   }
-  const Files wanted = generate(joints, {});
+  const Files wanted = generate(joints, hand_costs(paths, folder));
   if (options.check) return compare(wanted, options.output, "cdot derive");
   write(wanted, options.output);
   return 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "derive/finite_field.hpp"
 #include "derive/ginac.hpp"
 
 namespace cdot::derive {
@@ -28,6 +29,8 @@ std::string column_name(const Joint& joint, int column) {
   static const char* const parts[] = {"v_{}.x", "v_{}.y", "w_{}"};
   return fmt::format(fmt::runtime(parts[column % 3]), joint.bodies[static_cast<std::size_t>(column / 3)]);
 }
+
+constexpr std::size_t whole_row = ~std::size_t{0};  // not an entry of J but all of Cdot
 
 Matrix transposed(const Matrix& m) {
   Matrix t{m.columns, m.rows, {}};
@@ -122,10 +125,19 @@ void EntryJudge::prepare_poses() {
       take(item.right);
     }
   }
+  // Everything that a hidden assumption may be about, and that finite differences need.
+  const Expr ex = world_x(pool_);
+  const auto take_any = [&](Expr e) {
+    if (e->vector) all.insert(all.end(), {dot(ex, e), dot(perp(ex), e)});
+    else all.push_back(e);
+  };
   for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint_, static_cast<int>(b));
     all.insert(all.end(), {body.inv_m, body.inv_I});
   }
+  for (const Parameter& p : joint_.parameters) take_any(p.symbol);
+  for (const Let& let : joint_.lets) take_any(let.value);
+  for (const ScalarRow& row : block_.rows) take_any(row.C);
   anywhere_.emplace(joint_, all);
   if (equations.empty()) return;
   assumed_ = anywhere_->where(equations);
@@ -135,7 +147,11 @@ void EntryJudge::prepare_poses() {
   }
 }
 
+// Exact arithmetic modulo a prime decides; GiNaC's algebra, where the expression is small enough for it, as well.
 bool EntryJudge::proved(Expr difference) const {
+  constexpr std::size_t few_nodes = 40;
+  if (!vanishes_modulo_prime(difference).value_or(false)) return false;
+  if (topological(std::span(&difference, 1)).size() > few_nodes) return true;
   for (const Algebra::Route route : {Algebra::Route::names, Algebra::Route::raw}) {
     Algebra algebra(joint_, route, immovable_);
     if (algebra.is_zero(algebra.of(difference)) == Algebra::Zero::yes) return true;
@@ -233,26 +249,37 @@ void EntryJudge::add_plain(const HandItem& item, std::string what, std::string k
   out_.differences.push_back(std::move(d));
 }
 
+// What each leaf of C that moves with a body brings into an entry of J, or into Cdot: the terms of the product rule.
+std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::size_t entry, Rational sign) const {
+  std::vector<Contribution> sources;
+  if (row.kind == RowKind::velocity) return sources;
+  for (const Expr leaf : leaves_of(std::span(&row.C, 1))) {
+    if (leaf->body < 0) continue;
+    ScalarRow only;
+    only.Cdot = time_derivative(row.C, joint_, immovable_, leaf);
+    only.J = isolate_velocities(only.Cdot, joint_);
+    sources.push_back({leaf, sign * (entry == whole_row ? only.Cdot : scalars_of(only)[entry])});
+  }
+  return sources;
+}
+
 void EntryJudge::compare_entry(Part& part, const HandItem& item, int row, int column, Expr hand,
                                Expr generated) {
   if (equal(hand, generated)) return;
   Place place{item.what, std::to_string(row + 1), "", {}, {}, &joint_};
-  if (item.what == "K") place.column = std::to_string(column + 1);
-  if (item.what == "J") {
+  const bool claim = item.kind == HandItem::Kind::claim;
+  if (item.what == "K" || claim) place.column = std::to_string(column + 1);
+  if (item.what == "J" && !claim) {
     place.column = column_name(joint_, column);
-    const ScalarRow& derived = part.rows[static_cast<std::size_t>(row)];
-    const Rational sign(part.sign[static_cast<std::size_t>(row)]);
-    const std::vector<Expr> mine = scalars_of(derived);
+    const std::vector<Expr> mine = scalars_of(part.rows[static_cast<std::size_t>(row)]);
     for (int c = column % 3; c < static_cast<int>(mine.size()); c += 3) {
       if (c != column) place.elsewhere.push_back(mine[static_cast<std::size_t>(c)]);
     }
-    const Expr root = derived.kind == RowKind::velocity ? derived.Cdot : derived.C;
-    for (const Expr leaf : leaves_of(std::span(&root, 1))) {
-      if (leaf->body < 0 || derived.kind == RowKind::velocity) continue;
-      ScalarRow only;
-      only.J = isolate_velocities(time_derivative(derived.C, joint_, immovable_, leaf), joint_);
-      place.sources.push_back({leaf, sign * scalars_of(only)[static_cast<std::size_t>(column)]});
-    }
+  }
+  if ((item.what == "J" || item.what == "Cdot") && !claim) {
+    const std::size_t entry = item.what == "J" ? static_cast<std::size_t>(column) : whole_row;
+    place.sources = contributions(part.rows[static_cast<std::size_t>(row)], entry,
+                                  Rational(part.sign[static_cast<std::size_t>(row)]));
   }
   Difference d = describe_difference(place, hand, generated, poses());
   d.confirmed = confirmation(part, item, row, column, hand, generated);

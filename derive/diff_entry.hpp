@@ -34,6 +34,7 @@ class EntryJudge {
   int agreeing(const Part& part, const HandItem& item, std::size_t row, int sign);
   void judge_item(Part& part, const HandItem& item);
   void compare(Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
+  std::vector<Contribution> contributions(const ScalarRow& row, std::size_t entry, Rational sign) const;
   void compare_entry(Part& part, const HandItem& item, int row, int column, Expr hand, Expr generated);
   void judge_bound(const Part& part, const HandItem& item);
   void judge_updates(Part& part);  // diff_update.cpp

@@ -55,7 +55,7 @@ Poses::Poses(const Joint& joint, std::vector<Expr> expressions) : joint_(&joint)
 
 bool Poses::satisfy(const std::vector<Expr>& equations, Sample& sample) const {
   // Gauss-Newton with the smallest step: dx = -G^T (G G^T)^-1 e, one equation after the other (Kaczmarz), repeated.
-  for (int sweep = 0; sweep < 400; ++sweep) {
+  for (int sweep = 0; sweep < 40; ++sweep) {
     double worst = 0;
     for (const Expr equation : equations) {
       const auto value = [&] { return values_of(*joint_, {equation}, sample)[0]; };
@@ -92,6 +92,12 @@ Poses Poses::where(const std::vector<Expr>& equations) const {
   }
   if (moved.samples_.size() * 2 < samples_.size()) moved.samples_.clear();
   return moved;
+}
+
+Poses Poses::first(std::size_t count) const {
+  Poses few = *this;
+  few.samples_.resize(std::min(count, few.samples_.size()));
+  return few;
 }
 
 bool Poses::equal(Expr a, Expr b) const {

@@ -17,6 +17,7 @@ class Poses {
   // The same poses moved to where all equations are zero; no poses if that is not possible.
   Poses where(const std::vector<Expr>& equations) const;
 
+  Poses first(std::size_t count) const;
   bool empty() const { return samples_.empty(); }
   // |a - b| is round-off at every pose.
   bool equal(Expr a, Expr b) const;

@@ -156,7 +156,7 @@ std::optional<Explained> single_source(const Place& place, Expr difference, cons
   return std::nullopt;
 }
 
-Explained by_terms(Expr hand, Expr generated, const Poses& poses) {
+Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& poses) {
   Pool& pool = *hand->pool;
   const Expr lacks = sum_of(terms_without(generated, hand), pool);
   const Expr has = sum_of(terms_without(hand, generated), pool);
@@ -165,7 +165,11 @@ Explained by_terms(Expr hand, Expr generated, const Poses& poses) {
   if (poses.equal(has, -lacks)) {
     return {"sign", fmt::format("it has {} where {} belongs", text(has), text(lacks))};
   }
-  return {"factor", fmt::format("it has {} where {} belongs", text(has), text(lacks))};
+  const std::vector<Expr> swapped = with_bodies_swapped(has, *place.joint);
+  const bool wrong_body = std::any_of(swapped.begin(), swapped.end(),
+                                      [&](Expr e) { return poses.equal(e, lacks); });
+  return {wrong_body ? "wrong body" : "factor",
+          fmt::format("it has {} where {} belongs", text(has), text(lacks))};
 }
 
 }  // namespace
@@ -188,7 +192,7 @@ Difference describe_difference(const Place& place, Expr hand, Expr generated, co
   std::optional<Explained> explained = whole_entry(place, hand, generated, poses);
   const std::optional<Explained> source = single_source(place, difference, poses);
   if (source && (!explained || explained->kind == "factor")) explained = source;
-  if (!explained) explained = by_terms(hand, generated, poses);
+  if (!explained) explained = by_terms(place, hand, generated, poses);
   d.kind = explained->kind;
   d.sentence = fmt::format("{}: {}", place_name(place), explained->sentence);
   return d;
@@ -199,7 +203,9 @@ std::string hidden_assumption(const Joint& joint, const std::vector<Expr>& const
   Pool& pool = *joint.pool;
   const Expr ex = world_x(pool);
   const auto holds = [&](const std::vector<Expr>& equations) {
-    return poses.where(equations).equal(hand, generated);
+    // Most candidates fail at the first poses.
+    return poses.first(2).where(equations).equal(hand, generated) &&
+           poses.where(equations).equal(hand, generated);
   };
   if (!constraints.empty() && holds(constraints)) return "C = 0";
   for (const Parameter& p : joint.parameters) {

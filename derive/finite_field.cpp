@@ -274,6 +274,23 @@ Modular pow(Modular base, std::uint64_t exponent) {
 
 Modular inverse(Modular x) { return pow(x, Modular::prime - 2); }
 
+std::optional<bool> vanishes_modulo_prime(Expr scalar) {
+  constexpr int wanted_poses = 4;
+  constexpr std::uint64_t most_attempts = 400;
+  int poses = 0;
+  for (std::uint64_t seed = 1; seed <= most_attempts && poses < wanted_poses; ++seed) {
+    try {
+      Pose pose(seed);
+      if (!Evaluation<Modular>(pose).scalar(scalar).is_zero()) return false;
+      ++poses;
+    } catch (const NotHere&) {
+      // Some root has no value at this pose.
+    }
+  }
+  if (poses == 0) return std::nullopt;
+  return true;
+}
+
 GenericRank generic_rank(std::span<const ScalarRow> rows) {
   constexpr int wanted = 4, attempts = 8192;  // with n roots, one pose in 2^n serves
   GenericRank result;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,11 @@ class Modular {
 };
 Modular pow(Modular base, std::uint64_t exponent);
 Modular inverse(Modular x);  // x must not be zero
+
+// Whether an expression vanishes at every one of several random poses modulo the prime: exact arithmetic, so that a
+// nonzero formula passes with a probability of about its degree over 2^61 at each. Empty if no pose was found at which
+// everything is defined.
+std::optional<bool> vanishes_modulo_prime(Expr scalar);
 
 // How many of the rows are independent at generic poses.
 struct GenericRank {
