@@ -231,24 +231,39 @@ std::optional<Program> take_out_factor(const Program& program) {
   });
 }
 
-// (x + y) + z = x + y + z, where the inner sum is nobody else's and has no name.
+// (x + y) + z = x + y + z and -(x - y) = y - x, where the inner sum is nobody else's.
+bool flattens(const Operation& outer, const Operation& inner, int uses) {
+  if (inner.kind != OpKind::sum || uses != 1) return false;
+  const bool opens_with_minus = outer.args.size() == 1 && outer.coefs[0] == Rational(-1);
+  const bool has_minus = std::any_of(inner.coefs.begin(), inner.coefs.end(),
+                                     [](Rational c) { return c.sign() < 0; });
+  return inner.name.empty() || (opens_with_minus && has_minus);
+}
+
 Program flatten_sums(const Program& program) {
   const std::vector<int> uses = use_counts(program);
-  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
+  std::vector<bool> absorbed(program.ops.size());
+  for (std::size_t i = 0; i < program.ops.size(); ++i) {
+    if (uses[i] == 0 || program.ops[i].kind != OpKind::sum) continue;
+    for (const int arg : program.ops[i].args) {
+      const std::size_t a = static_cast<std::size_t>(arg);
+      absorbed[a] = flattens(program.ops[i], program.ops[a], uses[a]);
+    }
+  }
+  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int index,
                            const std::vector<int>& at) -> std::optional<int> {
+    if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // nobody reads it
     if (op.kind != OpKind::sum) return std::nullopt;
     std::vector<int> args;
     std::vector<Rational> coefs;
     const auto add = [&](auto&& self, const Operation& sum, Rational factor) -> void {
       for (std::size_t i = 0; i < sum.args.size(); ++i) {
         const std::size_t arg = static_cast<std::size_t>(sum.args[i]);
-        const Operation& term = program.ops[arg];
-        const Rational coef = factor * sum.coefs[i];
-        if (term.kind == OpKind::sum && uses[arg] == 1 && term.name.empty()) {
-          self(self, term, coef);
+        if (absorbed[arg]) {
+          self(self, program.ops[arg], factor * sum.coefs[i]);
         } else {
           args.push_back(at[arg]);
-          coefs.push_back(coef);
+          coefs.push_back(factor * sum.coefs[i]);
         }
       }
     };

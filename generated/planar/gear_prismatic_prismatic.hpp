@@ -577,7 +577,7 @@ struct gear_prismatic_prismatic {
       D[0][8] = -mc.I * J.rc_ua_x_ea;
     }
 
-    // -Jdot v - d/dt(dC/dt): 27 +, 31 *
+    // -Jdot v - d/dt(dC/dt): 25 +, 31 *
     template <class T>
     static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -605,8 +605,7 @@ struct gear_prismatic_prismatic {
       const T ua_x = a.x - c.x + ra_x - rc_x;
       const T ua_y = a.y - c.y + ra_y - rc_y;
       const T qa = ua_x * ea_x + ua_y * ea_y;
-      const T qa_dot_dot = dot_ua_dot_dot_ea + vc.w * (-T(2) * ua_dot_x_ea - vc.w * qa);
-      g[0] = -qa_dot_dot;
+      g[0] = vc.w * (T(2) * ua_dot_x_ea + vc.w * qa) - dot_ua_dot_dot_ea;
     }
 
     // dC/dt at fixed q: nothing
@@ -1688,7 +1687,7 @@ struct gear_prismatic_prismatic::slide::a_immovable : gear_prismatic_prismatic::
     D[0][8] = -mc.I * J.rc_ua_x_ea;
   }
 
-  // -Jdot v - d/dt(dC/dt): 21 +, 23 *
+  // -Jdot v - d/dt(dC/dt): 20 +, 23 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -1710,7 +1709,7 @@ struct gear_prismatic_prismatic::slide::a_immovable : gear_prismatic_prismatic::
     const T ua_y = a.y - c.y + ra_y - rc_y_2;
     const T qa = ua_x * ea_x + ua_y * ea_y_2;
     const T dot_rc_ea = ea_x * rc_x + ea_y_2 * rc_y_2;
-    g[0] = -vc.w * (vc.w * (dot_rc_ea - qa) - T(2) * ua_dot_x_ea);
+    g[0] = vc.w * (T(2) * ua_dot_x_ea + vc.w * (qa - dot_rc_ea));
   }
 
   // d(J^T lambda)/dq: x, y, angle of each body: 17 +, 17 *

@@ -268,8 +268,7 @@ struct line {
         const T dir_u_x = select(u_len > smallest<T>(), u_x * inv_u_len, T(1));
         const T dir_u_y = select(u_len > smallest<T>(), u_y * inv_u_len, T(0));
         const T dir_u_y_2 = dir_u_y;
-        const T axis_b_x_dir_u = b.c * dir_u_y_2 - b.s * dir_u_x;
-        p.t_x = -axis_b_x_dir_u;
+        p.t_x = b.s * dir_u_x - b.c * dir_u_y_2;
         p.t_y = b.c * dir_u_x + b.s * dir_u_y_2;
         break;
       }

@@ -474,7 +474,7 @@ struct sine_track {
       D[0][5] = mb.I * J.wb;
     }
 
-    // -Jdot v - d/dt(dC/dt): 27 +, 31 *
+    // -Jdot v - d/dt(dC/dt): 25 +, 31 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -502,8 +502,7 @@ struct sine_track {
       const T u_x = a.x - b.x + ra_x - rb_x;
       const T u_y = a.y - b.y + ra_y - rb_y;
       const T s_x = u_x * f_x_x + u_y * f_x_y;
-      const T s_x_dot_dot = dot_u_dot_dot_f_x + vb.w * (-T(2) * u_dot_x_f_x - vb.w * s_x);
-      g[0] = -s_x_dot_dot;
+      g[0] = vb.w * (T(2) * u_dot_x_f_x + vb.w * s_x) - dot_u_dot_dot_f_x;
     }
 
     // dC/dt at fixed q: nothing
@@ -979,7 +978,7 @@ struct sine_track::slide::a_immovable : sine_track::slide {
     D[0][5] = mb.I * J.wb;
   }
 
-  // -Jdot v - d/dt(dC/dt): 21 +, 23 *
+  // -Jdot v - d/dt(dC/dt): 20 +, 23 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -1001,7 +1000,7 @@ struct sine_track::slide::a_immovable : sine_track::slide {
     const T u_y = a.y - b.y + ra_y - rb_y_2;
     const T s_x = u_x * f_x_x + u_y * f_x_y_2;
     const T dot_rb_f_x = f_x_x * rb_x + f_x_y_2 * rb_y_2;
-    g[0] = -vb.w * (vb.w * (dot_rb_f_x - s_x) - T(2) * u_dot_x_f_x);
+    g[0] = vb.w * (T(2) * u_dot_x_f_x + vb.w * (s_x - dot_rb_f_x));
   }
 
   // d(J^T lambda)/dq: x, y, angle of each body: 17 +, 17 *

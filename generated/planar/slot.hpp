@@ -271,7 +271,7 @@ struct slot {
       T t_y, t_x, dot_ra_t, dot_rb_u_t;
     };
 
-    // C: 14 +, 14 *
+    // C: 13 +, 14 *
     template <class T>
     static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
       const Pose<T>& a = q[0];
@@ -285,11 +285,10 @@ struct slot {
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
       const T t_y_2 = t_y;
-      const T u_x_t = u_x * t_y_2 - u_y * t_x;
-      C[0] = -u_x_t;
+      C[0] = u_y * t_x - u_x * t_y_2;
     }
 
-    // C and J: 18 +, 18 *
+    // C and J: 17 +, 18 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -304,10 +303,9 @@ struct slot {
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
       const T t_y_2 = t_y;
-      const T u_x_t = u_x * t_y_2 - u_y * t_x;
       const T rb_u_x = u_x + rb_x;
       const T rb_u_y = u_y + rb_y;
-      C[0] = -u_x_t;
+      C[0] = u_y * t_x - u_x * t_y_2;
       J.t_y = t_y_2;
       J.t_x = t_x;
       J.dot_ra_t = ra_x * t_x + ra_y * t_y_2;
@@ -737,7 +735,7 @@ struct slot::slide::a_immovable : slot::slide {
     T t_y, t_x, dot_rb_u_t;
   };
 
-  // C and J: 17 +, 16 *
+  // C and J: 16 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -752,10 +750,9 @@ struct slot::slide::a_immovable : slot::slide {
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
     const T t_y_2 = t_y;
-    const T u_x_t = u_x * t_y_2 - u_y * t_x;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    C[0] = -u_x_t;
+    C[0] = u_y * t_x - u_x * t_y_2;
     J.t_y = t_y_2;
     J.t_x = t_x;
     J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
@@ -874,7 +871,7 @@ struct slot::slide::b_immovable : slot::slide {
     T t_y, t_x, dot_ra_t;
   };
 
-  // C and J: 15 +, 16 *
+  // C and J: 14 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -889,8 +886,7 @@ struct slot::slide::b_immovable : slot::slide {
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
     const T t_y_2 = t_y;
-    const T u_x_t = u_x * t_y_2 - u_y * t_x;
-    C[0] = -u_x_t;
+    C[0] = u_y * t_x - u_x * t_y_2;
     J.t_y = t_y_2;
     J.t_x = t_x;
     J.dot_ra_t = ra_x * t_x + ra_y * t_y_2;

@@ -54,7 +54,7 @@ struct wheel {
     T ax_y, ax_x, dot_ra_d_ax, dot_rb_ax;
   };
 
-  // C: 14 +, 14 *
+  // C: 13 +, 14 *
   template <class T>
   static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
     const Pose<T>& a = q[0];
@@ -68,11 +68,10 @@ struct wheel {
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
     const T ax_y_2 = ax_y;
-    const T d_x_ax = d_x * ax_y_2 - d_y * ax_x;
-    C[0] = -d_x_ax;
+    C[0] = d_y * ax_x - d_x * ax_y_2;
   }
 
-  // C and J: 18 +, 18 *
+  // C and J: 17 +, 18 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -87,10 +86,9 @@ struct wheel {
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
     const T ax_y_2 = ax_y;
-    const T d_x_ax = d_x * ax_y_2 - d_y * ax_x;
     const T ra_d_x = d_x + ra_x;
     const T ra_d_y = d_y + ra_y;
-    C[0] = -d_x_ax;
+    C[0] = d_y * ax_x - d_x * ax_y_2;
     J.ax_y = ax_y_2;
     J.ax_x = ax_x;
     J.dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y_2;
@@ -620,7 +618,7 @@ struct wheel::a_immovable : wheel {
     T ax_y, ax_x, dot_rb_ax;
   };
 
-  // C and J: 15 +, 16 *
+  // C and J: 14 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -635,8 +633,7 @@ struct wheel::a_immovable : wheel {
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
     const T ax_y_2 = ax_y;
-    const T d_x_ax = d_x * ax_y_2 - d_y * ax_x;
-    C[0] = -d_x_ax;
+    C[0] = d_y * ax_x - d_x * ax_y_2;
     J.ax_y = ax_y_2;
     J.ax_x = ax_x;
     J.dot_rb_ax = ax_x * rb_x + ax_y_2 * rb_y;
@@ -736,7 +733,7 @@ struct wheel::b_immovable : wheel {
     T ax_y, ax_x, dot_ra_d_ax;
   };
 
-  // C and J: 17 +, 16 *
+  // C and J: 16 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -751,10 +748,9 @@ struct wheel::b_immovable : wheel {
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
     const T ax_y_2 = ax_y;
-    const T d_x_ax = d_x * ax_y_2 - d_y * ax_x;
     const T ra_d_x = d_x + ra_x;
     const T ra_d_y = d_y + ra_y;
-    C[0] = -d_x_ax;
+    C[0] = d_y * ax_x - d_x * ax_y_2;
     J.ax_y = ax_y_2;
     J.ax_x = ax_x;
     J.dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y_2;
