@@ -33,7 +33,12 @@ struct BlockLoops {
   template <class Struct, class Number>
   static auto& as(Number* numbers_of, int slot) {
     using Target = std::conditional_t<std::is_const_v<Number>, const Struct, Struct>;
-    return *reinterpret_cast<Target*>(numbers_of + slot * numbers<Struct>());
+    if constexpr (std::is_empty_v<Struct>) {
+      static Struct nothing;  // there is no array to point into
+      return static_cast<Target&>(nothing);
+    } else {
+      return *reinterpret_cast<Target*>(numbers_of + slot * numbers<Struct>());
+    }
   }
 
   static const int* bodies_of(const Batch<S>& batch, int slot) {

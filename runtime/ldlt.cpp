@@ -32,29 +32,39 @@ void Ldlt::analyse(int size, const std::vector<std::pair<int, int>>& given) {
   order_ = minimum_degree_order(size, entries);
   place_.assign(n, 0);
   for (int k = 0; k < size; ++k) place_[order_[k]] = k;
+  order_by_columns(std::move(entries));
+  build_tree();
+  inverse_pivot_.assign(n, 0.0);
+  pattern_.assign(n, 0);
+  y_.assign(n, 0.0);
+}
 
-  for (auto& [row, column] : entries) {
-    const int i = place_[row], j = place_[column];
-    row = std::max(i, j);  // sorted by column of the upper triangle, then by row
-    column = std::min(i, j);
+void Ldlt::order_by_columns(std::vector<std::pair<int, int>> entries) {
+  for (auto& [first, second] : entries) {  // column and row of the permuted upper triangle
+    const int i = place_[first], j = place_[second];
+    first = std::max(i, j);
+    second = std::min(i, j);
   }
   std::sort(entries.begin(), entries.end());
   entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-  column_start_.assign(n + 1, 0);
+  column_start_.assign(static_cast<size_t>(size_) + 1, 0);
   row_.clear();
   for (const auto& [column, row] : entries) {
     ++column_start_[column + 1];
     row_.push_back(row);
   }
-  for (size_t k = 0; k < n; ++k) column_start_[k + 1] += column_start_[k];
+  for (int k = 0; k < size_; ++k) column_start_[k + 1] += column_start_[k];
   values_.assign(row_.size(), 0.0);
+}
 
-  // Elimination tree and the number of entries in each column of L: row k of L is what the tree
-  // reaches from K's entries above the diagonal in column k.
+// Elimination tree and the number of entries in each column of L: row k of L is what the tree
+// reaches from K's entries above the diagonal in column k.
+void Ldlt::build_tree() {
+  const auto n = static_cast<size_t>(size_);
   parent_.assign(n, -1);
   mark_.assign(n, -1);
   l_count_.assign(n, 0);
-  for (int k = 0; k < size; ++k) {
+  for (int k = 0; k < size_; ++k) {
     mark_[k] = k;
     for (int p = column_start_[k]; p < column_start_[k + 1]; ++p) {
       for (int i = row_[p]; mark_[i] != k; i = parent_[i]) {
@@ -68,9 +78,6 @@ void Ldlt::analyse(int size, const std::vector<std::pair<int, int>>& given) {
   for (size_t k = 0; k < n; ++k) l_start_[k + 1] = l_start_[k] + l_count_[k];
   l_row_.assign(static_cast<size_t>(l_start_[n]), 0);
   l_value_.assign(static_cast<size_t>(l_start_[n]), 0.0);
-  inverse_pivot_.assign(n, 0.0);
-  pattern_.assign(n, 0);
-  y_.assign(n, 0.0);
 }
 
 int Ldlt::entry(int row, int column) const {

@@ -31,6 +31,8 @@ class Ldlt {
   void multiply(const double* x, double* y) const;
 
  private:
+  void order_by_columns(std::vector<std::pair<int, int>> entries);
+  void build_tree();
   int eliminate(int column, const double* added, const char* fixed);
 
   int size_ = 0;
