@@ -66,19 +66,14 @@ class MathML : public FormulaWriter {
 
  protected:
   std::string name(const Formula& leaf) const override {
-    SpelledName s = spell(leaf.name, bodies_);
-    const bool inverse = s.letter == "inv" && !s.index.empty();
-    if (inverse) {  // inv_m_a
-      s.letter = s.index.substr(0, 1);
-      s.index = s.index.size() > 2 ? s.index.substr(2) : "";
-    }
+    const SpelledName s = spell(leaf.name, bodies_);
     std::string base = identifier(greek(s.letter), leaf.leaf && leaf.leaf->vector);
     if (s.dots > 0) {
       base = "<mover accent=\"true\">" + base + sign_of(s.dots == 1 ? "˙" : "¨") + "</mover>";
     }
     const std::string index = "<mtext>" + escaped(s.index) + "</mtext>";
     const std::string minus_one = row(sign_of("−") + "<mn>1</mn>");
-    if (inverse) return "<msubsup>" + base + index + minus_one + "</msubsup>";
+    if (s.inverse) return "<msubsup>" + base + index + minus_one + "</msubsup>";
     return s.index.empty() ? base : "<msub>" + base + index + "</msub>";
   }
   std::string number(Rational value) const override {

@@ -70,18 +70,13 @@ class Latex : public FormulaWriter {
 
  protected:
   std::string name(const Formula& leaf) const override {
-    SpelledName s = spell(leaf.name, bodies_);
-    const bool inverse = s.letter == "inv" && !s.index.empty();
-    if (inverse) {  // inv_m_a
-      s.letter = s.index.substr(0, 1);
-      s.index = s.index.size() > 2 ? s.index.substr(2) : "";
-    }
+    const SpelledName s = spell(leaf.name, bodies_);
     std::string out = letter_of(s.letter, leaf.leaf && leaf.leaf->vector);
     if (s.dots > 0) out = (s.dots == 1 ? "\\dot{" : "\\ddot{") + out + "}";
     const bool word = s.index.size() > 1;
     if (!s.index.empty())
       out += word ? "_{\\text{" + escaped(s.index) + "}}" : "_{" + s.index + "}";
-    return inverse ? out + "^{-1}" : out;
+    return s.inverse ? out + "^{-1}" : out;
   }
   std::string number(Rational value) const override {
     if (value.is_integer()) return value.text();

@@ -6,9 +6,10 @@
 namespace cdot::derive {
 
 SpelledName spell(const std::string& name, const std::vector<std::string>& bodies) {
-  SpelledName s{name, "", 0};
+  SpelledName s{name, "", 0, name.starts_with("inv_m_") || name.starts_with("inv_I_")};
+  if (s.inverse) s.letter = name.substr(4);
   if (const std::size_t bracket = name.find('['); bracket != std::string::npos) {
-    return {name.substr(0, bracket), name.substr(bracket + 1, name.size() - bracket - 2), 0};
+    return {name.substr(0, bracket), name.substr(bracket + 1, name.size() - bracket - 2), 0, false};
   }
   while (s.letter.ends_with("_dot")) {
     s.letter.resize(s.letter.size() - 4);

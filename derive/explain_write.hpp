@@ -6,11 +6,12 @@
 
 namespace cdot::derive {
 
-// A name taken apart: `ua_dot` is u with index a and one dot, `K[pin, line]` is K with the index
-// "pin, line".
+// A name taken apart: `ua_dot` is u with index a and one dot, `inv_m_a` the inverse of m with index
+// a, `K[pin, line]` is K with the index "pin, line".
 struct SpelledName {
   std::string letter, index;
   int dots = 0;
+  bool inverse = false;
 };
 SpelledName spell(const std::string& name, const std::vector<std::string>& bodies);
 
