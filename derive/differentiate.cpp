@@ -10,6 +10,13 @@
 namespace cdot::derive {
 namespace {
 
+// e, a product, with its i-th factor taken out once; also where e has a name, which plain division does not look into.
+Expr without_factor(Expr e, std::size_t i) {
+  std::vector<int> exponents = e->exponents;
+  --exponents[i];
+  return product(*e->pool, e->args, exponents);
+}
+
 class TimeDerivative {
  public:
   TimeDerivative(const Joint& joint, int immovable, Expr only)
@@ -82,7 +89,7 @@ class TimeDerivative {
     for (std::size_t i = 0; i < e->args.size(); ++i) {
       const Expr rate = of(e->args[i]);
       if (is_zero(rate)) continue;
-      total = total + Rational(e->exponents[i]) * (e / e->args[i] * rate);
+      total = total + Rational(e->exponents[i]) * (without_factor(e, i) * rate);
     }
     return total;
   }
@@ -194,7 +201,7 @@ class Transposition {
     for (std::size_t i = 0; i < e->args.size(); ++i) {
       if (!moving(e->args[i])) continue;
       require(++found == 1 && e->exponents[i] == 1);
-      add(e->args[i], c * (e / e->args[i]));
+      add(e->args[i], c * without_factor(e, i));
     }
   }
 

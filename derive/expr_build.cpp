@@ -115,8 +115,7 @@ Expr product(Pool& pool, std::span<const Expr> factors, std::span<const int> exp
   std::vector<std::pair<Expr, int>> flat;
   for (std::size_t i = 0; i < factors.size(); ++i) {
     const Term term = split_coefficient(factors[i]);
-    if (term.coef.is_zero() && exponents[i] > 0) return pool.number(0);
-    if (term.coef.is_zero()) return pool.number(0);  // the guarded inverse of zero
+    if (term.coef.is_zero()) return pool.number(0);  // the guarded inverse of zero is zero, too
     coef = coef * pow(term.coef, exponents[i]);
     if (term.e->kind == Kind::product && term.e->name.empty()) {
       for (std::size_t k = 0; k < term.e->args.size(); ++k) {
@@ -152,7 +151,7 @@ Expr operator*(Expr a, Expr b) {
   }
   const Scaled inner = split_scale(b);
   const Term factor = split_coefficient(a * inner.factor);
-  if (factor.coef.is_zero()) return zero_vector(pool);
+  if (factor.coef.is_zero() || is_zero(inner.rest)) return zero_vector(pool);
   if (is_one(factor.e)) return factor.coef * inner.rest;
   // u / |u| is the unit vector of u.
   if (factor.e->kind == Kind::product && factor.e == pow(norm(inner.rest), -1)) {
