@@ -40,9 +40,10 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   // without what cancels.
   std::optional<GiNaC::ex> numerator(const GiNaC::ex& e);
   std::optional<GiNaC::ex> reduced_numerator(const GiNaC::ex& e);
-  // A polynomial of these as one of ours, over components (ra_x, u_x, |u|): in an order that
-  // depends on names only.
-  Expr expression(const GiNaC::ex& polynomial) const;
+  GiNaC::ex other_coordinates(const GiNaC::ex& polynomial) const;
+  // The factors of such a numerator, in the joint's names: "u_x", "ratio".
+  std::vector<std::string> factors_of(const GiNaC::ex& polynomial) const;
+  std::vector<GiNaC::ex> symbols_in(const GiNaC::ex& e) const;
 
   GiNaC::ex number(Rational value) override;
   GiNaC::ex scalar_leaf(const Node& symbol) override;
@@ -67,7 +68,8 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   Pair<GiNaC::ex> free_vector(const Node& symbol);
   bool moves(int body) const { return body >= 0 && body != immovable_; }
 
-  bool replace(const GiNaC::ex& x, const GiNaC::ex& compound);
+  bool replace(const GiNaC::ex& x, const GiNaC::ex& compound, const std::string& name);
+  GiNaC::ex in_names(GiNaC::ex e) const;
   GiNaC::ex atomised(const GiNaC::ex& e);
   GiNaC::ex atomised_power(const GiNaC::ex& base, const GiNaC::ex& exponent);
   GiNaC::ex atomised_function(const GiNaC::ex& e);
@@ -89,8 +91,13 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   GiNaC::exmap inverses_, roots_;  // by their operand in normal form
   std::vector<std::pair<GiNaC::ex, Pair<GiNaC::ex>>> turns_;  // angle -> (cos, sin)
   GiNaC::exmap change_;  // of variables, before an expression is tested
+  std::vector<std::pair<GiNaC::ex, GiNaC::ex>>
+      meanings_;  // of symbols without a name, as they came up
   std::string witness_;
   Evaluation<GiNaC::ex> evaluation_;
 };
+
+// e or -e, so that its first term by name is positive: what is zero where e is, in one form.
+Expr with_leading_sign(Expr e);
 
 }  // namespace cdot::derive

@@ -81,6 +81,7 @@ ex Algebra::symbol_for(const ex& compound) {
   const auto found = known_.find(compound);
   if (found != known_.end()) return found->second;
   const ex symbol = GiNaC::realsymbol();
+  meanings_.emplace_back(symbol, compound);
   known_.emplace(compound, symbol);
   return symbol;
 }
@@ -161,6 +162,7 @@ ex Algebra::root_of(const ex& base) {
   }
   const GiNaC::realsymbol symbol;
   atoms_.push_back({Atom::Kind::square, symbol, operand});
+  meanings_.emplace_back(symbol, GiNaC::sqrt(operand));
   roots_.emplace(operand, symbol);
   return symbol;
 }
@@ -193,6 +195,8 @@ ex Algebra::turned(bool cosine, const ex& angle) {
     if (known == turns_.end()) {
       const GiNaC::realsymbol c_base, s_base;
       atoms_.push_back({Atom::Kind::square, c_base, 1 - s_base * s_base});
+      meanings_.emplace_back(c_base, cos(base));
+      meanings_.emplace_back(s_base, sin(base));
       known = turns_.insert(known, {base, {c_base, s_base}});
     }
     for (int i = 0; i < times; ++i) {
@@ -211,14 +215,27 @@ ex Algebra::reduced(const ex& polynomial) const {
 }
 
 std::optional<ex> Algebra::reduced_numerator(const ex& e) try {
-  ex p = atomised(e.subs(change_, GiNaC::subs_options::no_pattern)).expand();
+  ex p = reduced(atomised(e.subs(change_, GiNaC::subs_options::no_pattern)));
   for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    p = atom->kind == Atom::Kind::square ? square_reduced(p, atom->symbol, atom->operand)
-                                         : inverse_cancelled(p, atom->symbol, atom->operand);
+    if (atom->kind == Atom::Kind::inverse) p = inverse_cancelled(p, atom->symbol, atom->operand);
   }
   return without_inverses(p);
 } catch (const std::exception&) {
   return std::nullopt;
+}
+
+// The same polynomial by the other of two coordinates on a circle: t^2 = 1 - s^2 where s^2 = 1 -
+// t^2 was used.
+ex Algebra::other_coordinates(const ex& polynomial) const {
+  ex p = polynomial;
+  for (const Atom& atom : atoms_) {
+    if (atom.kind != Atom::Kind::square) continue;
+    for (const ex& t : symbols_in(atom.operand)) {
+      if (!(atom.operand - 1 + t * t).expand().is_zero()) continue;
+      p = square_reduced(p, ex_to<GiNaC::symbol>(t), 1 - atom.symbol * atom.symbol);
+    }
+  }
+  return p;
 }
 
 ex Algebra::without_inverses(const ex& polynomial) const {
@@ -239,18 +256,25 @@ void Algebra::shorten(Expr root) {
     for (const Expr part : u->args) {
       if (part->kind != Kind::symbol || part->role != Role::position) continue;
       const Pair<ex> x = of_vector(part);
-      if (replace(x[0], components[0]) && replace(x[1], components[1])) break;
+      const std::string name = u->name;
+      if (replace(x[0], components[0], name.empty() ? "" : name + "_x") &&
+          replace(x[1], components[1], name.empty() ? "" : name + "_y")) {
+        break;
+      }
     }
   }
 }
 
-// Makes `compound` a variable in place of x, if it contains x times a number.
-bool Algebra::replace(const ex& x, const ex& compound) {
+// Makes `compound` a variable in place of x, if it contains x times a number. A variable without a
+// name is not shown.
+bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) {
   if (change_.contains(x)) return false;
   const ex now = compound.subs(change_, GiNaC::subs_options::no_pattern).expand();
   const ex slope = now.coeff(x);
   if (!is_a<numeric>(slope) || slope.is_zero()) return false;
-  const ex value = (GiNaC::realsymbol() - now) / slope + x;
+  const ex symbol = name.empty() ? GiNaC::realsymbol() : GiNaC::realsymbol(name);
+  if (name.empty()) meanings_.emplace_back(symbol, compound);
+  const ex value = (symbol - now) / slope + x;
   for (auto& [symbol, earlier] : change_) {
     earlier = earlier.subs(x == value, GiNaC::subs_options::no_pattern);
   }

@@ -24,6 +24,16 @@ std::string said(Expr e, const Joint& joint) {
   return text(substitute(e, spelled));
 }
 
+std::string vanishing_vector(Expr u, const Joint& joint) {
+  for (const Parameter& p : joint.parameters) {
+    for (const Parameter& q : joint.parameters) {
+      if (p.kind != ParameterKind::point || q.kind != ParameterKind::point) continue;
+      if (p.value - q.value == u) return p.name + " = " + q.name;
+    }
+  }
+  return said(u, joint) + " = 0";
+}
+
 std::string listed(std::span<const std::string> parts, std::string_view last) {
   std::string s;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -15,6 +15,9 @@ namespace cdot::derive {
 // for x_a.
 std::string said(Expr e, const Joint& joint);
 
+// The equation that holds u at zero: `pa = pb` if u is pa - pb, else `u = 0`.
+std::string vanishing_vector(Expr u, const Joint& joint);
+
 // "x, y and z"
 std::string listed(std::span<const std::string> parts, std::string_view last = " and ");
 

@@ -1,0 +1,423 @@
+// Where K is singular. By Cauchy-Binet det K is a sum over choices of columns of J of (minor of
+// J)^2 times the inverse masses of the columns: no term is negative, so K is singular exactly where
+// the terms of every product of inverse masses vanish, and never where one of them is a sum of
+// squares that cannot vanish.
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include "derive/check_parts.hpp"
+#include "derive/ginac.hpp"
+#include "derive/prove_words.hpp"
+
+namespace cdot::derive {
+namespace {
+
+using GiNaC::ex;
+
+constexpr int most_minors = 4000;
+
+// Powers of the inverse masses: m of the first body, its I, m of the second, ...
+using Monomial = std::vector<int>;
+
+struct Coefficient {
+  Monomial monomial;
+  ex value;                  // sum of the squares of the minors
+  std::vector<double> seen;  // at the random poses
+  bool never_zero = false;
+  std::vector<std::string> factors;  // it is zero where one of them is: "ratio", "cross(ra, n)"
+};
+
+// Something that a person has a name for, and what it is at the random poses.
+struct Candidate {
+  Expr e;
+  std::vector<double> seen;
+};
+
+ex determinant(const std::vector<std::vector<ex>>& J, const std::vector<std::size_t>& columns) {
+  GiNaC::matrix m(static_cast<unsigned>(J.size()), static_cast<unsigned>(J.size()));
+  for (unsigned i = 0; i < J.size(); ++i) {
+    for (unsigned k = 0; k < J.size(); ++k) m(i, k) = J[i][columns[k]];
+  }
+  return m.determinant(GiNaC::determinant_algo::laplace);
+}
+
+double determinant(const std::vector<std::vector<double>>& J,
+                   const std::vector<std::size_t>& columns) {
+  std::vector<std::vector<double>> m;
+  for (const auto& row : J) {
+    m.emplace_back();
+    for (const std::size_t c : columns) m.back().push_back(row[c]);
+  }
+  double product = 1;
+  for (std::size_t k = 0; k < m.size(); ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k; i < m.size(); ++i) {
+      if (std::fabs(m[i][k]) > std::fabs(m[pivot][k])) pivot = i;
+    }
+    if (m[pivot][k] == 0) return 0;
+    if (pivot != k) std::swap(m[pivot], m[k]), product = -product;
+    product *= m[k][k];
+    for (std::size_t i = k + 1; i < m.size(); ++i) {
+      const double factor = m[i][k] / m[k][k];
+      for (std::size_t j = k; j < m.size(); ++j) m[i][j] -= factor * m[k][j];
+    }
+  }
+  return product;
+}
+
+// All even powers with positive factors, and a constant: never zero. A number other than zero is
+// one.
+bool is_positive(const ex& expanded, const std::vector<ex>& symbols) {
+  const GiNaC::exvector terms = GiNaC::is_a<GiNaC::add>(expanded)
+                                    ? GiNaC::exvector(expanded.begin(), expanded.end())
+                                    : GiNaC::exvector{expanded};
+  bool constant = false;
+  for (const ex& term : terms) {
+    ex factor = term;
+    for (const ex& s : symbols) {
+      const int degree = factor.degree(s);
+      if (degree % 2 != 0) return false;
+      factor = factor.coeff(s, degree);
+    }
+    if (!factor.info(GiNaC::info_flags::positive)) return false;
+    constant = constant || GiNaC::is_a<GiNaC::numeric>(term);
+  }
+  return constant;
+}
+
+class MassCheck {
+ public:
+  MassCheck(const Subject& subject, Findings& findings)
+      : subject_(subject),
+        joint_(subject.joint),
+        findings_(findings),
+        names_(subject.joint, Algebra::Route::names) {}
+
+  void run() {
+    if (!expand()) {
+      return add("where K is singular was not looked into: too many minors of J");
+    }
+    find_candidates();
+    for (Coefficient& c : coefficients_) describe(c);
+    if (coefficients_.empty()) return;  // said by the law of the rank
+    report_all();
+    for (std::size_t b = 0; joint_.bodies.size() > 1 && b < joint_.bodies.size(); ++b)
+      report_alone(b);
+    report_without_turning();
+  }
+
+ private:
+  // Sums the squares of the minors by their product of inverse masses.
+  bool expand() {
+    std::vector<std::vector<ex>> J;
+    for (const ScalarRow& row : subject_.block.rows) {
+      names_.shorten(row.kind == RowKind::velocity ? row.Cdot : row.C);
+      J.emplace_back();
+      for (const JacobianEntry& entry : row.J) {
+        const Pair<ex> v = names_.of_vector(entry.v);
+        J.back().insert(J.back().end(), {v[0], v[1], names_.of(entry.w)});
+      }
+    }
+    std::vector<std::vector<std::vector<double>>> seen;
+    for (const Sample& sample : subject_.anywhere) {
+      seen.push_back(jacobian_at(joint_, subject_.block, sample));
+    }
+    std::map<Monomial, Coefficient> by_monomial;
+    int minors = 0;
+    std::vector<std::size_t> columns;
+    const auto choose = [&](auto&& self, std::size_t from) -> bool {
+      if (columns.size() == J.size()) {
+        add_minor(J, seen, columns, by_monomial);
+        return ++minors <= most_minors;
+      }
+      for (std::size_t c = from; c < J[0].size(); ++c) {
+        columns.push_back(c);
+        if (!self(self, c + 1)) return false;
+        columns.pop_back();
+      }
+      return true;
+    };
+    if (!choose(choose, 0)) return false;
+    for (auto& [monomial, coefficient] : by_monomial) {
+      const auto& at = coefficient.seen;
+      const double largest = *std::max_element(at.begin(), at.end());
+      const bool zero = largest < 1e-18 && names_.is_zero(coefficient.value) == Algebra::Zero::yes;
+      if (!zero) coefficients_.push_back(std::move(coefficient));
+    }
+    return true;
+  }
+
+  void add_minor(const std::vector<std::vector<ex>>& J,
+                 const std::vector<std::vector<std::vector<double>>>& seen,
+                 const std::vector<std::size_t>& columns, std::map<Monomial, Coefficient>& sums) {
+    const ex minor = determinant(J, columns);
+    if (minor.is_zero()) return;
+    Monomial monomial(2 * joint_.bodies.size());
+    for (const std::size_t c : columns) ++monomial[2 * (c / 3) + (c % 3 == 2 ? 1 : 0)];
+    Coefficient& sum = sums[monomial];
+    sum.monomial = monomial;
+    sum.value += minor * minor;
+    sum.seen.resize(seen.size());
+    for (std::size_t k = 0; k < seen.size(); ++k) {
+      const double value = determinant(seen[k], columns);
+      sum.seen[k] += value * value;
+    }
+  }
+
+  void add_candidate(Expr e) {
+    if (e->kind == Kind::number) return;
+    e = split_coefficient(e).e;
+    for (const Candidate& c : candidates_) {
+      if (c.e == e) return;
+    }
+    Candidate candidate{e, {}};
+    for (const Sample& sample : subject_.anywhere) {
+      candidate.seen.push_back(evaluate(e, world_values(joint_, sample)));
+    }
+    candidates_.push_back(std::move(candidate));
+  }
+
+  // Parameters, entries of J, lengths, and products of the vectors that J is made of.
+  void find_candidates() {
+    std::vector<Expr> entries, vectors;
+    for (const ScalarRow& row : subject_.block.rows) {
+      for (const JacobianEntry& entry : row.J) entries.insert(entries.end(), {entry.w, entry.v});
+    }
+    for (const Expr e : leaves_of(entries)) {
+      if (e->role == Role::parameter && !e->vector) add_candidate(e);
+    }
+    for (const Expr e : entries) {
+      if (!e->vector) add_candidate(e);
+    }
+    for (const Expr e : topological(entries)) {
+      if (!e->vector || e->role == Role::position || e->kind == Kind::perp) continue;
+      if (e->kind == Kind::scale || is_zero(e) || vectors.size() > 12) continue;
+      vectors.push_back(e);
+      if (!e->unit_length) add_candidate(norm(e));
+    }
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        add_candidate(cross(vectors[k], vectors[i]));
+        add_candidate(dot(vectors[k], vectors[i]));
+      }
+    }
+  }
+
+  // factor such that c = factor * s^2 at every pose that was looked at, if there is a simple one.
+  std::optional<ex> factor_of(const Coefficient& c, const std::vector<double>& s) {
+    const double ratio = c.seen[0] / (s[0] * s[0]);
+    const double twelfths = std::round(12 * ratio);
+    if (!(std::fabs(12 * ratio - twelfths) < 1e-6) || twelfths == 0) return std::nullopt;
+    for (std::size_t k = 0; k < s.size(); ++k) {
+      if (!(std::fabs(c.seen[k] - ratio * s[k] * s[k]) <= 1e-8 * c.seen[k])) return std::nullopt;
+    }
+    return GiNaC::numeric(static_cast<long>(twelfths)) / 12;
+  }
+
+  bool recognise(Coefficient& c) {
+    for (const Candidate& s : candidates_) {
+      const std::optional<ex> factor = factor_of(c, s.seen);
+      if (!factor) continue;
+      const ex root = names_.of(s.e);
+      if (names_.is_zero(c.value - *factor * root * root) != Algebra::Zero::yes) continue;
+      c.factors = factors_of(s.e);
+      return true;
+    }
+    return recognise_product(c);
+  }
+
+  bool recognise_product(Coefficient& c) {
+    for (std::size_t i = 0; i < candidates_.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        std::vector<double> product = candidates_[i].seen;
+        for (std::size_t p = 0; p < product.size(); ++p) product[p] *= candidates_[k].seen[p];
+        const std::optional<ex> factor = factor_of(c, product);
+        if (!factor) continue;
+        const ex root = names_.of(candidates_[i].e) * names_.of(candidates_[k].e);
+        if (names_.is_zero(c.value - *factor * root * root) != Algebra::Zero::yes) continue;
+        c.factors = {said(candidates_[k].e, joint_), said(candidates_[i].e, joint_)};
+        return true;
+      }
+    }
+    return false;
+  }
+
+  std::vector<std::string> factors_of(Expr e) const {
+    std::vector<std::string> names;
+    const bool product = e->kind == Kind::product && e->name.empty();
+    for (const Expr factor : product ? e->args : std::vector<Expr>{e}) {
+      names.push_back(said(with_leading_sign(factor), joint_));
+    }
+    return names;
+  }
+
+  void describe(Coefficient& c) {
+    const std::optional<ex> numerator = names_.reduced_numerator(c.value);
+    const auto positive = [&](const ex& p) { return is_positive(p, names_.symbols_in(p)); };
+    if (numerator && (positive(*numerator) || positive(names_.other_coordinates(*numerator)))) {
+      c.never_zero = true;
+    } else if (!recognise(c)) {
+      c.factors =
+          numerator ? names_.factors_of(*numerator) : std::vector<std::string>{"its minors"};
+    }
+  }
+
+  using Choice = std::vector<const Coefficient*>;
+
+  template <class Condition>
+  Choice chosen(Condition condition) const {
+    Choice out;
+    for (const Coefficient& c : coefficients_) {
+      if (condition(c.monomial)) out.push_back(&c);
+    }
+    return out;
+  }
+
+  static bool any_never_zero(const Choice& choice) {
+    return std::any_of(choice.begin(), choice.end(),
+                       [](const Coefficient* c) { return c->never_zero; });
+  }
+
+  // "where ratio = 0 and cross(ra, n) = 0". What is zero where something else in the list is goes
+  // without saying.
+  static std::string all_zero(const Choice& choice) {
+    if (choice.empty()) return "at every pose";
+    std::vector<std::set<std::string>> alternatives;
+    for (const Coefficient* c : choice)
+      alternatives.emplace_back(c->factors.begin(), c->factors.end());
+    std::sort(alternatives.begin(), alternatives.end());
+    alternatives.erase(std::unique(alternatives.begin(), alternatives.end()), alternatives.end());
+    std::vector<std::string> conditions;
+    for (const auto& any : alternatives) {
+      const bool implied =
+          std::any_of(alternatives.begin(), alternatives.end(), [&](const auto& other) {
+            return other != any &&
+                   std::includes(any.begin(), any.end(), other.begin(), other.end());
+          });
+      if (implied) continue;
+      std::vector<std::string> zeros;
+      for (const std::string& factor : any) zeros.push_back(factor + " = 0");
+      const std::string condition = listed(zeros, " or ");
+      conditions.push_back(zeros.size() > 1 && choice.size() > 1 ? "(" + condition + ")"
+                                                                 : condition);
+    }
+    return "where " + listed(conditions);
+  }
+
+  // Who has to be able to move and to turn.
+  struct Way {
+    std::set<std::string> move, turn;
+    friend bool operator==(const Way&, const Way&) = default;
+  };
+  Way way_of(const Monomial& monomial) const {
+    Way way;
+    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+      if (monomial[2 * b] > 0) way.move.insert(joint_.bodies[b]);
+      if (monomial[2 * b + 1] > 0) way.turn.insert(joint_.bodies[b]);
+    }
+    return way;
+  }
+
+  static std::string who(const std::set<std::string>& bodies, std::string_view last) {
+    return listed(std::vector<std::string>(bodies.begin(), bodies.end()), last);
+  }
+
+  // "a or b can move, and a or b can turn", if the ways are just that; else one after the other.
+  static std::string in_words(const std::vector<Way>& ways) {
+    Way any;
+    bool single = true;
+    for (const Way& way : ways) {
+      single = single && way.move.size() <= 1 && way.turn.size() <= 1;
+      any.move.insert(way.move.begin(), way.move.end());
+      any.turn.insert(way.turn.begin(), way.turn.end());
+    }
+    const std::size_t all =
+        std::max<std::size_t>(1, any.move.size()) * std::max<std::size_t>(1, any.turn.size());
+    if (single && ways.size() == all) return abilities(any, " or ", ", and ");
+    std::vector<std::string> parts;
+    for (const Way& way : ways) parts.push_back(abilities(way, " and ", " and "));
+    return listed(parts, ", or ");
+  }
+  static std::string abilities(const Way& way, std::string_view last, std::string_view between) {
+    std::string s;
+    if (!way.move.empty()) s += who(way.move, last) + " can move";
+    if (!way.move.empty() && !way.turn.empty()) s += between;
+    if (!way.turn.empty()) s += who(way.turn, last) + " can turn";
+    return s;
+  }
+
+  static bool needs_no_more(const Monomial& a, const Monomial& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (a[i] > 0 && b[i] == 0) return false;
+    }
+    return true;
+  }
+
+  void report_all() {
+    const Choice all = chosen([](const Monomial&) { return true; });
+    if (!any_never_zero(all)) return add("K is singular " + all_zero(all));
+    std::vector<Way> ways;
+    for (const Coefficient* c : all) {
+      const bool least = std::none_of(all.begin(), all.end(), [&](const Coefficient* other) {
+        return other->never_zero && needs_no_more(other->monomial, c->monomial) &&
+               !needs_no_more(c->monomial, other->monomial);
+      });
+      const Way way = way_of(c->monomial);
+      const bool known = std::find(ways.begin(), ways.end(), way) != ways.end();
+      if (c->never_zero && least && !known) ways.push_back(way);
+    }
+    add("K is regular at every pose while " + in_words(ways));
+  }
+
+  void report_alone(std::size_t body) {
+    const Choice choice = chosen([&](const Monomial& m) {
+      for (std::size_t i = 0; i < m.size(); ++i) {
+        if (i / 2 != body && m[i] > 0) return false;
+      }
+      return true;
+    });
+    if (any_never_zero(choice)) return;
+    add("while nothing but " + joint_.bodies[body] + " can move, K is singular " +
+        all_zero(choice));
+  }
+
+  void report_without_turning() {
+    const Choice choice = chosen([](const Monomial& m) {
+      for (std::size_t i = 1; i < m.size(); i += 2) {
+        if (m[i] > 0) return false;
+      }
+      return true;
+    });
+    if (any_never_zero(choice)) return;
+    add("while nothing can turn, K is singular " + all_zero(choice));
+  }
+
+  void add(std::string message) {
+    findings_.push_back(
+        {Level::note, "singular", joint_.rows.front().where, {}, std::move(message), ""});
+  }
+
+  const Subject& subject_;
+  const Joint& joint_;
+  Findings& findings_;
+  Algebra names_;
+  std::vector<Coefficient> coefficients_;
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace
+
+void check_mass(const Subject& subject, Findings& findings) try {
+  MassCheck(subject, findings).run();
+} catch (const GiNaC::pole_error&) {
+  findings.push_back({Level::note,
+                      "singular",
+                      subject.joint.rows.front().where,
+                      {},
+                      "where K is singular was not looked into: J divides by zero",
+                      ""});
+}
+
+}  // namespace cdot::derive

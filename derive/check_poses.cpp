@@ -1,0 +1,158 @@
+// Poses to look at: random ones, and random ones brought to C = 0.
+#include <algorithm>
+#include <cmath>
+
+#include "derive/check_parts.hpp"
+
+namespace cdot::derive {
+namespace {
+
+constexpr int poses = 12;
+constexpr int most_steps = 100;
+constexpr double reached = 1e-11, converged = 1e-14;  // |C|
+
+using Matrix = std::vector<std::vector<double>>;
+
+// The rows that a pose can satisfy.
+std::vector<std::size_t> position_rows(const Block& block) {
+  std::vector<std::size_t> rows;
+  for (std::size_t i = 0; i < block.rows.size(); ++i) {
+    if (block.rows[i].kind != RowKind::velocity) rows.push_back(i);
+  }
+  return rows;
+}
+
+Matrix jacobian(Numbers& numbers, const Block& block, const std::vector<std::size_t>& rows) {
+  Matrix J;
+  for (const std::size_t i : rows) {
+    std::vector<double> entries;
+    for (const JacobianEntry& entry : block.rows[i].J) {
+      const Pair<double> v = numbers.vector(entry.v);
+      entries.insert(entries.end(), {v[0], v[1], numbers.scalar(entry.w)});
+    }
+    J.push_back(std::move(entries));
+  }
+  return J;
+}
+
+std::vector<double> values(Numbers& numbers, const Block& block,
+                           const std::vector<std::size_t>& rows) {
+  std::vector<double> C;
+  for (const std::size_t i : rows) C.push_back(numbers.scalar(block.rows[i].C));
+  return C;
+}
+
+double norm_of(const std::vector<double>& v) {
+  double total = 0;
+  for (const double x : v) total += x * x;
+  return std::sqrt(total);
+}
+
+// x of A x = b by Gaussian elimination; A is symmetric, positive and, by a little on its diagonal,
+// regular.
+std::vector<double> solve(Matrix A, std::vector<double> b) {
+  const std::size_t n = b.size();
+  for (std::size_t k = 0; k < n; ++k) {
+    for (std::size_t i = k + 1; i < n; ++i) {
+      const double factor = A[k][k] == 0 ? 0 : A[i][k] / A[k][k];
+      for (std::size_t j = k; j < n; ++j) A[i][j] -= factor * A[k][j];
+      b[i] -= factor * b[k];
+    }
+  }
+  for (std::size_t k = n; k-- > 0;) {
+    for (std::size_t j = k + 1; j < n; ++j) b[k] -= A[k][j] * b[j];
+    b[k] = A[k][k] == 0 ? 0 : b[k] / A[k][k];
+  }
+  return b;
+}
+
+// The shortest step in q that makes C + J dq = 0: dq = -J^T (J J^T + little)^-1 C.
+std::vector<double> newton_step(const Matrix& J, const std::vector<double>& C) {
+  const std::size_t n = J.size();
+  Matrix K(n, std::vector<double>(n));
+  double largest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t k = 0; k < J[i].size(); ++k) K[i][j] += J[i][k] * J[j][k];
+    }
+    largest = std::max(largest, K[i][i]);
+  }
+  for (std::size_t i = 0; i < n; ++i) K[i][i] += 1e-13 * largest;
+  const std::vector<double> lambda = solve(K, C);
+  std::vector<double> step(J[0].size());
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < step.size(); ++k) step[k] -= J[i][k] * lambda[i];
+  }
+  return step;
+}
+
+Sample moved(Sample sample, const std::vector<double>& step, double fraction) {
+  for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
+    sample.bodies[b].x += fraction * step[3 * b];
+    sample.bodies[b].y += fraction * step[3 * b + 1];
+    sample.bodies[b].theta += fraction * step[3 * b + 2];
+  }
+  return sample;
+}
+
+std::vector<Expr> expressions_of(const Block& block) {
+  std::vector<Expr> all;
+  for (const ScalarRow& row : block.rows) {
+    all.insert(all.end(), {row.C, row.Cdot, row.gamma});
+    for (const JacobianEntry& entry : row.J) all.insert(all.end(), {entry.v, entry.w});
+  }
+  for (const auto& K : block.K) all.insert(all.end(), K.begin(), K.end());
+  return all;
+}
+
+}  // namespace
+
+bool project(const Joint& joint, const Block& block, Sample& sample) {
+  const std::vector<std::size_t> rows = position_rows(block);
+  if (rows.empty()) return true;
+  double error = INFINITY;
+  for (int i = 0; i < most_steps && error > converged; ++i) {
+    Numbers numbers(world_values(joint, sample));
+    const std::vector<double> C = values(numbers, block, rows);
+    error = norm_of(C);
+    if (!std::isfinite(error)) return false;
+    const std::vector<double> step = newton_step(jacobian(numbers, block, rows), C);
+    Sample next = sample;
+    double next_error = INFINITY;
+    for (double fraction = 1; fraction > 1e-3 && !(next_error < error); fraction /= 2) {
+      next = moved(sample, step, fraction);
+      Numbers there(world_values(joint, next));
+      next_error = norm_of(values(there, block, rows));
+    }
+    if (!(next_error < error)) break;
+    sample = next;
+    error = next_error;
+  }
+  return error < reached;
+}
+
+std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block,
+                                             const Sample& sample) {
+  std::vector<std::size_t> rows(block.rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
+  Numbers numbers(world_values(joint, sample));
+  return jacobian(numbers, block, rows);
+}
+
+Subject subject_of(const Joint& joint) {
+  Subject subject{joint, derive_rows(joint), {}, {}, {}};
+  std::vector<Expr> expressions = expressions_of(subject.block);
+  for (const Coordinate& c : joint.coordinates) {
+    subject.coordinates.push_back(derive_coordinate(joint, c));
+    const std::vector<Expr> more = expressions_of(subject.coordinates.back());
+    expressions.insert(expressions.end(), more.begin(), more.end());
+  }
+  for (std::uint64_t seed = 1; seed <= poses; ++seed) {
+    Sample sample = random_sample(joint, expressions, seed);
+    subject.anywhere.push_back(sample);
+    if (project(joint, subject.block, sample)) subject.on_constraint.push_back(sample);
+  }
+  return subject;
+}
+
+}  // namespace cdot::derive
