@@ -1,0 +1,108 @@
+// The laws hold for every spec of the catalogue, and each of them fails for a derivation that breaks it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include "derive/numeric.hpp"
+#include "derive/prove.hpp"
+#include "derive/specs_folder.hpp"
+
+namespace cdot::derive {
+namespace {
+
+const std::filesystem::path specs = std::filesystem::path(CDOT_SOURCE_DIR) / "specs";
+
+Joint joint_of(const std::string& name) {
+  const SpecsFolder folder(specs);
+  const ReadResult read = folder.read(folder.find(name));
+  EXPECT_TRUE(read.joint) << render(*read.file, read.diagnostics);
+  return *read.joint;
+}
+
+TEST(Laws, HoldForEverySpecAndCoordinate) {
+  const SpecsFolder folder(specs);
+  int blocks = 0;
+  for (const std::filesystem::path& spec : folder.all()) {
+    const Joint joint = joint_of(spec.stem().string());
+    std::vector<Block> all = {derive_rows(joint)};
+    for (const Coordinate& c : joint.coordinates) all.push_back(derive_coordinate(joint, c));
+    for (const Block& block : all) {
+      ++blocks;
+      for (const Law& law : prove(joint, block).laws) {
+        EXPECT_TRUE(law.verdict == Verdict::holds || law.verdict == Verdict::does_not_apply)
+            << joint.name << " " << block.name << ": " << name_of(law.id) << ": " << law.text;
+      }
+    }
+  }
+  std::printf("%d row blocks obey %d laws each\n", blocks, number_of_laws);
+  EXPECT_GE(blocks, 23);
+}
+
+struct Broken {
+  const char* what;
+  LawId law;
+  std::function<void(Block&)> damage;
+};
+
+TEST(Laws, EachFailsForADerivationThatBreaksIt) {
+  const Joint joint = joint_of("line");
+  const Broken table[] = {
+      {"J with a flipped sign", LawId::jacobian, [](Block& b) { b.rows[0].J[0].w = -b.rows[0].J[0].w; }},
+      {"J without the turning axis", LawId::raw,
+       [&](Block& b) {
+         const Expr rb = joint.pool->find("rb"), t = joint.pool->find("t");
+         b.rows[0].J[1].w = -cross(rb, t);
+       }},
+      {"Cdot with a factor", LawId::rate, [](Block& b) { b.rows[0].Cdot = Rational(2) * b.rows[0].Cdot; }},
+      {"K with a body left out", LawId::mass,
+       [&](Block& b) { b.K[0][0] = b.K[0][0] - body_symbols(joint, 1).inv_m; }},
+      {"gamma of the wrong sign", LawId::gamma, [](Block& b) { b.rows[0].gamma = -b.rows[0].gamma; }},
+      {"a stiffness entry dropped", LawId::stiffness,
+       [&](Block& b) { b.stiffness[2][2] = joint.pool->number(0); }},
+  };
+  for (const Broken& broken : table) {
+    Block block = derive_rows(joint);
+    broken.damage(block);
+    const Proof proof = prove(joint, block);
+    const Law& law = proof.of(broken.law);
+    std::printf("%s: %s: %s\n", broken.what, std::string(name_of(law.id)).c_str(), law.text.c_str());
+    EXPECT_EQ(law.verdict, Verdict::fails) << broken.what;
+    EXPECT_FALSE(law.text.empty());
+    EXPECT_FALSE(proof.holds());
+  }
+}
+
+// A third route, in plain numbers: no algebra, no rule of differentiation.
+TEST(Laws, JacobianEqualsFiniteDifferences) {
+  const SpecsFolder folder(specs);
+  for (const std::filesystem::path& spec : folder.all()) {
+    const Joint joint = joint_of(spec.stem().string());
+    const Expr ex = world_x(*joint.pool);
+    for (const ScalarRow& row : derive_rows(joint).rows) {
+      std::vector<Expr> all = {row.C};
+      for (const JacobianEntry& e : row.J) all.insert(all.end(), {dot(ex, e.v), dot(perp(ex), e.v), e.w});
+      for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        Sample sample = random_sample(joint, all, seed);
+        for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+          double* const coordinates[] = {&sample.bodies[b].x, &sample.bodies[b].y, &sample.bodies[b].theta};
+          for (std::size_t k = 0; k < 3; ++k) {
+            const double J = evaluate(all[1 + 3 * b + k], world_values(joint, sample));
+            const double kept = *coordinates[k], step = 1e-6;
+            *coordinates[k] = kept + step;
+            const double above = evaluate(row.C, world_values(joint, sample));
+            *coordinates[k] = kept - step;
+            const double below = evaluate(row.C, world_values(joint, sample));
+            *coordinates[k] = kept;
+            EXPECT_NEAR(J, (above - below) / (2 * step), 1e-6 * (1 + std::fabs(J)))
+                << joint.name << ", row " << row.name << ", body " << joint.bodies[b] << ", column " << k;
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace cdot::derive
