@@ -1,0 +1,81 @@
+// A row block of any joint behind one face of plain numbers, so that a law is written once, as an
+// ordinary function, and says in its failures which joint and block broke it.
+#pragma once
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "runtime/kernel.hpp"
+
+namespace cdot {
+
+// The functions of the contract, in the order in which they are called.
+enum Function {
+  position,
+  jacobian,  // C, then the stored fields
+  effective_mass,
+  factor,
+  solve,
+  velocity,
+  apply,
+  dense,
+  inverse_mass_jacobian,
+  gamma,
+  time_derivative,
+  stiffness,
+  number_of_functions
+};
+
+inline constexpr std::array<std::string_view, number_of_functions> function_names = {
+    "position", "jacobian", "effective_mass",        "factor", "solve",           "velocity",
+    "apply",    "dense",    "inverse_mass_jacobian", "gamma",  "time_derivative", "stiffness"};
+
+// All that a block's functions read, laid out as in the contract: x y c s angle of each body, ...
+struct Inputs {
+  std::vector<double> q, v, m, p, lambda, rhs, time;
+};
+
+struct Operations {
+  int add = 0, multiply = 0, divide = 0, root = 0, compare = 0, call = 0;
+  Operations& operator+=(const Operations& o) {
+    add += o.add, multiply += o.multiply, divide += o.divide;
+    root += o.root, compare += o.compare, call += o.call;
+    return *this;
+  }
+  friend bool operator==(const Operations&, const Operations&) = default;
+};
+
+struct Outputs {
+  std::array<std::vector<double>, number_of_functions> of;
+  std::array<Operations, number_of_functions> cost;  // only from a scalar type that counts
+};
+
+struct AnyBlock {
+  std::string joint, block;  // "line", "slide.a_immovable"; the ledger's names
+  int bodies, rows;
+  int immovable;        // index of a body, or -1
+  std::size_t general;  // index, among the blocks, of this block with every body movable
+  bool is_coordinate, explicit_time;
+  std::span<const std::string_view> row_names;
+  std::span<const RowKind> row_kinds;
+  std::span<const ParameterInfo> parameters;
+
+  // Every function on as many inputs at once as the scalar type has lanes.
+  std::vector<Outputs> (*evaluate)(std::span<const Inputs> lanes);
+  // factor and solve for a K (lower triangle) that no pose has to give.
+  std::vector<double> (*factor_and_solve)(const std::vector<double>& K,
+                                          const std::vector<double>& rhs);
+  // Overwrites the parameters that have a default, in their order.
+  void (*set_defaults)(Inputs& in);
+
+  std::size_t columns() const { return 3 * static_cast<std::size_t>(bodies); }
+};
+
+// Every block of the registry, computing in T.
+template <class T>
+const std::vector<AnyBlock>& blocks();
+
+}  // namespace cdot

@@ -1,0 +1,5 @@
+// Every block of the registry in one scalar type, which the build gives: compiled once for each.
+#include "tests/kernels/counted.hpp"
+#include "tests/kernels/erase_block.hpp"
+
+template const std::vector<cdot::AnyBlock>& cdot::blocks<CDOT_SCALAR>();

@@ -1,0 +1,180 @@
+// From the generated structs to AnyBlock: the only place that sees the joints' types.
+#pragma once
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+#include <utility>
+
+#include "generated/registry.hpp"
+#include "runtime/pack.hpp"
+#include "tests/kernels/any_block.hpp"
+
+namespace cdot {
+
+template <class T>
+struct Lanes {
+  static constexpr std::size_t count = 1;
+  static void set(T& x, std::size_t, double value) { x = T(value); }
+  static double get(const T& x, std::size_t) { return static_cast<double>(x); }
+};
+template <class T, int width>
+struct Lanes<Pack<T, width>> {
+  static constexpr std::size_t count = width;
+  static void set(Pack<T, width>& x, std::size_t lane, double value) {
+    x.set(static_cast<int>(lane), static_cast<T>(value));
+  }
+  static double get(const Pack<T, width>& x, std::size_t lane) { return x[static_cast<int>(lane)]; }
+};
+
+// How many numbers of type T a struct or an array of structs consists of.
+template <class T, class Struct, std::size_t bytes = sizeof(Struct)>
+inline constexpr std::size_t numbers_in = bytes / sizeof(T);
+
+template <class T, class Target>
+void load(Target& target, std::span<const Inputs> lanes, std::vector<double> Inputs::*member) {
+  if constexpr (!std::is_empty_v<Target>) {
+    std::array<T, numbers_in<T, Target>> numbers;
+    for (std::size_t lane = 0; lane < Lanes<T>::count; ++lane) {
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        Lanes<T>::set(numbers[i], lane, (lanes[lane].*member)[i]);
+      }
+    }
+    std::memcpy(&target, numbers.data(), sizeof target);
+  }
+}
+
+// Appends what `function` computed, and what it cost if T counts.
+template <class T, class Source>
+void keep(std::vector<Outputs>& outputs, Function function, const Source& source) {
+  if constexpr (requires { T::taken; }) outputs[0].cost[function] += std::exchange(T::taken, {});
+  if constexpr (!std::is_empty_v<Source>) {
+    std::array<T, numbers_in<T, Source>> numbers;
+    std::memcpy(numbers.data(), &source, sizeof source);
+    for (std::size_t lane = 0; lane < Lanes<T>::count; ++lane) {
+      for (const T& x : numbers) outputs[lane].of[function].push_back(Lanes<T>::get(x, lane));
+    }
+  }
+}
+
+template <class Joint, class Block, class T>
+std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
+  constexpr int n = Block::bodies, rows = Block::rows, triangle = rows * (rows + 1) / 2;
+  planar::Pose<T> q[n];
+  planar::Velocity<T> v[n];
+  planar::InverseMass<T> m[n];
+  typename Joint::template Parameters<T> p;
+  typename Block::template Jacobian<T> J;
+  T time[1], lambda[rows], rhs[rows];
+  load<T>(q, lanes, &Inputs::q);
+  load<T>(v, lanes, &Inputs::v);
+  load<T>(m, lanes, &Inputs::m);
+  load<T>(p, lanes, &Inputs::p);
+  load<T>(time, lanes, &Inputs::time);
+  load<T>(lambda, lanes, &Inputs::lambda);
+  load<T>(rhs, lanes, &Inputs::rhs);
+
+  std::vector<Outputs> out(Lanes<T>::count);
+  T C[rows], K[triangle], F[triangle], x[rows], Jv[rows], g[rows];
+  T D[rows][3 * n], H[3 * n][3 * n];
+  Block::position(q, p, time[0], C), keep<T>(out, position, C);
+  Block::jacobian(q, p, time[0], C, J), keep<T>(out, jacobian, C), keep<T>(out, jacobian, J);
+  Block::effective_mass(J, m, K), keep<T>(out, effective_mass, K);
+  Block::factor(K, F), keep<T>(out, factor, F);
+  Block::solve(F, rhs, x), keep<T>(out, solve, x);
+  Block::velocity(J, v, Jv), keep<T>(out, velocity, Jv);
+  Block::dense(J, D), keep<T>(out, dense, D);
+  Block::inverse_mass_jacobian(J, m, D), keep<T>(out, inverse_mass_jacobian, D);
+  Block::gamma(q, v, p, time[0], g), keep<T>(out, gamma, g);
+  Block::time_derivative(q, p, time[0], g), keep<T>(out, time_derivative, g);
+  Block::stiffness(q, p, time[0], lambda, H), keep<T>(out, stiffness, H);
+  Block::apply(J, m, lambda, v), keep<T>(out, apply, v);
+  return out;
+}
+
+template <class Block>
+std::vector<double> factor_and_solve(const std::vector<double>& K, const std::vector<double>& rhs) {
+  constexpr int rows = Block::rows, triangle = rows * (rows + 1) / 2;
+  double k[triangle], F[triangle], b[rows], x[rows];
+  std::copy(K.begin(), K.end(), k);
+  std::copy(rhs.begin(), rhs.end(), b);
+  Block::factor(k, F);
+  Block::solve(F, b, x);
+  return {x, x + rows};
+}
+
+template <class Joint>
+void set_defaults(Inputs& in) {
+  planar::Pose<double> q[Joint::bodies];
+  typename Joint::template Parameters<double> p;
+  load<double>(q, std::span(&in, 1), &Inputs::q);
+  load<double>(p, std::span(&in, 1), &Inputs::p);
+  for (std::size_t i = 0; i < Joint::parameters.size(); ++i) {
+    if (Joint::parameters[i].has_default) {
+      Joint::default_value(static_cast<int>(i), q, p, in.time[0]);
+    }
+  }
+  std::memcpy(in.p.data(), &p, in.p.size() * sizeof(double));
+}
+
+template <class Joint, class Block, class T>
+AnyBlock erased(std::string name, std::size_t general, bool is_coordinate) {
+  int immovable = -1;
+  if constexpr (requires { Block::immovable_body; }) immovable = Block::immovable_body;
+  return {std::string(Joint::name),
+          std::move(name),
+          Block::bodies,
+          Block::rows,
+          immovable,
+          general,
+          is_coordinate,
+          Block::explicit_time,
+          Block::row_names,
+          Block::row_kinds,
+          Joint::parameters,
+          evaluate<Joint, Block, T>,
+          factor_and_solve<Block>,
+          set_defaults<Joint>};
+}
+
+// A block and its variants; `prefix` is "" for the rows, "slide." for a coordinate.
+template <class Joint, class Block, class T>
+void add_with_variants(std::vector<AnyBlock>& all, const std::string& name,
+                       const std::string& prefix) {
+  const std::size_t general = all.size();
+  all.push_back(erased<Joint, Block, T>(name, general, !prefix.empty()));
+  const auto add = [&]<class Variant>(std::type_identity<Variant>) {
+    const std::string body(Joint::body_names[Variant::immovable_body]);
+    all.push_back(
+        erased<Joint, Variant, T>(prefix + body + "_immovable", general, !prefix.empty()));
+  };
+  [&]<class... Variants>(std::type_identity<std::tuple<Variants...>>) {
+    (add(std::type_identity<Variants>{}), ...);
+  }(std::type_identity<typename Block::Immovable>{});
+}
+
+template <class Joint, class T>
+void add_joint(std::vector<AnyBlock>& all) {
+  add_with_variants<Joint, Joint, T>(all, "rows", "");
+  const auto add = [&]<class Coordinate>(std::type_identity<Coordinate>) {
+    const std::string name(Coordinate::name);
+    add_with_variants<Joint, Coordinate, T>(all, name, name + ".");
+  };
+  [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {
+    (add(std::type_identity<Coordinates>{}), ...);
+  }(std::type_identity<typename Joint::Coordinates>{});
+}
+
+template <class T>
+const std::vector<AnyBlock>& blocks() {
+  static const std::vector<AnyBlock> all = [] {
+    std::vector<AnyBlock> list;
+    [&]<class... Joints>(std::type_identity<std::tuple<Joints...>>) {
+      (add_joint<Joints, T>(list), ...);
+    }(std::type_identity<planar::Joints>{});
+    return list;
+  }();
+  return all;
+}
+
+}  // namespace cdot

@@ -1,0 +1,73 @@
+#include "tests/kernels/law.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cdot {
+
+Eigen::MatrixXd matrix(const Outputs& out, Function function, Eigen::Index columns) {
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const std::vector<double>& numbers = out.of[function];
+  return Eigen::Map<const RowMajor>(numbers.data(),
+                                    static_cast<Eigen::Index>(numbers.size()) / columns, columns);
+}
+
+Eigen::VectorXd vector(const std::vector<double>& numbers) {
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
+                                           static_cast<Eigen::Index>(numbers.size()));
+}
+
+Eigen::MatrixXd symmetric(const std::vector<double>& triangle, int rows) {
+  Eigen::MatrixXd K(rows, rows);
+  std::size_t next = 0;
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j <= i; ++j) K(i, j) = K(j, i) = triangle[next++];
+  }
+  return K;
+}
+
+Eigen::VectorXd inverse_masses(const Inputs& in) {
+  Eigen::VectorXd diagonal(static_cast<Eigen::Index>(in.v.size()));
+  for (Eigen::Index c = 0; c < diagonal.size(); ++c) {
+    diagonal[c] = in.m[static_cast<std::size_t>(2 * (c / 3) + (c % 3 == 2))];
+  }
+  return diagonal;
+}
+
+Outputs evaluate_one(const AnyBlock& block, const Inputs& in) {
+  return block.evaluate(std::span(&in, 1)).front();
+}
+
+Eigen::MatrixXd dense_jacobian(const AnyBlock& block, const Inputs& in) {
+  return matrix(evaluate_one(block, in), dense, 3 * block.bodies);
+}
+
+Eigen::MatrixXd derivative_at_zero(const std::function<Eigen::MatrixXd(double)>& f) {
+  constexpr double h = 1e-3;
+  const Eigen::MatrixXd wide = (f(h) - f(-h)) / (2 * h), narrow = (f(h / 2) - f(-h / 2)) / h;
+  return (4 * narrow - wide) / 3;
+}
+
+void expect_near(const AnyBlock& block, std::string_view law, const Eigen::MatrixXd& actual,
+                 const Eigen::MatrixXd& expected, double tolerance) {
+  ASSERT_EQ(actual.rows(), expected.rows()) << block.joint << ' ' << block.block << ": " << law;
+  ASSERT_EQ(actual.cols(), expected.cols()) << block.joint << ' ' << block.block << ": " << law;
+  for (Eigen::Index i = 0; i < actual.rows(); ++i) {
+    for (Eigen::Index j = 0; j < actual.cols(); ++j) {
+      const double a = actual(i, j), e = expected(i, j);
+      // Written so that NaN fails.
+      if (std::abs(a - e) <= tolerance * (1 + std::abs(e))) continue;
+      ADD_FAILURE() << block.joint << ", " << block.block << ": " << law << ": row " << i
+                    << ", column " << j << " is " << a << ", not " << e;
+    }
+  }
+}
+
+void for_all(const std::function<void(const AnyBlock&, const Inputs&)>& law) {
+  ASSERT_GE(blocks<double>().size(), 20u);
+  for (const AnyBlock& block : blocks<double>()) {
+    for (std::uint32_t seed = 1; seed <= samples; ++seed) law(block, random_inputs(block, seed));
+  }
+}
+
+}  // namespace cdot

@@ -1,0 +1,40 @@
+// What the laws share: a block's outputs as matrices, derivatives by differences, and failures that
+// name the place.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <functional>
+
+#include "tests/kernels/any_block.hpp"
+#include "tests/kernels/sample.hpp"
+
+namespace cdot {
+
+inline constexpr std::uint32_t samples = 12;  // random inputs per block and law
+
+// One function's outputs, row by row.
+Eigen::MatrixXd matrix(const Outputs& out, Function function, Eigen::Index columns);
+Eigen::VectorXd vector(const std::vector<double>& numbers);
+// The full symmetric K from its lower triangle.
+Eigen::MatrixXd symmetric(const std::vector<double>& triangle, int rows);
+// The diagonal of M^-1: 1/m, 1/m, 1/I of each body.
+Eigen::VectorXd inverse_masses(const Inputs& in);
+
+Outputs evaluate_one(const AnyBlock& block, const Inputs& in);
+// J with its zeros.
+Eigen::MatrixXd dense_jacobian(const AnyBlock& block, const Inputs& in);
+
+// f'(0) by central differences at two steps, extrapolated: an error of fourth order in the step.
+Eigen::MatrixXd derivative_at_zero(const std::function<Eigen::MatrixXd(double)>& f);
+
+// Entry by entry within tolerance (1 + |expected|); a failure names joint, block, law, row and
+// column.
+void expect_near(const AnyBlock& block, std::string_view law, const Eigen::MatrixXd& actual,
+                 const Eigen::MatrixXd& expected, double tolerance);
+
+// The law for every block at several random inputs.
+void for_all(const std::function<void(const AnyBlock&, const Inputs&)>& law);
+
+}  // namespace cdot

@@ -1,0 +1,154 @@
+// One kernel, many kinds of number: packs give the bits of their lanes, floats come close to
+// doubles, and a user's own type that counts agrees with the ledger.
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "runtime/pack.hpp"
+#include "tests/kernels/counted.hpp"
+#include "tests/kernels/law.hpp"
+
+using namespace cdot;
+
+namespace {
+
+template <class T>
+struct Packs : testing::Test {};
+using PackTypes = testing::Types<Pack<float, 4>, Pack<float, 8>, Pack<float, 16>, Pack<double, 4>,
+                                 Pack<double, 8>, Pack<double, 16>>;
+TYPED_TEST_SUITE(Packs, PackTypes);
+
+// As many inputs as lanes; singular ones among them, so that what one lane guards against must not
+// leak.
+std::vector<Inputs> lanes_of_inputs(const AnyBlock& block, std::uint32_t seed) {
+  std::vector<Inputs> lanes;
+  for (const SingularInputs& singular : singular_inputs(block, seed)) {
+    lanes.push_back(singular.inputs);
+    lanes.push_back(random_inputs(block, seed++));
+  }
+  while (lanes.size() < 16) lanes.push_back(random_inputs(block, seed++));
+  if (seed % 2 == 0) std::reverse(lanes.begin(), lanes.end());
+  return lanes;
+}
+
+void expect_equal_bits(const AnyBlock& block, const Outputs& pack, const Outputs& scalar,
+                       std::size_t lane) {
+  for (std::size_t f = 0; f < number_of_functions; ++f) {
+    ASSERT_EQ(pack.of[f].size(), scalar.of[f].size());
+    for (std::size_t i = 0; i < pack.of[f].size(); ++i) {
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(pack.of[f][i]),
+                std::bit_cast<std::uint64_t>(scalar.of[f][i]))
+          << block.joint << ", " << block.block << ": " << function_names[f] << ", number " << i
+          << ", lane " << lane << ": " << pack.of[f][i] << " and " << scalar.of[f][i];
+    }
+  }
+}
+
+using Key = std::array<std::string, 3>;  // joint, block, function
+
+std::map<Key, Operations> generated_ledger() {
+  std::map<Key, Operations> ledger;
+  std::ifstream file(CDOT_GENERATED "/ledger.csv");
+  EXPECT_TRUE(file) << "no ledger";
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "joint,block,quantity,source,add,multiply,divide,root,compare,call,total");
+  while (std::getline(file, line)) {
+    std::istringstream cells(line);
+    std::vector<std::string> cell;
+    for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
+    if (cell[3] != "generated") continue;
+    const auto number = [&](std::size_t i) { return std::stoi(cell[i]); };
+    ledger[{cell[0], cell[1], cell[2]}] = {number(4), number(5), number(6),
+                                           number(7), number(8), number(9)};
+    EXPECT_EQ(number(10), number(4) + number(5) + number(6) + number(7) + number(8) + number(9))
+        << line;
+  }
+  return ledger;
+}
+
+std::string text(const Operations& o) {
+  std::ostringstream s;
+  s << o.add << " +, " << o.multiply << " *, " << o.divide << " /, " << o.root << " roots, "
+    << o.compare << " comparisons, " << o.call << " calls";
+  return s.str();
+}
+
+}  // namespace
+
+TYPED_TEST(Packs, every_lane_has_the_bits_of_the_scalar) {
+  using T = typename ScalarOf<TypeParam>::type;
+  const std::vector<AnyBlock>&wide = blocks<TypeParam>(), &narrow = blocks<T>();
+  ASSERT_EQ(wide.size(), narrow.size());
+  for (std::size_t b = 0; b < wide.size(); ++b) {
+    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+      const std::vector<Inputs> inputs = lanes_of_inputs(wide[b], 100 * seed);
+      const std::vector<Outputs> out = wide[b].evaluate(inputs);
+      ASSERT_LE(out.size(), inputs.size());
+      for (std::size_t lane = 0; lane < out.size(); ++lane) {
+        expect_equal_bits(wide[b], out[lane], evaluate_one(narrow[b], inputs[lane]), lane);
+      }
+    }
+  }
+}
+
+TEST(Floats, come_close_to_doubles) {
+  for_all([](const AnyBlock& block, const Inputs& in) {
+    const Outputs fine = evaluate_one(block, in);
+    const auto index = static_cast<std::size_t>(&block - blocks<double>().data());
+    const Outputs coarse = evaluate_one(blocks<float>()[index], in);
+    const double condition =
+        1 + vector(fine.of[factor]).norm() * vector(fine.of[effective_mass]).norm();
+    for (std::size_t f = 0; f < number_of_functions; ++f) {
+      const double scale =
+          f == solve || f == factor ? condition * condition : 1 + vector(fine.of[f]).norm();
+      expect_near(block, function_names[f], vector(coarse.of[f]), vector(fine.of[f]), 2e-5 * scale);
+    }
+  });
+}
+
+TEST(Floats, stay_finite_at_singular_poses) {
+  for (const AnyBlock& block : blocks<float>()) {
+    for (const auto& [name, in] : singular_inputs(block, 3)) {
+      const Outputs out = evaluate_one(block, in);
+      for (std::size_t f = 0; f < number_of_functions; ++f) {
+        for (const double x : out.of[f]) {
+          EXPECT_TRUE(std::isfinite(x))
+              << block.joint << ", " << block.block << ": " << function_names[f] << " at: " << name;
+        }
+      }
+    }
+  }
+}
+
+TEST(Counted, has_the_bits_of_a_double) {
+  for_all([](const AnyBlock& block, const Inputs& in) {
+    const auto index = static_cast<std::size_t>(&block - blocks<double>().data());
+    expect_equal_bits(block, evaluate_one(blocks<counting::Counted>()[index], in),
+                      evaluate_one(block, in), 0);
+  });
+}
+
+TEST(Counted, agrees_with_the_ledger) {
+  const std::map<Key, Operations> ledger = generated_ledger();
+  std::size_t compared = 0;
+  for (const AnyBlock& block : blocks<counting::Counted>()) {
+    const Outputs out = evaluate_one(block, random_inputs(block, 1));
+    for (std::size_t f = 0; f < number_of_functions; ++f) {
+      const auto row = ledger.find({block.joint, block.block, std::string(function_names[f])});
+      ASSERT_NE(row, ledger.end())
+          << block.joint << ", " << block.block << ": " << function_names[f];
+      EXPECT_EQ(out.cost[f], row->second)
+          << block.joint << ", " << block.block << ": " << function_names[f] << " does "
+          << text(out.cost[f]) << "; the ledger says " << text(row->second);
+      ++compared;
+    }
+  }
+  // Besides, the ledger has C, J and K of each block that is no variant.
+  std::size_t general = 0;
+  for (const AnyBlock& block : blocks<double>()) general += block.immovable < 0;
+  EXPECT_EQ(compared + 3 * general, ledger.size()) << "rows of joints or blocks that do not exist";
+}
