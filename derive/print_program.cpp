@@ -33,9 +33,13 @@ class StatementPrinter {
       for (const int arg : at(output.op).args) define(arg);
       if (uses_[index(output.op)] > 1) define(output.op);
     }
+    std::map<int, std::string> assigned;
     for (const Output& output : program_.outputs) {
       if (printing_.zeroed && is_zero(output.op)) continue;
-      emit(output.name + " = " + expression(output.op, in_sum) + ";");
+      // A negative that two outputs share is computed once: H[5][4] = H[4][5].
+      const auto [first, is_new] = assigned.emplace(output.op, output.name);
+      const bool copied = !is_new && is_negative(at(output.op));
+      emit(output.name + " = " + (copied ? first->second : expression(output.op, in_sum)) + ";");
     }
     return std::move(lines_);
   }
@@ -92,9 +96,13 @@ class StatementPrinter {
     return op.kind == OpKind::sum && op.args.size() == 1;
   }
 
+  static bool is_negative(const Operation& op) {
+    return is_scaling(op) && op.coefs[0] == Rational(-1);
+  }
+
   bool wants_variable(int op) const {
     const Operation& o = at(op);
-    if (is_atom(o) || (is_scaling(o) && abs(o.coefs[0]) == Rational(1))) return false;
+    if (is_atom(o) || is_negative(o)) return false;
     return !o.name.empty() || uses_[index(op)] > 1;
   }
 
@@ -102,7 +110,8 @@ class StatementPrinter {
     if (!variable_[index(op)].empty()) return;
     define_sibling(at(op).name, "_y", "x");
     for (const int arg : at(op).args) define(arg);
-    if (!wants_variable(op)) return;
+    // A sibling that was defined first may have defined this one in its turn.
+    if (!variable_[index(op)].empty() || !wants_variable(op)) return;
     std::string name = at(op).name;
     if (name.empty()) name = natural_name(at(op));
     if (name.empty()) name = fmt::format("{}_{}", label_, ++serial_);

@@ -200,7 +200,7 @@ struct driven_crank {
     D[0][5] = mb.I * J.rb_y;
     D[1][1] = ma.m;
     D[1][2] = ma.I * J.ra_x;
-    D[1][4] = -mb.m;
+    D[1][4] = D[0][3];
     D[1][5] = -mb.I * J.rb_x;
     D[2][2] = -ma.I;
     D[2][5] = mb.I;
@@ -484,7 +484,7 @@ struct driven_crank::a_immovable : driven_crank {
     const InverseMass<T>& mb = m[1];
     D[0][3] = -mb.m;
     D[0][5] = mb.I * J.rb_y;
-    D[1][4] = -mb.m;
+    D[1][4] = D[0][3];
     D[1][5] = -mb.I * J.rb_x;
     D[2][5] = mb.I;
   }

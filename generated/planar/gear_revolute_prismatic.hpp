@@ -247,12 +247,11 @@ struct gear_revolute_prismatic {
     const T H4_1 = lambda[0] * p.ratio;
     const T e_x = d.c * p.e_x - d.s * p.e_y;
     const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T e_y_2 = e_y;
-    const T H4_2 = H4_1 * e_y_2;
+    const T H4_2 = H4_1 * e_y;
     const T H5_1 = H4_1 * e_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T dot_rb_e = rb_x * e_x + rb_y * e_y_2;
+    const T dot_rb_e = rb_x * e_x + rb_y * e_y;
     const T H6_1 = H4_1 * dot_rb_e;
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
@@ -260,18 +259,18 @@ struct gear_revolute_prismatic {
     const T ub_y = b.y - d.y + rb_y - rd_y;
     const T rd_ub_x = ub_x + rd_x;
     const T rd_ub_y = ub_y + rd_y;
-    const T dot_rd_ub_e = rd_ub_x * e_x + rd_ub_y * e_y_2;
+    const T dot_rd_ub_e = rd_ub_x * e_x + rd_ub_y * e_y;
     H[3][11] = -H4_2;
     H[4][11] = H5_1;
     H[5][5] = -H6_1;
     H[5][11] = H6_1;
     H[9][11] = H4_2;
     H[10][11] = -H5_1;
-    H[11][3] = -H4_2;
+    H[11][3] = H[3][11];
     H[11][4] = H5_1;
     H[11][5] = H6_1;
     H[11][9] = H4_2;
-    H[11][10] = -H5_1;
+    H[11][10] = H[10][11];
     H[11][11] = -H4_1 * dot_rd_ub_e;
   }
 
@@ -524,19 +523,17 @@ struct gear_revolute_prismatic::b_immovable : gear_revolute_prismatic {
     const Velocity<T>& vd = v[3];
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T rd_y_2 = rd_y;
-    const T ub_dot_x = vd.w * rd_y_2 - vd.x;
+    const T ub_dot_x = vd.w * rd_y - vd.x;
     const T ub_dot_y = -vd.y - vd.w * rd_x;
     const T e_x = d.c * p.e_x - d.s * p.e_y;
     const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T e_y_2 = e_y;
-    const T ub_dot_x_e = ub_dot_x * e_y_2 - ub_dot_y * e_x;
+    const T ub_dot_x_e = ub_dot_x * e_y - ub_dot_y * e_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y_2;
-    const T qb = ub_x * e_x + ub_y * e_y_2;
-    const T dot_rd_e = e_x * rd_x + e_y_2 * rd_y_2;
+    const T ub_y = b.y - d.y + rb_y - rd_y;
+    const T qb = ub_x * e_x + ub_y * e_y;
+    const T dot_rd_e = e_x * rd_x + e_y * rd_y;
     g[0] = -p.ratio * vd.w * (vd.w * (dot_rd_e - qb) - T(2) * ub_dot_x_e);
   }
 
@@ -552,8 +549,7 @@ struct gear_revolute_prismatic::b_immovable : gear_revolute_prismatic {
     const T H10_1 = lambda[0] * p.ratio;
     const T e_x = d.c * p.e_x - d.s * p.e_y;
     const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T e_y_2 = e_y;
-    const T H10_2 = H10_1 * e_y_2;
+    const T H10_2 = H10_1 * e_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
@@ -562,11 +558,11 @@ struct gear_revolute_prismatic::b_immovable : gear_revolute_prismatic {
     const T ub_y = b.y - d.y + rb_y - rd_y;
     const T rd_ub_x = ub_x + rd_x;
     const T rd_ub_y = ub_y + rd_y;
-    const T dot_rd_ub_e = rd_ub_x * e_x + rd_ub_y * e_y_2;
+    const T dot_rd_ub_e = rd_ub_x * e_x + rd_ub_y * e_y;
     H[9][11] = H10_2;
     H[10][11] = -H10_1 * e_x;
     H[11][9] = H10_2;
-    H[11][10] = -H10_1 * e_x;
+    H[11][10] = H[10][11];
     H[11][11] = -H10_1 * dot_rd_ub_e;
   }
 };
@@ -675,8 +671,7 @@ struct gear_revolute_prismatic::c_immovable : gear_revolute_prismatic {
     const T ub_dot_dot_x_2 = ub_dot_dot_x - g1_1 * rb_x;
     const T ub_dot_dot_y = g1_2 * rd_y;
     const T ub_dot_dot_y_2 = ub_dot_dot_y - g1_1 * rb_y;
-    const T ub_dot_dot_x_3 = ub_dot_dot_x_2;
-    const T dot_ub_dot_dot_e = e_x * ub_dot_dot_x_3 + e_y * ub_dot_dot_y_2;
+    const T dot_ub_dot_dot_e = e_x * ub_dot_dot_x_2 + e_y * ub_dot_dot_y_2;
     const T ub_dot_x = vb.x - vd.x - vb.w * rb_y + vd.w * rd_y;
     const T ub_dot_y = vb.y - vd.y + vb.w * rb_x - vd.w * rd_x;
     const T ub_dot_x_e = ub_dot_x * e_y - ub_dot_y * e_x;

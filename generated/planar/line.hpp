@@ -210,12 +210,11 @@ struct line {
     const Pose<T>& b = q[1];
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T H1_1 = lambda[0] * t_y_2;
+    const T H1_1 = lambda[0] * t_y;
     const T H2_1 = lambda[0] * t_x;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T dot_ra_t = ra_x * t_x + ra_y * t_y_2;
+    const T dot_ra_t = ra_x * t_x + ra_y * t_y;
     const T H3_1 = lambda[0] * dot_ra_t;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
@@ -223,18 +222,18 @@ struct line {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
+    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
     H[0][5] = -H1_1;
     H[1][5] = H2_1;
     H[2][2] = -H3_1;
     H[2][5] = H3_1;
     H[3][5] = H1_1;
     H[4][5] = -H2_1;
-    H[5][0] = -H1_1;
+    H[5][0] = H[0][5];
     H[5][1] = H2_1;
     H[5][2] = H3_1;
     H[5][3] = H1_1;
-    H[5][4] = -H2_1;
+    H[5][4] = H[4][5];
     H[5][5] = -lambda[0] * dot_rb_u_t;
   }
 
@@ -267,9 +266,8 @@ struct line {
         const T inv_u_len = inverse(u_len);
         const T dir_u_x = select(u_len > smallest<T>(), u_x * inv_u_len, T(1));
         const T dir_u_y = select(u_len > smallest<T>(), u_y * inv_u_len, T(0));
-        const T dir_u_y_2 = dir_u_y;
-        p.t_x = b.s * dir_u_x - b.c * dir_u_y_2;
-        p.t_y = b.c * dir_u_x + b.s * dir_u_y_2;
+        p.t_x = b.s * dir_u_x - b.c * dir_u_y;
+        p.t_y = b.c * dir_u_x + b.s * dir_u_y;
         break;
       }
       default: break;
@@ -304,8 +302,7 @@ struct line {
       const T u_y = a.y - b.y + ra_y - rb_y;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T t_y_2 = t_y;
-      C[0] = u_x * t_y_2 - u_y * t_x;
+      C[0] = u_x * t_y - u_y * t_x;
     }
 
     // C and J: 17 +, 18 *
@@ -322,14 +319,13 @@ struct line {
       const T u_y = a.y - b.y + ra_y - rb_y;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T t_y_2 = t_y;
       const T rb_u_x = u_x + rb_x;
       const T rb_u_y = u_y + rb_y;
-      C[0] = u_x * t_y_2 - u_y * t_x;
-      J.t_y = t_y_2;
+      C[0] = u_x * t_y - u_y * t_x;
+      J.t_y = t_y;
       J.t_x = t_x;
-      J.dot_ra_t = ra_x * t_x + ra_y * t_y_2;
-      J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
+      J.dot_ra_t = ra_x * t_x + ra_y * t_y;
+      J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
     }
 
     // K = J M^-1 J^T, lower triangle, from J: 3 +, 4 *
@@ -428,17 +424,15 @@ struct line {
       const T u_dot_dot_x_2 = u_dot_dot_x - g1_1 * ra_x;
       const T u_dot_dot_y = g1_2 * rb_y;
       const T u_dot_dot_y_2 = u_dot_dot_y - g1_1 * ra_y;
-      const T u_dot_dot_x_3 = u_dot_dot_x_2;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T t_y_2 = t_y;
-      const T u_dot_dot_x_t = u_dot_dot_x_3 * t_y_2 - u_dot_dot_y_2 * t_x;
+      const T u_dot_dot_x_t = u_dot_dot_x_2 * t_y - u_dot_dot_y_2 * t_x;
       const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
       const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
-      const T dot_u_dot_t = u_dot_x * t_x + u_dot_y * t_y_2;
+      const T dot_u_dot_t = u_dot_x * t_x + u_dot_y * t_y;
       const T u_x = a.x - b.x + ra_x - rb_x;
       const T u_y = a.y - b.y + ra_y - rb_y;
-      const T u_x_t = u_x * t_y_2 - u_y * t_x;
+      const T u_x_t = u_x * t_y - u_y * t_x;
       g[0] = vb.w * (vb.w * u_x_t - T(2) * dot_u_dot_t) - u_dot_dot_x_t;
     }
 
@@ -481,8 +475,8 @@ struct line {
       H[5][0] = H1_1;
       H[5][1] = H2_1;
       H[5][2] = H3_1;
-      H[5][3] = -H1_1;
-      H[5][4] = -H2_1;
+      H[5][3] = H[3][5];
+      H[5][4] = H[4][5];
       H[5][5] = -lambda[0] * rb_u_x_t;
     }
 
@@ -588,19 +582,17 @@ struct line::a_immovable : line {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = vb.w * rb_y_2 - vb.x;
+    const T u_dot_x = vb.w * rb_y - vb.x;
     const T u_dot_y = -vb.y - vb.w * rb_x;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T u_dot_x_t = u_dot_x * t_y_2 - u_dot_y * t_x;
+    const T u_dot_x_t = u_dot_x * t_y - u_dot_y * t_x;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y_2;
-    const T dot_u_t = u_x * t_x + u_y * t_y_2;
-    const T dot_rb_t = rb_x * t_x + rb_y_2 * t_y_2;
+    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T dot_u_t = u_x * t_x + u_y * t_y;
+    const T dot_rb_t = rb_x * t_x + rb_y * t_y;
     g[0] = vb.w * (T(2) * u_dot_x_t + vb.w * (dot_u_t - dot_rb_t));
   }
 
@@ -615,8 +607,7 @@ struct line::a_immovable : line {
     const Pose<T>& b = q[1];
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T H4_1 = lambda[0] * t_y_2;
+    const T H4_1 = lambda[0] * t_y;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
@@ -625,11 +616,11 @@ struct line::a_immovable : line {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
+    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
     H[3][5] = H4_1;
     H[4][5] = -lambda[0] * t_x;
     H[5][3] = H4_1;
-    H[5][4] = -lambda[0] * t_x;
+    H[5][4] = H[4][5];
     H[5][5] = -lambda[0] * dot_rb_u_t;
   }
 };
@@ -769,13 +760,12 @@ struct line::slide::a_immovable : line::slide {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    C[0] = u_x * t_y_2 - u_y * t_x;
-    J.t_y = t_y_2;
+    C[0] = u_x * t_y - u_y * t_x;
+    J.t_y = t_y;
     J.t_x = t_x;
-    J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
+    J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *
@@ -837,8 +827,7 @@ struct line::slide::a_immovable : line::slide {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = vb.w * rb_y_2 - vb.x;
+    const T u_dot_x = vb.w * rb_y - vb.x;
     const T u_dot_y = -vb.y - vb.w * rb_x;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
@@ -846,9 +835,9 @@ struct line::slide::a_immovable : line::slide {
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y_2;
+    const T u_y = a.y - b.y + ra_y - rb_y;
     const T u_x_t = u_x * t_y - u_y * t_x;
-    const T rb_x_t = rb_x * t_y - rb_y_2 * t_x;
+    const T rb_x_t = rb_x * t_y - rb_y * t_x;
     g[0] = vb.w * (vb.w * (u_x_t - rb_x_t) - T(2) * dot_u_dot_t);
   }
 
@@ -874,8 +863,8 @@ struct line::slide::a_immovable : line::slide {
     const T rb_u_x_t = rb_u_x * t_y - rb_u_y * t_x;
     H[3][5] = -lambda[0] * t_x;
     H[4][5] = -lambda[0] * t_y;
-    H[5][3] = -lambda[0] * t_x;
-    H[5][4] = -lambda[0] * t_y;
+    H[5][3] = H[3][5];
+    H[5][4] = H[4][5];
     H[5][5] = -lambda[0] * rb_u_x_t;
   }
 };
@@ -903,11 +892,10 @@ struct line::slide::b_immovable : line::slide {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    C[0] = u_x * t_y_2 - u_y * t_x;
-    J.t_y = t_y_2;
+    C[0] = u_x * t_y - u_y * t_x;
+    J.t_y = t_y;
     J.t_x = t_x;
-    J.dot_ra_t = ra_x * t_x + ra_y * t_y_2;
+    J.dot_ra_t = ra_x * t_x + ra_y * t_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *
@@ -971,8 +959,7 @@ struct line::slide::b_immovable : line::slide {
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T ra_x_t = ra_x * t_y_2 - ra_y * t_x;
+    const T ra_x_t = ra_x * t_y - ra_y * t_x;
     g[0] = va.w * va.w * ra_x_t;
   }
 
@@ -989,8 +976,7 @@ struct line::slide::b_immovable : line::slide {
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T ra_x_t = ra_x * t_y_2 - ra_y * t_x;
+    const T ra_x_t = ra_x * t_y - ra_y * t_x;
     H[2][2] = -lambda[0] * ra_x_t;
   }
 };

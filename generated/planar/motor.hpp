@@ -193,7 +193,7 @@ struct motor {
     D[0][2] = ma.I * J.offset_y;
     D[0][3] = mb.m;
     D[0][5] = -mb.I * J.rb_y;
-    D[1][1] = -ma.m;
+    D[1][1] = D[0][0];
     D[1][2] = -ma.I * J.offset_x;
     D[1][4] = mb.m;
     D[1][5] = mb.I * J.rb_x;
@@ -481,7 +481,7 @@ struct motor::b_immovable : motor {
     const InverseMass<T>& ma = m[0];
     D[0][0] = -ma.m;
     D[0][2] = ma.I * J.offset_y;
-    D[1][1] = -ma.m;
+    D[1][1] = D[0][0];
     D[1][2] = -ma.I * J.offset_x;
     D[2][2] = -ma.I;
   }

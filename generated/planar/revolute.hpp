@@ -170,7 +170,7 @@ struct revolute {
     D[0][5] = mb.I * J.rb_y;
     D[1][1] = ma.m;
     D[1][2] = ma.I * J.ra_x;
-    D[1][4] = -mb.m;
+    D[1][4] = D[0][3];
     D[1][5] = -mb.I * J.rb_x;
   }
 
@@ -437,7 +437,7 @@ struct revolute::a_immovable : revolute {
     const InverseMass<T>& mb = m[1];
     D[0][3] = -mb.m;
     D[0][5] = mb.I * J.rb_y;
-    D[1][4] = -mb.m;
+    D[1][4] = D[0][3];
     D[1][5] = -mb.I * J.rb_x;
   }
 

@@ -176,9 +176,9 @@ struct rolling {
     D[0][4] = -J.n_y;
     D[0][5] = -J.rb_u_x_n;
     D[1][0] = J.n_y;
-    D[1][1] = -J.n_x;
+    D[1][1] = D[0][3];
     D[1][2] = J.radius;
-    D[1][3] = -J.n_y;
+    D[1][3] = D[0][4];
     D[1][4] = -J.e_y;
     D[1][5] = J.wb_2;
   }
@@ -202,7 +202,7 @@ struct rolling {
     D[1][0] = ma_n_y;
     D[1][1] = -ma_n_x;
     D[1][2] = ma.I * J.radius;
-    D[1][3] = -mb.m * J.n_y;
+    D[1][3] = D[0][4];
     D[1][4] = -mb.m * J.e_y;
     D[1][5] = mb.I * J.wb_2;
   }
@@ -217,21 +217,19 @@ struct rolling {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = va.x - vb.x + vb.w * rb_y_2;
+    const T u_dot_x = va.x - vb.x + vb.w * rb_y;
     const T u_dot_y = va.y - vb.y - vb.w * rb_x;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T n_y_2 = n_y;
-    const T u_dot_x_n = u_dot_x * n_y_2 - u_dot_y * n_x;
+    const T u_dot_x_n = u_dot_x * n_y - u_dot_y * n_x;
     const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y_2;
-    const T dot_u_n = u_x * n_x + u_y * n_y_2;
+    const T u_y = a.y - b.y - rb_y;
+    const T dot_u_n = u_x * n_x + u_y * n_y;
     const T s_dot = u_dot_x_n + vb.w * dot_u_n;
-    const T dot_rb_n = n_x * rb_x + n_y_2 * rb_y_2;
-    const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y_2;
-    const T s = u_x * n_y_2 - u_y * n_x;
-    const T rb_x_n = n_y_2 * rb_x - n_x * rb_y_2;
+    const T dot_rb_n = n_x * rb_x + n_y * rb_y;
+    const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y;
+    const T s = u_x * n_y - u_y * n_x;
+    const T rb_x_n = n_y * rb_x - n_x * rb_y;
     g[0] = vb.w * (s_dot + u_dot_x_n - vb.w * dot_rb_n);
     g[1] = -vb.w * (T(2) * dot_u_dot_n + vb.w * (rb_x_n - s));
   }
@@ -254,25 +252,24 @@ struct rolling {
     const Pose<T>& b = q[1];
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T n_y_2 = n_y;
-    const T H1_1 = lambda[1] * n_x - lambda[0] * n_y_2;
-    const T H2_1 = lambda[0] * n_x + lambda[1] * n_y_2;
+    const T H1_1 = lambda[1] * n_x - lambda[0] * n_y;
+    const T H2_1 = lambda[0] * n_x + lambda[1] * n_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T u_x = a.x - b.x - rb_x;
     const T u_y = a.y - b.y - rb_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y_2;
-    const T rb_u_x_n = rb_u_x * n_y_2 - rb_u_y * n_x;
+    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
+    const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
     H[0][5] = H1_1;
     H[1][5] = H2_1;
     H[3][5] = -H1_1;
     H[4][5] = -H2_1;
     H[5][0] = H1_1;
     H[5][1] = H2_1;
-    H[5][3] = -H1_1;
-    H[5][4] = -H2_1;
+    H[5][3] = H[3][5];
+    H[5][4] = H[4][5];
     H[5][5] = -lambda[0] * dot_rb_u_n - lambda[1] * rb_u_x_n;
   }
 
@@ -305,8 +302,7 @@ struct rolling {
         const T u_y = a.y - b.y - rb_y;
         const T n_x = b.c * p.n_x - b.s * p.n_y;
         const T n_y = b.c * p.n_y + b.s * p.n_x;
-        const T n_y_2 = n_y;
-        const T s = u_x * n_y_2 - u_y * n_x;
+        const T s = u_x * n_y - u_y * n_x;
         const T q_2 = a.angle - b.angle;
         p.start = s + p.radius * q_2;
         break;
@@ -341,8 +337,7 @@ struct rolling {
       const T u_y = a.y - b.y - rb_y;
       const T n_x = b.c * p.n_x - b.s * p.n_y;
       const T n_y = b.c * p.n_y + b.s * p.n_x;
-      const T n_y_2 = n_y;
-      C[0] = u_x * n_y_2 - u_y * n_x;
+      C[0] = u_x * n_y - u_y * n_x;
     }
 
     // C and J: 13 +, 12 *
@@ -357,14 +352,13 @@ struct rolling {
       const T u_y = a.y - b.y - rb_y;
       const T n_x = b.c * p.n_x - b.s * p.n_y;
       const T n_y = b.c * p.n_y + b.s * p.n_x;
-      const T n_y_2 = n_y;
       const T rb_u_x = u_x + rb_x;
       const T rb_u_y = u_y + rb_y;
-      C[0] = u_x * n_y_2 - u_y * n_x;
-      J.n_y = n_y_2;
+      C[0] = u_x * n_y - u_y * n_x;
+      J.n_y = n_y;
       J.n_x = n_x;
       J.e_y = -n_x;
-      J.dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y_2;
+      J.dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
     }
 
     // K = J M^-1 J^T, lower triangle, from J: 2 +, 2 *
@@ -451,16 +445,15 @@ struct rolling {
       const Velocity<T>& vb = v[1];
       const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
       const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T rb_y_2 = rb_y;
-      const T u_dot_x = va.x - vb.x + vb.w * rb_y_2;
+      const T u_dot_x = va.x - vb.x + vb.w * rb_y;
       const T u_dot_y = va.y - vb.y - vb.w * rb_x;
       const T n_x = b.c * p.n_x - b.s * p.n_y;
       const T n_y = b.c * p.n_y + b.s * p.n_x;
       const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y;
       const T u_x = a.x - b.x - rb_x;
-      const T u_y = a.y - b.y - rb_y_2;
+      const T u_y = a.y - b.y - rb_y;
       const T s = u_x * n_y - u_y * n_x;
-      const T rb_x_n = n_y * rb_x - n_x * rb_y_2;
+      const T rb_x_n = n_y * rb_x - n_x * rb_y;
       g[0] = -vb.w * (T(2) * dot_u_dot_n + vb.w * (rb_x_n - s));
     }
 
@@ -496,8 +489,8 @@ struct rolling {
       H[4][5] = -H2_1;
       H[5][0] = H1_1;
       H[5][1] = H2_1;
-      H[5][3] = -H1_1;
-      H[5][4] = -H2_1;
+      H[5][3] = H[3][5];
+      H[5][4] = H[4][5];
       H[5][5] = -lambda[0] * rb_u_x_n;
     }
 
@@ -587,7 +580,7 @@ struct rolling::a_immovable : rolling {
     D[0][3] = -J.n_x;
     D[0][4] = -J.n_y;
     D[0][5] = -J.rb_u_x_n;
-    D[1][3] = -J.n_y;
+    D[1][3] = D[0][4];
     D[1][4] = -J.e_y;
     D[1][5] = J.wb_2;
   }
@@ -603,7 +596,7 @@ struct rolling::a_immovable : rolling {
     D[0][3] = -mb.m * J.n_x;
     D[0][4] = -mb.m * J.n_y;
     D[0][5] = -mb.I * J.rb_u_x_n;
-    D[1][3] = -mb.m * J.n_y;
+    D[1][3] = D[0][4];
     D[1][4] = -mb.m * J.e_y;
     D[1][5] = mb.I * J.wb_2;
   }
@@ -617,21 +610,19 @@ struct rolling::a_immovable : rolling {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = vb.w * rb_y_2 - vb.x;
+    const T u_dot_x = vb.w * rb_y - vb.x;
     const T u_dot_y = -vb.y - vb.w * rb_x;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T n_y_2 = n_y;
-    const T u_dot_x_n = u_dot_x * n_y_2 - u_dot_y * n_x;
+    const T u_dot_x_n = u_dot_x * n_y - u_dot_y * n_x;
     const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y_2;
-    const T dot_u_n = u_x * n_x + u_y * n_y_2;
+    const T u_y = a.y - b.y - rb_y;
+    const T dot_u_n = u_x * n_x + u_y * n_y;
     const T s_dot = u_dot_x_n + vb.w * dot_u_n;
-    const T dot_rb_n = n_x * rb_x + n_y_2 * rb_y_2;
-    const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y_2;
-    const T s = u_x * n_y_2 - u_y * n_x;
-    const T rb_x_n = n_y_2 * rb_x - n_x * rb_y_2;
+    const T dot_rb_n = n_x * rb_x + n_y * rb_y;
+    const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y;
+    const T s = u_x * n_y - u_y * n_x;
+    const T rb_x_n = n_y * rb_x - n_x * rb_y;
     g[0] = vb.w * (s_dot + u_dot_x_n - vb.w * dot_rb_n);
     g[1] = -vb.w * (T(2) * dot_u_dot_n + vb.w * (rb_x_n - s));
   }
@@ -647,17 +638,16 @@ struct rolling::a_immovable : rolling {
     const Pose<T>& b = q[1];
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T n_y_2 = n_y;
-    const T H4_1 = lambda[0] * n_y_2 - lambda[1] * n_x;
-    const T H5_1 = -lambda[0] * n_x - lambda[1] * n_y_2;
+    const T H4_1 = lambda[0] * n_y - lambda[1] * n_x;
+    const T H5_1 = -lambda[0] * n_x - lambda[1] * n_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T u_x = a.x - b.x - rb_x;
     const T u_y = a.y - b.y - rb_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y_2;
-    const T rb_u_x_n = rb_u_x * n_y_2 - rb_u_y * n_x;
+    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
+    const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
     H[3][5] = H4_1;
     H[4][5] = H5_1;
     H[5][3] = H4_1;
@@ -809,13 +799,12 @@ struct rolling::slide::a_immovable : rolling::slide {
     const T u_y = a.y - b.y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T n_y_2 = n_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    C[0] = u_x * n_y_2 - u_y * n_x;
-    J.n_y = n_y_2;
+    C[0] = u_x * n_y - u_y * n_x;
+    J.n_y = n_y;
     J.e_y = -n_x;
-    J.dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y_2;
+    J.dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *
@@ -877,16 +866,15 @@ struct rolling::slide::a_immovable : rolling::slide {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = vb.w * rb_y_2 - vb.x;
+    const T u_dot_x = vb.w * rb_y - vb.x;
     const T u_dot_y = -vb.y - vb.w * rb_x;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
     const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y;
     const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y_2;
+    const T u_y = a.y - b.y - rb_y;
     const T s = u_x * n_y - u_y * n_x;
-    const T rb_x_n = n_y * rb_x - n_x * rb_y_2;
+    const T rb_x_n = n_y * rb_x - n_x * rb_y;
     g[0] = -vb.w * (T(2) * dot_u_dot_n + vb.w * (rb_x_n - s));
   }
 
@@ -910,8 +898,8 @@ struct rolling::slide::a_immovable : rolling::slide {
     const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
     H[3][5] = -lambda[0] * n_x;
     H[4][5] = -lambda[0] * n_y;
-    H[5][3] = -lambda[0] * n_x;
-    H[5][4] = -lambda[0] * n_y;
+    H[5][3] = H[3][5];
+    H[5][4] = H[4][5];
     H[5][5] = -lambda[0] * rb_u_x_n;
   }
 };
@@ -937,9 +925,8 @@ struct rolling::slide::b_immovable : rolling::slide {
     const T u_y = a.y - b.y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T n_y_2 = n_y;
-    C[0] = u_x * n_y_2 - u_y * n_x;
-    J.n_y = n_y_2;
+    C[0] = u_x * n_y - u_y * n_x;
+    J.n_y = n_y;
     J.n_x = n_x;
   }
 

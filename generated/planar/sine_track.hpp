@@ -77,9 +77,8 @@ struct sine_track {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T f_x_y_2 = f_x_y;
-    const T u_x_f_x = u_x * f_x_y_2 - u_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y_2;
+    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
+    const T s_x = u_x * f_x_x + u_y * f_x_y;
     C[0] = -u_x_f_x - p.amplitude * sin(p.k * s_x);
   }
 
@@ -99,13 +98,12 @@ struct sine_track {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T f_x_y_2 = f_x_y;
-    const T u_x_f_x = u_x * f_x_y_2 - u_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y_2;
+    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
+    const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T C1_1 = p.k * s_x;
     const T va_x_1 = cos(C1_1) * p.amplitude * p.k;
-    const T va_x_2 = -f_x_y_2 - va_x_1 * f_x_x;
-    const T va_y_1 = f_x_x - va_x_1 * f_x_y_2;
+    const T va_x_2 = -f_x_y - va_x_1 * f_x_x;
+    const T va_y_1 = f_x_x - va_x_1 * f_x_y;
     C[0] = -u_x_f_x - p.amplitude * sin(C1_1);
     J.va_x = va_x_2;
     J.va_y = va_y_1;
@@ -214,8 +212,7 @@ struct sine_track {
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T u_dot_dot_x = g1_2 * rb_x - g1_1 * ra_x;
     const T u_dot_dot_y = g1_2 * rb_y - g1_1 * ra_y;
-    const T u_dot_dot_y_2 = u_dot_dot_y;
-    const T u_dot_dot_x_f_x = f_x_y * u_dot_dot_x - f_x_x * u_dot_dot_y_2;
+    const T u_dot_dot_x_f_x = f_x_y * u_dot_dot_x - f_x_x * u_dot_dot_y;
     const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
     const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
     const T dot_u_dot_f_x = u_dot_x * f_x_x + u_dot_y * f_x_y;
@@ -224,7 +221,7 @@ struct sine_track {
     const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
     const T s_x_dot = dot_u_dot_f_x - vb.w * u_x_f_x;
     const T s_y_dot_dot = vb.w * (-s_x_dot - dot_u_dot_f_x) - u_dot_dot_x_f_x;
-    const T dot_u_dot_dot_f_x = f_x_x * u_dot_dot_x + f_x_y * u_dot_dot_y_2;
+    const T dot_u_dot_dot_f_x = f_x_x * u_dot_dot_x + f_x_y * u_dot_dot_y;
     const T u_dot_x_f_x = u_dot_x * f_x_y - u_dot_y * f_x_x;
     const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T s_x_dot_dot = dot_u_dot_dot_f_x + vb.w * (-T(2) * u_dot_x_f_x - vb.w * s_x);
@@ -300,7 +297,7 @@ struct sine_track {
     H[1][0] = H1_1_2;
     H[1][1] = H2_2;
     H[1][2] = H2_1_2;
-    H[1][3] = -H1_1_2;
+    H[1][3] = H[0][4];
     H[1][4] = -H2_2;
     H[1][5] = H2_2_2;
     H[2][0] = H1_1_3;
@@ -309,15 +306,15 @@ struct sine_track {
     H[2][3] = -H1_1_3;
     H[2][4] = -H2_1_2;
     H[2][5] = H3_1 * H1_4_2 - H1_2_2 * dot_ra_f_x - lambda[0] * ra_x_f_x;
-    H[3][0] = -H1_6;
-    H[3][1] = -H1_1_2;
-    H[3][2] = -H1_1_3;
+    H[3][0] = H[0][3];
+    H[3][1] = H[0][4];
+    H[3][2] = H[2][3];
     H[3][3] = H1_6;
     H[3][4] = H1_1_2;
     H[3][5] = -H1_5_2;
-    H[4][0] = -H1_1_2;
-    H[4][1] = -H2_2;
-    H[4][2] = -H2_1_2;
+    H[4][0] = H[0][4];
+    H[4][1] = H[1][4];
+    H[4][2] = H[2][4];
     H[4][3] = H1_1_2;
     H[4][4] = H2_2;
     H[4][5] = -H2_2_2;
@@ -492,10 +489,9 @@ struct sine_track {
       const T u_dot_dot_x_2 = u_dot_dot_x - g1_1 * ra_x;
       const T u_dot_dot_y = g1_2 * rb_y;
       const T u_dot_dot_y_2 = u_dot_dot_y - g1_1 * ra_y;
-      const T u_dot_dot_x_3 = u_dot_dot_x_2;
       const T f_x_x = b.c * p.f_x - b.s * p.f_y;
       const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-      const T dot_u_dot_dot_f_x = u_dot_dot_x_3 * f_x_x + u_dot_dot_y_2 * f_x_y;
+      const T dot_u_dot_dot_f_x = u_dot_dot_x_2 * f_x_x + u_dot_dot_y_2 * f_x_y;
       const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
       const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
       const T u_dot_x_f_x = u_dot_x * f_x_y - u_dot_y * f_x_x;
@@ -522,12 +518,11 @@ struct sine_track {
       const Pose<T>& b = q[1];
       const T f_x_x = b.c * p.f_x - b.s * p.f_y;
       const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-      const T f_x_y_2 = f_x_y;
-      const T H1_1 = lambda[0] * f_x_y_2;
+      const T H1_1 = lambda[0] * f_x_y;
       const T H2_1 = lambda[0] * f_x_x;
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-      const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y_2;
+      const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y;
       const T H3_1 = lambda[0] * dot_ra_f_x;
       const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
       const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
@@ -535,18 +530,18 @@ struct sine_track {
       const T u_y = a.y - b.y + ra_y - rb_y;
       const T rb_u_x = u_x + rb_x;
       const T rb_u_y = u_y + rb_y;
-      const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y_2;
+      const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y;
       H[0][5] = -H1_1;
       H[1][5] = H2_1;
       H[2][2] = -H3_1;
       H[2][5] = H3_1;
       H[3][5] = H1_1;
       H[4][5] = -H2_1;
-      H[5][0] = -H1_1;
+      H[5][0] = H[0][5];
       H[5][1] = H2_1;
       H[5][2] = H3_1;
       H[5][3] = H1_1;
-      H[5][4] = -H2_1;
+      H[5][4] = H[4][5];
       H[5][5] = -lambda[0] * dot_rb_u_f_x;
     }
 
@@ -587,13 +582,12 @@ struct sine_track::a_immovable : sine_track {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T f_x_y_2 = f_x_y;
-    const T u_x_f_x = u_x * f_x_y_2 - u_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y_2;
+    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
+    const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T C1_1 = p.k * s_x;
     const T vb_x_1 = cos(C1_1) * p.amplitude * p.k;
-    const T vb_x_2 = f_x_y_2 + vb_x_1 * f_x_x;
-    const T vb_y_1 = vb_x_1 * f_x_y_2 - f_x_x;
+    const T vb_x_2 = f_x_y + vb_x_1 * f_x_x;
+    const T vb_y_1 = vb_x_1 * f_x_y - f_x_x;
     C[0] = -u_x_f_x - p.amplitude * sin(C1_1);
     J.vb_x = vb_x_2;
     J.vb_y = vb_y_1;
@@ -661,8 +655,7 @@ struct sine_track::a_immovable : sine_track {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = vb.w * rb_y_2 - vb.x;
+    const T u_dot_x = vb.w * rb_y - vb.x;
     const T u_dot_y = -vb.y - vb.w * rb_x;
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
@@ -670,13 +663,13 @@ struct sine_track::a_immovable : sine_track {
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y_2;
+    const T u_y = a.y - b.y + ra_y - rb_y;
     const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
     const T s_x_dot = dot_u_dot_f_x - vb.w * u_x_f_x;
-    const T rb_x_f_x = f_x_y * rb_x - f_x_x * rb_y_2;
+    const T rb_x_f_x = f_x_y * rb_x - f_x_x * rb_y;
     const T u_dot_x_f_x = u_dot_x * f_x_y - u_dot_y * f_x_x;
     const T s_x = u_x * f_x_x + u_y * f_x_y;
-    const T dot_rb_f_x = f_x_x * rb_x + f_x_y * rb_y_2;
+    const T dot_rb_f_x = f_x_x * rb_x + f_x_y * rb_y;
     const T g1_1 = p.k * s_x;
     g[0] = p.amplitude * p.k * (vb.w * (vb.w * (dot_rb_f_x - s_x) - T(2) * u_dot_x_f_x) *
         cos(g1_1) - p.k * s_x_dot * s_x_dot * sin(g1_1)) - vb.w *
@@ -761,13 +754,12 @@ struct sine_track::b_immovable : sine_track {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T f_x_y_2 = f_x_y;
-    const T u_x_f_x = u_x * f_x_y_2 - u_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y_2;
+    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
+    const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T C1_1 = p.k * s_x;
     const T va_x_1 = cos(C1_1) * p.amplitude * p.k;
-    const T va_x_2 = -f_x_y_2 - va_x_1 * f_x_x;
-    const T va_y_1 = f_x_x - va_x_1 * f_x_y_2;
+    const T va_x_2 = -f_x_y - va_x_1 * f_x_x;
+    const T va_y_1 = f_x_x - va_x_1 * f_x_y;
     C[0] = -u_x_f_x - p.amplitude * sin(C1_1);
     J.va_x = va_x_2;
     J.va_y = va_y_1;
@@ -836,8 +828,7 @@ struct sine_track::b_immovable : sine_track {
     const T g1_1 = p.amplitude * p.k;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T ra_y_2 = ra_y;
-    const T u_dot_x = va.x - va.w * ra_y_2;
+    const T u_dot_x = va.x - va.w * ra_y;
     const T u_dot_y = va.y + va.w * ra_x;
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
@@ -845,11 +836,11 @@ struct sine_track::b_immovable : sine_track {
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y_2 - rb_y;
+    const T u_y = a.y - b.y + ra_y - rb_y;
     const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T g1_2 = p.k * s_x;
-    const T dot_ra_f_x = ra_x * f_x_x + ra_y_2 * f_x_y;
-    const T ra_x_f_x = ra_x * f_x_y - ra_y_2 * f_x_x;
+    const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y;
+    const T ra_x_f_x = ra_x * f_x_y - ra_y * f_x_x;
     g[0] = va.w * va.w * (-g1_1 * dot_ra_f_x * cos(g1_2) - ra_x_f_x) - g1_1 * p.k * s_x_dot *
         s_x_dot * sin(g1_2);
   }
@@ -987,19 +978,17 @@ struct sine_track::slide::a_immovable : sine_track::slide {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = vb.w * rb_y_2 - vb.x;
+    const T u_dot_x = vb.w * rb_y - vb.x;
     const T u_dot_y = -vb.y - vb.w * rb_x;
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T f_x_y_2 = f_x_y;
-    const T u_dot_x_f_x = u_dot_x * f_x_y_2 - u_dot_y * f_x_x;
+    const T u_dot_x_f_x = u_dot_x * f_x_y - u_dot_y * f_x_x;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y_2;
-    const T s_x = u_x * f_x_x + u_y * f_x_y_2;
-    const T dot_rb_f_x = f_x_x * rb_x + f_x_y_2 * rb_y_2;
+    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T s_x = u_x * f_x_x + u_y * f_x_y;
+    const T dot_rb_f_x = f_x_x * rb_x + f_x_y * rb_y;
     g[0] = vb.w * (T(2) * u_dot_x_f_x + vb.w * (s_x - dot_rb_f_x));
   }
 
@@ -1014,8 +1003,7 @@ struct sine_track::slide::a_immovable : sine_track::slide {
     const Pose<T>& b = q[1];
     const T f_x_x = b.c * p.f_x - b.s * p.f_y;
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T f_x_y_2 = f_x_y;
-    const T H4_1 = lambda[0] * f_x_y_2;
+    const T H4_1 = lambda[0] * f_x_y;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
@@ -1024,11 +1012,11 @@ struct sine_track::slide::a_immovable : sine_track::slide {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y_2;
+    const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y;
     H[3][5] = H4_1;
     H[4][5] = -lambda[0] * f_x_x;
     H[5][3] = H4_1;
-    H[5][4] = -lambda[0] * f_x_x;
+    H[5][4] = H[4][5];
     H[5][5] = -lambda[0] * dot_rb_u_f_x;
   }
 };

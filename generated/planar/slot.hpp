@@ -209,12 +209,11 @@ struct slot {
     const Pose<T>& b = q[1];
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T H1_1 = lambda[0] * t_y_2;
+    const T H1_1 = lambda[0] * t_y;
     const T H2_1 = lambda[0] * t_x;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T dot_ra_t = ra_x * t_x + ra_y * t_y_2;
+    const T dot_ra_t = ra_x * t_x + ra_y * t_y;
     const T H3_1 = lambda[0] * dot_ra_t;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
@@ -222,18 +221,18 @@ struct slot {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
+    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
     H[0][5] = -H1_1;
     H[1][5] = H2_1;
     H[2][2] = -H3_1;
     H[2][5] = H3_1;
     H[3][5] = H1_1;
     H[4][5] = -H2_1;
-    H[5][0] = -H1_1;
+    H[5][0] = H[0][5];
     H[5][1] = H2_1;
     H[5][2] = H3_1;
     H[5][3] = H1_1;
-    H[5][4] = -H2_1;
+    H[5][4] = H[4][5];
     H[5][5] = -lambda[0] * dot_rb_u_t;
   }
 
@@ -284,8 +283,7 @@ struct slot {
       const T u_y = a.y - b.y + ra_y - rb_y;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T t_y_2 = t_y;
-      C[0] = u_y * t_x - u_x * t_y_2;
+      C[0] = u_y * t_x - u_x * t_y;
     }
 
     // C and J: 17 +, 18 *
@@ -302,14 +300,13 @@ struct slot {
       const T u_y = a.y - b.y + ra_y - rb_y;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T t_y_2 = t_y;
       const T rb_u_x = u_x + rb_x;
       const T rb_u_y = u_y + rb_y;
-      C[0] = u_y * t_x - u_x * t_y_2;
-      J.t_y = t_y_2;
+      C[0] = u_y * t_x - u_x * t_y;
+      J.t_y = t_y;
       J.t_x = t_x;
-      J.dot_ra_t = ra_x * t_x + ra_y * t_y_2;
-      J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
+      J.dot_ra_t = ra_x * t_x + ra_y * t_y;
+      J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
     }
 
     // K = J M^-1 J^T, lower triangle, from J: 3 +, 4 *
@@ -408,17 +405,15 @@ struct slot {
       const T u_dot_dot_x_2 = u_dot_dot_x - g1_1 * ra_x;
       const T u_dot_dot_y = g1_2 * rb_y;
       const T u_dot_dot_y_2 = u_dot_dot_y - g1_1 * ra_y;
-      const T u_dot_dot_x_3 = u_dot_dot_x_2;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T t_y_2 = t_y;
-      const T u_dot_dot_x_t = u_dot_dot_x_3 * t_y_2 - u_dot_dot_y_2 * t_x;
+      const T u_dot_dot_x_t = u_dot_dot_x_2 * t_y - u_dot_dot_y_2 * t_x;
       const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
       const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
-      const T dot_u_dot_t = u_dot_x * t_x + u_dot_y * t_y_2;
+      const T dot_u_dot_t = u_dot_x * t_x + u_dot_y * t_y;
       const T u_x = a.x - b.x + ra_x - rb_x;
       const T u_y = a.y - b.y + ra_y - rb_y;
-      const T u_x_t = u_x * t_y_2 - u_y * t_x;
+      const T u_x_t = u_x * t_y - u_y * t_x;
       g[0] = u_dot_dot_x_t + vb.w * (T(2) * dot_u_dot_t - vb.w * u_x_t);
     }
 
@@ -458,9 +453,9 @@ struct slot {
       H[2][5] = -H3_1;
       H[3][5] = H1_1;
       H[4][5] = H2_1;
-      H[5][0] = -H1_1;
-      H[5][1] = -H2_1;
-      H[5][2] = -H3_1;
+      H[5][0] = H[0][5];
+      H[5][1] = H[1][5];
+      H[5][2] = H[2][5];
       H[5][3] = H1_1;
       H[5][4] = H2_1;
       H[5][5] = lambda[0] * rb_u_x_t;
@@ -568,19 +563,17 @@ struct slot::a_immovable : slot {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = vb.w * rb_y_2 - vb.x;
+    const T u_dot_x = vb.w * rb_y - vb.x;
     const T u_dot_y = -vb.y - vb.w * rb_x;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T u_dot_x_t = u_dot_x * t_y_2 - u_dot_y * t_x;
+    const T u_dot_x_t = u_dot_x * t_y - u_dot_y * t_x;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y_2;
-    const T dot_u_t = u_x * t_x + u_y * t_y_2;
-    const T dot_rb_t = rb_x * t_x + rb_y_2 * t_y_2;
+    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T dot_u_t = u_x * t_x + u_y * t_y;
+    const T dot_rb_t = rb_x * t_x + rb_y * t_y;
     g[0] = vb.w * (T(2) * u_dot_x_t + vb.w * (dot_u_t - dot_rb_t));
   }
 
@@ -595,8 +588,7 @@ struct slot::a_immovable : slot {
     const Pose<T>& b = q[1];
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T H4_1 = lambda[0] * t_y_2;
+    const T H4_1 = lambda[0] * t_y;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
@@ -605,11 +597,11 @@ struct slot::a_immovable : slot {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
+    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
     H[3][5] = H4_1;
     H[4][5] = -lambda[0] * t_x;
     H[5][3] = H4_1;
-    H[5][4] = -lambda[0] * t_x;
+    H[5][4] = H[4][5];
     H[5][5] = -lambda[0] * dot_rb_u_t;
   }
 };
@@ -749,13 +741,12 @@ struct slot::slide::a_immovable : slot::slide {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
     const T rb_u_x = u_x + rb_x;
     const T rb_u_y = u_y + rb_y;
-    C[0] = u_y * t_x - u_x * t_y_2;
-    J.t_y = t_y_2;
+    C[0] = u_y * t_x - u_x * t_y;
+    J.t_y = t_y;
     J.t_x = t_x;
-    J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y_2;
+    J.dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *
@@ -817,8 +808,7 @@ struct slot::slide::a_immovable : slot::slide {
     const Velocity<T>& vb = v[1];
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T u_dot_x = vb.w * rb_y_2 - vb.x;
+    const T u_dot_x = vb.w * rb_y - vb.x;
     const T u_dot_y = -vb.y - vb.w * rb_x;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
@@ -826,9 +816,9 @@ struct slot::slide::a_immovable : slot::slide {
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y_2;
+    const T u_y = a.y - b.y + ra_y - rb_y;
     const T u_x_t = u_x * t_y - u_y * t_x;
-    const T rb_x_t = rb_x * t_y - rb_y_2 * t_x;
+    const T rb_x_t = rb_x * t_y - rb_y * t_x;
     g[0] = vb.w * (T(2) * dot_u_dot_t + vb.w * (rb_x_t - u_x_t));
   }
 
@@ -885,11 +875,10 @@ struct slot::slide::b_immovable : slot::slide {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    C[0] = u_y * t_x - u_x * t_y_2;
-    J.t_y = t_y_2;
+    C[0] = u_y * t_x - u_x * t_y;
+    J.t_y = t_y;
     J.t_x = t_x;
-    J.dot_ra_t = ra_x * t_x + ra_y * t_y_2;
+    J.dot_ra_t = ra_x * t_x + ra_y * t_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *
@@ -953,8 +942,7 @@ struct slot::slide::b_immovable : slot::slide {
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T ra_x_t = ra_x * t_y_2 - ra_y * t_x;
+    const T ra_x_t = ra_x * t_y - ra_y * t_x;
     g[0] = -va.w * va.w * ra_x_t;
   }
 
@@ -971,8 +959,7 @@ struct slot::slide::b_immovable : slot::slide {
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T t_y_2 = t_y;
-    const T ra_x_t = ra_x * t_y_2 - ra_y * t_x;
+    const T ra_x_t = ra_x * t_y - ra_y * t_x;
     H[2][2] = lambda[0] * ra_x_t;
   }
 };

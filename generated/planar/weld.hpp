@@ -198,7 +198,7 @@ struct weld {
     D[0][5] = mb.I * J.rb_y;
     D[1][1] = ma.m;
     D[1][2] = ma.I * J.ra_x;
-    D[1][4] = -mb.m;
+    D[1][4] = D[0][3];
     D[1][5] = -mb.I * J.rb_x;
     D[2][2] = ma.I;
     D[2][5] = -mb.I;
@@ -482,7 +482,7 @@ struct weld::a_immovable : weld {
     const InverseMass<T>& mb = m[1];
     D[0][3] = -mb.m;
     D[0][5] = mb.I * J.rb_y;
-    D[1][4] = -mb.m;
+    D[1][4] = D[0][3];
     D[1][5] = -mb.I * J.rb_x;
     D[2][5] = -mb.I;
   }

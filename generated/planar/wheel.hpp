@@ -67,8 +67,7 @@ struct wheel {
     const T d_y = b.y - a.y - ra_y + rb_y;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ax_y_2 = ax_y;
-    C[0] = d_y * ax_x - d_x * ax_y_2;
+    C[0] = d_y * ax_x - d_x * ax_y;
   }
 
   // C and J: 17 +, 18 *
@@ -85,14 +84,13 @@ struct wheel {
     const T d_y = b.y - a.y - ra_y + rb_y;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ax_y_2 = ax_y;
     const T ra_d_x = d_x + ra_x;
     const T ra_d_y = d_y + ra_y;
-    C[0] = d_y * ax_x - d_x * ax_y_2;
-    J.ax_y = ax_y_2;
+    C[0] = d_y * ax_x - d_x * ax_y;
+    J.ax_y = ax_y;
     J.ax_x = ax_x;
-    J.dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y_2;
-    J.dot_rb_ax = ax_x * rb_x + ax_y_2 * rb_y;
+    J.dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y;
+    J.dot_rb_ax = ax_x * rb_x + ax_y * rb_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 3 +, 4 *
@@ -191,8 +189,7 @@ struct wheel {
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T d_dot_dot_x = g1_1 * ra_x - g1_2 * rb_x;
     const T d_dot_dot_y = g1_1 * ra_y - g1_2 * rb_y;
-    const T d_dot_dot_y_2 = d_dot_dot_y;
-    const T d_dot_dot_x_ax = ax_y * d_dot_dot_x - ax_x * d_dot_dot_y_2;
+    const T d_dot_dot_x_ax = ax_y * d_dot_dot_x - ax_x * d_dot_dot_y;
     const T d_dot_x = vb.x - va.x + va.w * ra_y - vb.w * rb_y;
     const T d_dot_y = vb.y - va.y - va.w * ra_x + vb.w * rb_x;
     const T dot_d_dot_ax = d_dot_x * ax_x + d_dot_y * ax_y;
@@ -240,9 +237,9 @@ struct wheel {
     H[2][3] = -H1_1;
     H[2][4] = -H2_1;
     H[2][5] = -H3_1;
-    H[3][2] = -H1_1;
-    H[4][2] = -H2_1;
-    H[5][2] = -H3_1;
+    H[3][2] = H[2][3];
+    H[4][2] = H[2][4];
+    H[5][2] = H[2][5];
     H[5][5] = H3_1;
   }
 
@@ -420,10 +417,9 @@ struct wheel {
       const T d_dot_dot_x_2 = d_dot_dot_x - g1_1 * rb_x;
       const T d_dot_dot_y = g1_2 * ra_y;
       const T d_dot_dot_y_2 = d_dot_dot_y - g1_1 * rb_y;
-      const T d_dot_dot_x_3 = d_dot_dot_x_2;
       const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
       const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-      const T dot_d_dot_dot_ax = d_dot_dot_x_3 * ax_x + d_dot_dot_y_2 * ax_y;
+      const T dot_d_dot_dot_ax = d_dot_dot_x_2 * ax_x + d_dot_dot_y_2 * ax_y;
       const T d_dot_x = vb.x - va.x + va.w * ra_y - vb.w * rb_y;
       const T d_dot_y = vb.y - va.y - va.w * ra_x + vb.w * rb_x;
       const T d_dot_x_ax = d_dot_x * ax_y - d_dot_y * ax_x;
@@ -450,8 +446,7 @@ struct wheel {
       const Pose<T>& b = q[1];
       const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
       const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-      const T ax_y_2 = ax_y;
-      const T H1_1 = lambda[0] * ax_y_2;
+      const T H1_1 = lambda[0] * ax_y;
       const T H2_1 = lambda[0] * ax_x;
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
@@ -461,18 +456,18 @@ struct wheel {
       const T d_y = b.y - a.y - ra_y + rb_y;
       const T ra_d_x = d_x + ra_x;
       const T ra_d_y = d_y + ra_y;
-      const T dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y_2;
-      const T dot_rb_ax = ax_x * rb_x + ax_y_2 * rb_y;
+      const T dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y;
+      const T dot_rb_ax = ax_x * rb_x + ax_y * rb_y;
       const T H3_1 = lambda[0] * dot_rb_ax;
       H[0][2] = H1_1;
       H[1][2] = -H2_1;
       H[2][0] = H1_1;
-      H[2][1] = -H2_1;
+      H[2][1] = H[1][2];
       H[2][2] = -lambda[0] * dot_ra_d_ax;
       H[2][3] = -H1_1;
       H[2][4] = H2_1;
       H[2][5] = H3_1;
-      H[3][2] = -H1_1;
+      H[3][2] = H[2][3];
       H[4][2] = H2_1;
       H[5][2] = H3_1;
       H[5][5] = -H3_1;
@@ -632,11 +627,10 @@ struct wheel::a_immovable : wheel {
     const T d_y = b.y - a.y - ra_y + rb_y;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ax_y_2 = ax_y;
-    C[0] = d_y * ax_x - d_x * ax_y_2;
-    J.ax_y = ax_y_2;
+    C[0] = d_y * ax_x - d_x * ax_y;
+    J.ax_y = ax_y;
     J.ax_x = ax_x;
-    J.dot_rb_ax = ax_x * rb_x + ax_y_2 * rb_y;
+    J.dot_rb_ax = ax_x * rb_x + ax_y * rb_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *
@@ -700,8 +694,7 @@ struct wheel::a_immovable : wheel {
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T rb_x_ax = ax_y * rb_x - ax_x * rb_y_2;
+    const T rb_x_ax = ax_y * rb_x - ax_x * rb_y;
     g[0] = -vb.w * vb.w * rb_x_ax;
   }
 
@@ -718,8 +711,7 @@ struct wheel::a_immovable : wheel {
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_y_2 = rb_y;
-    const T rb_x_ax = ax_y * rb_x - ax_x * rb_y_2;
+    const T rb_x_ax = ax_y * rb_x - ax_x * rb_y;
     H[5][5] = lambda[0] * rb_x_ax;
   }
 };
@@ -747,13 +739,12 @@ struct wheel::b_immovable : wheel {
     const T d_y = b.y - a.y - ra_y + rb_y;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ax_y_2 = ax_y;
     const T ra_d_x = d_x + ra_x;
     const T ra_d_y = d_y + ra_y;
-    C[0] = d_y * ax_x - d_x * ax_y_2;
-    J.ax_y = ax_y_2;
+    C[0] = d_y * ax_x - d_x * ax_y;
+    J.ax_y = ax_y;
     J.ax_x = ax_x;
-    J.dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y_2;
+    J.dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *
@@ -815,8 +806,7 @@ struct wheel::b_immovable : wheel {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T ra_y_2 = ra_y;
-    const T d_dot_x = va.w * ra_y_2 - va.x;
+    const T d_dot_x = va.w * ra_y - va.x;
     const T d_dot_y = -va.y - va.w * ra_x;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
@@ -824,9 +814,9 @@ struct wheel::b_immovable : wheel {
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y_2 + rb_y;
+    const T d_y = b.y - a.y - ra_y + rb_y;
     const T d_x_ax = d_x * ax_y - d_y * ax_x;
-    const T ra_x_ax = ax_y * ra_x - ax_x * ra_y_2;
+    const T ra_x_ax = ax_y * ra_x - ax_x * ra_y;
     g[0] = va.w * (T(2) * dot_d_dot_ax + va.w * (ra_x_ax - d_x_ax));
   }
 
@@ -1062,19 +1052,17 @@ struct wheel::slide::b_immovable : wheel::slide {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T ra_y_2 = ra_y;
-    const T d_dot_x = va.w * ra_y_2 - va.x;
+    const T d_dot_x = va.w * ra_y - va.x;
     const T d_dot_y = -va.y - va.w * ra_x;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ax_y_2 = ax_y;
-    const T d_dot_x_ax = d_dot_x * ax_y_2 - d_dot_y * ax_x;
+    const T d_dot_x_ax = d_dot_x * ax_y - d_dot_y * ax_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y_2 + rb_y;
-    const T dot_d_ax = d_x * ax_x + d_y * ax_y_2;
-    const T dot_ra_ax = ax_x * ra_x + ax_y_2 * ra_y_2;
+    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T dot_d_ax = d_x * ax_x + d_y * ax_y;
+    const T dot_ra_ax = ax_x * ra_x + ax_y * ra_y;
     g[0] = va.w * (T(2) * d_dot_x_ax + va.w * (dot_d_ax - dot_ra_ax));
   }
 
@@ -1089,8 +1077,7 @@ struct wheel::slide::b_immovable : wheel::slide {
     const Pose<T>& b = q[1];
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ax_y_2 = ax_y;
-    const T H1_1 = lambda[0] * ax_y_2;
+    const T H1_1 = lambda[0] * ax_y;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
@@ -1099,11 +1086,11 @@ struct wheel::slide::b_immovable : wheel::slide {
     const T d_y = b.y - a.y - ra_y + rb_y;
     const T ra_d_x = d_x + ra_x;
     const T ra_d_y = d_y + ra_y;
-    const T dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y_2;
+    const T dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y;
     H[0][2] = H1_1;
     H[1][2] = -lambda[0] * ax_x;
     H[2][0] = H1_1;
-    H[2][1] = -lambda[0] * ax_x;
+    H[2][1] = H[1][2];
     H[2][2] = -lambda[0] * dot_ra_d_ax;
   }
 };
