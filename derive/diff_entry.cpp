@@ -231,7 +231,7 @@ void EntryJudge::add(const HandItem& item, Difference difference, Expr hand, Exp
   }
   const std::string hidden = hidden_assumption(joint_, constraints, hand, generated, poses());
   if (!hidden.empty()) difference.sentence += fmt::format("; equal only where {}", hidden);
-  const bool vague = difference.kind == "missing term" || difference.kind == "factor";
+  const bool vague = difference.kind == "missing term" || difference.kind == "extra term" || difference.kind == "factor";
   if (!hidden.empty() && vague && item.kind == HandItem::Kind::claim) {
     difference.kind = "undeclared assumption";
   }

@@ -190,8 +190,7 @@ Difference describe_difference(const Place& place, Expr hand, Expr generated, co
   const Expr difference = difference_of(hand, generated);
   d.difference = text(difference);
   std::optional<Explained> explained = whole_entry(place, hand, generated, poses);
-  const std::optional<Explained> source = single_source(place, difference, poses);
-  if (source && (!explained || explained->kind == "factor")) explained = source;
+  if (!explained) explained = single_source(place, difference, poses);
   if (!explained) explained = by_terms(place, hand, generated, poses);
   d.kind = explained->kind;
   d.sentence = fmt::format("{}: {}", place_name(place), explained->sentence);

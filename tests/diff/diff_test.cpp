@@ -68,7 +68,7 @@ TEST(Diff, NamesTheKindOfEveryMistake) {
       {"angle", "  J = [ 0, 1, [1, 0], -1 ]\n", "extra term"},
       {"line", "  J = [ t ; cross(ra, t) ; -t ; -cross(rb + u, t) ]\n", "transposed"},
       {"line", "  K = 1/m(a) + 1/m(b) + cross(ra, t)^2/I(b) + cross(rb + u, t)^2/I(b)\n", "wrong body"},
-      {"line", "  claim C: dot(t, pa - x(b)) = 0\n", "undeclared assumption"},
+      {"line", "  claim C: dot(t, u) = 0\n", "undeclared assumption"},
   };
   for (const Kind& row : table) {
     const Judgement j = judged(row.joint, row.items);
