@@ -84,6 +84,12 @@ TEST_F(Page, ScriptRunsAndShowsTheTimeAskedFor) {
   }
 }
 
+// Under the virtual clock a browser short of time draws no frame at all: frames come from the clock's
+// own timers here, so that the page plays as far on a loaded machine as on an idle one.
+constexpr const char* kFramesByTheClock = R"(<script>
+  window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 16);
+</script>)";
+
 // A person at the controls, played by a script that the test adds to the page.
 TEST_F(Page, PlaysScrubsAndAnswersKeys) {
   const Scene scene = short_scene("four_bar", 1);
@@ -113,13 +119,14 @@ TEST_F(Page, PlaysScrubsAndAnswersKeys) {
     }, 1500);
   </script></body>)";
   page.replace(page.find("</body>"), 7, person);
+  page.insert(page.find("<script>"), kFramesByTheClock);
   const std::string document = rendered(folder_, page, "");
   const std::size_t start = document.find("<pre id=\"seen\">{");
   ASSERT_NE(start, std::string::npos);
   const auto seen = nlohmann::json::parse(
       document.substr(start + 15, document.find("</pre>", start) - start - 15));
   EXPECT_FALSE(seen.contains("error")) << seen;
-  EXPECT_GT(seen["played"], 0.0);
+  EXPECT_GT(seen["played"], 0.1);
   EXPECT_EQ(seen["paused"], "Play");
   EXPECT_NEAR(seen["scrubbed"], 0.75, 1e-6);
   EXPECT_NE(seen["placeScrubbed"], seen["placeElsewhere"]);
