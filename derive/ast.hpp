@@ -79,12 +79,13 @@ struct StatementAst {
   std::string relation;   // "=", "<=", ">="
   Span relation_where;
   Ast left, right;  // row
+  Word keep;        // row: how many of its components, as written
   int first_token = 0, end_token = 0;
 };
 
 struct JointAst {
   Word name;
-  std::string dimension;  // "planar"; empty if the header is missing
+  std::string dimension;  // "planar" or "spatial"; empty if the header is missing
   std::string title, source, comment;
   std::vector<StatementAst> statements;
 };

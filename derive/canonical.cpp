@@ -1,8 +1,11 @@
-// From vectors to components. The rules are those of the plane; names follow the derivation, so that a kernel reads
+// From vectors to components. Names follow the derivation, so that a kernel reads
 // like the code that a careful person writes.
 #include "derive/canonical.hpp"
 
+#include <algorithm>
 #include <cassert>
+
+#include "derive/matrix.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -13,12 +16,30 @@ std::string name_from_parts(Expr e) {
   const auto part = [&](std::size_t i) { return spoken_name(e->args[i]); };
   if (e->kind == Kind::norm && !part(0).empty()) return part(0) + "_len";
   if (e->kind != Kind::cross && e->kind != Kind::dot) return "";
-  const Expr x = world_x(*e->pool);
+  const std::vector<Expr> axes = world_axes(*e->pool);
   for (const Expr arg : e->args) {
     // A component needs no name beside that of its vector.
-    if (arg == x || arg == perp(x) || spoken_name(arg).empty()) return "";
+    if (std::find(axes.begin(), axes.end(), arg) != axes.end() || spoken_name(arg).empty()) return "";
   }
   return e->kind == Kind::cross ? part(0) + "_x_" + part(1) : "dot_" + part(0) + "_" + part(1);
+}
+
+Expr inner_product(const std::vector<Expr>& u, const std::vector<Expr>& v) {
+  Expr total = u[0] * v[0];
+  for (std::size_t k = 1; k < u.size(); ++k) total = total + u[k] * v[k];
+  return total;
+}
+
+std::vector<Expr> leaf_components(Expr v) {
+  Pool& pool = *v->pool;
+  std::vector<Expr> components;
+  for (const Expr axis : world_axes(pool)) {
+    const Expr constant = dot(axis, v);
+    const bool known = is_world_axis(v);
+    const char letter = "xyz"[components.size()];
+    components.push_back(known ? constant : pool.symbol(v->symbol + "_" + letter, v->role, v->body));
+  }
+  return components;
 }
 
 }  // namespace
@@ -28,6 +49,11 @@ std::string spoken_name(Expr e) {
   if (e->kind == Kind::symbol) return e->symbol;
   if (e->kind == Kind::unit && !spoken_name(e->args[0]).empty()) {
     return "dir_" + spoken_name(e->args[0]);
+  }
+  // ra x n, a lever of a direction; a component of it along an axis of the world is not worth a name.
+  if (e->vector && e->kind == Kind::cross && !is_world_axis(e->args[0]) && !is_world_axis(e->args[1])) {
+    const std::string a = spoken_name(e->args[0]), b = spoken_name(e->args[1]);
+    if (!a.empty() && !b.empty()) return a + "_x_" + b;
   }
   // rb + u is spoken as rb_u; with a minus sign there is no short name that says it.
   if (e->vector && e->kind == Kind::sum && e->args.size() == 2 && e->coefs[0] == Rational(1) &&
@@ -48,14 +74,15 @@ Expr Components::of(Expr e) {
   return written_out;
 }
 
-std::array<Expr, 2> Components::of_vector(Expr v) {
+std::vector<Expr> Components::of_vector(Expr v) {
   assert(v->vector);
   if (const auto found = vectors_.find(&*v); found != vectors_.end()) return found->second;
-  const std::array<Expr, 2> components = vector_rule(v);
+  const std::vector<Expr> components = vector_rule(v);
   const std::string name = spoken_name(v);
   if (!name.empty() && v->kind != Kind::symbol) {
-    v->pool->name(components[0], name + "_x", v->named_by_let);
-    v->pool->name(components[1], name + "_y", v->named_by_let);
+    for (std::size_t k = 0; k < components.size(); ++k) {
+      v->pool->name(components[k], name + "_" + "xyz"[k], v->named_by_let);
+    }
   }
   vectors_.emplace(&*v, components);
   return components;
@@ -65,18 +92,16 @@ Expr Components::scalar_rule(Expr e) {
   switch (e->kind) {
     case Kind::number:
     case Kind::symbol: return e;
-    case Kind::dot: {
-      const auto u = of_vector(e->args[0]), v = of_vector(e->args[1]);
-      return u[0] * v[0] + u[1] * v[1];
-    }
+    case Kind::dot: return inner_product(of_vector(e->args[0]), of_vector(e->args[1]));
     case Kind::cross: {
       const auto u = of_vector(e->args[0]), v = of_vector(e->args[1]);
       return u[0] * v[1] - u[1] * v[0];
     }
     case Kind::norm: {
       const auto u = of_vector(e->args[0]);
-      return call(Fn::sqrt, u[0] * u[0] + u[1] * u[1]);
+      return call(Fn::sqrt, inner_product(u, u));
     }
+    case Kind::twist: return of(twist_as_atan2(e));
     case Kind::product: {
       Expr total = e->pool->number(1);
       for (std::size_t i = 0; i < e->args.size(); ++i) {
@@ -99,44 +124,62 @@ Expr Components::scalar_rule(Expr e) {
   }
 }
 
-std::array<Expr, 2> Components::vector_rule(Expr v) {
+std::vector<Expr> Components::vector_rule(Expr v) {
   Pool& pool = *v->pool;
   switch (v->kind) {
-    case Kind::symbol:
-      if (v == world_x(pool)) return {pool.number(1), pool.number(0)};
-      return {pool.symbol(v->symbol + "_x", v->role, v->body),
-              pool.symbol(v->symbol + "_y", v->role, v->body)};
+    case Kind::symbol: return leaf_components(v);
     case Kind::sum: {
-      std::vector<Term> x, y;
+      std::vector<std::vector<Term>> terms(static_cast<std::size_t>(pool.dimension()));
       for (std::size_t i = 0; i < v->args.size(); ++i) {
         const auto part = of_vector(v->args[i]);
-        x.push_back({v->coefs[i], part[0]});
-        y.push_back({v->coefs[i], part[1]});
+        for (std::size_t k = 0; k < part.size(); ++k) terms[k].push_back({v->coefs[i], part[k]});
       }
-      return {sum(pool, x, false), sum(pool, y, false)};
+      std::vector<Expr> sums;
+      for (const std::vector<Term>& t : terms) sums.push_back(sum(pool, t, false));
+      return sums;
     }
     case Kind::scale: {
       const Expr s = of(v->args[0]);
-      const auto u = of_vector(v->args[1]);
-      return {s * u[0], s * u[1]};
+      std::vector<Expr> u = of_vector(v->args[1]);
+      for (Expr& component : u) component = s * component;
+      return u;
     }
     case Kind::perp: {
       const auto u = of_vector(v->args[0]);
       return {-u[1], u[0]};
     }
-    case Kind::unit: {
-      // n = u/|u|, and (1, 0) where u vanishes.
-      const auto u = of_vector(v->args[0]);
-      const Expr length = of(norm(v->args[0]));
-      const Expr inverse = of(pow(norm(v->args[0]), -1));
-      const Expr x[] = {length, u[0] * inverse, pool.number(1)};
-      const Expr y[] = {length, u[1] * inverse, pool.number(0)};
-      return {call(Fn::select, x), call(Fn::select, y)};
+    case Kind::cross: {
+      const auto a = of_vector(v->args[0]), b = of_vector(v->args[1]);
+      return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
     }
+    case Kind::tensor: {
+      const auto u = of_vector(v->args[1]);
+      std::vector<Expr> product;
+      for (std::size_t i = 0; i < 3; ++i) {
+        product.push_back(inner_product({tensor_component(v->args[0], i, 0), tensor_component(v->args[0], i, 1),
+                                         tensor_component(v->args[0], i, 2)}, u));
+      }
+      return product;
+    }
+    case Kind::unit: return unit_rule(v);
     default: break;
   }
   assert(false && "not a vector");
   return {};
+}
+
+// n = u/|u|, and the world's x axis where u vanishes.
+std::vector<Expr> Components::unit_rule(Expr v) {
+  Pool& pool = *v->pool;
+  const auto u = of_vector(v->args[0]);
+  const Expr length = of(norm(v->args[0]));
+  const Expr inverse = of(pow(norm(v->args[0]), -1));
+  std::vector<Expr> n;
+  for (std::size_t k = 0; k < u.size(); ++k) {
+    const Expr cases[] = {length, u[k] * inverse, pool.number(k == 0 ? 1 : 0)};
+    n.push_back(call(Fn::select, cases));
+  }
+  return n;
 }
 
 }  // namespace cdot::derive

@@ -115,10 +115,7 @@ class MassCheck {
     for (const ScalarRow& row : subject_.block.rows) {
       names_.shorten(row.kind == RowKind::velocity ? row.Cdot : row.C);
       J.emplace_back();
-      for (const JacobianEntry& entry : row.J) {
-        const Pair<ex> v = names_.of_vector(entry.v);
-        J.back().insert(J.back().end(), {v[0], v[1], names_.of(entry.w)});
-      }
+      for (const Expr entry : columns_of(row.J)) J.back().push_back(names_.of(entry));
     }
     std::vector<std::vector<std::vector<double>>> seen;
     for (const Sample& sample : subject_.anywhere) {

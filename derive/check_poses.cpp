@@ -26,10 +26,7 @@ Matrix jacobian(Numbers& numbers, const Block& block, const std::vector<std::siz
   Matrix J;
   for (const std::size_t i : rows) {
     std::vector<double> entries;
-    for (const JacobianEntry& entry : block.rows[i].J) {
-      const Pair<double> v = numbers.vector(entry.v);
-      entries.insert(entries.end(), {v[0], v[1], numbers.scalar(entry.w)});
-    }
+    for (const Expr entry : columns_of(block.rows[i].J)) entries.push_back(numbers.scalar(entry));
     J.push_back(std::move(entries));
   }
   return J;
@@ -86,11 +83,10 @@ std::vector<double> newton_step(const Matrix& J, const std::vector<double>& C) {
   return step;
 }
 
-Sample moved(Sample sample, const std::vector<double>& step, double fraction) {
-  for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
-    sample.bodies[b].x += fraction * step[3 * b];
-    sample.bodies[b].y += fraction * step[3 * b + 1];
-    sample.bodies[b].theta += fraction * step[3 * b + 2];
+Sample moved(int dimension, Sample sample, const std::vector<double>& step, double fraction) {
+  const std::size_t columns = columns_per_body(dimension);
+  for (std::size_t i = 0; i < step.size(); ++i) {
+    sample.bodies[i / columns].move(dimension, i % columns, fraction * step[i]);
   }
   return sample;
 }
@@ -99,7 +95,7 @@ std::vector<Expr> expressions_of(const Block& block) {
   std::vector<Expr> all;
   for (const ScalarRow& row : block.rows) {
     all.insert(all.end(), {row.C, row.Cdot, row.gamma});
-    for (const JacobianEntry& entry : row.J) all.insert(all.end(), {entry.v, entry.w});
+    for (const Expr entry : columns_of(row.J)) all.push_back(entry);
   }
   for (const auto& K : block.K) all.insert(all.end(), K.begin(), K.end());
   return all;
@@ -120,7 +116,7 @@ bool project(const Joint& joint, const Block& block, Sample& sample) {
     Sample next = sample;
     double next_error = INFINITY;
     for (double fraction = 1; fraction > 1e-3 && !(next_error < error); fraction /= 2) {
-      next = moved(sample, step, fraction);
+      next = moved(joint.dimension, sample, step, fraction);
       Numbers there(world_values(joint, next));
       next_error = norm_of(values(there, block, rows));
     }

@@ -98,7 +98,7 @@ class Undefined {
                        [&](const Sample& sample) {
                          Numbers numbers(world_values(subject_.joint, sample));
                          if (!e->vector) return std::fabs(numbers.scalar(e)) < vanishing;
-                         const Pair<double> u = numbers.vector(e);
+                         const Triple<double> u = numbers.vector(e);
                          return std::hypot(u[0], u[1]) < vanishing;
                        });
   }

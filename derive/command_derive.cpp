@@ -73,12 +73,12 @@ std::vector<LedgerRow> hand_costs(const std::vector<fs::path>& specs, const Spec
 // What stands below `root` and is ours: everything that `cdot derive` could have written.
 Files present(const fs::path& root) {
   Files files;
-  for (const char* name : {"registry.hpp", "ledger.csv"}) {
-    if (fs::exists(root / name)) files[name] = content_of(root / name);
-  }
-  std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(root / "planar", none)) {
-    files["planar/" + entry.path().filename().string()] = content_of(entry.path());
+  if (fs::exists(root / "ledger.csv")) files["ledger.csv"] = content_of(root / "ledger.csv");
+  for (const char* space : {"planar", "spatial"}) {
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(root / space, none)) {
+      files[std::string(space) + "/" + entry.path().filename().string()] = content_of(entry.path());
+    }
   }
   return files;
 }

@@ -11,17 +11,22 @@ namespace cdot::derive {
 
 // The symbols of one body.
 struct BodySymbols {
-  Expr x, theta;      // centre of mass (vector), angle
-  Expr v, w;          // their rates
-  Expr inv_m, inv_I;  // inverse mass and inertia
+  Expr x, theta;      // centre of mass (vector), angle (empty in space)
+  Expr v, w;          // velocity, angular velocity (a scalar in the plane, a vector in space)
+  Expr inv_m, inv_I;  // inverse mass and inertia (in space a tensor in world axes)
 };
 BodySymbols body_symbols(const Joint& joint, int body);
 
-// One body's part of a row of J: the row vector that multiplies v and the number that multiplies w.
+// One body's part of a row of J: what multiplies v and what multiplies w.
 struct JacobianEntry {
   Expr v;  // vector
-  Expr w;  // scalar
+  Expr w;  // scalar in the plane, vector in space
 };
+// The numbers of J: x, y and w of each body in the plane; x, y, z and the components of w in space.
+std::vector<Expr> columns_of(const JacobianEntry& entry);
+std::vector<Expr> columns_of(const std::vector<JacobianEntry>& J);
+inline std::size_t columns_per_body(int dimension) { return dimension == 2 ? 3 : 6; }
+Expr zero_spin(Pool& pool);
 
 // A scalar row. Vector equations have been taken apart into their components along the world's axes.
 struct ScalarRow {
@@ -43,7 +48,7 @@ struct Block {
   std::vector<ScalarRow> rows;
   std::vector<std::vector<Expr>> K;  // lower triangle: K[i][j], j <= i
   std::vector<Expr> lambda;          // the multipliers that `stiffness` contains
-  std::vector<std::vector<Expr>> stiffness;  // d(J^T lambda)/dq: [3 bodies][3 bodies], x y theta per body
+  std::vector<std::vector<Expr>> stiffness;  // d(J^T lambda)/dq: square, a row and a column per column of J
 };
 
 // A velocity row that is not linear in the velocities.
@@ -59,9 +64,9 @@ Expr time_derivative(Expr e, const Joint& joint, int immovable = -1, Expr only =
 // Terms r x t + s x t as (r + s) x t, and likewise for dot: shorter, and how people write.
 Expr collected(Expr e);
 
-// K = J M^-1 J^T of these rows, lower triangle.
+// K = J M^-1 J^T of these rows, lower triangle; `isotropic`: inertias are numbers also in space.
 std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vector<ScalarRow>& rows,
-                                              int immovable = -1);
+                                              int immovable = -1, bool isotropic = false);
 
 // The coefficients of the velocities in an expression that is linear in them: transposition, node by node.
 std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint);

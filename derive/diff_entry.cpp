@@ -15,19 +15,12 @@ Matrix column(std::vector<Expr> entries) {
   return {static_cast<int>(entries.size()), 1, std::move(entries)};
 }
 
-// Row i of J as numbers multiplying v_x, v_y, w of each body.
-std::vector<Expr> scalars_of(const ScalarRow& row) {
-  std::vector<Expr> entries;
-  for (const JacobianEntry& e : row.J) {
-    const Expr ex = world_x(*e.v->pool);
-    entries.insert(entries.end(), {dot(ex, e.v), dot(perp(ex), e.v), e.w});
-  }
-  return entries;
-}
-
 std::string column_name(const Joint& joint, int column) {
-  static const char* const parts[] = {"v_{}.x", "v_{}.y", "w_{}"};
-  return fmt::format(fmt::runtime(parts[column % 3]), joint.bodies[static_cast<std::size_t>(column / 3)]);
+  static const char* const planar[] = {"v_{}.x", "v_{}.y", "w_{}"};
+  static const char* const spatial[] = {"v_{}.x", "v_{}.y", "v_{}.z", "w_{}.x", "w_{}.y", "w_{}.z"};
+  const int width = static_cast<int>(columns_per_body(joint.dimension));
+  return fmt::format(fmt::runtime((width == 3 ? planar : spatial)[column % width]),
+                     joint.bodies[static_cast<std::size_t>(column / width)]);
 }
 
 constexpr std::size_t whole_row = ~std::size_t{0};  // not an entry of J but all of Cdot
@@ -84,11 +77,11 @@ Generated EntryJudge::generated_for(const std::vector<ScalarRow>& rows) const {
   const int n = static_cast<int>(rows.size());
   Generated g;
   std::vector<Expr> C, Cdot;
-  g.J = {n, 3 * static_cast<int>(joint_.bodies.size()), {}};
+  g.J = {n, static_cast<int>(columns_per_body(joint_.dimension) * joint_.bodies.size()), {}};
   for (const ScalarRow& row : rows) {
     C.push_back(row.C);
     Cdot.push_back(row.Cdot);
-    for (const Expr e : scalars_of(row)) g.J.entries.push_back(e);
+    for (const Expr e : columns_of(row.J)) g.J.entries.push_back(e);
   }
   g.C = column(std::move(C));
   g.Cdot = column(std::move(Cdot));
@@ -126,10 +119,8 @@ void EntryJudge::prepare_poses() {
     }
   }
   // Everything that a hidden assumption may be about, and that finite differences need.
-  const Expr ex = world_x(pool_);
   const auto take_any = [&](Expr e) {
-    if (e->vector) all.insert(all.end(), {dot(ex, e), dot(perp(ex), e)});
-    else all.push_back(e);
+    for (const Expr component : components_of(e)) all.push_back(component);
   };
   for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint_, static_cast<int>(b));
@@ -258,7 +249,7 @@ std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::s
     ScalarRow only;
     only.Cdot = time_derivative(row.C, joint_, immovable_, leaf);
     only.J = isolate_velocities(only.Cdot, joint_);
-    sources.push_back({leaf, sign * (entry == whole_row ? only.Cdot : scalars_of(only)[entry])});
+    sources.push_back({leaf, sign * (entry == whole_row ? only.Cdot : columns_of(only.J)[entry])});
   }
   return sources;
 }
@@ -271,8 +262,9 @@ void EntryJudge::compare_entry(Part& part, const HandItem& item, int row, int co
   if (item.what == "K" || claim) place.column = std::to_string(column + 1);
   if (item.what == "J" && !claim) {
     place.column = column_name(joint_, column);
-    const std::vector<Expr> mine = scalars_of(part.rows[static_cast<std::size_t>(row)]);
-    for (int c = column % 3; c < static_cast<int>(mine.size()); c += 3) {
+    const std::vector<Expr> mine = columns_of(part.rows[static_cast<std::size_t>(row)].J);
+    const int width = static_cast<int>(columns_per_body(joint_.dimension));
+    for (int c = column % width; c < static_cast<int>(mine.size()); c += width) {
       if (c != column) place.elsewhere.push_back(mine[static_cast<std::size_t>(c)]);
     }
   }
@@ -389,9 +381,9 @@ std::string EntryJudge::confirmation(const Part& part, const HandItem& item, int
       }
       return total;
     }
-    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
-      const Sample::Body& body = sample.bodies[b];
-      total += J[3 * b] * body.v_x + J[3 * b + 1] * body.v_y + J[3 * b + 2] * body.w;
+    const std::size_t width = columns_per_body(joint_.dimension);
+    for (std::size_t c = 0; c < J.size(); ++c) {
+      total += J[c] * sample.bodies[c / width].velocity(joint_.dimension, c % width);
     }
     return item.what == "b" ? -total : total;
   };
@@ -416,7 +408,7 @@ void EntryJudge::add_cost(const Part& part, const HandItem& item) {
       for (int j = 0; j <= i; ++j) entries.push_back(item.value->at(i, j));
     }
   }
-  out_.costs.push_back({joint_.name, block, item.what, entry_.id, cost_from_poses(joint_, entries)});
+  out_.costs.push_back({name_of_space(joint_.dimension), joint_.name, block, item.what, entry_.id, cost_from_poses(joint_, entries)});
 }
 
 Judgement EntryJudge::judge() {

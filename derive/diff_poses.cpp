@@ -11,24 +11,38 @@ constexpr int number_of_poses = 12;
 constexpr double round_off = 1e-8;
 
 // Every number of a sample that an equation may move: poses, scalars, components of fixed vectors.
-std::vector<double*> variables_of(Sample& sample) {
+std::vector<double*> variables_of(Sample& sample, std::size_t dimension) {
   std::vector<double*> variables;
+  const auto take = [&](auto& numbers, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) variables.push_back(&numbers[k]);
+  };
   for (Sample::Body& body : sample.bodies) {
-    variables.insert(variables.end(), {&body.x, &body.y, &body.theta});
+    take(body.x, dimension);
+    if (dimension == 2) variables.push_back(&body.theta);
+    else take(body.e, 4);
   }
   for (auto& [name, value] : sample.scalars) variables.push_back(&value);
-  for (auto& [name, value] : sample.local) variables.insert(variables.end(), {&value[0], &value[1]});
+  for (auto& [name, value] : sample.local) take(value, dimension);
+  for (auto& [triad, e] : sample.triads) take(e, 4);
   return variables;
 }
 
-// Directions keep the length 1 while they are moved.
+template <class Numbers>
+void normalise(Numbers& numbers) {
+  double square = 0;
+  for (const double x : numbers) square += x * x;
+  for (double& x : numbers) x /= std::sqrt(square);
+}
+
+// Directions and Euler parameters keep the length 1 while they are moved.
 void restore_unit_lengths(Sample& sample) {
   for (const Expr leaf : sample.leaves) {
     const auto found = sample.local.find(leaf->symbol);
     if (!leaf->unit_length || found == sample.local.end()) continue;
-    const double length = std::hypot(found->second[0], found->second[1]);
-    for (double& component : found->second) component /= length;
+    normalise(found->second);
   }
+  for (Sample::Body& body : sample.bodies) normalise(body.e);
+  for (auto& [triad, e] : sample.triads) normalise(e);
 }
 
 std::vector<double> values_of(const Joint& joint, const std::vector<Expr>& expressions,
@@ -62,7 +76,7 @@ bool Poses::satisfy(const std::vector<Expr>& equations, Sample& sample) const {
       const double residual = value();
       worst = std::max(worst, std::abs(residual));
       if (std::abs(residual) < 1e-13) continue;
-      const std::vector<double*> variables = variables_of(sample);
+      const std::vector<double*> variables = variables_of(sample, static_cast<std::size_t>(joint_->dimension));
       std::vector<double> gradient;
       double square = 0;
       for (double* x : variables) {
@@ -136,10 +150,10 @@ std::vector<double> measured_row(const Joint& joint, Expr C, const Sample& sampl
   constexpr double step = 1e-6;
   std::vector<double> row;
   for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
-    for (double Sample::Body::*coordinate : {&Sample::Body::x, &Sample::Body::y, &Sample::Body::theta}) {
+    for (std::size_t k = 0; k < columns_per_body(joint.dimension); ++k) {
       Sample above = sample, below = sample;
-      above.bodies[b].*coordinate += step;
-      below.bodies[b].*coordinate -= step;
+      above.bodies[b].move(joint.dimension, k, step);
+      below.bodies[b].move(joint.dimension, k, -step);
       row.push_back((values_of(joint, {C}, above)[0] - values_of(joint, {C}, below)[0]) / (2 * step));
     }
   }

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "derive/derivation.hpp"
+#include "derive/symbols.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -48,8 +49,8 @@ class TimeDerivative {
       // d(s u)/dt = sdot u + s udot
       case Kind::scale: return of(e->args[0]) * e->args[1] + e->args[0] * of(e->args[1]);
       case Kind::perp: return perp(of(e->args[0]));
-      // d(u/|u|)/dt = (n x udot)/|u| perp(n): only the part across n turns it.
-      case Kind::unit: return cross(e, of(e->args[0])) / norm(e->args[0]) * perp(e);
+      case Kind::cross: return cross(of(e->args[0]), e->args[1]) + cross(e->args[0], of(e->args[1]));
+      case Kind::unit: return unit_rule(e);
       default: break;
     }
     assert(false && "not a vector");
@@ -70,6 +71,7 @@ class TimeDerivative {
       case Kind::cross: return cross(of(e->args[0]), e->args[1]) + cross(e->args[0], of(e->args[1]));
       // d|u|/dt = n . udot
       case Kind::norm: return dot(unit(e->args[0]), of(e->args[0]));
+      case Kind::twist: return twist_rule(e);
       case Kind::function: return chain_rule(e);
       default: break;
     }
@@ -92,6 +94,27 @@ class TimeDerivative {
       total = total + Rational(e->exponents[i]) * (without_factor(e, i) * rate);
     }
     return total;
+  }
+
+  // Only the part of udot across n = u/|u| turns it: (n x udot)/|u| perp(n) in the plane, in space
+  // (udot - (n . udot) n)/|u|.
+  Expr unit_rule(Expr e) {
+    const Expr rate = of(e->args[0]), length = norm(e->args[0]);
+    if (e->pool->dimension() == 2) return cross(e, rate) / length * perp(e);
+    return (rate - dot(e, rate) * e) / length;
+  }
+
+  // The twist of g against f grows at (f_x + g_x) . (w_g - w_f) / (1 + f_x . g_x): the rate about the axis halfway
+  // between the two x axes.
+  Expr twist_rule(Expr e) {
+    const Expr f = e->args[0], g = e->args[3];
+    const Expr relative = spin_of(g) - spin_of(f);
+    return dot(f + g, relative) / (e->pool->number(1) + dot(f, g));
+  }
+
+  // The angular velocity of what a triad is fixed in.
+  Expr spin_of(Expr axis) {
+    return moves(axis) ? body_symbols(joint_, axis->body).w : zero_vector(*axis->pool);
   }
 
   Expr chain_rule(Expr e) {
@@ -185,14 +208,25 @@ class Transposition {
         add(e->args[0], c * e->args[1]);
         add(e->args[1], c * e->args[0]);
         return;
-      case Kind::cross:  // u x v = u . (-perp v) = perp(u) . v
+      case Kind::cross:
         require(!(moving(e->args[0]) && moving(e->args[1])));
-        add(e->args[0], -(c * perp(e->args[1])));
-        add(e->args[1], c * perp(e->args[0]));
-        return;
+        return pass_on_cross(e, c);
+      case Kind::tensor:  // c . (T u) = (T c) . u
+        return add(e->args[1], apply(e->args[0], c));
       case Kind::perp:  // c . perp(u) = -perp(c) . u
         return add(e->args[0], -perp(c));
       default: require(false);
+    }
+  }
+
+  void pass_on_cross(Expr e, Expr c) {
+    const Expr u = e->args[0], v = e->args[1];
+    if (e->vector) {  // c . (u x v) = u . (v x c) = v . (c x u)
+      if (moving(u)) add(u, cross(v, c));
+      if (moving(v)) add(v, cross(c, u));
+    } else {  // u x v = u . (-perp v) = perp(u) . v
+      if (moving(u)) add(u, -(c * perp(v)));
+      if (moving(v)) add(v, c * perp(u));
     }
   }
 
@@ -261,27 +295,22 @@ bool merge_pair(std::vector<Term>& terms) {
 }
 
 // d(J^T lambda)/dq: each component of the generalised force, differentiated along the motion at fixed time and
-// lambda; what multiplies v_x, v_y and w of a body is its column.
+// lambda; what multiplies each component of v and w of a body is its column.
 std::vector<std::vector<Expr>> geometric_stiffness(const Joint& joint, Block& block) {
   Pool& pool = *joint.pool;
-  const Expr ex = world_x(pool), ey = perp(ex);
   for (std::size_t i = 0; i < block.rows.size(); ++i) {
     block.lambda.push_back(pool.symbol("lambda_" + std::to_string(i + 1), Role::multiplier));
   }
   std::vector<std::vector<Expr>> H;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-    Expr force = zero_vector(pool), torque = pool.number(0);
+    JacobianEntry force{zero_vector(pool), zero_spin(pool)};
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
-      force = force + block.lambda[i] * block.rows[i].J[b].v;
-      torque = torque + block.lambda[i] * block.rows[i].J[b].w;
+      force.v = force.v + block.lambda[i] * block.rows[i].J[b].v;
+      force.w = force.w + block.lambda[i] * block.rows[i].J[b].w;
     }
-    for (const Expr component : {dot(ex, force), dot(ey, force), torque}) {
-      std::vector<Expr> columns;
+    for (const Expr component : columns_of(force)) {
       const Expr rate = time_derivative(component, joint, block.immovable);
-      for (const JacobianEntry& entry : isolate_velocities(rate, joint)) {
-        columns.insert(columns.end(), {dot(ex, entry.v), dot(ey, entry.v), entry.w});
-      }
-      H.push_back(std::move(columns));
+      H.push_back(columns_of(isolate_velocities(rate, joint)));
     }
   }
   return H;
@@ -296,11 +325,11 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
     at_rest.emplace(&*body.v, zero_vector(pool));
-    at_rest.emplace(&*body.w, pool.number(0));
+    at_rest.emplace(&*body.w, zero_spin(pool));
   }
   if (at_velocity_level && immovable >= 0) {
     const BodySymbols body = body_symbols(joint, immovable);
-    row.Cdot = substitute(row.Cdot, {{&*body.v, zero_vector(pool)}, {&*body.w, pool.number(0)}},
+    row.Cdot = substitute(row.Cdot, {{&*body.v, zero_vector(pool)}, {&*body.w, zero_spin(pool)}},
                           KeepNames::no);
   }
   row.C_t = substitute(row.Cdot, at_rest, KeepNames::no);
@@ -319,13 +348,26 @@ Block finished(const Joint& joint, Block block) {
 
 BodySymbols body_symbols(const Joint& joint, int body) {
   Pool& pool = *joint.pool;
-  const std::string& name = joint.bodies[static_cast<std::size_t>(body)];
-  return {pool.vector_symbol("x_" + name, Role::position, body),
-          pool.symbol("theta_" + name, Role::angle, body),
-          pool.vector_symbol("v_" + name, Role::velocity, body),
-          pool.symbol("w_" + name, Role::spin, body),
-          pool.symbol("inv_m_" + name, Role::inverse_mass, body),
-          pool.symbol("inv_I_" + name, Role::inverse_inertia, body)};
+  return {body_position(pool, body), pool.dimension() == 2 ? body_angle(pool, body) : Expr(),
+          body_velocity(pool, body), body_spin(pool, body),
+          inverse_mass(pool, body),  inverse_inertia(pool, body)};
+}
+
+Expr zero_spin(Pool& pool) { return pool.dimension() == 2 ? pool.number(0) : zero_vector(pool); }
+
+std::vector<Expr> columns_of(const JacobianEntry& entry) {
+  std::vector<Expr> columns = components_of(entry.v), w = components_of(entry.w);
+  columns.insert(columns.end(), w.begin(), w.end());
+  return columns;
+}
+
+std::vector<Expr> columns_of(const std::vector<JacobianEntry>& J) {
+  std::vector<Expr> columns;
+  for (const JacobianEntry& entry : J) {
+    const std::vector<Expr> part = columns_of(entry);
+    columns.insert(columns.end(), part.begin(), part.end());
+  }
+  return columns;
 }
 
 Expr time_derivative(Expr e, const Joint& joint, int immovable, Expr only) {
@@ -333,16 +375,16 @@ Expr time_derivative(Expr e, const Joint& joint, int immovable, Expr only) {
 }
 
 Expr collected(Expr e) {
-  if (e->vector || e->kind != Kind::sum || !e->name.empty()) return e;
+  if (e->kind != Kind::sum || !e->name.empty()) return e;
   std::vector<Term> terms = terms_of(e);
   while (merge_pair(terms)) {
   }
-  return sum(*e->pool, terms, false);
+  return sum(*e->pool, terms, e->vector);
 }
 
-// Entry by entry the sum over the bodies of v_i . v_j / m + w_i w_j / I.
+// Entry by entry the sum over the bodies of v_i . v_j / m + w_i . I^-1 w_j.
 std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vector<ScalarRow>& rows,
-                                              int immovable) {
+                                              int immovable, bool isotropic) {
   std::vector<std::vector<Expr>> K(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
@@ -352,7 +394,11 @@ std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vec
         const BodySymbols body = body_symbols(joint, static_cast<int>(b));
         const JacobianEntry& Ji = rows[i].J[b];
         const JacobianEntry& Jj = rows[j].J[b];
-        entry = entry + body.inv_m * dot(Ji.v, Jj.v) + body.inv_I * (Ji.w * Jj.w);
+        const bool tensor = Ji.w->vector && !isotropic;
+        const Expr turning = tensor         ? dot(Ji.w, apply(body.inv_I, Jj.w))
+                             : Ji.w->vector ? body.inv_I * dot(Ji.w, Jj.w)
+                                            : body.inv_I * (Ji.w * Jj.w);
+        entry = entry + body.inv_m * dot(Ji.v, Jj.v) + turning;
       }
       K[i].push_back(entry);
     }
@@ -373,16 +419,15 @@ std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint) {
 Block derive_rows(const Joint& joint, int immovable) {
   Block block;
   block.immovable = immovable;
-  const Expr ex = world_x(*joint.pool);
+  const std::vector<Expr> axes = world_axes(*joint.pool);
   for (const Row& row : joint.rows) {
     if (!row.C->vector) {
       block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, {}, {}, {}, {}, {}},
                                       row.C, immovable));
       continue;
     }
-    const Expr axes[] = {ex, perp(ex)};
-    for (int k = 0; k < 2; ++k) {
-      ScalarRow part{row.name + (k == 0 ? "_x" : "_y"), &row, row.kind, k, {}, {}, {}, {}, {}};
+    for (std::size_t k = 0; k < axes.size(); ++k) {
+      ScalarRow part{row.name + "_" + "xyz"[k], &row, row.kind, static_cast<int>(k), {}, {}, {}, {}, {}};
       block.rows.push_back(derive_row(joint, std::move(part), dot(axes[k], row.C), immovable));
     }
   }

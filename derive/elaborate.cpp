@@ -36,10 +36,10 @@ void parse_source(Source& source) {
       source.declared_anywhere.emplace(s.declared.name.text, s.declared.name.where);
 }
 
-Elaborator::Elaborator(const Library& library, std::shared_ptr<Pool> pool,
-                       const ReadOptions& options)
-    : library_(library), pool_(std::move(pool)), options_(options) {
+Elaborator::Elaborator(const Library& library, int dimension, const ReadOptions& options)
+    : library_(library), pool_(std::make_shared<Pool>(dimension)), options_(options) {
   joint_.pool = pool_;
+  joint_.dimension = dimension;
 }
 
 void Elaborator::error(Source& source, Span where, std::string message, std::string fix,

@@ -39,7 +39,7 @@ struct Entry {
 
 class Elaborator {
  public:
-  Elaborator(const Library& library, std::shared_ptr<Pool> pool, const ReadOptions& options);
+  Elaborator(const Library& library, int dimension, const ReadOptions& options);
   void run(Source& spec);
   void finish(ReadResult& result, Source& spec);
 
@@ -50,6 +50,7 @@ class Elaborator {
   // elaborate_include.cpp
   void include(Source& source, const IncludeAst& item);
   bool includable(Source& source, const IncludeAst& item);
+  bool same_space(Source& source, const IncludeAst& item, const Source& inner);
   bool map_bodies(Source& source, const IncludeAst& item, Source& inner);
   void report_included(Source& source, const IncludeAst& item, const Source& inner);
   // elaborate_declare.cpp
@@ -58,14 +59,20 @@ class Elaborator {
   bool resolve_unit(Source& source, const DeclaredAst& d, const Value& given, Parameter& p);
   Value default_value(Source& source, const DeclaredAst& d);
   bool default_fits(Source& source, const DeclaredAst& d, Value& given);
+  void default_axes(const Value& given, Parameter& p);
   bool build_symbol(Source& source, const DeclaredAst& d, Parameter& p, Value& value);
+  bool symbol_is_free(Source& source, const DeclaredAst& d, const std::string& symbol, bool arm);
+  bool build_frame(Source& source, const DeclaredAst& d, Role role, Parameter& p, Value& value);
   void let(Source& source, const DeclaredAst& d);
+  bool is_component(std::string_view ending) const;
   std::string vector_of_component(const std::string& name) const;
   bool name_is_free(Source& source, const Word& word, const std::string& full);
   void enter(Source& source, const std::string& full, std::string kind, Value value, Span where);
   // elaborate_row.cpp
   void row(Source& source, const StatementAst& s);
   std::optional<Value> constraint(Source& source, const StatementAst& s);
+  void add_row(Source& source, const StatementAst& s, Row row);
+  void keep(Source& source, const StatementAst& s, const Row& whole);
   bool row_makes_sense(Source& source, const StatementAst& s, const Value& C);
   void coordinate(Source& source, const StatementAst& s);
   bool free_of_velocity(Source& source, const Ast& ast, const Value& value, std::string_view place);

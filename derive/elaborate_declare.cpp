@@ -50,6 +50,7 @@ void Elaborator::declare(Source& source, const DeclaredAst& d) {
   Value value;
   if (good && build_symbol(source, d, p, value)) {
     p.default_value = given.e;
+    if (!p.axes.empty() && given.e) default_axes(given, p);
     joint_.parameters.push_back(p);
   }
   enter(source, full, d.kind, value, d.name.where);
@@ -99,9 +100,11 @@ bool Elaborator::default_fits(Source& source, const DeclaredAst& d, Value& given
   const auto is = [&](Type t) { return given.type == t; };
   if (d.kind == "frame" && is(Type::body)) {
     SourceNames(*this, source).use_body(given.body, d.value->where);
-    given = vector(body_axis(*pool_, given.body));
+    const std::vector<Expr> axes = body_axes(*pool_, given.body);
+    given = vector(axes[0]);
+    given.axes = axes;
   }
-  if (d.kind == "frame" && is(Type::frame)) given = vector(given.e);
+  if (d.kind == "frame" && is(Type::frame)) given.type = Type::vector;
   if (given.zero && d.kind == "vector") given = vector(zero_vector(*pool_), {});
   const Type wanted = d.kind == "point"    ? Type::point
                       : d.kind == "scalar" ? Type::scalar
@@ -114,7 +117,7 @@ bool Elaborator::default_fits(Source& source, const DeclaredAst& d, Value& given
         wanted == Type::point && is(Type::vector) ? "add it to a point, such as x(a) + ..." : "");
     return false;
   }
-  if (given.axis) {
+  if (!given.along.empty()) {
     source.diagnostics.error(d.value->where, "a default is given in world axes, not along a frame",
                              "leave out local(...)");
     return false;
@@ -163,33 +166,72 @@ bool Elaborator::resolve_unit(Source& source, const DeclaredAst& d, const Value&
   return true;
 }
 
+// A frame of another body as it is; a direction n for the x axis is completed to a triad by axes that depend on nothing
+// but n: with s = 1 where n.z > 0 and -1 elsewhere, a = -1/(s + n.z), b = n.x n.y a,
+// y = (1 + s a n.x^2, s b, -s n.x) and z = (b, s + a n.y^2, -n.y).
+// Source: Duff, Burgess, Christensen, Hery, Kensler, Liani, Villemin, Building an Orthonormal Basis, Revisited, 2017
+void Elaborator::default_axes(const Value& given, Parameter& p) {
+  if (!given.axes.empty()) {
+    p.default_axes = given.axes;
+    return;
+  }
+  const std::vector<Expr> world = world_axes(*pool_);
+  const Expr n = given.e, one = pool_->number(1);
+  const Expr x = dot(world[0], n), y = dot(world[1], n), z = dot(world[2], n);
+  const Expr cases[] = {z, one, -one};
+  const Expr s = call(Fn::select, cases), a = -pow(s + z, -1), b = x * y * a;
+  const auto vector_of = [&](Expr u, Expr v, Expr w) { return u * world[0] + v * world[1] + w * world[2]; };
+  p.default_axes = {n, vector_of(one + s * a * x * x, s * b, -(s * x)), vector_of(b, s + a * y * y, -y)};
+}
+
+bool Elaborator::symbol_is_free(Source& source, const DeclaredAst& d, const std::string& symbol, bool arm) {
+  if (!pool_->find(symbol) && !is_symbol_of_tool(symbol) && !(arm && names_.contains(symbol))) return true;
+  const auto other = names_.find(symbol);
+  error(source, d.name.where,
+        "the " + d.kind + " " + quote(d.name.text) + " needs the name " + quote(symbol) +
+            (arm ? " for its arm" : "") + ", which is taken",
+        "choose another name",
+        other != names_.end() ? std::vector<Span>{other->second.where} : std::vector<Span>{});
+  return false;
+}
+
+// In space a frame is a triad of three leaves, in the plane its x axis.
+bool Elaborator::build_frame(Source& source, const DeclaredAst& d, Role role, Parameter& p, Value& value) {
+  if (joint_.dimension == 3) {
+    for (const char* axis : {"_x", "_y", "_z"})
+      if (!symbol_is_free(source, d, p.name + axis, false)) return false;
+    const Triad triad = pool_->triad(p.name, role, p.body);
+    p.axes.assign(triad.begin(), triad.end());
+    p.symbol = p.value = p.axes[0];
+    value = vector(p.value, p.unit);
+    value.axes = p.axes;
+  } else {
+    if (!symbol_is_free(source, d, p.name + "_x", false)) return false;
+    p.symbol = p.value = pool_->vector_symbol(p.name + "_x", role, p.body, true);
+    value = vector(p.value, p.unit);
+    value.axes = {p.value, perp(p.value)};
+  }
+  value.body = p.body;
+  value.type = Type::frame;
+  return true;
+}
+
 // The leaf behind a parameter, and what its name means in expressions.
 bool Elaborator::build_symbol(Source& source, const DeclaredAst& d, Parameter& p, Value& value) {
   const Role role = p.body < 0 ? Role::world_vector : Role::body_vector;
+  if (p.kind == ParameterKind::frame) return build_frame(source, d, role, p, value);
   const bool arm = p.kind == ParameterKind::point && p.body >= 0;
-  const std::string symbol = arm                              ? arm_name(source.prefix, d.name.text)
-                             : p.kind == ParameterKind::frame ? p.name + "_x"
-                                                              : p.name;
-  if (pool_->find(symbol) || is_symbol_of_tool(symbol) || (arm && names_.contains(symbol))) {
-    const auto other = names_.find(symbol);
-    error(source, d.name.where,
-          "the " + d.kind + " " + quote(d.name.text) + " needs the name " + quote(symbol) +
-              (arm ? " for its arm" : "") + ", which is taken",
-          "choose another name",
-          other != names_.end() ? std::vector<Span>{other->second.where} : std::vector<Span>{});
-    return false;
-  }
+  const std::string symbol = arm ? arm_name(source.prefix, d.name.text) : p.name;
+  if (!symbol_is_free(source, d, symbol, arm)) return false;
   if (p.kind == ParameterKind::scalar) {
     p.symbol = p.value = pool_->symbol(symbol, Role::parameter);
     value = scalar(p.value, p.unit);
     return true;
   }
-  const bool direction = p.kind == ParameterKind::unit || p.kind == ParameterKind::frame;
-  p.symbol = p.value = pool_->vector_symbol(symbol, role, p.body, direction);
+  p.symbol = p.value = pool_->vector_symbol(symbol, role, p.body, p.kind == ParameterKind::unit);
   if (arm) p.value = body_position(*pool_, p.body) + p.symbol;
   value = vector(p.value, p.unit);
   value.body = p.body;
-  if (p.kind == ParameterKind::frame) value.type = Type::frame;
   if (p.kind == ParameterKind::point) {
     value.type = Type::point;
     value.anchored = true;
@@ -218,10 +260,10 @@ void Elaborator::let(Source& source, const DeclaredAst& d) {
   if (value.type != Type::poison) {
     const Span where = in_spec(source, d.name.where);
     const Unit unit = value.unit.value_or(Unit{});
-    if (value.axis) {
-      for (const int i : {0, 1}) {
+    if (!value.along.empty()) {
+      for (std::size_t i = 0; i < value.along.size(); ++i) {
         const Expr part = component(value.e, i);
-        const std::string name = full + (i == 0 ? "_x" : "_y");
+        const std::string name = full + "_" + "xyz"[i];
         pool_->name(part, name, true);
         joint_.lets.push_back({name, part, unit, where});
       }
@@ -264,12 +306,17 @@ bool Elaborator::name_is_free(Source& source, const Word& word, const std::strin
   return false;
 }
 
+// "_x", "_y", and in space "_z".
+bool Elaborator::is_component(std::string_view ending) const {
+  return ending == "_x" || ending == "_y" || (ending == "_z" && joint_.dimension == 3);
+}
+
 // The vector that has `name` as the name of a component in kernels: `t` for `t_x`.
 std::string Elaborator::vector_of_component(const std::string& name) const {
   const auto is_vector = [](const Value& v) {
     return v.type == Type::vector || v.type == Type::point || v.type == Type::frame;
   };
-  if (name.size() > 2 && (name.ends_with("_x") || name.ends_with("_y"))) {
+  if (name.size() > 2 && is_component(name.substr(name.size() - 2))) {
     const auto base = names_.find(name.substr(0, name.size() - 2));
     if (base != names_.end() && is_vector(base->second.value)) return base->first;
   }
@@ -279,8 +326,8 @@ std::string Elaborator::vector_of_component(const std::string& name) const {
 void Elaborator::enter(Source& source, const std::string& full, std::string kind, Value value,
                        Span where) {
   if (value.type == Type::vector || value.type == Type::point || value.type == Type::frame)
-    for (const char* component : {"_x", "_y"})
-      if (const auto taken = names_.find(full + component); taken != names_.end())
+    for (const char* component : {"_x", "_y", "_z"})
+      if (const auto taken = names_.find(full + component); is_component(component) && taken != names_.end())
         error(source, where,
               "a component of " + quote(full) + " is called " + quote(full + component) +
                   ", which is another name",

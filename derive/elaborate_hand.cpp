@@ -74,6 +74,10 @@ class EntryElaborator final : public Scope {
   void begin_part(std::vector<std::string> rows);
   const Value* special(const std::string& name);
   Value lambda();
+  // Of v and w in a row of J.
+  std::vector<int> widths_of_body() const {
+    return joint_.dimension == 2 ? std::vector{2, 1} : std::vector{3, 3};
+  }
   bool name_is_free(const Word& word);
   Value evaluate(const Ast& ast, bool rows_of_J = false);
   void store(const Value& v, std::optional<Matrix>& matrix, Expr& expression);
@@ -177,7 +181,10 @@ Value EntryElaborator::evaluate(const Ast& ast, bool rows_of_J) {
   Evaluator evaluator(pool_, *this, diagnostics_, findings_);
   if (rows_of_J) {
     std::vector<int> widths;
-    for (std::size_t i = 0; i < joint_.bodies.size(); ++i) widths.insert(widths.end(), {2, 1});
+    for (std::size_t i = 0; i < joint_.bodies.size(); ++i) {
+      const std::vector<int> of_body = widths_of_body();
+      widths.insert(widths.end(), of_body.begin(), of_body.end());
+    }
     evaluator.expect_columns(std::move(widths));
   }
   Value v = evaluator(ast);
@@ -209,12 +216,16 @@ void EntryElaborator::store(const Value& v, std::optional<Matrix>& matrix, Expr&
   if (v.type == Type::scalar || v.type == Type::vector || v.type == Type::point) expression = v.e;
   if (v.type == Type::scalar) matrix = Matrix{1, 1, {v.e}};
   if (v.type == Type::vector || v.type == Type::point)
-    matrix = Matrix{2, 1, {component(v.e, 0), component(v.e, 1)}};
+    matrix = column_of(v.e);
   if (v.type == Type::matrix) {
-    matrix = *v.matrix;
+    matrix = v.inverted ? inverse(*v.matrix) : *v.matrix;
     if (!matrix->any_size()) return;
-    const Expr d = matrix->entries[0], zero = pool_.number(0);
-    matrix = Matrix{2, 2, {d, zero, zero, d}};
+    const int n = pool_.dimension();
+    Matrix full{n, n, {}};
+    for (int i = 0; i < n * n; ++i) {
+      full.entries.push_back(i % (n + 1) == 0 ? matrix->entries[0] : pool_.number(0));
+    }
+    matrix = full;
   }
 }
 
@@ -327,12 +338,13 @@ void EntryElaborator::update(const HandItemAst& item) {
   const std::size_t before = findings();
   const Value v = evaluate(item.right);
   store(v, out.value, out.expression);
-  const int rows = item.word.text == "v" || item.word.text == "x" ? 2 : 1;
+  const bool linear = item.word.text == "v" || item.word.text == "x";
+  const int rows = linear || pool_.dimension() == 3 ? pool_.dimension() : 1;
   if (v.type == Type::poison)
     out.problem = problem(item.right, before);
   else if (out.value->rows != rows || out.value->columns != 1) {
     out.problem =
-        std::string(in_words(v.type)) + " is added to " + (rows == 2 ? "a vector" : "a number");
+        std::string(in_words(v.type)) + " is added to " + (rows > 1 ? "a vector" : "a number");
     out.value.reset();
   }
   if (item.flag && out.value) {

@@ -21,6 +21,7 @@ void Elaborator::include(Source& source, const IncludeAst& item) {
   inner.including.push_back(item.joint.text);
   inner.prefix = source.prefix + (item.prefix.text.empty() ? "" : item.prefix.text + "_");
   parse_source(inner);
+  if (!inner.diagnostics.has_errors() && !same_space(source, item, inner)) return;
   if (!inner.diagnostics.has_errors() && map_bodies(source, item, inner)) statements(inner);
   report_included(source, item, inner);
   if (!source.include) joint_.includes.push_back(item.joint.text);
@@ -49,6 +50,16 @@ bool Elaborator::includable(Source& source, const IncludeAst& item) {
   d.error(item.joint.where, "there is no joint " + quote(name) + " to include",
           near.empty() ? "put " + name + ".joint beside this file"
                        : "did you mean " + quote(near) + "?");
+  return false;
+}
+
+bool Elaborator::same_space(Source& source, const IncludeAst& item, const Source& inner) {
+  const std::string here = name_of_space(joint_.dimension);
+  if (inner.ast.dimension == here) return true;
+  error(source, item.joint.where,
+        "a " + here + " joint cannot include the " + inner.ast.dimension + " joint " +
+            quote(item.joint.text),
+        "include a " + here + " one");
   return false;
 }
 

@@ -28,12 +28,12 @@ bool Elaborator::free_of_velocity(Source& source, const Ast& ast, const Value& v
   return false;
 }
 
-// [ NAME ":" ] [ "velocity" ] left ( "=" | "<=" | ">=" ) right
+// [ NAME ":" ] [ "velocity" ] left ( "=" | "<=" | ">=" ) right [ "keep" NUMBER ]
 void Elaborator::row(Source& source, const StatementAst& s) {
-  const std::string label = s.label.text.empty() ? "" : source.prefix + s.label.text;
   const auto C = constraint(source, s);
   if (!C || !row_makes_sense(source, s, *C)) return;
   Row row;
+  row.name = s.label.text.empty() ? "" : source.prefix + s.label.text;
   row.kind = s.velocity          ? RowKind::velocity
              : s.relation == "=" ? RowKind::equality
                                  : RowKind::inequality;
@@ -42,17 +42,55 @@ void Elaborator::row(Source& source, const StatementAst& s) {
   row.where = in_spec(source, s.where);
   row.text = written(source, s);
   if (source.include) row.from = source.including.back();
+  if (s.keep.text.empty())
+    add_row(source, s, std::move(row));
+  else
+    keep(source, s, row);
+}
+
+void Elaborator::add_row(Source& source, const StatementAst& s, Row row) {
   const bool again = std::any_of(joint_.rows.begin(), joint_.rows.end(), [&](const Row& r) {
     return r.kind == row.kind && r.C == row.C && (source.include || !r.from.empty());
   });
   if (again) return;
-  row.name = label.empty() ? "C" + std::to_string(++row_count_) : label;
-  if (!label.empty()) ++row_count_;
+  ++row_count_;
+  if (row.name.empty()) row.name = "C" + std::to_string(row_count_);
   const auto [before, is_new] = row_names_.emplace(row.name, row.where);
   if (!is_new)
     error(source, s.label.text.empty() ? s.where : s.label.where,
           "two rows are named " + quote(row.name), "choose another name", {before->second});
   joint_.rows.push_back(std::move(row));
+}
+
+// n x m = 0 says that m is parallel to n: two conditions in three components. With n = f.x an axis of a frame, what is
+// kept are the components along its other axes, f.z . (f.x x m) = f.y . m and -f.y . (f.x x m) = f.z . m, which stay
+// independent as long as the row holds.
+void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
+  Diagnostics& d = source.diagnostics;
+  const Term term = split_coefficient(whole.C);
+  if (s.keep.text != "2" || !whole.C->vector || joint_.dimension == 2)
+    return d.error(s.keep.where, "`keep` takes 2 of the three rows of a cross product",
+                   "write cross(f.x, u) = 0 keep 2, or the independent rows themselves");
+  if (term.e->kind != Kind::cross)
+    return d.error(s.left.where, "there is no telling which rows of this are independent",
+                   "`keep 2` is for cross(n, m) = 0; else write the independent rows themselves");
+  for (const int side : {0, 1}) {
+    const Expr n = term.e->args[static_cast<std::size_t>(side)];
+    const Expr m = term.e->args[static_cast<std::size_t>(1 - side)];
+    const Pool::Axis axis = pool_->axis_of(n);
+    if (!axis.triad || n->body < 0) continue;
+    for (const int offset : {1, 2}) {
+      const int other = (axis.index + offset) % 3;
+      Row row = whole;
+      row.C = dot((*axis.triad)[static_cast<std::size_t>(other)], m);
+      if (!row.name.empty()) row.name += std::string("_") + "xyz"[other];
+      add_row(source, s, std::move(row));
+    }
+    return;
+  }
+  d.error(s.left.where, "no side of this cross product is an axis of a frame of a body",
+          "declare `frame f on a` in place of the unit vector and write cross(f.x, ...): the rows along f.y and f.z are "
+          "kept");
 }
 
 // lhs - rhs, or rhs - lhs for <=.

@@ -9,11 +9,11 @@
 
 namespace cdot::derive {
 
-// generated/planar/<joint>.hpp
+// generated/planar/<joint>.hpp or generated/spatial/<joint>.hpp
 std::string emit_kernel(const Kernel& kernel);
 
-// generated/registry.hpp: the list of all joints, by name.
-std::string emit_registry(const std::vector<std::string>& joints);
+// generated/planar/registry.hpp and generated/spatial/registry.hpp: the list of all joints, by name.
+std::string emit_registry(const std::string& space, const std::vector<std::string>& joints);
 
 // C, J and K as people write them, a line each, for the comment above a kernel.
 std::vector<std::string> describe(const Kernel& kernel);

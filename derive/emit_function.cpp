@@ -26,6 +26,8 @@ const std::map<std::string, Signature>& signatures() {
       {"inverse_mass_jacobian", {{"J", "m"}, "T (&D)[ROWS][COLUMNS]"}},
       {"gamma", {{"q", "v", "p", "time"}, "T (&g)[ROWS]"}},
       {"time_derivative", {{"q", "p", "time"}, "T (&C_t)[ROWS]"}},
+      {"local_jacobian", {{"q", "J"}, "T (&D)[ROWS][COLUMNS]"}},
+      {"euler_jacobian", {{"q", "J"}, "T (&D)[ROWS][EULER]"}},
       {"stiffness", {{"q", "p", "time", "lambda"}, "T (&H)[COLUMNS][COLUMNS]"}}};
   return table;
 }
@@ -81,28 +83,17 @@ std::set<std::string> mathematical_functions(const Program& program) {
 
 // Matrices that are mostly zero are cleared first.
 bool is_cleared(const std::string& function) {
-  return function == "dense" || function == "inverse_mass_jacobian" || function == "stiffness";
+  return function == "dense" || function == "inverse_mass_jacobian" || function == "stiffness" ||
+         function == "local_jacobian" || function == "euler_jacobian";
 }
 
 }  // namespace
 
-FunctionWriter::FunctionWriter(const Joint& joint) : bodies_(joint.bodies.size()) {
+FunctionWriter::FunctionWriter(const Joint& joint)
+    : bodies_(joint.bodies.size()), width_(columns_per_body(joint.dimension)) {
+  for (std::size_t b = 0; b < bodies_; ++b) name_inputs_of_body(joint, b);
   auto& in = printing_.inputs;
-  for (std::size_t b = 0; b < bodies_; ++b) {
-    const std::string& L = joint.bodies[b];
-    parts_.push_back({L, "q", "Pose<T>", b});
-    parts_.push_back({"v" + L, "v", "Velocity<T>", b});
-    parts_.push_back({"m" + L, "m", "InverseMass<T>", b});
-    for (const std::string axis : {"x", "y"}) {
-      in["x_" + L + "_" + axis] = L + "." + axis;
-      in["v_" + L + "_" + axis] = "v" + L + "." + axis;
-    }
-    in["theta_" + L] = L + ".angle";
-    in["w_" + L] = "v" + L + ".w";
-    in["inv_m_" + L] = "m" + L + ".m";
-    in["inv_I_" + L] = "m" + L + ".I";
-  }
-  for (std::size_t i = 0; i < 3 * bodies_; ++i) {
+  for (std::size_t i = 0; i < width_ * bodies_; ++i) {
     in[fmt::format("lambda_{}", i + 1)] = fmt::format("lambda[{}]", i);
   }
   in["pi"] = "T(3.14159265358979323846)";
@@ -117,6 +108,27 @@ FunctionWriter::FunctionWriter(const Joint& joint) : bodies_(joint.bodies.size()
         "int",  "float", "auto", "double", "inverse", "const", "static", "struct", "name", "title",
         "and",  "or",    "not",  "new",    "this",    "for",   "if",     "do",     "else", "long"}) {
     printing_.reserved.insert(name);
+  }
+}
+
+void FunctionWriter::name_inputs_of_body(const Joint& joint, std::size_t b) {
+  auto& in = printing_.inputs;
+  const std::string& L = joint.bodies[b];
+  parts_.push_back({L, "q", "Pose<T>", b});
+  parts_.push_back({"v" + L, "v", "Velocity<T>", b});
+  parts_.push_back({"m" + L, "m", "InverseMass<T>", b});
+  for (int k = 0; k < joint.dimension; ++k) {
+    const std::string axis(1, "xyz"[k]);
+    in["x_" + L + "_" + axis] = L + "." + axis;
+    in["v_" + L + "_" + axis] = "v" + L + "." + axis;
+    in["w_" + L + "_" + axis] = "v" + L + ".w" + axis;
+  }
+  in["theta_" + L] = L + ".angle";
+  in["w_" + L] = "v" + L + ".w";
+  in["inv_m_" + L] = "m" + L + ".m";
+  in["inv_I_" + L] = "m" + L + ".I";
+  for (const char* component : {"xx", "yy", "zz", "xy", "xz", "yz"}) {
+    in["inv_I_" + L + "_" + component] = "m" + L + ".I" + component;
   }
 }
 
@@ -145,12 +157,13 @@ std::string FunctionWriter::arguments(const std::vector<std::string>& names,
 // The contract's array sizes in numbers.
 std::string FunctionWriter::sized(std::string declaration, std::size_t rows) const {
   declaration = replaced(declaration, "[BODIES]", fmt::format("[{}]", bodies_));
-  declaration = replaced(declaration, "[COLUMNS]", fmt::format("[{}]", 3 * bodies_));
+  declaration = replaced(declaration, "[COLUMNS]", fmt::format("[{}]", width_ * bodies_));
+  declaration = replaced(declaration, "[EULER]", fmt::format("[{}]", 7 * bodies_));
   declaration = replaced(declaration, "[TRIANGLE]", fmt::format("[{}]", rows * (rows + 1) / 2));
   return replaced(declaration, "[ROWS]", fmt::format("[{}]", rows));
 }
 
-std::vector<std::string> FunctionWriter::body(const Program& program, bool in_place, bool zeroed,
+std::vector<std::string> FunctionWriter::body(const Program& program, const BodyOptions& options,
                                               int depth) const {
   std::vector<std::string> lines;
   for (const std::string& f : mathematical_functions(program)) {
@@ -160,22 +173,25 @@ std::vector<std::string> FunctionWriter::body(const Program& program, bool in_pl
   for (const BodyPart& part : parts_) {
     if (!mentions(read, part.name)) continue;
     // `apply` reads the velocities that it overwrites: by value.
-    const char* reference = in_place && part.argument == "v" ? "" : "&";
-    lines.push_back(fmt::format("{}const {}{} {} = {}[{}];", indent(depth), part.type, reference,
+    const char* reference = options.in_place && part.argument == "v" ? "" : "&";
+    const std::string mass = options.isotropic && part.argument == "m" ? "Isotropic" : "";
+    lines.push_back(fmt::format("{}const {}{}{} {} = {}[{}];", indent(depth), mass, part.type, reference,
                                 part.name, part.argument, part.body));
   }
   Printing printing = printing_;
   printing.indent = indent(depth);
-  printing.zeroed = zeroed;
+  printing.zeroed = options.zeroed;
   append(lines, print_statements(program, printing));
   return lines;
 }
 
-std::vector<std::string> FunctionWriter::function(const std::string& name, const Program& program,
-                                                  std::size_t rows, int depth) const {
+std::vector<std::string> FunctionWriter::function(const KernelFunction& f, std::size_t rows,
+                                                  int depth) const {
+  const std::string& name = f.name;
+  const Program& program = f.program;
   const Signature& signature = signatures().at(name);
-  std::vector<std::string> names = signature.inputs;
-  const std::string list = arguments(names, inputs_read(program, printing_), rows);
+  std::string list = arguments(signature.inputs, inputs_read(program, printing_), rows);
+  if (f.isotropic) list = replaced(list, "const InverseMass<T>", "const IsotropicInverseMass<T>");
   std::string output = sized(signature.output, rows);
   const bool writes_jacobian = std::any_of(program.outputs.begin(), program.outputs.end(),
                                            [](const Output& o) { return o.name.starts_with("J."); });
@@ -189,7 +205,7 @@ std::vector<std::string> FunctionWriter::function(const std::string& name, const
     lines.push_back(fmt::format("{}for (T& entry : row) entry = T(0);", indent(depth + 2)));
     lines.push_back(indent(depth + 1) + "}");
   }
-  append(lines, body(program, name == "apply", zeroed, depth + 1));
+  append(lines, body(program, {name == "apply", zeroed, f.isotropic}, depth + 1));
   lines.push_back(indent(depth) + "}");
   return lines;
 }
@@ -209,7 +225,7 @@ std::vector<std::string> FunctionWriter::default_value(const std::vector<Case>& 
     lines.push_back("    switch (index) {");
     for (const Case& c : cases) {
       append(lines, wrapped(fmt::format("      case {}: {{  // {}", c.index, c.comment)));
-      append(lines, body(*c.program, false, false, 4));
+      append(lines, body(*c.program, {}, 4));
       lines.push_back("        break;");
       lines.push_back("      }");
     }

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "derive/joint.hpp"
+#include "derive/kernel.hpp"
 #include "derive/print_program.hpp"
 
 namespace cdot::derive {
@@ -13,9 +13,8 @@ class FunctionWriter {
  public:
   explicit FunctionWriter(const Joint& joint);
 
-  // `static void name(arguments of the contract) { statements }`, indented by `depth` levels.
-  std::vector<std::string> function(const std::string& name, const Program& program,
-                                    std::size_t rows, int depth) const;
+  // `static void f(arguments of the contract) { statements }`, indented by `depth` levels.
+  std::vector<std::string> function(const KernelFunction& f, std::size_t rows, int depth) const;
 
   // default_value(index, ...): one case per parameter that has a default.
   struct Case {
@@ -32,14 +31,19 @@ class FunctionWriter {
     std::size_t body = 0;
   };
 
-  std::vector<std::string> body(const Program& program, bool in_place, bool zeroed,
-                                int depth) const;
+  struct BodyOptions {
+    bool in_place = false;   // `apply` reads the velocities that it overwrites
+    bool zeroed = false;     // the matrix was cleared before
+    bool isotropic = false;  // inertias are numbers
+  };
+  void name_inputs_of_body(const Joint& joint, std::size_t b);
+  std::vector<std::string> body(const Program& program, const BodyOptions& options, int depth) const;
   std::string arguments(const std::vector<std::string>& names, const std::set<std::string>& read,
                         std::size_t rows) const;
   std::string sized(std::string declaration, std::size_t rows) const;
   bool reads(const std::set<std::string>& read, const std::string& argument) const;
 
-  std::size_t bodies_ = 0;
+  std::size_t bodies_ = 0, width_ = 0;
   std::vector<BodyPart> parts_;
   Printing printing_;
 };

@@ -224,7 +224,7 @@ bool Evaluator::add_types(Value& total, const Value& next, char sign, Span part,
     total.type = total.type == Type::point ? Type::vector : Type::point;
   if (total.zero && next.type == Type::vector) {
     total.type = Type::vector;
-    total.axis = next.axis;
+    total.along = next.along;
   } else if (next.zero && total.type == Type::vector) {
     return true;
   } else if ((total.type == Type::scalar) != (next.type == Type::scalar)) {
@@ -236,7 +236,7 @@ bool Evaluator::add_types(Value& total, const Value& next, char sign, Span part,
           {first});
     return false;
   }
-  if (total.type != Type::scalar && next.axis != total.axis) {
+  if (total.type != Type::scalar && next.along != total.along) {
     error(part, "components along a frame and along other axes are mixed",
           "bring both sides into one frame with local(u, f)", {first});
     return false;
@@ -295,7 +295,7 @@ Value Evaluator::scaled(const std::vector<Value>& factors, const Ast& ast) {
   if (!direction) return result;
   result.type = Type::vector;
   result.e = result.e * direction->e;
-  result.axis = direction->axis;
+  result.along = direction->along;
   return result;
 }
 
@@ -334,18 +334,18 @@ Value Evaluator::power(const Ast& ast) {
 Value Evaluator::member(const Ast& ast) {
   const Value v = (*this)(ast.args[0]);
   if (v.type == Type::poison) return {};
-  if (ast.text != "x" && ast.text != "y")
+  const std::size_t index = ast.text.size() == 1 ? std::string("xyz").find(ast.text) : std::string::npos;
+  if (index >= static_cast<std::size_t>(pool_.dimension()))
     return error(ast.where, "there is no component " + quote(ast.text),
-                 "in the plane the components are .x and .y");
-  const int index = ast.text == "x" ? 0 : 1;
-  const auto axis = [&](Expr x) { return vector(index == 0 ? x : perp(x)); };
-  if (v.type == Type::frame) return axis(v.e);
+                 pool_.dimension() == 2 ? "in the plane the components are .x and .y"
+                                        : "in space the components are .x, .y and .z");
+  if (v.type == Type::frame) return vector(v.axes[index]);
   if (v.type == Type::body) {
     if (v.body < 0)
       names_.use_world();
     else
       names_.use_body(v.body, ast.where);
-    return axis(body_axis(pool_, v.body));
+    return vector(body_axes(pool_, v.body)[index]);
   }
   if (v.type == Type::vector) {
     Value result = scalar(component(v.e, index), v.unit);

@@ -57,6 +57,8 @@ class Evaluator {
   std::optional<Value> unit_of_call(const Operator& o, const std::vector<Value>& a, const Ast& ast);
   Value wrong_arguments(const std::vector<Value>& arguments, const Ast& ast);
   Value unknown(const Ast& ast, bool called);
+  Value elsewhere(const Ast& ast);
+  std::vector<const Operator*> operators_here(const std::string& name) const;
 
   Value plain(const Ast& ast, std::string_view use);  // of a number, vector, point or matrix
   Value hand_argument(Value v);

@@ -1,6 +1,7 @@
 // Calls of operators: the table's row that fits the arguments, its unit rule, and what to say if
 // none fits.
 #include <algorithm>
+#include <map>
 
 #include "derive/evaluate.hpp"
 #include "derive/lexer.hpp"
@@ -49,9 +50,9 @@ std::string takes_in_words(unsigned takes) {
   return out;
 }
 
-std::string signatures(std::string_view name) {
+std::string signatures(const std::vector<const Operator*>& candidates) {
   std::string out;
-  for (const Operator* o : operators_named(name))
+  for (const Operator* o : candidates)
     out += (out.empty() ? "" : "; ") + std::string(o->signature) + ": " + std::string(o->help);
   return out;
 }
@@ -102,15 +103,35 @@ Value Evaluator::hand_argument(Value v) {
   return v.type == Type::matrix ? simplest(*v.matrix, true) : v;
 }
 
+std::vector<const Operator*> Evaluator::operators_here(const std::string& name) const {
+  std::vector<const Operator*> here;
+  for (const Operator* o : operators_named(name))
+    if (o->is_of(pool_.dimension())) here.push_back(o);
+  return here;
+}
+
+// An operator of the other space only.
+Value Evaluator::elsewhere(const Ast& ast) {
+  const bool plane = pool_.dimension() == 2;
+  static const std::map<std::string_view, std::string_view> instead = {
+      {"perp", "in space a direction across u is an axis of a frame, f.y, or cross(n, u)"},
+      {"angle", "in space: angle(u, v, n) about an axis, angle(u, v), or twist(f, g)"}};
+  const auto fix = instead.find(ast.text);
+  return error(ast.where,
+               quote(operators_named(ast.text)[0]->signature) + " is an operator of " +
+                   (plane ? "space" : "the plane"),
+               fix == instead.end() ? "" : std::string(fix->second));
+}
+
 Value Evaluator::call(const Ast& ast) {
-  const auto candidates = operators_named(ast.text);
+  const auto candidates = operators_here(ast.text);
   std::vector<Value> arguments;
   bool poisoned = false;
   for (const Ast& a : ast.args) {
     arguments.push_back(hand_argument((*this)(a)));
     poisoned |= arguments.back().type == Type::poison;
   }
-  if (candidates.empty()) return unknown(ast, true);
+  if (candidates.empty()) return is_operator(ast.text) ? elsewhere(ast) : unknown(ast, true);
   if (!hand_ && candidates[0]->where == Operator::Where::hand)
     return error(ast.where, quote(ast.text) + " is for .hand files only",
                  "a spec says where things are; masses are the solver's business");
@@ -121,8 +142,8 @@ Value Evaluator::call(const Ast& ast) {
 }
 
 Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast& ast) {
-  const auto candidates = operators_named(ast.text);
-  const std::string help = signatures(ast.text);
+  const auto candidates = operators_here(ast.text);
+  const std::string help = signatures(candidates);
   const auto right_count =
       std::find_if(candidates.begin(), candidates.end(),
                    [&](const Operator* o) { return o->takes.size() == arguments.size(); });
@@ -138,7 +159,6 @@ Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast&
                        help);
     return {};
   }
-  const Operator& o = **right_count;
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     unsigned allowed = 0;
     for (const Operator* c : candidates)
@@ -153,7 +173,7 @@ Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast&
                      : help);
   }
   return error(ast.where, quote(ast.text) + " is not defined for these arguments",
-               signatures(o.name));
+               help);
 }
 
 Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, const Ast& ast) {
@@ -163,12 +183,12 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
     if (a.type == Type::body && a.body >= 0) names_.use_body(a.body, ast.args[i].where);
     if (a.type == Type::body && a.body < 0) names_.use_world();
     if (a.type != Type::vector) continue;
-    if (first_vector && first_vector->axis != a.axis)
+    if (first_vector && first_vector->along != a.along)
       return error(ast.where, "components along a frame and along other axes are mixed",
                    "bring both vectors into one frame with local(u, f)");
     first_vector = &a;
   }
-  if (o.name == "local" && first_vector && first_vector->axis)
+  if (o.name == "local" && first_vector && !first_vector->along.empty())
     return error(ast.args[0].where, "these are components along a frame already");
   std::vector<Value> built = arguments;
   for (std::size_t i = 0; i < built.size(); ++i)
@@ -185,7 +205,9 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
   Value result = o.build(pool_, built);
   result.unit = rule->unit;
   result.ratio = rule->ratio;
-  if (result.type == Type::vector && first_vector && !result.axis) result.axis = first_vector->axis;
+  if (result.type == Type::vector && first_vector && result.along.empty()) {
+    result.along = first_vector->along;
+  }
   return result;
 }
 

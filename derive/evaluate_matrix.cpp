@@ -17,9 +17,9 @@ Value wrapped(Matrix m) {
 
 // A number is 1 x 1, a vector a column.
 Matrix as_matrix(const Value& v) {
-  if (v.type == Type::matrix) return *v.matrix;
+  if (v.type == Type::matrix) return v.inverted ? inverse(*v.matrix) : *v.matrix;
   if (v.type == Type::scalar) return {1, 1, {v.e}};
-  return {2, 1, {component(v.e, 0), component(v.e, 1)}};
+  return column_of(v.e);
 }
 
 // Whether the size is only fixed by the place: the literal 0 and multiples of E.
@@ -53,36 +53,6 @@ Matrix scaled_by(const Matrix& m, Expr factor) {
   return r;
 }
 
-// m without one row and one column.
-Matrix minor_of(const Matrix& m, int row, int column) {
-  Matrix r{m.rows - 1, m.columns - 1, {}};
-  for (int i = 0; i < m.rows; ++i)
-    for (int j = 0; j < m.columns; ++j)
-      if (i != row && j != column) r.entries.push_back(m.at(i, j));
-  return r;
-}
-
-Expr determinant(const Matrix& m, Pool& pool) {
-  if (m.rows == 1) return m.at(0, 0);
-  Expr sum = pool.number(0);
-  for (int j = 0; j < m.columns; ++j) {
-    const Expr part = m.at(0, j) * determinant(minor_of(m, 0, j), pool);
-    sum = j % 2 == 0 ? sum + part : sum - part;
-  }
-  return sum;
-}
-
-Matrix inverse(const Matrix& m, Pool& pool) {
-  const Expr factor = pow(determinant(m, pool), -1);
-  Matrix r{m.rows, m.columns, {}};
-  for (int i = 0; i < m.rows; ++i)
-    for (int j = 0; j < m.columns; ++j) {
-      const Expr cofactor = m.rows == 1 ? pool.number(1) : determinant(minor_of(m, j, i), pool);
-      r.entries.push_back(factor * ((i + j) % 2 == 0 ? cofactor : -cofactor));
-    }
-  return r;
-}
-
 // Adds blocks of equal height, side by side, below m.
 void append_rows(Matrix& m, const std::vector<Matrix>& blocks, int columns) {
   const int height = blocks.front().rows;
@@ -97,8 +67,8 @@ void append_rows(Matrix& m, const std::vector<Matrix>& blocks, int columns) {
 class Blocks {
  public:
   Blocks(const std::vector<Value>& blocks, const std::vector<int>& row_lengths,
-         const std::vector<int>& expected_columns)
-      : blocks_(blocks), lengths_(row_lengths) {
+         const std::vector<int>& expected_columns, int dimension)
+      : blocks_(blocks), lengths_(row_lengths), dimension_(dimension) {
     aligned_ =
         std::all_of(lengths_.begin(), lengths_.end(), [&](int n) { return n == lengths_[0]; });
     for (std::size_t i = 0, next = 0; i < lengths_.size(); ++i) {
@@ -124,7 +94,7 @@ class Blocks {
   }
 
  private:
-  // From the row's blocks; a row of nothing but 0 and E is as high as E, which is 2 in the plane.
+  // From the row's blocks; a row of nothing but 0 and E is as high as E, which has the dimension's size.
   int height_of_row(std::size_t row) const {
     bool identity = false;
     for (int j = 0; j < lengths_[row]; ++j) {
@@ -132,7 +102,7 @@ class Blocks {
       if (!any_size(b)) return as_matrix(b).rows;
       identity |= !b.zero;
     }
-    return identity ? 2 : 1;
+    return identity ? dimension_ : 1;
   }
 
   void shared_widths(const std::vector<int>& expected) {
@@ -153,6 +123,7 @@ class Blocks {
 
   const std::vector<Value>& blocks_;
   const std::vector<int>& lengths_;
+  int dimension_;
   bool aligned_ = false;
   std::vector<std::size_t> starts_;
   std::vector<int> heights_, widths_;
@@ -162,9 +133,10 @@ class Blocks {
 
 Value Evaluator::simplest(Matrix m, bool as_vector) {
   if (m.rows == 1 && m.columns == 1) return scalar(m.at(0, 0), {});
-  if (as_vector && m.rows == 2 && m.columns == 1) {
-    const Expr x = world_x(pool_);
-    return vector(m.at(0, 0) * x + m.at(1, 0) * perp(x), {});
+  if (as_vector && m.rows == pool_.dimension() && m.columns == 1) {
+    Expr sum = zero_vector(pool_);
+    for (int i = 0; i < m.rows; ++i) sum = sum + m.at(i, 0) * world_axes(pool_)[static_cast<std::size_t>(i)];
+    return vector(sum, {});
   }
   return wrapped(std::move(m));
 }
@@ -248,11 +220,12 @@ Value Evaluator::matrix_product(const std::vector<Value>& factors, const Ast& as
 
 Value Evaluator::matrix_power(const Value& base, int exponent, const Ast& ast) {
   const Matrix& m = *base.matrix;
+  if (base.inverted && exponent == -1) return wrapped(m);
   if (m.any_size()) return wrapped({0, 0, {pow(m.entries[0], exponent)}});
   if (m.rows != m.columns || exponent == 0 || exponent < -1 || exponent > 8 || m.rows > 4)
     return error(ast.where, "this power of a matrix of " + size_in_words(m) + " is not supported",
                  "square matrices up to 4 x 4 have an inverse ^-1 and powers up to ^8");
-  if (exponent == -1) return wrapped(inverse(m, pool_));
+  if (exponent == -1) return wrapped(inverse(m));
   Value power = base;
   for (int i = 1; i < exponent; ++i) power = wrapped(*multiply(power, base, ast.where));
   return power;
@@ -265,7 +238,7 @@ Value Evaluator::matrix(const Ast& ast) {
     blocks.push_back(plain(a, "cannot be a block"));
     if (blocks.back().type == Type::poison) return {};
   }
-  const Blocks layout(blocks, ast.row_lengths, expected_columns_);
+  const Blocks layout(blocks, ast.row_lengths, expected_columns_, pool_.dimension());
   Matrix m;
   for (std::size_t i = 0; i < layout.rows(); ++i) {
     std::vector<Matrix> row;

@@ -195,6 +195,13 @@ Formula Notation::written(Expr e) const {
       return cross(of(e->args[0]), of(e->args[1]));
     case Kind::perp:
       return form(Form::perp, of(e->args[0]));
+    case Kind::tensor:
+      return product({of(e->args[0]), of(e->args[1])});
+    case Kind::twist: {
+      Formula f = of_form(Form::call, {leaf(e->args[0]), leaf(e->args[3])});
+      f.name = "twist";
+      return f;
+    }
     case Kind::norm:
       return form(Form::norm, of(e->args[0]));
     case Kind::unit:

@@ -107,6 +107,12 @@ std::optional<Formula> Rates::rule(Expr e) {
     }
     case Kind::unit:
       return unit_rule(e);
+    case Kind::tensor:
+      return product({notation_.of(e->args[0]), *rate(e->args[1], false)});
+    case Kind::twist: {
+      used("rate of a twist of g against f: (f.x + g.x) · (w_g - w_f)/(1 + f.x · g.x)");
+      return notation_.of(time_derivative(e, joint_));
+    }
     case Kind::function:
       return function_rule(e);
   }

@@ -131,6 +131,21 @@ Expr Pool::vector_symbol(std::string_view name, Role role, int body, bool unit_l
   return intern(std::move(n));
 }
 
+Triad Pool::triad(std::string_view name, Role role, int body) {
+  if (const auto found = triads_.find(name); found != triads_.end()) return found->second;
+  const std::string stem = std::string(name) + (role == Role::world_vector && name == "world" ? "." : "_");
+  Triad axes;
+  for (std::size_t i = 0; i < 3; ++i) axes[i] = vector_symbol(stem + "xyz"[i], role, body, true);
+  const Triad* stored = &triads_.emplace(name, axes).first->second;
+  for (int i = 0; i < 3; ++i) axes_[&*axes[static_cast<std::size_t>(i)]] = {stored, i};
+  return axes;
+}
+
+Pool::Axis Pool::axis_of(Expr leaf) const {
+  const auto found = axes_.find(&*leaf);
+  return found == axes_.end() ? Axis{} : found->second;
+}
+
 Expr Pool::find(std::string_view name) const {
   const auto found = symbols_.find(name);
   return found == symbols_.end() ? Expr() : Expr(found->second);

@@ -6,6 +6,7 @@
 // A name given by the author (`let u = ...`) sticks to the node, and sums do not flatten through it.
 #pragma once
 
+#include <array>
 #include <deque>
 #include <map>
 #include <span>
@@ -25,10 +26,12 @@ enum class Kind {
   function,  // fn(args...), scalars
   scale,     // args[0] args[1]: scalar times vector
   dot,       // of two vectors
-  cross,     // of two vectors; in the plane the scalar u_x v_y - u_y v_x
-  perp,      // (-u_y, u_x)
+  cross,     // of two vectors; in the plane the scalar u_x v_y - u_y v_x, in space a vector
+  perp,      // (-u_y, u_x), in the plane
+  tensor,    // args[0] args[1]: a symmetric tensor leaf applied to a vector, in space
+  twist,     // the angle by which a triad is twisted against another about their x axes, in space
   norm,      // length of a vector
-  unit       // direction of a vector; (1, 0) for the zero vector
+  unit       // direction of a vector; the world's x axis for the zero vector
 };
 
 // The last three arise only after differentiation, when things are written out in components (canonical.hpp):
@@ -47,9 +50,9 @@ enum class Role {
   time,             // scalar
   constant,         // scalar pi
   velocity,         // vector v_a
-  spin,             // scalar w_a
+  spin,             // w_a: a scalar in the plane, a vector in space
   inverse_mass,     // scalar
-  inverse_inertia,  // scalar
+  inverse_inertia,  // scalar; in space the leaf of a tensor, or one of its six components
   multiplier,       // scalar lambda of a row
   given             // any other known quantity: an entry of J handed to K, a free symbol of a hand derivation
 };
@@ -89,10 +92,13 @@ struct Node {
   mutable bool named_by_let = false;
 };
 
+// Three axes of a right-handed triad: dot products among them are known, and cross products.
+using Triad = std::array<Expr, 3>;
+
 // Owns the nodes of one joint.
 class Pool {
  public:
-  Pool() = default;
+  explicit Pool(int dimension = 2) : dimension_(dimension) {}
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
 
@@ -101,6 +107,16 @@ class Pool {
   Expr symbol(std::string_view name, Role role, int body = -1);
   Expr vector_symbol(std::string_view name, Role role, int body = -1, bool unit_length = false);
   Expr find(std::string_view name) const;  // empty if there is no such symbol
+
+  int dimension() const { return dimension_; }  // 2 or 3
+  // Unit vectors `name`_x, `name`_y, `name`_z that stand on each other (in space).
+  Triad triad(std::string_view name, Role role, int body = -1);
+  // The triad that a leaf is an axis of, and which one; null if it is none.
+  struct Axis {
+    const Triad* triad = nullptr;
+    int index = -1;
+  };
+  Axis axis_of(Expr leaf) const;
 
   // Attaches a name to a node that has none; a let's name wins over one derived from parts.
   void name(Expr e, std::string_view name, bool by_let);
@@ -111,6 +127,9 @@ class Pool {
   std::deque<Node> nodes_;
   std::map<std::string, const Node*, std::less<>> by_key_;
   std::map<std::string, const Node*, std::less<>> symbols_;
+  std::map<std::string, Triad, std::less<>> triads_;
+  std::map<const Node*, Axis> axes_;
+  int dimension_;
 };
 
 // A total order from kinds, roles and names only: the order in which terms are kept and printed.
@@ -141,13 +160,27 @@ Expr operator*(Rational c, Expr e);
 Expr pow(Expr base, int exponent);  // negative: guarded inverse
 Expr operator/(Expr a, Expr b);     // a scalar or vector, b scalar
 Expr dot(Expr u, Expr v);
-Expr cross(Expr u, Expr v);  // two vectors: scalar; scalar and vector: w x v = w perp(v)
-Expr perp(Expr u);
+// Two vectors: a scalar in the plane, a vector in space. Plane, scalar and vector: w x v = w perp(v).
+Expr cross(Expr u, Expr v);
+Expr perp(Expr u);             // in the plane
+Expr apply(Expr T, Expr u);    // in the plane T is a number; in space the leaf of a symmetric tensor
+// The angle by which g is twisted against f about their x axes: atan2(f_z . g_y - f_y . g_z, f_y . g_y + f_z . g_z).
+Expr twist(const Triad& f, const Triad& g);
+Expr twist_as_atan2(Expr twist);
 Expr norm(Expr u);
 Expr unit(Expr u);
 Expr call(Fn fn, std::span<const Expr> args);
 inline Expr call(Fn fn, Expr a) { return call(fn, std::span<const Expr>(&a, 1)); }
-Expr world_x(Pool& pool);  // the world's x axis (1, 0), a unit vector; perp of it is the y axis
+// The world's axes, unit vectors: two in the plane (the y axis is perp of the x axis), three in space.
+Expr world_x(Pool& pool);
+std::vector<Expr> world_axes(Pool& pool);
+inline bool is_world_axis(Expr e) {
+  return e->kind == Kind::symbol && e->symbol.starts_with("world.");
+}
+// A leaf that stands for a tensor: an inverse inertia in space. Its six components are leaves as well.
+bool is_tensor(Expr leaf);
+// Components along the world's axes; a scalar is its only one.
+std::vector<Expr> components_of(Expr e);
 
 // Same kind of node with other operands: the builders decide anew. `args` has as many entries as e->args.
 Expr rebuild(Expr e, std::span<const Expr> args);

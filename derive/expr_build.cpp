@@ -34,11 +34,8 @@ Scaled split_scale(Expr v) {
 bool is_perp(Expr v) { return v->kind == Kind::perp; }
 bool is_unit_of(Expr n, Expr u) { return n->kind == Kind::unit && n->args[0] == u; }
 
-// The world's x axis or its y axis, perp of it: products with these are components and stay so.
-bool is_world_axis(Expr v) {
-  const Expr x = v->kind == Kind::perp ? v->args[0] : v;
-  return x->kind == Kind::symbol && x == world_x(*v->pool);
-}
+// An axis of the world (in the plane y is perp of x): products with these are components and stay so.
+bool is_component_axis(Expr v) { return is_world_axis(v->kind == Kind::perp ? v->args[0] : v); }
 
 // Levers come before directions in a cross product: cross(ra, t), cross(u, n).
 bool direction_after(Expr u, Expr v) {
@@ -166,19 +163,52 @@ Expr pow(Expr base, int exponent) {
 
 Expr operator/(Expr a, Expr b) { return a * pow(b, -1); }
 
+namespace {
+
+// Known products within one triad, and of a cross product with one of its factors; empty if there is nothing to know.
+Expr known_dot(Expr u, Expr v) {
+  Pool& pool = *u->pool;
+  const Pool::Axis a = pool.axis_of(u), b = pool.axis_of(v);
+  if (a.triad && a.triad == b.triad && a.index != b.index) return pool.number(0);
+  for (const auto& [product, factor] : {std::pair{u, v}, std::pair{v, u}}) {
+    if (product->kind != Kind::cross) continue;
+    if (product->args[0] == factor || product->args[1] == factor) return pool.number(0);
+    if (is_unit_of(factor, product->args[0]) || is_unit_of(factor, product->args[1])) {
+      return pool.number(0);
+    }
+  }
+  return {};
+}
+
+Expr cross_in_space(Expr u, Expr v) {
+  Pool& pool = *u->pool;
+  const Pool::Axis a = pool.axis_of(u), b = pool.axis_of(v);
+  if (a.triad && a.triad == b.triad) {
+    const Expr third = (*a.triad)[static_cast<std::size_t>(3 - a.index - b.index)];
+    return (a.index + 1) % 3 == b.index ? third : -third;
+  }
+  if (direction_after(u, v)) return node(Kind::cross, true, {u, v});
+  return -node(Kind::cross, true, {v, u});
+}
+
+}  // namespace
+
 Expr dot(Expr u, Expr v) {
   const Scaled a = split_scale(u), b = split_scale(v);
   const Expr factor = a.factor * b.factor;
   Pool& pool = *u->pool;
   if (is_zero(factor) || is_zero(a.rest) || is_zero(b.rest)) return pool.number(0);
   if (is_perp(a.rest) && is_perp(b.rest)) return factor * dot(a.rest->args[0], b.rest->args[0]);
-  if (is_perp(a.rest) && !is_world_axis(a.rest)) {
+  if (is_perp(a.rest) && !is_component_axis(a.rest)) {
     return factor * cross(a.rest->args[0], b.rest);
   }
-  if (is_perp(b.rest) && !is_world_axis(b.rest)) {
+  if (is_perp(b.rest) && !is_component_axis(b.rest)) {
     return factor * cross(b.rest->args[0], a.rest);
   }
-  if (a.rest == perp(b.rest) || b.rest == perp(a.rest)) return pool.number(0);
+  if (pool.dimension() == 2 && (a.rest == perp(b.rest) || b.rest == perp(a.rest))) {
+    return pool.number(0);
+  }
+  if (const Expr known = known_dot(a.rest, b.rest)) return factor * known;
   if (a.rest == b.rest && a.rest->unit_length) return factor;
   if (is_unit_of(b.rest, a.rest)) return factor * norm(a.rest);
   if (is_unit_of(a.rest, b.rest)) return factor * norm(b.rest);
@@ -192,17 +222,37 @@ Expr cross(Expr u, Expr v) {
   const Scaled a = split_scale(u), b = split_scale(v);
   const Expr factor = a.factor * b.factor;
   Pool& pool = *u->pool;
-  if (is_zero(factor) || is_zero(a.rest) || is_zero(b.rest)) return pool.number(0);
+  const bool plane = pool.dimension() == 2;
+  if (is_zero(factor) || is_zero(a.rest) || is_zero(b.rest) || a.rest == b.rest ||
+      is_unit_of(b.rest, a.rest) || is_unit_of(a.rest, b.rest)) {
+    return plane ? pool.number(0) : zero_vector(pool);
+  }
+  if (!plane) return factor * cross_in_space(a.rest, b.rest);
   if (is_perp(a.rest) && is_perp(b.rest)) return factor * cross(a.rest->args[0], b.rest->args[0]);
   if (is_perp(a.rest)) return -(factor * dot(a.rest->args[0], b.rest));
   if (is_perp(b.rest)) return factor * dot(a.rest, b.rest->args[0]);
-  if (a.rest == b.rest || is_unit_of(b.rest, a.rest) || is_unit_of(a.rest, b.rest)) {
-    return pool.number(0);
-  }
   if (is_world_axis(b.rest)) return -(factor * dot(a.rest, perp(b.rest)));  // u x e_x = -u_y
   if (is_world_axis(a.rest)) return factor * dot(perp(a.rest), b.rest);
   if (direction_after(a.rest, b.rest)) return factor * node(Kind::cross, false, {a.rest, b.rest});
   return -(factor * node(Kind::cross, false, {b.rest, a.rest}));
+}
+
+Expr apply(Expr T, Expr u) {
+  if (!u->vector || T->pool->dimension() == 2) return T * u;
+  const Scaled a = split_scale(u);
+  if (is_zero(a.factor) || is_zero(a.rest)) return zero_vector(*u->pool);
+  return a.factor * node(Kind::tensor, true, {T, a.rest});
+}
+
+Expr twist(const Triad& f, const Triad& g) {
+  if (f == g) return f[0]->pool->number(0);
+  return node(Kind::twist, false, {f[0], f[1], f[2], g[0], g[1], g[2]});
+}
+
+Expr twist_as_atan2(Expr twist) {
+  const std::vector<Expr>& t = twist->args;
+  const Expr parts[] = {dot(t[2], t[4]) - dot(t[1], t[5]), dot(t[1], t[4]) + dot(t[2], t[5])};
+  return call(Fn::atan2, parts);
 }
 
 Expr perp(Expr u) {
@@ -254,7 +304,28 @@ Expr call(Fn fn, std::span<const Expr> args) {
   return pool.intern(std::move(n));
 }
 
-Expr world_x(Pool& pool) { return pool.vector_symbol("world.x", Role::world_vector, -1, true); }
+Expr world_x(Pool& pool) { return world_axes(pool)[0]; }
+
+std::vector<Expr> world_axes(Pool& pool) {
+  if (pool.dimension() == 2) {
+    const Expr x = pool.vector_symbol("world.x", Role::world_vector, -1, true);
+    return {x, perp(x)};
+  }
+  const Triad axes = pool.triad("world", Role::world_vector);
+  return {axes.begin(), axes.end()};
+}
+
+bool is_tensor(Expr leaf) {
+  return leaf->pool->dimension() == 3 && leaf->role == Role::inverse_inertia &&
+         leaf->symbol.find('_', 6) == std::string::npos;  // inv_I_a, not inv_I_a_xy
+}
+
+std::vector<Expr> components_of(Expr e) {
+  if (!e->vector) return {e};
+  std::vector<Expr> components;
+  for (const Expr axis : world_axes(*e->pool)) components.push_back(dot(axis, e));
+  return components;
+}
 
 Expr rebuild(Expr e, std::span<const Expr> args) {
   Pool& pool = *e->pool;
@@ -272,6 +343,8 @@ Expr rebuild(Expr e, std::span<const Expr> args) {
     case Kind::dot: return dot(args[0], args[1]);
     case Kind::cross: return cross(args[0], args[1]);
     case Kind::perp: return perp(args[0]);
+    case Kind::tensor: return apply(args[0], args[1]);
+    case Kind::twist: return twist({args[0], args[1], args[2]}, {args[3], args[4], args[5]});
     case Kind::norm: return norm(args[0]);
     case Kind::unit: return unit(args[0]);
   }

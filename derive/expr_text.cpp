@@ -23,6 +23,9 @@ class Printer {
       case Kind::dot: return dot_text(e);
       case Kind::cross: return call("cross", e);
       case Kind::perp: return call("perp", e);
+      case Kind::tensor:
+        return wrap(arg(e, 0, in_product) + "*" + arg(e, 1, in_product), level >= in_power);
+      case Kind::twist: return "twist(" + frame(e, 0) + ", " + frame(e, 3) + ")";
       case Kind::norm: return call("norm", e);
       case Kind::unit: return call("unit", e);
     }
@@ -44,16 +47,21 @@ class Printer {
     return name + ")";
   }
 
-  // Products with the world's axes are components: u.x, u.y.
+  // Products with the world's axes are components: u.x, u.y, u.z.
   std::string dot_text(Expr e) const {
+    const std::vector<Expr> axes = world_axes(*e->pool);
     for (std::size_t i = 0; i < 2; ++i) {
-      const Expr axis = e->args[i];
-      const bool along_y = axis->kind == Kind::perp;
-      if ((along_y ? axis->args[0] : axis) != world_x(*e->pool)) continue;
-      const std::string u = arg(e, 1 - i, in_power);
-      return u + (along_y ? ".y" : ".x");
+      for (std::size_t k = 0; k < axes.size(); ++k) {
+        if (e->args[i] == axes[k]) return arg(e, 1 - i, in_power) + "." + "xyz"[k];
+      }
     }
     return call("dot", e);
+  }
+
+  // The name of a triad, from that of its x axis.
+  std::string frame(Expr e, std::size_t first) const {
+    const std::string x_axis = arg(e, first, in_sum);
+    return x_axis.substr(0, x_axis.size() - 2);
   }
 
   std::string sum_text(Expr e, Level level) const {

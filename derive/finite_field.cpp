@@ -57,8 +57,9 @@ class Pose final : public Arithmetic<Modular> {
     return remembered(symbol.symbol, Modular(small()));
   }
 
-  Pair<Modular> vector_leaf(const Node& symbol) override {
-    if (&symbol == &*world_x(*symbol.pool)) return {Modular(1), Modular(0)};
+  Triple<Modular> vector_leaf(const Node& symbol) override {
+    if (symbol.pool->dimension() == 3) return vector_in_space(symbol);
+    if (is_world_axis(Expr(&symbol))) return {Modular(1), Modular(0)};
     if (symbol.role == Role::body_vector && symbol.symbol.starts_with("axis_")) {
       return turned({}, symbol.body);
     }
@@ -113,7 +114,30 @@ class Pose final : public Arithmetic<Modular> {
   }
   std::int64_t angle_of(int body) { return angles_.emplace(body, small()).first->second; }
 
-  Pair<Modular> turned(Rotation r, int body) {
+  // Whatever turns with a body points anywhere; a triad is turned anywhere as a whole.
+  Triple<Modular> vector_in_space(const Node& symbol) {
+    if (is_world_axis(Expr(&symbol))) {
+      Triple<Modular> axis{};
+      axis[static_cast<std::size_t>(symbol.symbol.back() - 'x')] = Modular(1);
+      return axis;
+    }
+    const Pool::Axis axis = symbol.pool->axis_of(Expr(&symbol));
+    if (axis.triad) return triads_.try_emplace(axis.triad, any_triad()).first->second[static_cast<std::size_t>(axis.index)];
+    if (symbol.unit_length) return any_triad()[0];
+    return {any(), any(), any()};
+  }
+
+  std::array<Triple<Modular>, 3> any_triad() {
+    const EulerParameters<Modular> e{any(), any(), any(), any()};
+    const Modular square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3];
+    auto axes = axes_of(e);
+    for (auto& axis : axes) {
+      for (Modular& component : axis) component = component * inverse(square);
+    }
+    return axes;
+  }
+
+  Triple<Modular> turned(Rotation r, int body) {
     if (body >= 0) r = r * pow(unit_turn_, angle_of(body));
     return {r.c, r.s};
   }
@@ -155,22 +179,20 @@ class Pose final : public Arithmetic<Modular> {
   Rotation unit_turn_, eighth_turn_;
   Modular base_, pi_;
   std::map<int, std::int64_t> angles_;
+  std::map<const Triad*, std::array<Triple<Modular>, 3>> triads_;
   std::map<std::string, Modular> scalars_;
 };
 
-using Matrix = std::vector<std::vector<Modular>>;
+using Rows = std::vector<std::vector<Modular>>;
 
-std::optional<Matrix> jacobian_at(std::span<const ScalarRow> rows, std::uint64_t seed) {
+std::optional<Rows> jacobian_at(std::span<const ScalarRow> rows, std::uint64_t seed) {
   Pose pose(seed);
   Evaluation<Modular> values(pose);
-  Matrix J;
+  Rows J;
   try {
     for (const ScalarRow& row : rows) {
       std::vector<Modular> entries;
-      for (const JacobianEntry& entry : row.J) {
-        const Pair<Modular> v = values.vector(entry.v);
-        entries.insert(entries.end(), {v[0], v[1], values.scalar(entry.w)});
-      }
+      for (const Expr entry : columns_of(row.J)) entries.push_back(values.scalar(entry));
       J.push_back(std::move(entries));
     }
   } catch (const NotHere&) {
@@ -187,11 +209,11 @@ struct Combination {
 };
 
 // Elimination, row by row; a row that becomes zero is a combination of earlier ones.
-std::vector<Combination> combinations(Matrix J) {
+std::vector<Combination> combinations(Rows J) {
   const std::size_t rows = J.size(), columns = rows == 0 ? 0 : J[0].size();
   std::vector<Combination> found;
   std::vector<std::size_t> pivots(rows, columns);
-  Matrix made(rows, std::vector<Modular>(rows));  // J[i] = made[i] times the rows as given
+  Rows made(rows, std::vector<Modular>(rows));  // J[i] = made[i] times the rows as given
   for (std::size_t i = 0; i < rows; ++i) {
     made[i][i] = Modular(1);
     for (std::size_t k = 0; k < i; ++k) {
@@ -296,7 +318,7 @@ GenericRank generic_rank(std::span<const ScalarRow> rows) {
   GenericRank result;
   std::vector<std::vector<Combination>> per_pose;
   for (std::uint64_t seed = 1; seed <= attempts && result.poses < wanted; ++seed) {
-    const std::optional<Matrix> J = jacobian_at(rows, seed);
+    const std::optional<Rows> J = jacobian_at(rows, seed);
     if (!J) continue;
     ++result.poses;
     std::vector<Combination> found = combinations(*J);

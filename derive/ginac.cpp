@@ -18,17 +18,75 @@ ex Algebra::leaf(const std::string& name, const ex& rate) {
   return leaves_.emplace(name, Leaf{GiNaC::realsymbol(name), rate}).first->second.symbol;
 }
 
-std::array<ex, 3> Algebra::velocities(int body) {
+std::vector<ex> Algebra::velocities(int body) {
+  const std::size_t columns = columns_per_body(joint_.dimension);
+  if (!moves(body)) return std::vector<ex>(columns, 0);
   const std::string& name = joint_.bodies[static_cast<std::size_t>(body)];
-  if (!moves(body)) return {0, 0, 0};
-  return {leaf("v_" + name + "_x", 0), leaf("v_" + name + "_y", 0), leaf("w_" + name, 0)};
+  std::vector<ex> v = {leaf("v_" + name + "_x", 0), leaf("v_" + name + "_y", 0)};
+  if (joint_.dimension == 2) {
+    v.push_back(leaf("w_" + name, 0));
+  } else {
+    v.push_back(leaf("v_" + name + "_z", 0));
+    for (const char* axis : {"_x", "_y", "_z"}) v.push_back(leaf("w_" + name + axis, 0));
+  }
+  return v;
 }
 
-std::array<ex, 3> Algebra::coordinates(int body) {
+std::vector<ex> Algebra::coordinates(int body) {
   const std::string& name = joint_.bodies[static_cast<std::size_t>(body)];
-  const std::array<ex, 3> rates = velocities(body);
-  return {leaf("x_" + name + "_x", rates[0]), leaf("x_" + name + "_y", rates[1]),
-          leaf("theta_" + name, rates[2])};
+  const std::vector<ex> rates = velocities(body);
+  std::vector<ex> q;
+  for (int k = 0; k < joint_.dimension; ++k) {
+    q.push_back(leaf("x_" + name + "_" + "xyz"[k], rates[static_cast<std::size_t>(k)]));
+  }
+  if (joint_.dimension == 2) {
+    q.push_back(leaf("theta_" + name, rates[2]));
+  } else if (route_ == Route::raw) {
+    const EulerParameters<ex> e = orientation("e_" + name, body);
+    q.insert(q.end(), e.begin(), e.end());
+  }
+  return q;
+}
+
+namespace {
+
+// de/dt = 1/2 G^T w, G = [-e1 e0 -e3 e2; -e2 e3 e0 -e1; -e3 -e2 e1 e0]
+std::array<ex, 4> rates_of(const EulerParameters<ex>& e, const ex& w_x, const ex& w_y, const ex& w_z) {
+  return {(-e[1] * w_x - e[2] * w_y - e[3] * w_z) / 2, (e[0] * w_x + e[3] * w_y - e[2] * w_z) / 2,
+          (-e[3] * w_x + e[0] * w_y + e[1] * w_z) / 2, (e[2] * w_x - e[1] * w_y + e[0] * w_z) / 2};
+}
+
+ex derivative(const ex& e, const ex& symbol) {
+  return GiNaC::is_a<GiNaC::symbol>(symbol) ? e.diff(ex_to<GiNaC::symbol>(symbol)) : 0;
+}
+
+}  // namespace
+
+EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {
+  const bool fresh = !leaves_.contains(name + "0");
+  EulerParameters<ex> e;
+  for (std::size_t k = 0; k < 4; ++k) e[k] = leaf(name + std::to_string(k), 0);
+  if (!fresh) return e;
+  units_.push_back({e.begin(), e.end()});
+  // e0^2 = 1 - e1^2 - e2^2 - e3^2
+  atoms_.push_back({Atom::Kind::square, ex_to<GiNaC::realsymbol>(e[0]),
+                    1 - e[1] * e[1] - e[2] * e[2] - e[3] * e[3]});
+  if (!moves(body)) return e;
+  const std::vector<ex> v = velocities(body);
+  const std::array<ex, 4> rates = rates_of(e, v[3], v[4], v[5]);
+  for (std::size_t k = 0; k < 4; ++k) leaves_.at(name + std::to_string(k)).rate = rates[k];
+  return e;
+}
+
+ex Algebra::slope(const ex& e, int body, std::size_t k) {
+  if (!moves(body)) return 0;
+  const std::vector<ex> q = coordinates(body);
+  if (joint_.dimension == 2 || k < 3) return derivative(e, q[k]);
+  const auto unit = [&](std::size_t axis) { return ex(k == axis ? 1 : 0); };
+  const std::array<ex, 4> rates = rates_of({q[3], q[4], q[5], q[6]}, unit(3), unit(4), unit(5));
+  ex total = 0;
+  for (std::size_t m = 0; m < 4; ++m) total += derivative(e, q[3 + m]) * rates[m];
+  return total;
 }
 
 ex Algebra::rate(const ex& e) {
@@ -59,37 +117,80 @@ ex Algebra::scalar_leaf(const Node& symbol) {
 }
 
 // Components that are nobody's function, of length 1 where that is known.
-Pair<ex> Algebra::free_vector(const Node& symbol) {
+Triple<ex> Algebra::free_vector(const Node& symbol) {
+  const std::string last = joint_.dimension == 2 ? "_y" : "_z";
   const bool fresh = !leaves_.contains(symbol.symbol + "_x");
-  ex rate_x = 0, rate_y = 0;
-  const ex x = leaf(symbol.symbol + "_x", 0), y = leaf(symbol.symbol + "_y", 0);
+  const Triple<ex> u{leaf(symbol.symbol + "_x", 0), leaf(symbol.symbol + "_y", 0),
+                     joint_.dimension == 2 ? ex(0) : leaf(symbol.symbol + "_z", 0)};
+  if (!fresh) return u;
   if (route_ == Route::names && symbol.role == Role::body_vector && moves(symbol.body)) {
-    const ex w = velocities(symbol.body)[2];
-    leaves_.at(symbol.symbol + "_x").rate = -w * y;
-    leaves_.at(symbol.symbol + "_y").rate = w * x;
+    const std::vector<ex> v = velocities(symbol.body);
+    const Triple<ex> w = joint_.dimension == 2 ? Triple<ex>{0, 0, v[2]} : Triple<ex>{v[3], v[4], v[5]};
+    const Triple<ex> rate = cross_product(w, u);
+    for (int k = 0; k < joint_.dimension; ++k) {
+      leaves_.at(symbol.symbol + "_" + "xyz"[k]).rate = rate[static_cast<std::size_t>(k)];
+    }
   }
-  if (fresh && symbol.unit_length) {
-    unit_vectors_.push_back({x, y});
-    atoms_.push_back({Atom::Kind::square, ex_to<GiNaC::realsymbol>(y), 1 - x * x});
+  if (symbol.unit_length) {
+    units_.emplace_back(u.begin(), u.begin() + joint_.dimension);
+    ex square = 1;
+    for (int k = 0; k + 1 < joint_.dimension; ++k) {
+      square -= u[static_cast<std::size_t>(k)] * u[static_cast<std::size_t>(k)];
+    }
+    atoms_.push_back({Atom::Kind::square, ex_to<GiNaC::realsymbol>(leaf(symbol.symbol + last, 0)), square});
   }
-  return {x, y};
+  return u;
 }
 
-Pair<ex> Algebra::vector_leaf(const Node& symbol) {
-  if (symbol.role == Role::position) {
-    const auto q = coordinates(symbol.body);
-    return {q[0], q[1]};
+Triple<ex> Algebra::vector_leaf(const Node& symbol) {
+  const Expr e(&symbol);
+  if (is_world_axis(e)) {
+    Triple<ex> axis{0, 0, 0};
+    axis[static_cast<std::size_t>(symbol.symbol.back() - 'x')] = 1;
+    return axis;
   }
-  if (symbol.role == Role::velocity) {
-    const auto v = velocities(symbol.body);
-    return {v[0], v[1]};
+  const auto of = [&](const std::vector<ex>& v, std::size_t first) {
+    return Triple<ex>{v[first], v[first + 1], joint_.dimension == 2 ? ex(0) : v[first + 2]};
+  };
+  switch (symbol.role) {
+    case Role::position:
+      return of(coordinates(symbol.body), 0);
+    case Role::velocity:
+      return of(velocities(symbol.body), 0);
+    case Role::spin:
+      return of(velocities(symbol.body), 3);
+    default:
+      return vector_of_body(symbol);
   }
-  if (&symbol == &*world_x(*joint_.pool)) return {1, 0};
-  if (symbol.role != Role::body_vector || route_ == Route::names) return free_vector(symbol);
-  const ex theta = coordinates(symbol.body)[2], c = cos(theta), s = sin(theta);
-  if (symbol.symbol.starts_with("axis_")) return {c, s};
-  const Pair<ex> l = free_vector(symbol);
-  return {c * l[0] - s * l[1], s * l[0] + c * l[1]};
+}
+
+// What is fixed in a body, or in the world.
+Triple<ex> Algebra::vector_of_body(const Node& symbol) {
+  const bool rotated = symbol.role == Role::body_vector && route_ == Route::raw;
+  const bool body_axis = symbol.symbol.starts_with("axis_");
+  if (joint_.dimension == 2) {
+    if (!rotated) return free_vector(symbol);
+    const ex theta = coordinates(symbol.body)[2], c = cos(theta), s = sin(theta);
+    if (body_axis) return {c, s, 0};
+    const Triple<ex> l = free_vector(symbol);
+    return {c * l[0] - s * l[1], s * l[0] + c * l[1], 0};
+  }
+  const Pool::Axis axis = joint_.pool->axis_of(Expr(&symbol));
+  const auto index = static_cast<std::size_t>(axis.index);
+  const auto triad = [&] {
+    const std::string stem = symbol.symbol.substr(0, symbol.symbol.size() - 1) + "e";
+    return axes_of(orientation(stem, rotated ? -1 : symbol.body));
+  };
+  if (!rotated) return axis.triad ? triad()[index] : free_vector(symbol);
+  const std::vector<ex> q = coordinates(symbol.body);
+  const auto A = axes_of(EulerParameters<ex>{q[3], q[4], q[5], q[6]});
+  if (body_axis) return A[index];
+  const Triple<ex> l = axis.triad ? triad()[index] : free_vector(symbol);
+  Triple<ex> turned{0, 0, 0};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) turned[i] += A[k][i] * l[k];
+  }
+  return turned;
 }
 
 ex Algebra::call(Fn fn, std::span<const ex> args) {

@@ -13,8 +13,10 @@
 namespace cdot::derive {
 
 // Expressions of a joint as GiNaC's, over one of two sets of coordinates:
-//   names  arms and directions are symbols r_x, r_y, whose time derivative is w x r
-//   raw    every body is x, y, theta; what is fixed in it is R(theta) times constants
+//   names  arms and directions are symbols r_x, r_y, whose time derivative is w x r; in space a triad is A(e) of Euler
+//          parameters of its own, de/dt = 1/2 G^T w
+//   raw    every body is x, y, theta, in space x, y, z and Euler parameters e; what is fixed in it is R(theta) or A(e)
+//          times constants
 // In both, rate() is GiNaC's own chain rule over the symbols.
 class Algebra final : public Arithmetic<GiNaC::ex> {
  public:
@@ -22,12 +24,15 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   Algebra(const Joint& joint, Route route, int immovable = -1);
 
   GiNaC::ex of(Expr scalar) { return evaluation_.scalar(scalar); }
-  Pair<GiNaC::ex> of_vector(Expr vector) { return evaluation_.vector(vector); }
+  Triple<GiNaC::ex> of_vector(Expr vector) { return evaluation_.vector(vector); }
   // Tells the zero test which sums of vectors its expressions are about.
   void shorten(Expr root);
-  // The coordinate and velocity symbols of a body: x, y, theta; v_x, v_y, w.
-  std::array<GiNaC::ex, 3> coordinates(int body);
-  std::array<GiNaC::ex, 3> velocities(int body);
+  // The coordinate and velocity symbols of a body: x, y, theta and v_x, v_y, w; in space x, y, z, e0, e1, e2, e3 and
+  // v_x, ..., w_z.
+  std::vector<GiNaC::ex> coordinates(int body);
+  std::vector<GiNaC::ex> velocities(int body);
+  // The derivative of e as the body moves along column k of J at unit rate.
+  GiNaC::ex slope(const GiNaC::ex& e, int body, std::size_t k);
   // d e/dt along the motion; the velocities count as constant.
   GiNaC::ex rate(const GiNaC::ex& e);
   // Decides whether e vanishes wherever it is defined, given that unit vectors have length 1 and so
@@ -47,7 +52,7 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
 
   GiNaC::ex number(Rational value) override;
   GiNaC::ex scalar_leaf(const Node& symbol) override;
-  Pair<GiNaC::ex> vector_leaf(const Node& symbol) override;
+  Triple<GiNaC::ex> vector_leaf(const Node& symbol) override;
   GiNaC::ex inverse(const GiNaC::ex& x) override { return GiNaC::pow(x, -1); }
   GiNaC::ex call(Fn fn, std::span<const GiNaC::ex> args) override;
 
@@ -65,7 +70,10 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   };
 
   GiNaC::ex leaf(const std::string& name, const GiNaC::ex& rate);
-  Pair<GiNaC::ex> free_vector(const Node& symbol);
+  Triple<GiNaC::ex> free_vector(const Node& symbol);
+  Triple<GiNaC::ex> vector_of_body(const Node& symbol);
+  // Euler parameters that are nobody's function; of `body`, they turn with it.
+  EulerParameters<GiNaC::ex> orientation(const std::string& name, int body);
   bool moves(int body) const { return body >= 0 && body != immovable_; }
 
   bool replace(const GiNaC::ex& x, const GiNaC::ex& compound, const std::string& name);
@@ -86,10 +94,10 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   int immovable_;
   std::map<std::string, Leaf> leaves_;
   std::vector<Atom> atoms_;
-  std::vector<Pair<GiNaC::ex>> unit_vectors_;
+  std::vector<std::vector<GiNaC::ex>> units_;  // symbols whose squares sum to 1
   GiNaC::exmap known_;             // compounds that have been replaced, as GiNaC wrote them
   GiNaC::exmap inverses_, roots_;  // by their operand in normal form
-  std::vector<std::pair<GiNaC::ex, Pair<GiNaC::ex>>> turns_;  // angle -> (cos, sin)
+  std::vector<std::pair<GiNaC::ex, std::array<GiNaC::ex, 2>>> turns_;  // angle -> (cos, sin)
   GiNaC::exmap change_;  // of variables, before an expression is tested
   std::vector<std::pair<GiNaC::ex, GiNaC::ex>>
       meanings_;  // of symbols without a name, as they came up

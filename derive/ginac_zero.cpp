@@ -24,10 +24,17 @@ ex random_fraction(Random& random) {
   return numeric(static_cast<long>(random.bits() % 2001) - 1000) / numeric(487);
 }
 
-// A rational point of the unit circle.
-Pair<ex> random_direction(Random& random) {
-  const ex t = random_fraction(random);
-  return {(1 - t * t) / (1 + t * t), 2 * t / (1 + t * t)};
+// A rational point of the unit circle or sphere, by stereographic projection: (1 - t.t, 2 t)/(1 + t.t).
+std::vector<ex> random_direction(Random& random, std::size_t dimension) {
+  std::vector<ex> t;
+  ex square = 0;
+  for (std::size_t k = 1; k < dimension; ++k) {
+    t.push_back(random_fraction(random));
+    square += t.back() * t.back();
+  }
+  std::vector<ex> point = {(1 - square) / (1 + square)};
+  for (const ex& component : t) point.push_back(2 * component / (1 + square));
+  return point;
 }
 
 // Powers of `symbol` from two on are replaced by means of symbol^2 = square. The polynomial must be
@@ -252,15 +259,17 @@ ex Algebra::without_inverses(const ex& polynomial) const {
 void Algebra::shorten(Expr root) {
   for (const Expr u : topological(std::span(&root, 1))) {
     if (!u->vector || u->kind != Kind::sum) continue;
-    const Pair<ex> components = of_vector(u);
+    const Triple<ex> components = of_vector(u);
     for (const Expr part : u->args) {
       if (part->kind != Kind::symbol || part->role != Role::position) continue;
-      const Pair<ex> x = of_vector(part);
+      const Triple<ex> x = of_vector(part);
       const std::string name = u->name;
-      if (replace(x[0], components[0], name.empty() ? "" : name + "_x") &&
-          replace(x[1], components[1], name.empty() ? "" : name + "_y")) {
-        break;
+      bool all = true;
+      for (int k = 0; k < joint_.dimension && all; ++k) {
+        const auto i = static_cast<std::size_t>(k);
+        all = replace(x[i], components[i], name.empty() ? "" : name + "_" + "xyz"[k]);
       }
+      if (all) break;
     }
   }
 }
@@ -293,10 +302,9 @@ bool Algebra::differs_at_random(const ex& e, std::uint64_t seed) try {
   Random random(seed);
   GiNaC::exmap pose;
   for (const auto& [name, leaf] : leaves_) pose[leaf.symbol] = random_fraction(random);
-  for (const Pair<ex>& u : unit_vectors_) {
-    const Pair<ex> direction = random_direction(random);
-    pose[u[0]] = direction[0];
-    pose[u[1]] = direction[1];
+  for (const std::vector<ex>& u : units_) {
+    const std::vector<ex> direction = random_direction(random, u.size());
+    for (std::size_t k = 0; k < u.size(); ++k) pose[u[k]] = direction[k];
   }
   const ex value = e.subs(pose, GiNaC::subs_options::no_pattern).evalf();
   if (!is_a<numeric>(value) || abs(ex_to<numeric>(value)) < pow(numeric(10), -60)) return false;

@@ -21,7 +21,9 @@ struct Parameter {
   Unit unit;
   Expr value;         // as it occurs in expressions: point: its place in the world (x_a + ra); frame: its x axis
   Expr symbol;        // the leaf behind it: the arm `ra`, the direction `t`, the number; what a kernel reads or rotates
+  std::vector<Expr> axes;  // of a frame in space: its three leaves, `symbol` first
   Expr default_value; // may be empty; of the kind of `value`
+  std::vector<Expr> default_axes;  // of a frame in space
   Span where;
 };
 
@@ -53,6 +55,9 @@ struct Coordinate {
   Span where;
   std::string text;
 };
+
+// Folders, namespaces and headers of specs are named so.
+inline std::string name_of_space(int dimension) { return dimension == 2 ? "planar" : "spatial"; }
 
 struct Joint {
   std::shared_ptr<Pool> pool;

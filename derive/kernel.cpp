@@ -5,6 +5,8 @@
 #include <set>
 
 #include "derive/canonical.hpp"
+#include "derive/matrix.hpp"
+#include "derive/symbols.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -18,7 +20,7 @@ struct StoredEntry {
 class BlockPlanner {
  public:
   BlockPlanner(const Joint& joint, Block block, std::string name)
-      : joint_(joint), pool_(*joint.pool), pose_(joint) {
+      : joint_(joint), pool_(*joint.pool), width_(columns_per_body(joint.dimension)), pose_(joint) {
     out_.name = std::move(name);
     out_.block = std::move(block);
   }
@@ -31,6 +33,15 @@ class BlockPlanner {
     add_velocity();
     add_apply();
     add_dense();
+    add_inverse_mass_jacobian();
+    if (joint_.dimension == 3) {
+      isotropic_ = true;
+      add_effective_mass();
+      add_apply();
+      add_inverse_mass_jacobian();
+      isotropic_ = false;
+      add_other_forms();
+    }
     add_from_pose();
     return std::move(out_);
   }
@@ -46,24 +57,31 @@ class BlockPlanner {
   }
 
   void add(std::string name, std::string summary, const std::vector<NamedExpr>& outputs) {
-    out_.functions.push_back({std::move(name), std::move(summary), simplify(assemble(outputs))});
+    if (isotropic_) summary += ", for sphere-like bodies";
+    out_.functions.push_back({std::move(name), std::move(summary), simplify(assemble(outputs)), isotropic_});
   }
 
   // Which numbers Jacobian<T> holds: the factors of J's entries that are neither zero nor one.
   void store_jacobian() {
     Components components;
-    const Expr ex = world_x(pool_);
     for (std::size_t i = 0; i < rows(); ++i) {
       std::vector<StoredEntry> row;
       for (std::size_t b = 0; b < bodies(); ++b) {
-        const JacobianEntry& J = out_.block.rows[i].J[b];
         const std::string suffix = joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
-        row.push_back(store(components.of(dot(ex, J.v)), "v" + suffix + "_x"));
-        row.push_back(store(components.of(dot(perp(ex), J.v)), "v" + suffix + "_y"));
-        row.push_back(store(components.of(J.w), "w" + suffix));
+        const std::vector<Expr> entries = columns_of(out_.block.rows[i].J[b]);
+        for (std::size_t k = 0; k < width_; ++k) {
+          row.push_back(store(components.of(entries[k]), column_name(k, suffix)));
+        }
       }
       J_.push_back(std::move(row));
     }
+  }
+
+  // v_a_1_x, w_a_1 in the plane, w_a_1_x in space
+  std::string column_name(std::size_t k, const std::string& suffix) const {
+    const std::size_t linear = static_cast<std::size_t>(joint_.dimension);
+    if (k < linear) return "v" + suffix + "_" + "xyz"[k];
+    return "w" + suffix + (linear == 2 ? "" : std::string("_") + "xyz"[k - linear]);
   }
 
   StoredEntry store(Expr entry, const std::string& column) {
@@ -119,11 +137,12 @@ class BlockPlanner {
     Components components;
     std::map<const Node*, Expr> held;
     for (const Field& f : out_.fields) held.emplace(&*f.value, f.symbol);
+    const auto K_of_rows = effective_mass(joint_, out_.block.rows, out_.block.immovable, isotropic_);
     std::vector<NamedExpr> simplified, plain;
     bool complete = true;
     for (std::size_t i = 0; i < rows(); ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
-        const Expr K = substitute(components.of(out_.block.K[i][j]), held);
+        const Expr K = substitute(components.of(K_of_rows[i][j]), held);
         for (const Expr e : topological(std::span(&K, 1))) {
           complete = complete && (e->kind != Kind::symbol || e->role == Role::given ||
                                   e->role == Role::inverse_mass || e->role == Role::inverse_inertia ||
@@ -145,11 +164,30 @@ class BlockPlanner {
     Expr K = pool_.number(0);
     for (std::size_t b = 0; b < bodies(); ++b) {
       if (static_cast<int>(b) == out_.block.immovable) continue;
-      const BodySymbols body = body_symbols(joint_, static_cast<int>(b));
-      const Expr linear = stored(i, 3 * b) * stored(j, 3 * b) + stored(i, 3 * b + 1) * stored(j, 3 * b + 1);
-      K = K + body.inv_m * linear + body.inv_I * (stored(i, 3 * b + 2) * stored(j, 3 * b + 2));
+      for (std::size_t k = 0; k < width_; ++k) {
+        K = K + stored(i, width_ * b + k) * weighted(j, width_ * b + k);
+      }
     }
     return K;
+  }
+
+  // A number of (M^-1 J^T)^T.
+  Expr weighted(std::size_t row, std::size_t column) const {
+    return inverse_mass_times(column, [&](std::size_t c) { return stored(row, c); });
+  }
+
+  // Row `column` of M^-1 times a column of numbers: 1/m for what moves the centre, 1/I or the tensor I^-1 for what turns.
+  template <class Numbers>
+  Expr inverse_mass_times(std::size_t column, Numbers numbers) const {
+    const BodySymbols body = body_symbols(joint_, static_cast<int>(column / width_));
+    const std::size_t k = column % width_, first = column - k + 3;
+    if (k < static_cast<std::size_t>(joint_.dimension)) return body.inv_m * numbers(column);
+    if (joint_.dimension == 2 || isotropic_) return body.inv_I * numbers(column);
+    Expr sum = pool_.number(0);
+    for (std::size_t l = 0; l < 3; ++l) {
+      sum = sum + tensor_component(body.inv_I, k - 3, l) * numbers(first + l);
+    }
+    return sum;
   }
 
   // K = L D L^T column by column; what is zero in K for every pose stays zero and is not computed.
@@ -217,8 +255,10 @@ class BlockPlanner {
   std::vector<Expr> velocity_components(std::size_t b) const {
     const BodySymbols body = body_symbols(joint_, static_cast<int>(b));
     Components components;
-    const auto v = components.of_vector(body.v);
-    return {v[0], v[1], body.w};
+    std::vector<Expr> v = components.of_vector(body.v);
+    const std::vector<Expr> w = body.w->vector ? components.of_vector(body.w) : std::vector{body.w};
+    v.insert(v.end(), w.begin(), w.end());
+    return v;
   }
 
   void add_velocity() {
@@ -227,45 +267,92 @@ class BlockPlanner {
       Expr Jv = pool_.number(0);
       for (std::size_t b = 0; b < bodies(); ++b) {
         const std::vector<Expr> v = velocity_components(b);
-        for (std::size_t k = 0; k < 3; ++k) Jv = Jv + stored(i, 3 * b + k) * v[k];
+        for (std::size_t k = 0; k < width_; ++k) Jv = Jv + stored(i, width_ * b + k) * v[k];
       }
       outputs.push_back({at("Jv", i), Jv});
     }
     add("velocity", "J v", outputs);
   }
 
-  // One number of M^-1: 1/m for the columns x and y of a body, 1/I for its w.
-  Expr inverse_mass(std::size_t column) const {
-    const BodySymbols body = body_symbols(joint_, static_cast<int>(column / 3));
-    return column % 3 == 2 ? body.inv_I : body.inv_m;
+  // J^T lambda
+  Expr force(std::size_t column) const {
+    Expr force = pool_.number(0);
+    for (std::size_t i = 0; i < rows(); ++i) {
+      force = force + stored(i, column) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
+    }
+    return force;
+  }
+
+  // The members of Velocity<T>, in the order of J's columns.
+  static std::string velocity_member(std::size_t k, std::size_t width) {
+    static const char* const planar[] = {"x", "y", "w"};
+    static const char* const spatial[] = {"x", "y", "z", "wx", "wy", "wz"};
+    return width == 3 ? planar[k] : spatial[k];
   }
 
   void add_apply() {
-    static const char* const axis[] = {"x", "y", "w"};
     std::vector<NamedExpr> outputs;
-    for (std::size_t c = 0; c < 3 * bodies(); ++c) {
-      Expr force = pool_.number(0);
-      for (std::size_t i = 0; i < rows(); ++i) {
-        force = force + stored(i, c) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
-      }
-      if (is_zero(force)) continue;
-      outputs.push_back({at("v", c / 3) + "." + axis[c % 3],
-                         velocity_components(c / 3)[c % 3] + inverse_mass(c) * force});
+    for (std::size_t c = 0; c < width_ * bodies(); ++c) {
+      const Expr change = inverse_mass_times(c, [&](std::size_t column) { return force(column); });
+      if (static_cast<int>(c / width_) == out_.block.immovable || is_zero(change)) continue;
+      outputs.push_back({at("v", c / width_) + "." + velocity_member(c % width_, width_),
+                         velocity_components(c / width_)[c % width_] + change});
     }
     add("apply", "v += M^-1 J^T lambda", outputs);
   }
 
   void add_dense() {
-    std::vector<NamedExpr> J, weighted;
+    std::vector<NamedExpr> J;
     for (std::size_t i = 0; i < rows(); ++i) {
-      for (std::size_t c = 0; c < 3 * bodies(); ++c) {
-        const std::string cell = at(at("D", i), c);
-        J.push_back({cell, stored(i, c)});
-        weighted.push_back({cell, inverse_mass(c) * stored(i, c)});
+      for (std::size_t c = 0; c < width_ * bodies(); ++c) J.push_back({at(at("D", i), c), stored(i, c)});
+    }
+    add("dense", std::string("J with its zeros: ") + (width_ == 3 ? "v_x, v_y, w" : "v, w") + " of each body", J);
+  }
+
+  void add_inverse_mass_jacobian() {
+    std::vector<NamedExpr> outputs;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      for (std::size_t c = 0; c < width_ * bodies(); ++c) outputs.push_back({at(at("D", i), c), weighted(i, c)});
+    }
+    add("inverse_mass_jacobian", "(M^-1 J^T)^T, laid out like dense", outputs);
+  }
+
+  // The other two velocity forms in space: J_b = J diag(E, A) for w = A w', J_c = J diag(E, 2 G) for w = 2 G de/dt.
+  void add_other_forms() {
+    std::vector<NamedExpr> local, euler;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      for (std::size_t b = 0; b < bodies(); ++b) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          local.push_back({at(at("D", i), 6 * b + k), stored(i, 6 * b + k)});
+          euler.push_back({at(at("D", i), 7 * b + k), stored(i, 6 * b + k)});
+        }
+        const auto A = rotation_matrix(joint_, static_cast<int>(b));
+        for (std::size_t k = 0; k < 3; ++k) {
+          local.push_back({at(at("D", i), 6 * b + 3 + k), times_column(i, b, {A[0][k], A[1][k], A[2][k]})});
+        }
+        const std::array<std::array<Expr, 3>, 4> G = euler_columns(b);
+        for (std::size_t k = 0; k < 4; ++k) {
+          euler.push_back({at(at("D", i), 7 * b + 3 + k), Rational(2) * times_column(i, b, G[k])});
+        }
       }
     }
-    add("dense", "J with its zeros: v_x, v_y, w of each body", J);
-    add("inverse_mass_jacobian", "(M^-1 J^T)^T, laid out like dense", weighted);
+    add("local_jacobian", "form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A)", local);
+    add("euler_jacobian", "form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G)", euler);
+  }
+
+  Expr times_column(std::size_t row, std::size_t body, const std::array<Expr, 3>& column) const {
+    Expr sum = pool_.number(0);
+    for (std::size_t l = 0; l < 3; ++l) sum = sum + stored(row, 6 * body + 3 + l) * column[l];
+    return sum;
+  }
+
+  // G = [-e1 e0 -e3 e2; -e2 e3 e0 -e1; -e3 -e2 e1 e0], by columns.
+  std::array<std::array<Expr, 3>, 4> euler_columns(std::size_t body) const {
+    std::array<Expr, 4> e;
+    for (std::size_t k = 0; k < 4; ++k) {
+      e[k] = pool_.symbol(joint_.bodies[body] + ".e" + std::to_string(k), Role::given, static_cast<int>(body));
+    }
+    return {{{-e[1], -e[2], -e[3]}, {e[0], e[3], -e[2]}, {-e[3], e[0], e[1]}, {e[2], -e[1], e[0]}}};
   }
 
   void add_from_pose() {
@@ -281,11 +368,13 @@ class BlockPlanner {
     }
     add("gamma", "-Jdot v - d/dt(dC/dt)", gamma);
     add("time_derivative", "dC/dt at fixed q", C_t);
-    add("stiffness", "d(J^T lambda)/dq: x, y, angle of each body", H);
+    add("stiffness", std::string("d(J^T lambda)/dq: ") + (width_ == 3 ? "x, y, angle" : "x, y, z and small turns") + " of each body", H);
   }
 
   const Joint& joint_;
   Pool& pool_;
+  std::size_t width_;  // columns of J per body
+  bool isotropic_ = false;  // inverse inertias are numbers, not tensors
   PoseInputs pose_;
   KernelBlock out_;
   std::vector<std::vector<StoredEntry>> J_;
@@ -315,70 +404,90 @@ DefaultValue plan_default(const Joint& joint, int index) {
   const Parameter& parameter = joint.parameters[static_cast<std::size_t>(index)];
   PoseInputs pose(joint);
   Pool& pool = *joint.pool;
+  const std::vector<std::string> fields = fields_of(joint, parameter);
   std::vector<NamedExpr> outputs;
-  const auto output = [&](int axis, Expr e) {
-    outputs.push_back({"p." + field_name(parameter, axis), pose.of(e)});
-  };
-  if (size_of(parameter) == 1) {
-    output(-1, parameter.default_value);
+  const auto output = [&](Expr e) { outputs.push_back({"p." + fields[outputs.size()], pose.of(e)}); };
+  if (parameter.kind == ParameterKind::scalar) {
+    output(parameter.default_value);
     return {index, simplify(assemble(outputs))};
   }
-  Expr value = parameter.default_value, axis = world_x(pool);
-  if (parameter.body >= 0) {
-    const std::string& body = joint.bodies[static_cast<std::size_t>(parameter.body)];
-    if (parameter.kind == ParameterKind::point) value = value - body_symbols(joint, parameter.body).x;
-    axis = pool.vector_symbol("axis_" + body, Role::body_vector, parameter.body, true);
+  std::vector<Expr> values = {parameter.default_value};
+  if (!parameter.default_axes.empty()) values = parameter.default_axes;
+  if (parameter.kind == ParameterKind::point && parameter.body >= 0) {
+    values[0] = values[0] - body_symbols(joint, parameter.body).x;
   }
-  output(0, dot(axis, value));
-  output(1, dot(perp(axis), value));
+  for (const Expr value : values) {
+    for (const Expr axis : body_axes(pool, parameter.body)) output(dot(axis, value));
+  }
   return {index, simplify(assemble(outputs))};
 }
 
 }  // namespace
 
-int size_of(const Parameter& parameter) { return parameter.kind == ParameterKind::scalar ? 1 : 2; }
-
-std::string field_name(const Parameter& parameter, int axis) {
-  return parameter.name + (axis < 0 ? "" : axis == 0 ? "_x" : "_y");
+std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter) {
+  if (parameter.kind == ParameterKind::scalar) return {parameter.name};
+  std::vector<std::string> stems = {parameter.name}, fields;
+  if (!parameter.axes.empty()) stems = {parameter.name + "_x", parameter.name + "_y", parameter.name + "_z"};
+  for (const std::string& stem : stems) {
+    for (int k = 0; k < joint.dimension; ++k) fields.push_back(stem + "_" + "xyz"[k]);
+  }
+  return fields;
 }
 
-Expr local_symbol(const Joint& joint, const Parameter& parameter, int axis) {
-  Pool& pool = *joint.pool;
-  if (parameter.kind == ParameterKind::scalar) return parameter.symbol;
-  return pool.symbol("p." + field_name(parameter, axis), Role::parameter);
+std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter) {
+  if (parameter.kind == ParameterKind::scalar) return {parameter.symbol};
+  std::vector<Expr> symbols;
+  for (const std::string& field : fields_of(joint, parameter)) {
+    symbols.push_back(joint.pool->symbol("p." + field, Role::parameter));
+  }
+  return symbols;
+}
+
+std::vector<std::vector<Expr>> rotation_matrix(const Joint& joint, int body) {
+  const auto member = [&](const std::string& name) {
+    return joint.pool->symbol(joint.bodies[static_cast<std::size_t>(body)] + "." + name, Role::given, body);
+  };
+  if (joint.dimension == 2) return {{member("c"), -member("s")}, {member("s"), member("c")}};
+  std::vector<std::vector<Expr>> A(3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) A[i].push_back(member(std::string{"xyz"[i], "xyz"[j]}));
+  }
+  return A;
 }
 
 PoseInputs::PoseInputs(const Joint& joint) {
-  Pool& pool = *joint.pool;
-  Components components;
-  const auto cosine = [&](int body) {
-    return pool.symbol(joint.bodies[static_cast<std::size_t>(body)] + ".c", Role::given, body);
-  };
-  const auto sine = [&](int body) {
-    return pool.symbol(joint.bodies[static_cast<std::size_t>(body)] + ".s", Role::given, body);
-  };
   for (const Parameter& parameter : joint.parameters) {
-    if (parameter.kind == ParameterKind::scalar || !parameter.symbol) continue;
-    const auto world = components.of_vector(parameter.symbol);
-    Expr x = local_symbol(joint, parameter, 0), y = local_symbol(joint, parameter, 1);
-    if (parameter.body >= 0) {
-      // r = R l
-      const Expr c = cosine(parameter.body), s = sine(parameter.body);
-      const Expr local_x = x, local_y = y;
-      x = c * local_x - s * local_y;
-      y = s * local_x + c * local_y;
-      pool.name(x, world[0]->symbol, true);
-      pool.name(y, world[1]->symbol, true);
-    }
-    rotated_.emplace(&*world[0], x);
-    rotated_.emplace(&*world[1], y);
+    if (parameter.kind != ParameterKind::scalar && parameter.symbol) rotate(joint, parameter);
   }
+  Components components;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const int body = static_cast<int>(b);
-    const auto axis = components.of_vector(
-        pool.vector_symbol("axis_" + joint.bodies[b], Role::body_vector, body, true));
-    rotated_.emplace(&*axis[0], cosine(body));
-    rotated_.emplace(&*axis[1], sine(body));
+    const auto A = rotation_matrix(joint, body);
+    const std::vector<Expr> axes = body_axes(*joint.pool, body);
+    for (std::size_t k = 0; k < axes.size() && axes[k]->kind == Kind::symbol; ++k) {
+      const std::vector<Expr> world = components.of_vector(axes[k]);
+      for (std::size_t i = 0; i < world.size(); ++i) rotated_.emplace(&*world[i], A[i][k]);
+    }
+  }
+}
+
+// r = R l for each vector leaf behind the parameter.
+void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
+  Components components;
+  const std::vector<Expr> local = local_symbols(joint, parameter);
+  const std::vector<Expr> leaves = parameter.axes.empty() ? std::vector{parameter.symbol} : parameter.axes;
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    const std::vector<Expr> world = components.of_vector(leaves[n]);
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      Expr component = local[n * world.size() + i];
+      if (parameter.body >= 0) {
+        const std::vector<Expr> row = rotation_matrix(joint, parameter.body)[i];
+        component = joint.pool->number(0);
+        for (std::size_t k = 0; k < row.size(); ++k) component = component + row[k] * local[n * row.size() + k];
+        joint.pool->name(component, world[i]->symbol, true);
+      }
+      rotated_.emplace(&*world[i], component);
+    }
   }
 }
 

@@ -21,6 +21,7 @@ struct KernelFunction {
   std::string name;     // "jacobian"
   std::string summary;  // "C and J"
   Program program;      // outputs carry the text of what is assigned: "C[0]", "J.t_x"
+  bool isotropic = false;  // the overload for bodies whose inertia is a number, in space
 };
 
 // One row block: the joint, a coordinate, or one of these with a body immovable.
@@ -46,7 +47,8 @@ struct Kernel {
 
 Kernel plan_kernel(const Joint& joint);
 
-// Everything written out in components and read from poses and parameters: arms become c l_x - s l_y.
+// Everything written out in components and read from poses and parameters: arms become c l_x - s l_y, in space
+// xx l_x + xy l_y + xz l_z.
 // Shared by the kernel, the ledger and the hand derivations, so that all are counted alike.
 class PoseInputs {
  public:
@@ -54,14 +56,16 @@ class PoseInputs {
   Expr of(Expr scalar);  // any scalar expression of the joint
 
  private:
+  void rotate(const Joint& joint, const Parameter& parameter);
+
   std::map<const Node*, Expr> rotated_;
 };
 
-// The symbol of number `axis` (0: x, 1: y; -1: a scalar) of a parameter, as a kernel reads it.
-Expr local_symbol(const Joint& joint, const Parameter& parameter, int axis);
-// Its name in Parameters<T>: "pa_x", "phi".
-std::string field_name(const Parameter& parameter, int axis);
-// How many numbers a parameter has.
-int size_of(const Parameter& parameter);
+// The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space "f_x_x" to "f_z_z".
+std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter);
+// The rotation matrix of a body's pose, as a kernel reads it: [c -s; s c], or [xx xy xz; ...].
+std::vector<std::vector<Expr>> rotation_matrix(const Joint& joint, int body);
+// How a kernel reads a parameter's numbers: symbols, in the same order.
+std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter);
 
 }  // namespace cdot::derive

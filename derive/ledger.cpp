@@ -12,7 +12,8 @@ namespace {
 void add_functions(const Joint& joint, const KernelBlock& block, const std::string& name,
                    std::vector<LedgerRow>& rows) {
   for (const KernelFunction& f : block.functions) {
-    rows.push_back({joint.name, name, f.name, "generated", count(f.program)});
+    const std::string quantity = f.name + (f.isotropic ? "_isotropic" : "");
+    rows.push_back({name_of_space(joint.dimension), joint.name, name, quantity, "generated", count(f.program)});
   }
   for (const KernelBlock& variant : block.variants) {
     add_functions(joint, variant, (name == "rows" ? "" : name + ".") + variant.name, rows);
@@ -21,18 +22,16 @@ void add_functions(const Joint& joint, const KernelBlock& block, const std::stri
 
 void add_quantities(const Joint& joint, const Block& block, const std::string& name,
                     std::vector<LedgerRow>& rows) {
-  const Expr ex = world_x(*joint.pool);
+  const std::string space = name_of_space(joint.dimension);
   std::vector<Expr> C, J, K;
   for (std::size_t i = 0; i < block.rows.size(); ++i) {
     C.push_back(block.rows[i].C);
-    for (const JacobianEntry& entry : block.rows[i].J) {
-      J.insert(J.end(), {dot(ex, entry.v), dot(perp(ex), entry.v), entry.w});
-    }
+    for (const Expr entry : columns_of(block.rows[i].J)) J.push_back(entry);
     for (const Expr entry : block.K[i]) K.push_back(entry);
   }
-  rows.push_back({joint.name, name, "C", "generated", cost_from_poses(joint, C)});
-  rows.push_back({joint.name, name, "J", "generated", cost_from_poses(joint, J)});
-  rows.push_back({joint.name, name, "K", "generated", cost_from_poses(joint, K)});
+  rows.push_back({space, joint.name, name, "C", "generated", cost_from_poses(joint, C)});
+  rows.push_back({space, joint.name, name, "J", "generated", cost_from_poses(joint, J)});
+  rows.push_back({space, joint.name, name, "K", "generated", cost_from_poses(joint, K)});
 }
 
 }  // namespace
@@ -58,12 +57,13 @@ std::vector<LedgerRow> ledger_of(const Kernel& kernel) {
 
 std::string emit_ledger(std::vector<LedgerRow> rows) {
   std::stable_sort(rows.begin(), rows.end(), [](const LedgerRow& a, const LedgerRow& b) {
-    return std::tie(a.joint, a.block, a.quantity) < std::tie(b.joint, b.block, b.quantity);
+    return std::tie(a.space, a.joint, a.block, a.quantity) <
+           std::tie(b.space, b.joint, b.block, b.quantity);
   });
-  std::string s = "joint,block,quantity,source,add,multiply,divide,root,compare,call,total\n";
+  std::string s = "space,joint,block,quantity,source,add,multiply,divide,root,compare,call,total\n";
   for (const LedgerRow& r : rows) {
     const Count& c = r.count;
-    s += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", r.joint, r.block, r.quantity, r.source, c.add,
+    s += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", r.space, r.joint, r.block, r.quantity, r.source, c.add,
                      c.multiply, c.divide, c.root, c.compare, c.call, c.total());
   }
   return s;

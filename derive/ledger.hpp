@@ -9,7 +9,8 @@
 namespace cdot::derive {
 
 struct LedgerRow {
-  std::string joint, block, quantity;  // "line", "slide.a_immovable", "jacobian"; quantities from poses: "C", "J", "K"
+  std::string space;                   // "planar", "spatial"
+  std::string joint, block, quantity;  // "line", "slide.a_immovable", "jacobian" ("apply_isotropic"); quantities from poses: "C", "J", "K"
   std::string source;                  // "generated", or the id of a hand derivation
   Count count;
 };

@@ -19,4 +19,12 @@ struct Matrix {
   }
 };
 
+// The component i, j of a symmetric tensor leaf: inv_I_a_xy.
+Expr tensor_component(Expr tensor, std::size_t i, std::size_t j);
+// A vector as a column of its components; a symmetric tensor leaf as the matrix of its components.
+Matrix column_of(Expr vector);
+Matrix tensor_matrix(Expr tensor);
+// By cofactors; for small ones.
+Matrix inverse(const Matrix& square);
+
 }  // namespace cdot::derive

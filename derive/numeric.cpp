@@ -9,6 +9,10 @@
 namespace cdot::derive {
 namespace {
 
+Triple<double> unit_axis(char letter) {
+  return {letter == 'x' ? 1. : 0., letter == 'y' ? 1. : 0., letter == 'z' ? 1. : 0.};
+}
+
 // A pivot that is this small beside the diagonal entry it was left from is round-off.
 constexpr double negligible = 16 * std::numeric_limits<double>::epsilon();
 
@@ -23,19 +27,20 @@ class Doubles final : public Arithmetic<double> {
     return named(symbol.symbol);
   }
 
-  Pair<double> vector_leaf(const Node& symbol) override {
-    if (&symbol == &*world_x(*symbol.pool)) return {1, 0};
-    return {named(symbol.symbol + "_x"), named(symbol.symbol + "_y")};
+  Triple<double> vector_leaf(const Node& symbol) override {
+    if (is_world_axis(Expr(&symbol))) return unit_axis(symbol.symbol.back());
+    return {named(symbol.symbol + "_x"), named(symbol.symbol + "_y"),
+            symbol.pool->dimension() == 2 ? 0 : named(symbol.symbol + "_z")};
   }
 
   double inverse(const double& x) override {
     return std::fabs(x) >= std::numeric_limits<double>::min() ? 1 / x : 0;
   }
 
-  Pair<double> direction(const Pair<double>& u) override {
+  Triple<double> direction(const Triple<double>& u) override {
     const double u_len = length(u);
-    if (u_len == 0) return {1, 0};
-    return {u[0] / u_len, u[1] / u_len};
+    if (u_len == 0) return {1, 0, 0};
+    return {u[0] / u_len, u[1] / u_len, u[2] / u_len};
   }
 
   double call(Fn fn, std::span<const double> args) override {
@@ -79,9 +84,36 @@ class Doubles final : public Arithmetic<double> {
   const Values& values_;
 };
 
-Pair<double> turned(double theta, Pair<double> u) {
+Triple<double> turned(double theta, Triple<double> u) {
   const double c = std::cos(theta), s = std::sin(theta);
-  return {c * u[0] - s * u[1], s * u[0] + c * u[1]};
+  return {c * u[0] - s * u[1], s * u[0] + c * u[1], u[2]};
+}
+
+Triple<double> turned(const EulerParameters<double>& e, const Triple<double>& u) {
+  const auto axes = axes_of(e);
+  Triple<double> sum{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += axes[k][i] * u[k];
+  }
+  return sum;
+}
+
+EulerParameters<double> product(const EulerParameters<double>& p, const EulerParameters<double>& q) {
+  return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+          p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+          p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
+          p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1]};
+}
+
+EulerParameters<double> random_orientation(Random& random) {
+  EulerParameters<double> e;
+  double square = 0;
+  do {  // uniform on the sphere, by rejection
+    square = 0;
+    for (double& component : e) component = random.between(-1, 1), square += component * component;
+  } while (square > 1 || square < 0.01);
+  for (double& component : e) component /= std::sqrt(square);
+  return e;
 }
 
 bool is_scalar_of_sample(Role role) {
@@ -91,7 +123,7 @@ bool is_scalar_of_sample(Role role) {
 
 bool is_body_axis(const Joint& joint, const Node& leaf) {
   return leaf.role == Role::body_vector &&
-         leaf.symbol == "axis_" + joint.bodies[static_cast<std::size_t>(leaf.body)];
+         leaf.symbol.starts_with("axis_" + joint.bodies[static_cast<std::size_t>(leaf.body)]);
 }
 
 }  // namespace
@@ -106,7 +138,7 @@ struct Numbers::Parts {
 Numbers::Numbers(Values values) : parts_(std::make_unique<Parts>(std::move(values))) {}
 Numbers::~Numbers() = default;
 double Numbers::scalar(Expr e) { return parts_->evaluation.scalar(e); }
-Pair<double> Numbers::vector(Expr e) { return parts_->evaluation.vector(e); }
+Triple<double> Numbers::vector(Expr e) { return parts_->evaluation.vector(e); }
 
 // splitmix64 (Steele, Lea, Flood, 2014).
 std::uint64_t Random::bits() {
@@ -129,48 +161,127 @@ std::vector<Expr> leaves_of(std::span<const Expr> expressions) {
   return leaves;
 }
 
+void Sample::Body::move(int dimension, std::size_t k, double amount) {
+  if (k < static_cast<std::size_t>(dimension)) {
+    x[k] += amount;
+  } else if (dimension == 2) {
+    theta += amount;
+  } else {
+    EulerParameters<double> turn{std::cos(amount / 2), 0, 0, 0};
+    turn[k - 2] = std::sin(amount / 2);
+    e = product(turn, e);
+  }
+}
+
+namespace {
+
+Sample::Body random_body(int dimension, Random& random) {
+  const auto somewhere = [&](double range) { return random.between(-range, range); };
+  Sample::Body body;
+  if (dimension == 2) {
+    body.x = {somewhere(3), somewhere(3)};
+    body.theta = somewhere(3.14);
+    body.v = {somewhere(2), somewhere(2)};
+    body.w[2] = somewhere(2);
+    return body;
+  }
+  for (double& component : body.x) component = somewhere(3);
+  body.e = random_orientation(random);
+  for (Triple<double>* rate : {&body.v, &body.w}) {
+    for (double& component : *rate) component = somewhere(2);
+  }
+  return body;
+}
+
+// Components of an inverse inertia: some positive definite tensor, the same however many of them occur.
+double inverse_inertia_component(const std::string& name, double first) {
+  if (name.ends_with("_xx") || name.ends_with("_yy") || name.ends_with("_zz")) return 1 + first;
+  return 0.2 * (first - 1);
+}
+
+Triple<double> random_direction(int dimension, Random& random, double second) {
+  if (dimension == 2) return turned(1.5 * second, {1, 0});
+  return axes_of(random_orientation(random))[0];
+}
+
+// What leaves other than poses and velocities are, each from its own draw.
+void draw_leaf(const Joint& joint, Expr leaf, Random& random, Sample& sample) {
+  const double first = random.between(0.5, 2), second = random.between(-2, 2);
+  const Pool::Axis axis = joint.pool->axis_of(leaf);
+  const bool tensor = joint.dimension == 3 && leaf->role == Role::inverse_inertia;
+  if (!leaf->vector && is_scalar_of_sample(leaf->role)) {
+    sample.scalars[leaf->symbol] = tensor ? inverse_inertia_component(leaf->symbol, first) : first;
+    if (tensor && is_tensor(leaf)) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = i; j < 3; ++j) {
+          const std::string name = tensor_component(leaf, i, j)->symbol;
+          sample.scalars.emplace(name, inverse_inertia_component(name, random.between(0.5, 2)));
+        }
+      }
+    }
+  }
+  if (!leaf->vector || leaf->role == Role::position || leaf->role == Role::velocity ||
+      leaf->role == Role::spin) {
+    return;
+  }
+  if (is_world_axis(leaf) || is_body_axis(joint, *leaf)) {
+    sample.local[leaf->symbol] = unit_axis(joint.dimension == 2 ? 'x' : leaf->symbol.back());
+  } else if (axis.triad) {
+    sample.triads.emplace(axis.triad, random_orientation(random));
+  } else if (leaf->unit_length) {
+    sample.local[leaf->symbol] = random_direction(joint.dimension, random, second);
+  } else {
+    sample.local[leaf->symbol] = {first, second, joint.dimension == 2 ? 0 : random.between(-2, 2)};
+  }
+}
+
+}  // namespace
+
 Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std::uint64_t seed) {
   Random random(seed);
   Sample sample;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-    const auto somewhere = [&](double range) { return random.between(-range, range); };
-    sample.bodies.push_back(
-        {somewhere(3), somewhere(3), somewhere(3.14), somewhere(2), somewhere(2), somewhere(2)});
+    sample.bodies.push_back(random_body(joint.dimension, random));
   }
   sample.leaves = leaves_of(expressions);
-  for (const Expr leaf : sample.leaves) {
-    const double first = random.between(0.5, 2), second = random.between(-2, 2);
-    if (!leaf->vector && is_scalar_of_sample(leaf->role)) sample.scalars[leaf->symbol] = first;
-    if (!leaf->vector || leaf->role == Role::position || leaf->role == Role::velocity) continue;
-    if (leaf == world_x(*joint.pool) || is_body_axis(joint, *leaf))
-      sample.local[leaf->symbol] = {1, 0};
-    else if (leaf->unit_length)
-      sample.local[leaf->symbol] = turned(1.5 * second, {1, 0});
-    else
-      sample.local[leaf->symbol] = {first, second};
-  }
+  for (const Expr leaf : sample.leaves) draw_leaf(joint, leaf, random, sample);
   return sample;
 }
 
 Values world_values(const Joint& joint, const Sample& sample) {
   Values values = sample.scalars;
-  const auto put = [&](const std::string& name, Pair<double> u) {
-    values[name + "_x"] = u[0];
-    values[name + "_y"] = u[1];
+  const auto put = [&](const std::string& name, const Triple<double>& u) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(joint.dimension); ++k) {
+      values[name + "_" + "xyz"[k]] = u[k];
+    }
   };
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const Sample::Body& body = sample.bodies[b];
-    put("x_" + joint.bodies[b], {body.x, body.y});
-    put("v_" + joint.bodies[b], {body.v_x, body.v_y});
-    values["theta_" + joint.bodies[b]] = body.theta;
-    values["w_" + joint.bodies[b]] = body.w;
+    put("x_" + joint.bodies[b], body.x);
+    put("v_" + joint.bodies[b], body.v);
+    if (joint.dimension == 3) {
+      put("w_" + joint.bodies[b], body.w);
+    } else {
+      values["theta_" + joint.bodies[b]] = body.theta;
+      values["w_" + joint.bodies[b]] = body.w[2];
+    }
   }
   for (const Expr leaf : sample.leaves) {
-    const auto found = sample.local.find(leaf->symbol);
-    if (found == sample.local.end()) continue;
-    const bool turns = leaf->role == Role::body_vector && leaf->body >= 0;
-    const double theta = turns ? sample.bodies[static_cast<std::size_t>(leaf->body)].theta : 0;
-    put(leaf->symbol, turned(theta, found->second));
+    Triple<double> local{};
+    const Pool::Axis axis = joint.pool->axis_of(leaf);
+    const auto triad = sample.triads.find(axis.triad);
+    if (const auto found = sample.local.find(leaf->symbol); found != sample.local.end()) {
+      local = found->second;
+    } else if (triad != sample.triads.end()) {
+      local = axes_of(triad->second)[static_cast<std::size_t>(axis.index)];
+    } else {
+      continue;
+    }
+    if (leaf->role == Role::body_vector && leaf->body >= 0) {
+      const Sample::Body& body = sample.bodies[static_cast<std::size_t>(leaf->body)];
+      local = joint.dimension == 2 ? turned(body.theta, local) : turned(body.e, local);
+    }
+    put(leaf->symbol, local);
   }
   return values;
 }

@@ -10,12 +10,39 @@
 #include <string>
 #include <vector>
 
+#include "derive/canonical.hpp"
 #include "derive/joint.hpp"
+#include "derive/matrix.hpp"
 
 namespace cdot::derive {
 
+// Components along the world's axes; in the plane the third is zero.
 template <class T>
-using Pair = std::array<T, 2>;
+using Triple = std::array<T, 3>;
+
+template <class T>
+T inner_product(const Triple<T>& u, const Triple<T>& v) {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+template <class T>
+Triple<T> cross_product(const Triple<T>& u, const Triple<T>& v) {
+  return {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
+}
+
+// Euler parameters (e0, e1, e2, e3) of an orientation, e . e = 1.
+template <class T>
+using EulerParameters = std::array<T, 4>;
+
+// The axes of what is turned by e, as columns of the rotation matrix
+// A(e) = (e0^2 - e'e') E + 2 e' e'^T + 2 e0 ~e', e' = (e1, e2, e3); exact where e . e = 1.
+template <class T>
+std::array<Triple<T>, 3> axes_of(const EulerParameters<T>& e) {
+  const T e00 = e[0] * e[0], e11 = e[1] * e[1], e22 = e[2] * e[2], e33 = e[3] * e[3];
+  const auto twice = [](const T& x) -> T { return x + x; };
+  return {{{e00 + e11 - e22 - e33, twice(e[1] * e[2] + e[0] * e[3]), twice(e[1] * e[3] - e[0] * e[2])},
+           {twice(e[1] * e[2] - e[0] * e[3]), e00 - e11 + e22 - e33, twice(e[2] * e[3] + e[0] * e[1])},
+           {twice(e[1] * e[3] + e[0] * e[2]), twice(e[2] * e[3] - e[0] * e[1]), e00 - e11 - e22 + e33}}};
+}
 
 // What a walk has to know about its numbers.
 template <class T>
@@ -24,20 +51,25 @@ class Arithmetic {
   virtual ~Arithmetic() = default;
   virtual T number(Rational value) = 0;
   virtual T scalar_leaf(const Node& symbol) = 0;
-  virtual Pair<T> vector_leaf(const Node& symbol) = 0;
+  virtual Triple<T> vector_leaf(const Node& symbol) = 0;
   virtual T inverse(const T& x) = 0;
   virtual T call(Fn fn, std::span<const T> args) = 0;
-  virtual Pair<T> direction(const Pair<T>& u) {  // of a vector
-    const T inv = inverse(length(u));
-    return {u[0] * inv, u[1] * inv};
+  // The component i, j of a symmetric tensor leaf.
+  virtual T tensor_leaf(const Node& tensor, std::size_t i, std::size_t j) {
+    const Expr component = tensor_component(Expr(&tensor), i, j);
+    return scalar_leaf(*component);
   }
-  T length(const Pair<T>& u) {
-    const T square = u[0] * u[0] + u[1] * u[1];
+  virtual Triple<T> direction(const Triple<T>& u) {  // of a vector
+    const T inv = inverse(length(u));
+    return {u[0] * inv, u[1] * inv, u[2] * inv};
+  }
+  T length(const Triple<T>& u) {
+    const T square = inner_product(u, u);
     return call(Fn::sqrt, std::span<const T>(&square, 1));
   }
 };
 
-// Evaluates expressions over the plane, each node once.
+// Evaluates expressions, each node once.
 template <class T>
 class Evaluation {
  public:
@@ -47,7 +79,7 @@ class Evaluation {
     walk(e);
     return scalars_.at(&*e);
   }
-  Pair<T> vector(Expr e) {
+  Triple<T> vector(Expr e) {
     walk(e);
     return vectors_.at(&*e);
   }
@@ -56,6 +88,7 @@ class Evaluation {
   void walk(Expr root) {
     if (scalars_.contains(&*root) || vectors_.contains(&*root)) return;
     for (const Expr e : topological(std::span(&root, 1))) {
+      if (e->kind == Kind::symbol && is_tensor(e)) continue;
       if (e->vector) {
         if (!vectors_.contains(&*e)) vectors_.emplace(&*e, vector_rule(e));
       } else if (!scalars_.contains(&*e)) {
@@ -65,7 +98,7 @@ class Evaluation {
   }
 
   const T& s(Expr e, std::size_t i) const { return scalars_.at(&*e->args[i]); }
-  const Pair<T>& v(Expr e, std::size_t i) const { return vectors_.at(&*e->args[i]); }
+  const Triple<T>& v(Expr e, std::size_t i) const { return vectors_.at(&*e->args[i]); }
 
   T scalar_rule(Expr e) {
     switch (e->kind) {
@@ -83,9 +116,11 @@ class Evaluation {
       case Kind::product:
         return product_rule(e);
       case Kind::dot:
-        return v(e, 0)[0] * v(e, 1)[0] + v(e, 0)[1] * v(e, 1)[1];
+        return inner_product(v(e, 0), v(e, 1));
       case Kind::cross:
         return v(e, 0)[0] * v(e, 1)[1] - v(e, 0)[1] * v(e, 1)[0];
+      case Kind::twist:
+        return scalar(twist_as_atan2(e));
       case Kind::norm:
         return arithmetic_.length(v(e, 0));
       default:
@@ -106,20 +141,32 @@ class Evaluation {
     return total;
   }
 
-  Pair<T> vector_rule(Expr e) {
+  Triple<T> vector_rule(Expr e) {
     switch (e->kind) {
       case Kind::sum: {
-        Pair<T> total{arithmetic_.number(0), arithmetic_.number(0)};
+        Triple<T> total{arithmetic_.number(0), arithmetic_.number(0), arithmetic_.number(0)};
         for (std::size_t i = 0; i < e->args.size(); ++i) {
           const T coef = arithmetic_.number(e->coefs[i]);
-          total = {total[0] + coef * v(e, i)[0], total[1] + coef * v(e, i)[1]};
+          for (std::size_t k = 0; k < 3; ++k) total[k] = total[k] + coef * v(e, i)[k];
         }
         return total;
       }
       case Kind::scale:
-        return {s(e, 0) * v(e, 1)[0], s(e, 0) * v(e, 1)[1]};
+        return {s(e, 0) * v(e, 1)[0], s(e, 0) * v(e, 1)[1], s(e, 0) * v(e, 1)[2]};
       case Kind::perp:
-        return {arithmetic_.number(-1) * v(e, 0)[1], v(e, 0)[0]};
+        return {arithmetic_.number(-1) * v(e, 0)[1], v(e, 0)[0], arithmetic_.number(0)};
+      case Kind::cross:
+        return cross_product(v(e, 0), v(e, 1));
+      case Kind::tensor: {
+        Triple<T> product;
+        for (std::size_t i = 0; i < 3; ++i) {
+          const Triple<T> row{arithmetic_.tensor_leaf(*e->args[0], i, 0),
+                              arithmetic_.tensor_leaf(*e->args[0], i, 1),
+                              arithmetic_.tensor_leaf(*e->args[0], i, 2)};
+          product[i] = inner_product(row, v(e, 1));
+        }
+        return product;
+      }
       case Kind::unit:
         return arithmetic_.direction(v(e, 0));
       default:
@@ -129,20 +176,20 @@ class Evaluation {
 
   Arithmetic<T>& arithmetic_;
   std::map<const Node*, T> scalars_;
-  std::map<const Node*, Pair<T>> vectors_;
+  std::map<const Node*, Triple<T>> vectors_;
 };
 
-// Values of leaves by name; a vector leaf `t` is read as `t_x`, `t_y`. `pi` and `e_x` are known.
+// Values of leaves by name; a vector leaf `t` is read as `t_x`, `t_y`, `t_z`. `pi` and the world's axes are known.
 using Values = std::map<std::string, double>;
 
-// In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is (1, 0).
+// In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is the x axis.
 // Throws std::out_of_range with the name of a leaf that has no value.
 class Numbers {
  public:
   explicit Numbers(Values values);
   ~Numbers();
   double scalar(Expr e);
-  Pair<double> vector(Expr e);
+  Triple<double> vector(Expr e);
 
  private:
   struct Parts;
@@ -164,19 +211,25 @@ class Random {
 // Bodies somewhere, and a value for everything else that some expressions contain.
 struct Sample {
   struct Body {
-    double x = 0, y = 0, theta = 0, v_x = 0, v_y = 0, w = 0;
+    Triple<double> x{}, v{}, w{};  // in the plane w turns about the third axis
+    double theta = 0;              // in the plane
+    EulerParameters<double> e{1, 0, 0, 0};  // in space
+    // Along column k of J: x, y, angle in the plane; x, y, z and a turn about a world axis in space.
+    void move(int dimension, std::size_t k, double amount);
+    double velocity(int dimension, std::size_t k) const { return k < std::size_t(dimension) ? v[k] : w[dimension == 2 ? 2 : k - 3]; }
   };
   std::vector<Body> bodies;
   Values scalars;  // parameters, time, masses, multipliers
-  std::map<std::string, Pair<double>>
-      local;  // of vector leaves: components in the body's (or the world's) frame
+  // Of vector leaves: components in the body's (or the world's) frame; of triads: their orientation there.
+  std::map<std::string, Triple<double>> local;
+  std::map<const Triad*, EulerParameters<double>> triads;
   std::vector<Expr> leaves;
 };
 
 // Every leaf of the expressions, in the order of their names.
 std::vector<Expr> leaves_of(std::span<const Expr> expressions);
 
-// Positions within a few metres, angles all around, scalars in [0.5, 2], unit vectors of length 1.
+// Positions within a few metres, orientations all around, scalars in [0.5, 2], unit vectors of length 1.
 Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std::uint64_t seed);
 
 // The leaves' values in world axes.

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 
+#include "derive/canonical.hpp"
 #include "derive/source.hpp"
 #include "derive/symbols.hpp"
 
@@ -14,7 +15,10 @@ namespace {
 using Arguments = std::span<const Value>;
 
 Value build_dot(Pool&, Arguments a) { return scalar(dot(a[0].e, a[1].e)); }
-Value build_cross(Pool&, Arguments a) { return scalar(cross(a[0].e, a[1].e)); }
+Value build_cross(Pool& pool, Arguments a) {
+  const Expr product = cross(a[0].e, a[1].e);
+  return pool.dimension() == 2 ? scalar(product) : vector(product);
+}
 Value build_turn(Pool&, Arguments a) { return vector(cross(a[0].e, a[1].e)); }
 Value build_perp(Pool&, Arguments a) { return vector(perp(a[0].e)); }
 Value build_norm(Pool&, Arguments a) { return scalar(norm(a[0].e)); }
@@ -22,9 +26,9 @@ Value build_unit(Pool&, Arguments a) { return vector(unit(a[0].e)); }
 
 Value build_local(Pool& pool, Arguments a) {
   if (a[1].type == Type::body && a[1].body < 0) return a[0];
-  const Expr axis = a[1].type == Type::frame ? a[1].e : body_axis(pool, a[1].body);
-  Value v = vector(components_along(a[0].e, axis));
-  v.axis = axis;
+  Value v = vector({});
+  v.along = a[1].type == Type::frame ? a[1].axes : body_axes(pool, a[1].body);
+  v.e = components_along(a[0].e, v.along);
   return v;
 }
 
@@ -32,9 +36,36 @@ Value build_angle_of(Pool& pool, Arguments a) {
   return scalar(a[0].body < 0 ? pool.number(0) : body_angle(pool, a[0].body));
 }
 
-Value build_angle_between(Pool&, Arguments a) {
-  const std::array<Expr, 2> sides = {cross(a[0].e, a[1].e), dot(a[0].e, a[1].e)};
+Value angle_of(Expr sine, Expr cosine) {
+  const std::array<Expr, 2> sides = {sine, cosine};
   return scalar(call(Fn::atan2, sides));
+}
+
+Value build_angle_between(Pool& pool, Arguments a) {
+  const Expr product = cross(a[0].e, a[1].e);
+  return angle_of(pool.dimension() == 2 ? product : norm(product), dot(a[0].e, a[1].e));
+}
+
+// Of the parts of u and v across n.
+Value build_angle_about(Pool&, Arguments a) {
+  const Expr u = a[0].e, v = a[1].e, n = a[2].e;
+  return angle_of(dot(n, cross(u, v)), dot(u, v) - dot(n, u) * dot(n, v));
+}
+
+Triad triad_of(const Value& frame) { return {frame.axes[0], frame.axes[1], frame.axes[2]}; }
+
+Value build_twist(Pool&, Arguments a) { return scalar(twist(triad_of(a[0]), triad_of(a[1]))); }
+
+Value build_swing(Pool&, Arguments a) {
+  const Expr u = a[0].axes[0], v = a[1].axes[0];
+  return angle_of(norm(cross(u, v)), dot(u, v));
+}
+
+// sin(theta) n of the turn by theta about n that takes f to g: half the sum of f_i x g_i.
+Value build_relative_orientation(Pool& pool, Arguments a) {
+  Expr sum = zero_vector(pool);
+  for (std::size_t k = 0; k < 3; ++k) sum = sum + cross(a[0].axes[k], a[1].axes[k]);
+  return vector(Rational(1, 2) * sum);
 }
 
 Value build_centre(Pool& pool, Arguments a) {
@@ -56,7 +87,10 @@ Value build_velocity(Pool& pool, Arguments a) {
 }
 
 Value build_spin(Pool& pool, Arguments a) {
-  return scalar(a[0].body < 0 ? pool.number(0) : body_spin(pool, a[0].body));
+  const bool planar = pool.dimension() == 2;
+  if (a[0].body < 0) return planar ? scalar(pool.number(0)) : vector(zero_vector(pool));
+  const Expr w = body_spin(pool, a[0].body);
+  return planar ? scalar(w) : vector(w);
 }
 
 template <Fn fn>
@@ -67,20 +101,45 @@ Value build_function(Pool&, Arguments a) {
 }
 
 Value build_mass(Pool& pool, Arguments a) { return scalar(pow(inverse_mass(pool, a[0].body), -1)); }
-Value build_inertia(Pool& pool, Arguments a) {
-  return scalar(pow(inverse_inertia(pool, a[0].body), -1));
-}
-
-Value build_rotation(Pool& pool, Arguments a) {
-  const Expr axis = body_axis(pool, a[0].body);
-  const Expr c = component(axis, 0), s = component(axis, 1);
+Value matrix_of(Matrix m) {
   Value v;
   v.type = Type::matrix;
-  v.matrix = std::make_shared<Matrix>(Matrix{2, 2, {c, -s, s, c}});
+  v.matrix = std::make_shared<Matrix>(std::move(m));
   return v;
 }
 
+// In space the leaves are those of the inverse; I is its inverse.
+Value build_inertia(Pool& pool, Arguments a) {
+  const Expr inverse_I = inverse_inertia(pool, a[0].body);
+  if (pool.dimension() == 2) return scalar(pow(inverse_I, -1));
+  Value v = matrix_of(tensor_matrix(inverse_I));
+  v.inverted = true;
+  return v;
+}
+
+Value build_skew(Pool& pool, Arguments a) {
+  if (pool.dimension() == 2) return vector(perp(a[0].e));
+  const Expr x = component(a[0].e, 0), y = component(a[0].e, 1), z = component(a[0].e, 2), o = pool.number(0);
+  return matrix_of({3, 3, {o, -z, y, z, o, -x, -y, x, o}});
+}
+
+Value build_inverse(Pool&, Arguments a) {
+  return matrix_of(a[0].inverted ? *a[0].matrix : inverse(*a[0].matrix));
+}
+
+// Columns are the body's axes.
+Value build_rotation(Pool& pool, Arguments a) {
+  const std::vector<Expr> axes = body_axes(pool, a[0].body);
+  const int n = pool.dimension();
+  Matrix R{n, n, {}};
+  for (int i = 0; i < n; ++i) {
+    for (const Expr axis : axes) R.entries.push_back(component(axis, static_cast<std::size_t>(i)));
+  }
+  return matrix_of(std::move(R));
+}
+
 using enum Operator::Where;
+using Space = Operator::Space;
 using Gives = UnitGiven;
 constexpr UnitRule products = {UnitNeed::any, Gives::product}, kept = {UnitNeed::any, Gives::same},
                    to_number = {UnitNeed::any, Gives::number},
@@ -90,16 +149,35 @@ constexpr UnitRule products = {UnitNeed::any, Gives::product}, kept = {UnitNeed:
 
 const std::vector<Operator> table = {
     {"dot", "dot(u, v)", {vector_, vector_}, products, build_dot, "u_x v_x + u_y v_y"},
-    {"cross", "cross(u, v)", {vector_, vector_}, products, build_cross, "u_x v_y - u_y v_x"},
-    {"cross", "cross(w, v)", {number_, vector_}, products, build_turn, "(-w v_y, w v_x)"},
-    {"perp", "perp(u)", {vector_}, kept, build_perp, "(-u_y, u_x), a quarter turn to the left"},
+    {"cross",
+     "cross(u, v)",
+     {vector_, vector_},
+     products,
+     build_cross,
+     "u x v, a vector; in the plane the number u_x v_y - u_y v_x"},
+    {"cross",
+     "cross(w, v)",
+     {number_, vector_},
+     products,
+     build_turn,
+     "(-w v_y, w v_x)",
+     anywhere,
+     Space::planar},
+    {"perp",
+     "perp(u)",
+     {vector_},
+     kept,
+     build_perp,
+     "(-u_y, u_x), a quarter turn to the left",
+     anywhere,
+     Space::planar},
     {"norm", "norm(u)", {vector_}, kept, build_norm, "the length of a vector"},
     {"unit",
      "unit(u)",
      {vector_},
      to_number,
      build_unit,
-     "the direction of a vector; (1, 0) for the zero vector"},
+     "the direction of a vector; the x axis for the zero vector"},
     {"local",
      "local(u, f)",
      {vector_, frame_ | body_ | world_},
@@ -111,13 +189,47 @@ const std::vector<Operator> table = {
      {body_ | world_},
      to_angle,
      build_angle_of,
-     "the angle of a body, unwrapped"},
+     "the angle of a body, unwrapped",
+     anywhere,
+     Space::planar},
     {"angle",
      "angle(u, v)",
      {vector_, vector_},
      to_angle,
      build_angle_between,
-     "the angle from u to v, in (-pi, pi]"},
+     "the angle from u to v, in (-pi, pi]; in space the angle between them, in [0, pi]"},
+    {"angle",
+     "angle(u, v, n)",
+     {vector_, vector_, vector_},
+     to_angle,
+     build_angle_about,
+     "the angle from u to v about the unit axis n, in (-pi, pi]",
+     anywhere,
+     Space::spatial},
+    {"twist",
+     "twist(f, g)",
+     {frame_, frame_},
+     to_angle,
+     build_twist,
+     "the angle by which g is twisted against f about their x axes, in (-pi, pi]",
+     anywhere,
+     Space::spatial},
+    {"swing",
+     "swing(f, g)",
+     {frame_, frame_},
+     to_angle,
+     build_swing,
+     "the angle between the x axes of f and g, in [0, pi]",
+     anywhere,
+     Space::spatial},
+    {"rotation",
+     "rotation(f, g)",
+     {frame_, frame_},
+     to_angle,
+     build_relative_orientation,
+     "the turn from f to g by theta about n, as the vector sin(theta) n",
+     anywhere,
+     Space::spatial},
     {"x",
      "x(a)",
      {body_},
@@ -170,8 +282,9 @@ const std::vector<Operator> table = {
      build_inertia,
      "the moment of inertia of a body",
      hand},
-    {"skew", "skew(r)", {vector_}, kept, build_perp, "the matrix with skew(r) w = w x r", hand},
-    {"S", "S(r)", {vector_}, kept, build_perp, "the same as skew(r)", hand},
+    {"skew", "skew(r)", {vector_}, kept, build_skew, "the matrix with skew(r) w = w x r", hand},
+    {"S", "S(r)", {vector_}, kept, build_skew, "the same as skew(r)", hand},
+    {"inverse", "inverse(M)", {matrix_}, to_number, build_inverse, "the inverse of a square matrix", hand},
     {"R", "R(a)", {body_}, to_number, build_rotation, "the rotation matrix of a body", hand},
 };
 
@@ -233,6 +346,9 @@ std::string operators_help() {
         std::string(16 - std::min<std::size_t>(14, o.signature.size()), ' ') + std::string(o.help);
     if (o.where == velocity) out += "  (in velocity rows and .hand files)";
     if (o.where == hand) out += "  (in .hand files)";
+    if (o.space != Operator::Space::both) {
+      out += o.space == Operator::Space::planar ? "  (planar)" : "  (spatial)";
+    }
     out += "\n";
   }
   return out;

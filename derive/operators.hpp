@@ -38,11 +38,16 @@ struct Operator {
   Value (*build)(Pool& pool, std::span<const Value> arguments);  // the unit is set by the rule
   std::string_view help;
   enum class Where { anywhere, velocity, hand } where = Where::anywhere;
+  enum class Space { both, planar, spatial } space = Space::both;
+
+  bool is_of(int dimension) const {
+    return space == Space::both || (space == Space::planar) == (dimension == 2);
+  }
 };
 
 const std::vector<Operator>& operators();
 bool is_operator(std::string_view name);
-std::vector<const Operator*> operators_named(std::string_view name);
+std::vector<const Operator*> operators_named(std::string_view name);  // of either space
 // What somebody who wrote `word(...)` may have meant; empty if there is no telling.
 std::string suggested_operator(std::string_view word);
 std::string operators_help();

@@ -59,10 +59,8 @@ class JointParser {
     if (p_.at_word("let") && declares) return let();
     if (p_.at_word("coordinate") && declares) return coordinate();
     if (p_.at_word("keep"))
-      return p_.fail(p_.peek().where,
-                     "`keep` chooses among redundant rows of spatial joints, "
-                     "which are not supported yet",
-                     "in the plane write the independent rows themselves");
+      return p_.fail(p_.peek().where, "`keep` stands at the end of the row that it is about",
+                     "write cross(f.x, u) = 0 keep 2, in one line");
     for (const char* kind :
          {"point", "vector", "unit", "frame", "scalar", "let", "coordinate", "include", "joint"})
       if (p_.at_word(kind) && !p_.at_symbol("(", 1) && !p_.at_symbol(":", 1)) {
@@ -85,13 +83,11 @@ class JointParser {
     if (joint_.name.text.empty()) joint_.name = name;
     if (p_.failed()) return;
     if (!p_.at_word("planar") && !p_.at_word("spatial"))
-      return p_.fail(p_.peek().where, "`planar` is missing: " + p_.found(),
+      return p_.fail(p_.peek().where, "`planar` or `spatial` is missing: " + p_.found(),
                      "write joint " + name.text + " planar");
     const Token dimension = p_.take();
     joint_.dimension = dimension.text;
     header_end_ = dimension.where.end;
-    if (dimension.text == "spatial")
-      p_.fail(dimension.where, "spatial joints are not supported yet", "write a planar joint");
   }
 
   void once(std::string& target, std::string_view what, std::string_view keyword) {
@@ -190,7 +186,7 @@ class JointParser {
     finish(s);
   }
 
-  // [ NAME ":" ] [ "velocity" ] expression ( "=" | "<=" | ">=" ) expression
+  // [ NAME ":" ] [ "velocity" ] expression ( "=" | "<=" | ">=" ) expression [ "keep" NUMBER ]
   void row() {
     StatementAst s = begin(StatementAst::Kind::row);
     if (p_.at_name() && p_.at_symbol(":", 1)) {
@@ -206,10 +202,23 @@ class JointParser {
     s.left = p_.expression();
     relation(s);
     s.right = p_.expression();
+    keep(s);
     if (!p_.failed() && (p_.at_symbol("=") || p_.at_symbol("<=") || p_.at_symbol(">=")))
       p_.fail(p_.peek().where, "a row has one relation, here is a second", "write two rows",
               {s.relation_where});
     finish(s);
+  }
+
+  // [ "keep" NUMBER ]
+  void keep(StatementAst& s) {
+    if (p_.failed() || !p_.at_word("keep")) return;
+    p_.take();
+    const Token t = p_.peek();
+    if (t.kind != TokenKind::number)
+      return p_.fail(t.where, "how many rows? a number is missing after `keep`: " + p_.found(),
+                     "write keep 2");
+    p_.take();
+    s.keep = {std::string(t.text), t.where};
   }
 
   void relation(StatementAst& s) {

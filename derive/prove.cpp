@@ -142,23 +142,22 @@ class Prover {
       for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
         const auto v = names_.velocities(static_cast<int>(b));
         const auto J = entries(names_, row.J[b]);
-        for (std::size_t k = 0; k < 3; ++k) Jv += J[k] * v[k];
+        for (std::size_t k = 0; k < J.size(); ++k) Jv += J[k] * v[k];
       }
       require_zero(names_, Jv - Cdot_[i], row, ": J v + dC/dt is not Cdot");
     }
   }
 
-  // Columns of J against dC/dx, dC/dy, dC/dtheta, or at velocity level against dCdot/dv.
+  // Columns of J against the slopes of C as each body moves and turns, or at velocity level against dCdot/dv.
   void raw() {
     for (const ScalarRow& row : block_.rows) {
       const bool position = row.kind != RowKind::velocity;
       const ex source = raw_.of(position ? row.C : row.Cdot);
       for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
         const auto J = entries(raw_, row.J[b]);
-        const auto q = raw_.coordinates(static_cast<int>(b));
         const auto v = raw_.velocities(static_cast<int>(b));
-        for (std::size_t k = 0; k < 3; ++k) {
-          const ex expected = !movable(b) ? ex(0) : derivative(source, position ? q[k] : v[k]);
+        for (std::size_t k = 0; k < J.size(); ++k) {
+          const ex expected = position ? raw_.slope(source, static_cast<int>(b), k) : derivative(source, v[k]);
           require_zero(raw_, J[k] - expected, row,
                        ", column " + column(b, k) + ": J is not the derivative of C");
         }
@@ -184,12 +183,22 @@ class Prover {
     for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
       if (!movable(b)) continue;
       const BodySymbols body = body_symbols(joint_, static_cast<int>(b));
-      const ex inv_m = names_.of(body.inv_m), inv_I = names_.of(body.inv_I);
+      const ex inv_m = names_.of(body.inv_m);
       const auto Ji = entries(names_, block_.rows[i].J[b]);
       const auto Jj = entries(names_, block_.rows[j].J[b]);
-      total += Ji[0] * inv_m * Jj[0] + Ji[1] * inv_m * Jj[1] + Ji[2] * inv_I * Jj[2];
+      const std::size_t linear = static_cast<std::size_t>(joint_.dimension);
+      for (std::size_t k = 0; k < linear; ++k) total += Ji[k] * inv_m * Jj[k];
+      for (std::size_t k = linear; k < Ji.size(); ++k) {
+        for (std::size_t l = linear; l < Jj.size(); ++l) {
+          total += Ji[k] * inverse_inertia_entry(body.inv_I, k - linear, l - linear) * Jj[l];
+        }
+      }
     }
     return total;
+  }
+
+  ex inverse_inertia_entry(Expr inv_I, std::size_t k, std::size_t l) {
+    return names_.of(joint_.dimension == 2 ? inv_I : tensor_component(inv_I, k, l));
   }
 
   void gamma() {
@@ -202,19 +211,15 @@ class Prover {
 
   // d(J^T lambda)/dq, J^T lambda being the gradient of lambda . C where there is a C.
   void stiffness() {
-    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const ex force = generalised_force(b, k);
-        for (std::size_t c = 0; c < joint_.bodies.size(); ++c) {
-          const auto q = raw_.coordinates(static_cast<int>(c));
-          for (std::size_t l = 0; l < 3; ++l) {
-            const ex H = raw_.of(block_.stiffness[3 * b + k][3 * c + l]);
-            const ex expected = movable(b) && movable(c) ? derivative(force, q[l]) : ex(0);
-            require_zero(raw_, H - expected, block_.rows.front(),
-                         ", entry (" + column(b, k) + ", " + column(c, l) +
-                             "): the geometric stiffness is not d(J^T lambda)/dq");
-          }
-        }
+    const std::size_t width = columns_per_body(joint_.dimension);
+    for (std::size_t row = 0; row < block_.stiffness.size(); ++row) {
+      const ex force = generalised_force(row / width, row % width);
+      for (std::size_t c = 0; c < block_.stiffness.size(); ++c) {
+        const ex H = raw_.of(block_.stiffness[row][c]);
+        const ex expected = movable(row / width) ? raw_.slope(force, static_cast<int>(c / width), c % width) : ex(0);
+        require_zero(raw_, H - expected, block_.rows.front(),
+                     ", entry (" + column(row / width, row % width) + ", " + column(c / width, c % width) +
+                         "): the geometric stiffness is not d(J^T lambda)/dq");
       }
     }
   }
@@ -224,9 +229,8 @@ class Prover {
     if (!movable(b)) return force;
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const ScalarRow& row = block_.rows[i];
-      const ex slope = row.kind == RowKind::velocity
-                           ? entries(raw_, row.J[b])[k]
-                           : derivative(raw_.of(row.C), raw_.coordinates(static_cast<int>(b))[k]);
+      const ex slope = row.kind == RowKind::velocity ? entries(raw_, row.J[b])[k]
+                                                     : raw_.slope(raw_.of(row.C), static_cast<int>(b), k);
       force += raw_.of(block_.lambda[i]) * slope;
     }
     return force;
@@ -264,14 +268,17 @@ class Prover {
     return all;
   }
 
-  static std::array<ex, 3> entries(Algebra& algebra, const JacobianEntry& entry) {
-    const Pair<ex> v = algebra.of_vector(entry.v);
-    return {v[0], v[1], algebra.of(entry.w)};
+  static std::vector<ex> entries(Algebra& algebra, const JacobianEntry& entry) {
+    std::vector<ex> columns;
+    for (const Expr e : columns_of(entry)) columns.push_back(algebra.of(e));
+    return columns;
   }
 
   std::string column(std::size_t body, std::size_t k) const {
+    const std::size_t linear = static_cast<std::size_t>(joint_.dimension);
     const std::string& name = joint_.bodies[body];
-    return k == 2 ? "w_" + name : "v_" + name + (k == 0 ? ".x" : ".y");
+    if (k < linear) return "v_" + name + "." + "xyz"[k];
+    return "w_" + name + (linear == 2 ? "" : std::string(".") + "xyz"[k - linear]);
   }
 
   const Joint& joint_;

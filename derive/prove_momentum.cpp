@@ -15,11 +15,11 @@ using GiNaC::ex;
 // the origin.
 struct Felt {
   Expr translation;  // sum of J_v, a vector
-  Expr rotation;     // sum of J_w + x cross J_v, since v = w cross x
+  Expr rotation;     // sum of J_w + x cross J_v, since v = w cross x; in space a vector
 };
 
 Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
-  Felt felt{zero_vector(*joint.pool), joint.pool->number(0)};
+  Felt felt{zero_vector(*joint.pool), zero_spin(*joint.pool)};
   for (std::size_t b = 0; b < J.size(); ++b) {
     felt.translation = felt.translation + J[b].v;
     felt.rotation =
@@ -36,7 +36,7 @@ GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
     const ex rest = C.subs(solved, GiNaC::subs_options::no_pattern);
     for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
       const auto q = names.coordinates(static_cast<int>(b));
-      for (int k = 0; k < 2; ++k) {
+      for (int k = 0; k < joint.dimension; ++k) {
         const ex& x = q[static_cast<std::size_t>(k)];
         const ex slope = rest.diff(GiNaC::ex_to<GiNaC::symbol>(x));
         if (!GiNaC::is_a<GiNaC::numeric>(slope) || slope.is_zero()) continue;
@@ -52,7 +52,7 @@ GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
     if (!row.C->vector) {
       put(names.of(row.C));
     } else {
-      for (const ex& component : names.of_vector(row.C)) put(component);
+      for (const Expr component : components_of(row.C)) put(names.of(component));
     }
   }
   return solved;
@@ -71,10 +71,9 @@ class Momentum {
     return true;
   }
   bool translation_vanishes(const Felt& felt) {
-    const Pair<ex> t = names_.of_vector(felt.translation);
-    return vanishes(t[0]) && vanishes(t[1]);
+    return all_vanish(components_of(felt.translation));
   }
-  bool rotation_vanishes(const Felt& felt) { return vanishes(names_.of(felt.rotation)); }
+  bool rotation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.rotation)); }
   bool only_on_constraint() const { return only_on_constraint_; }
 
   // The fewest terms of a row whose removal leaves nothing to feel.
@@ -87,7 +86,7 @@ class Momentum {
     std::stable_sort(subsets.begin(), subsets.end(),
                      [](unsigned a, unsigned b) { return std::popcount(a) < std::popcount(b); });
     for (const unsigned subset : subsets) {
-      Felt rest{zero_vector(*joint_.pool), joint_.pool->number(0)};
+      Felt rest{zero_vector(*joint_.pool), zero_spin(*joint_.pool)};
       std::vector<Expr> removed;
       for (std::size_t i = 0; i < terms.size(); ++i) {
         if (subset >> i & 1) {
@@ -103,6 +102,10 @@ class Momentum {
   }
 
  private:
+  bool all_vanish(const std::vector<Expr>& scalars) {
+    return std::all_of(scalars.begin(), scalars.end(), [&](Expr e) { return vanishes(names_.of(e)); });
+  }
+
   const Joint& joint_;
   Algebra& names_;
   GiNaC::exmap on_constraint_;
@@ -115,8 +118,7 @@ std::vector<Expr> terms_of_row(const ScalarRow& row, Expr written) {
   std::vector<Expr> terms;
   for (const Term& term : terms_of(whole)) {
     const Expr e = term.coef * term.e;
-    const Expr axis = world_x(*e->pool);
-    terms.push_back(!e->vector ? e : dot(row.component == 0 ? axis : perp(axis), e));
+    terms.push_back(!e->vector ? e : components_of(e)[static_cast<std::size_t>(row.component)]);
   }
   return terms;
 }
@@ -126,7 +128,7 @@ std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joi
   std::set<std::string> words;
   const std::vector<Expr> leaves = leaves_of(terms);
   const auto guilty = [&](Expr leaf) {
-    if (rotation) return leaf->role == Role::angle || leaf == world_x(*joint.pool);
+    if (rotation) return leaf->role == Role::angle || is_world_axis(leaf);
     return leaf->role == Role::position;
   };
   for (const Expr leaf : leaves) {
@@ -138,7 +140,7 @@ std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joi
     else if (leaf->role == Role::position)
       words.insert("x(" + body + ")");
     else
-      words.insert({".x", ".y"});
+      words.insert({".x", ".y", ".z"});
     for (const Let& let : joint.lets) {
       const std::vector<Expr> inside = leaves_of(std::span(&let.value, 1));
       if (std::find(inside.begin(), inside.end(), leaf) != inside.end()) words.insert(let.name);

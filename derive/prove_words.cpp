@@ -18,7 +18,7 @@ std::string said(Expr e, const Joint& joint) {
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
     const std::string& name = joint.bodies[b];
-    spelled.emplace(&*body.theta, joint.pool->symbol("angle(" + name + ")", Role::given));
+    if (body.theta) spelled.emplace(&*body.theta, joint.pool->symbol("angle(" + name + ")", Role::given));
     spelled.emplace(&*body.x, joint.pool->vector_symbol("x(" + name + ")", Role::given));
   }
   return text(substitute(e, spelled));

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "derive/elaborate.hpp"
+#include "derive/parse_joint.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -33,8 +34,15 @@ Library load_library(const std::filesystem::path& folder) {
   return library;
 }
 
+int dimension_of(const SourceFile& file) {
+  Diagnostics unheard;
+  const Tokens tokens = lex(file, false, unheard);
+  if (!tokens.readable) return 2;
+  return parse_joint(file, tokens, unheard).dimension == "spatial" ? 3 : 2;
+}
+
 ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library,
-                      std::shared_ptr<Pool> pool, const ReadOptions& options) {
+                      const ReadOptions& options) {
   if (!options.anchors.empty()) {
     // An anchor on a body that the joint does not have is for the caller to report.
     const ReadResult plain = read_joint(file, library);
@@ -42,14 +50,14 @@ ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& lib
     for (const auto& [name, body] : options.anchors)
       if (plain.joint && has_body(*plain.joint, body)) possible.anchors.emplace(name, body);
     if (possible.anchors.size() != options.anchors.size())
-      return read_joint(std::move(file), library, std::move(pool), possible);
+      return read_joint(std::move(file), library, possible);
   }
   ReadResult result;
   result.file = file;
   Source spec;
   spec.file = std::move(file);
   parse_source(spec);
-  Elaborator elaborator(library, std::move(pool), options);
+  Elaborator elaborator(library, spec.ast.dimension == "spatial" ? 3 : 2, options);
   elaborator.run(spec);
   elaborator.finish(result, spec);
   return result;

@@ -21,6 +21,9 @@ Library load_library(const std::filesystem::path& folder);  // every *.joint in 
 // The whole file; throws std::runtime_error that says why, if it cannot be read.
 std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path);
 
+// What the header says: 2 for planar, 3 for spatial; 2 if it says neither.
+int dimension_of(const SourceFile& file);
+
 struct ReadOptions {
   // Parameters that are fixed elsewhere than the spec says: {"t", "a"}. For hand derivations that
   // do so.
@@ -35,7 +38,6 @@ struct ReadResult {
 };
 
 ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library,
-                      std::shared_ptr<Pool> pool = std::make_shared<Pool>(),
                       const ReadOptions& options = {});
 
 }  // namespace cdot::derive

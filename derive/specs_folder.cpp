@@ -11,15 +11,18 @@ namespace fs = std::filesystem;
 SpecsFolder::SpecsFolder(fs::path folder) : folder_(std::move(folder)) {}
 
 std::vector<fs::path> SpecsFolder::all() const {
-  const fs::path planar = folder_ / "planar";
-  std::error_code failure;
   std::vector<fs::path> specs;
-  for (const fs::directory_entry& entry : fs::directory_iterator(planar, failure)) {
-    if (entry.path().extension() == ".joint") specs.push_back(entry.path());
+  bool found = false;
+  for (const char* space : {"planar", "spatial"}) {
+    std::error_code failure;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / space, failure)) {
+      if (entry.path().extension() == ".joint") specs.push_back(entry.path());
+    }
+    found = found || !failure;
   }
-  if (failure) {
-    throw NoSuchSpec(fmt::format("no folder {}: run from the folder that holds specs/, or say --specs DIR",
-                                 planar.string()));
+  if (!found) {
+    throw NoSuchSpec(fmt::format("no folder {0}/planar or {0}/spatial: run from the folder that holds specs/, or say --specs DIR",
+                                 folder_.string()));
   }
   std::sort(specs.begin(), specs.end());
   return specs;
@@ -27,21 +30,27 @@ std::vector<fs::path> SpecsFolder::all() const {
 
 fs::path SpecsFolder::find(const std::string& spec) const {
   if (fs::exists(spec)) return spec;
-  const fs::path in_folder = folder_ / "planar" / (spec + ".joint");
-  if (fs::exists(in_folder)) return in_folder;
-  if (spec.find('/') != std::string::npos) throw NoSuchSpec(fmt::format("no such file: {}", spec));
   std::vector<std::string> names;
-  for (const fs::path& known : all()) names.push_back(known.stem().string());
+  for (const fs::path& known : all()) {
+    const std::string name = known.stem().string();
+    // `line`, or `spatial/line` where both spaces have one of that name; the planar one comes first.
+    if (name == spec || known.parent_path().filename().string() + "/" + name == spec) return known;
+    names.push_back(name);
+  }
+  if (spec.find('/') != std::string::npos) throw NoSuchSpec(fmt::format("no such file: {}", spec));
   const std::string near = nearest(spec, names);
-  throw NoSuchSpec(fmt::format("no spec `{}`: neither that file nor {} exists{}", spec, in_folder.string(),
+  throw NoSuchSpec(fmt::format("no spec `{}`: neither that file nor {} exists{}", spec,
+                               (folder_ / "planar" / (spec + ".joint")).string(),
                                near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
 }
 
 ReadResult SpecsFolder::read(const fs::path& spec, const ReadOptions& options) const {
-  const fs::path beside = spec.has_parent_path() ? spec.parent_path() : fs::path(".");
-  Library library = load_library(folder_ / "planar");
-  library.merge(load_library(beside));
-  return read_joint(load_source(spec), library, std::make_shared<Pool>(), options);
+  const std::shared_ptr<const SourceFile> file = load_source(spec);
+  const fs::path space = folder_ / name_of_space(dimension_of(*file));
+  Library library;
+  if (fs::is_directory(space)) library = load_library(space);
+  library.merge(load_library(spec.has_parent_path() ? spec.parent_path() : fs::path(".")));
+  return read_joint(file, library, options);
 }
 
 }  // namespace cdot::derive

@@ -31,10 +31,18 @@ Expr body_velocity(Pool& pool, int body) {
 Expr body_angle(Pool& pool, int body) {
   return pool.symbol(named("theta_", body), Role::angle, body);
 }
-Expr body_spin(Pool& pool, int body) { return pool.symbol(named("w_", body), Role::spin, body); }
-Expr body_axis(Pool& pool, int body) {
-  if (body < 0) return world_x(pool);
-  return pool.vector_symbol(named("axis_", body), Role::body_vector, body, true);
+Expr body_spin(Pool& pool, int body) {
+  if (pool.dimension() == 3) return pool.vector_symbol(named("w_", body), Role::spin, body);
+  return pool.symbol(named("w_", body), Role::spin, body);
+}
+std::vector<Expr> body_axes(Pool& pool, int body) {
+  if (body < 0) return world_axes(pool);
+  if (pool.dimension() == 3) {
+    const Triad axes = pool.triad(named("axis_", body), Role::body_vector, body);
+    return {axes.begin(), axes.end()};
+  }
+  const Expr x = pool.vector_symbol(named("axis_", body), Role::body_vector, body, true);
+  return {x, perp(x)};
 }
 Expr inverse_mass(Pool& pool, int body) {
   return pool.symbol(named("inv_m_", body), Role::inverse_mass, body);

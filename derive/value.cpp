@@ -1,5 +1,7 @@
 #include "derive/value.hpp"
 
+#include <algorithm>
+
 namespace cdot::derive {
 
 std::string_view in_words(Type type) {
@@ -29,22 +31,23 @@ bool same_unit(const Value& a, const Value& b, bool radians_are_numbers) {
   return (radians_are_numbers || a.ratio || b.ratio) && x == y;
 }
 
-Expr components_along(Expr u, Expr axis) {
-  const Expr x = world_x(*u->pool);
-  return dot(axis, u) * x + dot(perp(axis), u) * perp(x);
+Expr components_along(Expr u, const std::vector<Expr>& axes) {
+  const std::vector<Expr> world = world_axes(*u->pool);
+  Expr sum = zero_vector(*u->pool);
+  for (std::size_t k = 0; k < axes.size(); ++k) sum = sum + dot(axes[k], u) * world[k];
+  return sum;
 }
 
-Expr component(Expr u, int index) {
+Expr component(Expr u, std::size_t index) {
   Pool& pool = *u->pool;
-  const Expr x = world_x(pool), along = index == 0 ? x : perp(x), across = index == 0 ? perp(x) : x;
+  const std::vector<Expr> world = world_axes(pool);
+  const auto is_axis = [&](Expr e) { return std::find(world.begin(), world.end(), e) != world.end(); };
   std::vector<Term> terms;
   for (const Term& t : terms_of(u)) {
-    if (t.e == along)
-      terms.push_back({t.coef, pool.number(1)});
-    else if (t.e->kind == Kind::scale && t.e->args[1] == along)
-      terms.push_back({t.coef, t.e->args[0]});
-    else if (t.e != across && !(t.e->kind == Kind::scale && t.e->args[1] == across))
-      return dot(along, u);
+    const bool scaled = t.e->kind == Kind::scale;
+    const Expr direction = scaled ? t.e->args[1] : t.e;
+    if (!is_axis(direction)) return dot(world[index], u);
+    if (direction == world[index]) terms.push_back({t.coef, scaled ? t.e->args[0] : pool.number(1)});
   }
   return sum(pool, terms, false);
 }

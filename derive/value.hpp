@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "derive/expr.hpp"
 #include "derive/matrix.hpp"
@@ -18,6 +19,7 @@ enum class Type { poison, scalar, vector, point, body, frame, matrix };
 struct Value {
   Type type = Type::poison;
   Expr e;  // scalar; vector; point: its place; frame: its x axis
+  std::vector<Expr> axes;  // frame: its axes, two or three
   std::optional<Unit>
       unit;               // empty: fits every unit (the literal 0, what an entry declares `free`)
   bool ratio = false;     // a number in which lengths cancelled: it may stand for an angle, an arc
@@ -26,8 +28,9 @@ struct Value {
   int body = -1;          // body, anchored point, frame: -1 is the world
   Expr arm;               // point anchored in a body: place minus centre of mass
   bool anchored = false;  // point that is known to be fixed in `body`
-  Expr axis;              // vector whose components are those along a frame: that frame's x axis
+  std::vector<Expr> along;  // vector whose components are those along a frame: that frame's axes
   std::shared_ptr<const Matrix> matrix;
+  bool inverted = false;  // matrix: what is meant is its inverse (an inertia tensor, whose inverse has the leaves)
 };
 
 inline Value scalar(Expr e, std::optional<Unit> unit = Unit{}) {
@@ -49,9 +52,9 @@ std::string_view in_words(Type type);  // "a number", "a vector", ...
 // Whether two values may be added or compared; if radians are numbers, a rad and 1 are one.
 bool same_unit(const Value& a, const Value& b, bool radians_are_numbers = false);
 
-// u along a frame with the x axis `axis`, as a vector whose world components are these components.
-Expr components_along(Expr u, Expr axis);
-// Component 0 or 1 along the world's axes.
-Expr component(Expr u, int index);
+// u along axes, as a vector whose world components are these components.
+Expr components_along(Expr u, const std::vector<Expr>& axes);
+// Component 0, 1 or 2 along the world's axes.
+Expr component(Expr u, std::size_t index);
 
 }  // namespace cdot::derive

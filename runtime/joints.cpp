@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <type_traits>
 
-#include "generated/registry.hpp"
+#include "generated/planar/registry.hpp"
 
 namespace cdot {
 namespace {

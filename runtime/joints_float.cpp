@@ -1,6 +1,6 @@
 // Instantiates every generated kernel in float. Apart because this is most of what there is to
 // compile.
-#include "generated/registry.hpp"
+#include "generated/planar/registry.hpp"
 #include "runtime/joint_table.hpp"
 #include "runtime/planar.hpp"
 

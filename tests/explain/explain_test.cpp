@@ -45,7 +45,7 @@ std::vector<double> J_times_v(const Formula& J, const Joint& joint, const Values
     for (std::size_t k = 0; k < columns; ++k) {
       const BodySymbols body = body_symbols(joint, static_cast<int>(k / 2));
       const Array block = value_of_formula(J.args[row * columns + k], values);
-      const Pair<double> v = Numbers(values).vector(body.v);
+      const Triple<double> v = Numbers(values).vector(body.v);
       const std::vector<double> velocity =
           k % 2 == 1 ? std::vector{evaluate(body.w, values)} : std::vector{v[0], v[1]};
       if (block.entries == std::vector{0.0}) continue;

@@ -93,7 +93,7 @@ double called(const std::string& name, const std::vector<Array>& args) {
 Array leaf_value(const Formula& f, const Values& values) {
   if (!f.leaf) throw NoValue(f.name);
   if (!f.leaf->vector) return scalar(evaluate(f.leaf, values));
-  const Pair<double> v = Numbers(values).vector(f.leaf);
+  const Triple<double> v = Numbers(values).vector(f.leaf);
   return column(v[0], v[1]);
 }
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "generated/registry.hpp"
+#include "generated/planar/registry.hpp"
 #include "runtime/pack.hpp"
 #include "tests/kernels/any_block.hpp"
 

@@ -55,16 +55,16 @@ std::map<Key, Operations> generated_ledger() {
   EXPECT_TRUE(file) << "no ledger";
   std::string line;
   std::getline(file, line);
-  EXPECT_EQ(line, "joint,block,quantity,source,add,multiply,divide,root,compare,call,total");
+  EXPECT_EQ(line, "space,joint,block,quantity,source,add,multiply,divide,root,compare,call,total");
   while (std::getline(file, line)) {
     std::istringstream cells(line);
     std::vector<std::string> cell;
     for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
-    if (cell[3] != "generated") continue;
+    if (cell[0] != "planar" || cell[4] != "generated") continue;
     const auto number = [&](std::size_t i) { return std::stoi(cell[i]); };
-    ledger[{cell[0], cell[1], cell[2]}] = {number(4), number(5), number(6),
-                                           number(7), number(8), number(9)};
-    EXPECT_EQ(number(10), number(4) + number(5) + number(6) + number(7) + number(8) + number(9))
+    ledger[{cell[1], cell[2], cell[3]}] = {number(5), number(6), number(7),
+                                           number(8), number(9), number(10)};
+    EXPECT_EQ(number(11), number(5) + number(6) + number(7) + number(8) + number(9) + number(10))
         << line;
   }
   return ledger;

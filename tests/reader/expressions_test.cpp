@@ -12,11 +12,13 @@ namespace {
 
 // `expression` as a let of a joint that declares one of everything; the let's value and unit as
 // text.
-std::string value_of(const std::string& expression) {
+std::string value_of(const std::string& expression, const std::string& space = "planar") {
   const std::string text =
-      "joint j planar\n point pa on a\n point pb on b\n unit t on b\n vector d [m] on a\n frame f "
+      "joint j " +
+      space +
+      "\n point pa on a\n point pb on b\n unit t on b\n vector d [m] on a\n frame f "
       "on b\n"
-      " scalar l [m]\n scalar k\n point g on world\n let it = " +
+      " frame g on a\n scalar l [m]\n scalar k\n point p on world\n let it = " +
       expression + "\n pa = pb\n";
   const ReadResult r = read_joint(std::make_shared<SourceFile>("j", text), {});
   if (!r.joint) return render(*r.file, r.diagnostics);
@@ -89,12 +91,15 @@ TEST(Operators, AreAllCalled) {
                                                     {"unit", "unit(d)"},
                                                     {"local", "local(d, a)"},
                                                     {"angle", "angle(t, d)"},
+                                                    {"twist", "twist(f, g)"},
+                                                    {"swing", "swing(f, g)"},
+                                                    {"rotation", "rotation(f, g)"},
                                                     {"x", "x(a)"},
                                                     {"arm", "arm(pa)"},
                                                     {"v", "v(pa)"},
                                                     {"w", "w(a)"},
                                                     {"sqrt", "sqrt(l)"},
-                                                    {"sin", "sin(angle(a))"},
+                                                    {"sin", "sin(angle(t, d))"},
                                                     {"cos", "cos(k)"},
                                                     {"tan", "tan(k)"},
                                                     {"exp", "exp(k)"},
@@ -105,8 +110,25 @@ TEST(Operators, AreAllCalled) {
     if (o.where == Operator::Where::hand) continue;
     const auto call = calls.find(std::string(o.name));
     ASSERT_NE(call, calls.end()) << o.name;
-    EXPECT_EQ(value_of(call->second).find("error"), std::string::npos) << value_of(call->second);
+    for (const int dimension : {2, 3}) {
+      if (!o.is_of(dimension)) continue;
+      const std::string value = value_of(call->second, dimension == 2 ? "planar" : "spatial");
+      EXPECT_EQ(value.find("error"), std::string::npos) << value;
+    }
   }
+}
+
+TEST(Expressions, OfSpace) {
+  EXPECT_EQ(value_of("cross(d, t)", "spatial"), "cross(d, t) [m]");
+  EXPECT_EQ(value_of("angle(t, f.x)", "spatial"), "atan2(norm(cross(f_x, t)), dot(f_x, t)) [rad]");
+  EXPECT_EQ(value_of("angle(f.y, g.y, f.x)", "spatial"), "atan2(dot(cross(f_y, g_y), f_x), dot(f_y, g_y)) [rad]");
+  EXPECT_EQ(value_of("twist(f, g)", "spatial"), "twist(f, g) [rad]");
+  EXPECT_EQ(value_of("swing(f, g)", "spatial"), "atan2(norm(cross(f_x, g_x)), dot(f_x, g_x)) [rad]");
+  EXPECT_EQ(value_of("rotation(f, g)", "spatial"), "1/2*cross(f_x, g_x) + 1/2*cross(f_y, g_y) + 1/2*cross(f_z, g_z) [rad]");
+  EXPECT_EQ(value_of("dot(f.x, f.y)", "spatial"), "0 [1]");
+  EXPECT_EQ(value_of("cross(f.x, f.y)", "spatial"), "f_z [1]");
+  EXPECT_EQ(value_of("v(pa)", "spatial"), "v_a - cross(ra, w_a) [m/s]");
+  EXPECT_EQ(value_of("local(d, f)", "spatial"), "dot(d, f_x) [m], dot(d, f_y) [m], dot(d, f_z) [m]");
 }
 
 }  // namespace

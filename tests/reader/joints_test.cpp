@@ -13,7 +13,7 @@ const Library& parts() {
 
 ReadResult read(const std::string& body, const ReadOptions& options = {}) {
   const auto file = std::make_shared<SourceFile>("j.joint", "joint j planar\n" + body);
-  ReadResult r = read_joint(file, parts(), std::make_shared<Pool>(), options);
+  ReadResult r = read_joint(file, parts(), options);
   EXPECT_TRUE(r.joint) << render(*r.file, r.diagnostics);
   return r;
 }

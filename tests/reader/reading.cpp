@@ -42,7 +42,7 @@ std::string messages_about_hand(const std::shared_ptr<const SourceFile>& hand,
   HandFile file = read_hand(hand);
   std::string out, about_formulas;
   for (const HandEntryAst& ast : file.entries) {
-    const ReadResult read = read_joint(joint, library, std::make_shared<Pool>(), {ast.anchors});
+    const ReadResult read = read_joint(joint, library, {ast.anchors});
     if (!read.joint) return render(*read.file, read.diagnostics);
     const HandEntry entry = elaborate_entry(ast, file, read, stand_in(read), file.diagnostics);
     for (const Diagnostic& d : entry.remarks) about_formulas += render(*hand, d);

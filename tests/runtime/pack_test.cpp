@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "generated/registry.hpp"
+#include "generated/planar/registry.hpp"
 
 namespace cdot {
 namespace {
