@@ -24,6 +24,12 @@
 //
 //   q: Pose<T>[bodies]   v: Velocity<T>[bodies]   m: InverseMass<T>[bodies]   p: Parameters<T>   t: time [s]
 //
+// In space (`cdot::spatial::revolute`) a body has six columns, x y z of v and of w in world axes: dense is D[rows][6
+// bodies], stiffness H[6 bodies][6 bodies], its turns being small rotations about the world's axes. Besides:
+//   B::effective_mass, B::apply, B::inverse_mass_jacobian           overloads for m: IsotropicInverseMass<T>[bodies]
+//   B::local_jacobian  (q, J, D)                                    J by v and w' = A^T w (body axes), D[rows][6 bodies]
+//   B::euler_jacobian  (q, J, D)                                    J by v and the rates of e0 e1 e2 e3, D[rows][7 bodies]
+//
 // A joint has besides: Parameters<T>, `parameters` (their names, kinds and units), `row_kinds`, `default_value`,
 // `Coordinates` and `Immovable` (tuples of its coordinates and of its variants).
 // T is float, double, cdot::Pack, or any type with + - * /, comparison, select and the functions used.
@@ -47,10 +53,10 @@ enum class RowKind {
 };
 
 enum class ParameterKind {
-  point,   // a point fixed on a body, in that body's frame; 2 numbers in the plane [m]
-  vector,  // a vector fixed in a body, in that body's frame; 2 numbers
+  point,   // a point fixed on a body, in that body's frame; 2 numbers in the plane, 3 in space [m]
+  vector,  // a vector fixed in a body, in that body's frame; 2 numbers, 3 in space
   unit,    // the same of length 1; the runtime normalises what a scene gives and refuses a zero vector
-  frame,   // a triad fixed in a body: its x axis in the body's frame; 2 numbers, length 1
+  frame,   // a triad fixed in a body: its x axis in the body's frame; 2 numbers, length 1; in space x, y, z axis, 9 numbers
   scalar   // 1 number
 };
 
@@ -126,4 +132,36 @@ struct InverseMass {
 };
 
 }  // namespace planar
+
+namespace spatial {
+
+// Centre of mass [m], orientation as Euler parameters (a unit quaternion, e0 its scalar part) and the rotation matrix
+// A(e) that belongs to them, row by row: the body's x axis is (xx, yx, zx) in the world.
+template <class T>
+struct Pose {
+  T x, y, z;
+  T e0, e1, e2, e3;
+  T xx, xy, xz, yx, yy, yz, zx, zy, zz;
+};
+
+// Velocity of the centre of mass [m/s] and angular velocity [rad/s], both in world axes.
+template <class T>
+struct Velocity {
+  T x, y, z, wx, wy, wz;
+};
+
+// Inverse mass [1/kg] and inverse inertia tensor about the centre of mass in world axes [1/(kg m^2)]; all 0 for an
+// immovable body.
+template <class T>
+struct InverseMass {
+  T m, Ixx, Iyy, Izz, Ixy, Ixz, Iyz;
+};
+
+// The same of a body whose inertia is alike about every axis (a ball, a cube).
+template <class T>
+struct IsotropicInverseMass {
+  T m, I;
+};
+
+}  // namespace spatial
 }  // namespace cdot

@@ -26,16 +26,38 @@ enum Function {
   gamma,
   time_derivative,
   stiffness,
+  // In space only.
+  effective_mass_isotropic,
+  apply_isotropic,
+  inverse_mass_jacobian_isotropic,
+  local_jacobian,
+  euler_jacobian,
   number_of_functions
 };
 
 inline constexpr std::array<std::string_view, number_of_functions> function_names = {
-    "position", "jacobian", "effective_mass",        "factor", "solve",           "velocity",
-    "apply",    "dense",    "inverse_mass_jacobian", "gamma",  "time_derivative", "stiffness"};
+    "position",
+    "jacobian",
+    "effective_mass",
+    "factor",
+    "solve",
+    "velocity",
+    "apply",
+    "dense",
+    "inverse_mass_jacobian",
+    "gamma",
+    "time_derivative",
+    "stiffness",
+    "effective_mass_isotropic",
+    "apply_isotropic",
+    "inverse_mass_jacobian_isotropic",
+    "local_jacobian",
+    "euler_jacobian"};
 
 // All that a block's functions read, laid out as in the contract: x y c s angle of each body, ...
+// or, in space, x y z e0 e1 e2 e3 xx ... zz. Sphere-like bodies have the masses in m_isotropic.
 struct Inputs {
-  std::vector<double> q, v, m, p, lambda, rhs, time;
+  std::vector<double> q, v, m, m_isotropic, p, lambda, rhs, time;
 };
 
 struct Operations {
@@ -54,6 +76,7 @@ struct Outputs {
 };
 
 struct AnyBlock {
+  int dimension;
   std::string joint, block;  // "line", "slide.a_immovable"; the ledger's names
   int bodies, rows;
   int immovable;        // index of a body, or -1
@@ -71,7 +94,13 @@ struct AnyBlock {
   // Overwrites the parameters that have a default, in their order.
   void (*set_defaults)(Inputs& in);
 
-  std::size_t columns() const { return 3 * static_cast<std::size_t>(bodies); }
+  bool planar() const { return dimension == 2; }
+  std::string_view space() const { return planar() ? "planar" : "spatial"; }
+  // Numbers per body: of a pose, of a velocity (and of a row of J), of an inverse mass.
+  std::size_t pose() const { return planar() ? 5 : 16; }
+  std::size_t width() const { return planar() ? 3 : 6; }
+  std::size_t mass() const { return planar() ? 2 : 7; }
+  std::size_t columns() const { return width() * static_cast<std::size_t>(bodies); }
 };
 
 // Every block of the registry, computing in T.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "generated/planar/registry.hpp"
+#include "generated/spatial/registry.hpp"
 #include "runtime/pack.hpp"
 #include "tests/kernels/any_block.hpp"
 
@@ -57,12 +58,45 @@ void keep(std::vector<Outputs>& outputs, Function function, const Source& source
   }
 }
 
-template <class Joint, class Block, class T>
+template <class Scalar>
+struct Plane {
+  static constexpr int dimension = 2, width = 3;
+  using Pose = planar::Pose<Scalar>;
+  using Velocity = planar::Velocity<Scalar>;
+  using InverseMass = planar::InverseMass<Scalar>;
+  using Joints = planar::Joints;
+};
+template <class Scalar>
+struct Space {
+  static constexpr int dimension = 3, width = 6;
+  using Pose = spatial::Pose<Scalar>;
+  using Velocity = spatial::Velocity<Scalar>;
+  using InverseMass = spatial::InverseMass<Scalar>;
+  using Joints = spatial::Joints;
+};
+
+// What only blocks in space have: sphere-like bodies, and J by the other forms of velocity.
+template <class Block, class T, class Pose, class Jacobian, class Velocity>
+void evaluate_in_space(std::span<const Inputs> lanes, const Pose& q, const Jacobian& J,
+                       const T (&lambda)[Block::rows], Velocity& v, std::vector<Outputs>& out) {
+  constexpr int n = Block::bodies, rows = Block::rows;
+  spatial::IsotropicInverseMass<T> m[n];
+  load<T>(m, lanes, &Inputs::m_isotropic);
+  T K[rows * (rows + 1) / 2], D[rows][6 * n], by_parameters[rows][7 * n];
+  Block::effective_mass(J, m, K), keep<T>(out, effective_mass_isotropic, K);
+  Block::inverse_mass_jacobian(J, m, D), keep<T>(out, inverse_mass_jacobian_isotropic, D);
+  Block::local_jacobian(q, J, D), keep<T>(out, local_jacobian, D);
+  Block::euler_jacobian(q, J, by_parameters), keep<T>(out, euler_jacobian, by_parameters);
+  Block::apply(J, m, lambda, v), keep<T>(out, apply_isotropic, v);
+}
+
+template <template <class> class In, class Joint, class Block, class T>
 std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
   constexpr int n = Block::bodies, rows = Block::rows, triangle = rows * (rows + 1) / 2;
-  planar::Pose<T> q[n];
-  planar::Velocity<T> v[n];
-  planar::InverseMass<T> m[n];
+  constexpr int columns = In<T>::width * n;
+  typename In<T>::Pose q[n];
+  typename In<T>::Velocity v[n];
+  typename In<T>::InverseMass m[n];
   typename Joint::template Parameters<T> p;
   typename Block::template Jacobian<T> J;
   T time[1], lambda[rows], rhs[rows];
@@ -76,7 +110,7 @@ std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
 
   std::vector<Outputs> out(Lanes<T>::count);
   T C[rows], K[triangle], F[triangle], x[rows], Jv[rows], g[rows];
-  T D[rows][3 * n], H[3 * n][3 * n];
+  T D[rows][columns], H[columns][columns];
   Block::position(q, p, time[0], C), keep<T>(out, position, C);
   Block::jacobian(q, p, time[0], C, J), keep<T>(out, jacobian, C), keep<T>(out, jacobian, J);
   Block::effective_mass(J, m, K), keep<T>(out, effective_mass, K);
@@ -88,6 +122,11 @@ std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
   Block::gamma(q, v, p, time[0], g), keep<T>(out, gamma, g);
   Block::time_derivative(q, p, time[0], g), keep<T>(out, time_derivative, g);
   Block::stiffness(q, p, time[0], lambda, H), keep<T>(out, stiffness, H);
+  if constexpr (In<T>::dimension == 3) {
+    typename In<T>::Velocity pushed[n];
+    std::copy(v, v + n, pushed);
+    evaluate_in_space<Block>(lanes, q, J, lambda, pushed, out);
+  }
   Block::apply(J, m, lambda, v), keep<T>(out, apply, v);
   return out;
 }
@@ -103,9 +142,9 @@ std::vector<double> factor_and_solve(const std::vector<double>& K, const std::ve
   return {x, x + rows};
 }
 
-template <class Joint>
+template <template <class> class In, class Joint>
 void set_defaults(Inputs& in) {
-  planar::Pose<double> q[Joint::bodies];
+  typename In<double>::Pose q[Joint::bodies];
   typename Joint::template Parameters<double> p;
   load<double>(q, std::span(&in, 1), &Inputs::q);
   load<double>(p, std::span(&in, 1), &Inputs::p);
@@ -117,11 +156,12 @@ void set_defaults(Inputs& in) {
   std::memcpy(in.p.data(), &p, in.p.size() * sizeof(double));
 }
 
-template <class Joint, class Block, class T>
+template <template <class> class In, class Joint, class Block, class T>
 AnyBlock erased(std::string name, std::size_t general, bool is_coordinate) {
   int immovable = -1;
   if constexpr (requires { Block::immovable_body; }) immovable = Block::immovable_body;
-  return {std::string(Joint::name),
+  return {In<T>::dimension,
+          std::string(Joint::name),
           std::move(name),
           Block::bodies,
           Block::rows,
@@ -132,46 +172,52 @@ AnyBlock erased(std::string name, std::size_t general, bool is_coordinate) {
           Block::row_names,
           Block::row_kinds,
           Joint::parameters,
-          evaluate<Joint, Block, T>,
+          evaluate<In, Joint, Block, T>,
           factor_and_solve<Block>,
-          set_defaults<Joint>};
+          set_defaults<In, Joint>};
 }
 
 // A block and its variants; `prefix` is "" for the rows, "slide." for a coordinate.
-template <class Joint, class Block, class T>
+template <template <class> class In, class Joint, class Block, class T>
 void add_with_variants(std::vector<AnyBlock>& all, const std::string& name,
                        const std::string& prefix) {
   const std::size_t general = all.size();
-  all.push_back(erased<Joint, Block, T>(name, general, !prefix.empty()));
+  all.push_back(erased<In, Joint, Block, T>(name, general, !prefix.empty()));
   const auto add = [&]<class Variant>(std::type_identity<Variant>) {
     const std::string body(Joint::body_names[Variant::immovable_body]);
     all.push_back(
-        erased<Joint, Variant, T>(prefix + body + "_immovable", general, !prefix.empty()));
+        erased<In, Joint, Variant, T>(prefix + body + "_immovable", general, !prefix.empty()));
   };
   [&]<class... Variants>(std::type_identity<std::tuple<Variants...>>) {
     (add(std::type_identity<Variants>{}), ...);
   }(std::type_identity<typename Block::Immovable>{});
 }
 
-template <class Joint, class T>
+template <template <class> class In, class Joint, class T>
 void add_joint(std::vector<AnyBlock>& all) {
-  add_with_variants<Joint, Joint, T>(all, "rows", "");
+  add_with_variants<In, Joint, Joint, T>(all, "rows", "");
   const auto add = [&]<class Coordinate>(std::type_identity<Coordinate>) {
     const std::string name(Coordinate::name);
-    add_with_variants<Joint, Coordinate, T>(all, name, name + ".");
+    add_with_variants<In, Joint, Coordinate, T>(all, name, name + ".");
   };
   [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {
     (add(std::type_identity<Coordinates>{}), ...);
   }(std::type_identity<typename Joint::Coordinates>{});
 }
 
+template <template <class> class In, class T>
+void add_joints(std::vector<AnyBlock>& all) {
+  [&]<class... Joints>(std::type_identity<std::tuple<Joints...>>) {
+    (add_joint<In, Joints, T>(all), ...);
+  }(std::type_identity<typename In<T>::Joints>{});
+}
+
 template <class T>
 const std::vector<AnyBlock>& blocks() {
   static const std::vector<AnyBlock> all = [] {
     std::vector<AnyBlock> list;
-    [&]<class... Joints>(std::type_identity<std::tuple<Joints...>>) {
-      (add_joint<Joints, T>(list), ...);
-    }(std::type_identity<planar::Joints>{});
+    add_joints<Plane, T>(list);
+    add_joints<Space, T>(list);
     return list;
   }();
   return all;

@@ -26,12 +26,21 @@ Eigen::MatrixXd symmetric(const std::vector<double>& triangle, int rows) {
   return K;
 }
 
-Eigen::VectorXd inverse_masses(const Inputs& in) {
-  Eigen::VectorXd diagonal(static_cast<Eigen::Index>(in.v.size()));
-  for (Eigen::Index c = 0; c < diagonal.size(); ++c) {
-    diagonal[c] = in.m[static_cast<std::size_t>(2 * (c / 3) + (c % 3 == 2))];
+Eigen::MatrixXd inverse_masses(const AnyBlock& block, const Inputs& in) {
+  const auto columns = static_cast<Eigen::Index>(block.columns()),
+             width = static_cast<Eigen::Index>(block.width());
+  Eigen::MatrixXd M = Eigen::MatrixXd::Zero(columns, columns);
+  for (Eigen::Index b = 0; b < block.bodies; ++b) {
+    const double* const m = &in.m[block.mass() * static_cast<std::size_t>(b)];
+    auto of_body = M.block(width * b, width * b, width, width);
+    of_body.diagonal().setConstant(m[0]);
+    if (block.planar()) {
+      of_body(2, 2) = m[1];
+    } else {
+      of_body.bottomRightCorner<3, 3>() = inverse_inertia(m);
+    }
   }
-  return diagonal;
+  return M;
 }
 
 Outputs evaluate_one(const AnyBlock& block, const Inputs& in) {
@@ -39,7 +48,7 @@ Outputs evaluate_one(const AnyBlock& block, const Inputs& in) {
 }
 
 Eigen::MatrixXd dense_jacobian(const AnyBlock& block, const Inputs& in) {
-  return matrix(evaluate_one(block, in), dense, 3 * block.bodies);
+  return matrix(evaluate_one(block, in), dense, static_cast<Eigen::Index>(block.columns()));
 }
 
 Eigen::MatrixXd derivative_at_zero(const std::function<Eigen::MatrixXd(double)>& f) {
@@ -50,15 +59,17 @@ Eigen::MatrixXd derivative_at_zero(const std::function<Eigen::MatrixXd(double)>&
 
 void expect_near(const AnyBlock& block, std::string_view law, const Eigen::MatrixXd& actual,
                  const Eigen::MatrixXd& expected, double tolerance) {
-  ASSERT_EQ(actual.rows(), expected.rows()) << block.joint << ' ' << block.block << ": " << law;
-  ASSERT_EQ(actual.cols(), expected.cols()) << block.joint << ' ' << block.block << ": " << law;
+  ASSERT_EQ(actual.rows(), expected.rows())
+      << block.space() << ' ' << block.joint << ' ' << block.block << ": " << law;
+  ASSERT_EQ(actual.cols(), expected.cols())
+      << block.space() << ' ' << block.joint << ' ' << block.block << ": " << law;
   for (Eigen::Index i = 0; i < actual.rows(); ++i) {
     for (Eigen::Index j = 0; j < actual.cols(); ++j) {
       const double a = actual(i, j), e = expected(i, j);
       // Written so that NaN fails.
       if (std::abs(a - e) <= tolerance * (1 + std::abs(e))) continue;
-      ADD_FAILURE() << block.joint << ", " << block.block << ": " << law << ": row " << i
-                    << ", column " << j << " is " << a << ", not " << e;
+      ADD_FAILURE() << block.space() << ' ' << block.joint << ", " << block.block << ": " << law
+                    << ": row " << i << ", column " << j << " is " << a << ", not " << e;
     }
   }
 }

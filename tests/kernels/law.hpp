@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <functional>
 
 #include "tests/kernels/any_block.hpp"
@@ -19,8 +19,8 @@ Eigen::MatrixXd matrix(const Outputs& out, Function function, Eigen::Index colum
 Eigen::VectorXd vector(const std::vector<double>& numbers);
 // The full symmetric K from its lower triangle.
 Eigen::MatrixXd symmetric(const std::vector<double>& triangle, int rows);
-// The diagonal of M^-1: 1/m, 1/m, 1/I of each body.
-Eigen::VectorXd inverse_masses(const Inputs& in);
+// M^-1: 1/m, 1/m, 1/I of each body on the diagonal; in space 1/m, 1/m, 1/m and a block I^-1.
+Eigen::MatrixXd inverse_masses(const AnyBlock& block, const Inputs& in);
 
 Outputs evaluate_one(const AnyBlock& block, const Inputs& in);
 // J with its zeros.

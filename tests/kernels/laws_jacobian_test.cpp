@@ -10,12 +10,12 @@ namespace {
 
 // Columns of the body that a variant holds still are absent from its J.
 bool held(const AnyBlock& block, std::size_t column) {
-  return static_cast<int>(column / 3) == block.immovable;
+  return static_cast<int>(column / block.width()) == block.immovable;
 }
 
-// Along the motion with constant v: q(s) = q + s v, t + s.
-Inputs after(Inputs in, double s) {
-  for (std::size_t c = 0; c < in.v.size(); ++c) move(in, c, s * in.v[c]);
+// Along a motion that starts with v: q(s) = q + s v to first order, t + s.
+Inputs after(const AnyBlock& block, Inputs in, double s) {
+  for (std::size_t c = 0; c < in.v.size(); ++c) move(block, in, c, s * in.v[c]);
   in.time[0] += s;
   return in;
 }
@@ -38,16 +38,34 @@ Eigen::MatrixXd rate_at(const AnyBlock& block, const Inputs& in) {
 // d f / dq, column by column; zero for the held body.
 Eigen::MatrixXd gradient(const AnyBlock& block, const Inputs& in,
                          Eigen::MatrixXd (*f)(const AnyBlock&, const Inputs&)) {
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(f(block, in).rows(), 3 * block.bodies);
+  Eigen::MatrixXd G =
+      Eigen::MatrixXd::Zero(f(block, in).rows(), static_cast<Eigen::Index>(block.columns()));
   for (std::size_t c = 0; c < block.columns(); ++c) {
     if (held(block, c)) continue;
     G.col(static_cast<Eigen::Index>(c)) = derivative_at_zero([&](double s) {
       Inputs moved = in;
-      move(moved, c, s);
+      move(block, moved, c, s);
       return f(block, moved);
     });
   }
   return G;
+}
+
+// H - H^T. In the plane nothing. In space two small turns one after the other depend on their
+// order: second derivatives along turns about axes i and j differ by the one along i x j, so that
+// each body's block of turns has -skew(torque) in it, the torque being that of J^T lambda.
+Eigen::MatrixXd turning_part(const AnyBlock& block, const Inputs& in) {
+  const auto columns = static_cast<Eigen::Index>(block.columns());
+  Eigen::MatrixXd part = Eigen::MatrixXd::Zero(columns, columns);
+  if (block.planar()) return part;
+  const Eigen::MatrixXd force = force_at(block, in);
+  for (Eigen::Index first = 3; first < columns; first += 6) {
+    const Eigen::Vector3d torque = force.col(0).segment<3>(first);
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      part.block<3, 3>(first, first).col(i) = Eigen::Vector3d::Unit(i).cross(torque);
+    }
+  }
+  return part;
 }
 
 bool has_velocity_row(const AnyBlock& block) {
@@ -92,14 +110,14 @@ TEST(Laws, time_derivative_is_the_difference_in_time) {
 TEST(Laws, rate_is_the_difference_of_position_along_the_motion) {
   for_all([](const AnyBlock& block, const Inputs& in) {
     if (has_velocity_row(block)) return;
-    const auto along = [&](double s) { return position_at(block, after(in, s)); };
+    const auto along = [&](double s) { return position_at(block, after(block, in, s)); };
     expect_near(block, "J v + dC/dt = Cdot", rate_at(block, in), derivative_at_zero(along), 1e-8);
   });
 }
 
 TEST(Laws, gamma_is_minus_the_difference_of_the_rate_at_constant_velocity) {
   for_all([](const AnyBlock& block, const Inputs& in) {
-    const auto along = [&](double s) { return rate_at(block, after(in, s)); };
+    const auto along = [&](double s) { return rate_at(block, after(block, in, s)); };
     const Eigen::MatrixXd g = vector(evaluate_one(block, in).of[Function::gamma]);
     expect_near(block, "gamma = -Jdot v - d/dt(dC/dt)", g, -derivative_at_zero(along), 1e-7);
   });
@@ -107,8 +125,11 @@ TEST(Laws, gamma_is_minus_the_difference_of_the_rate_at_constant_velocity) {
 
 TEST(Laws, stiffness_is_the_difference_of_the_force) {
   for_all([](const AnyBlock& block, const Inputs& in) {
-    const Eigen::MatrixXd H = matrix(evaluate_one(block, in), stiffness, 3 * block.bodies);
+    const Eigen::MatrixXd H =
+        matrix(evaluate_one(block, in), stiffness, static_cast<Eigen::Index>(block.columns()));
     expect_near(block, "H = d(J^T lambda)/dq", H, gradient(block, in, force_at), 1e-7);
-    if (!has_velocity_row(block)) expect_near(block, "H is symmetric", H, H.transpose(), 1e-12);
+    if (!has_velocity_row(block)) {
+      expect_near(block, "H - H^T", H - H.transpose(), turning_part(block, in), 1e-11);
+    }
   });
 }

@@ -14,8 +14,8 @@ namespace {
 
 // The spec without its comments, and with what it includes: the text itself, not what the generator
 // made of it.
-std::string spec_text(const std::string& joint) {
-  std::ifstream file(CDOT_SPECS "/planar/" + joint + ".joint");
+std::string spec_text(const std::string& space, const std::string& joint) {
+  std::ifstream file(CDOT_SPECS "/" + space + "/" + joint + ".joint");
   EXPECT_TRUE(file) << "no spec of " << joint;
   std::string all, line;
   while (std::getline(file, line)) {
@@ -26,7 +26,7 @@ std::string spec_text(const std::string& joint) {
     static const std::regex name(R"(([a-z_]+)(\([^)]*\))?)");
     const std::string list = line.substr(start + 8);
     for (std::sregex_iterator it(list.begin(), list.end(), name), end; it != end; ++it) {
-      all += spec_text((*it)[1]);
+      all += spec_text(space, (*it)[1]);
     }
   }
   return all;
@@ -36,13 +36,26 @@ bool has_word(const std::string& text, const std::string& word) {
   return std::regex_search(text, std::regex("\\b" + word + "\\b"));
 }
 
-// Linear momentum x, y, and angular momentum about the origin: sum of x p_y - y p_x + I w.
-Eigen::Vector3d momentum(const Inputs& in, const std::vector<double>& v) {
-  Eigen::Vector3d total = Eigen::Vector3d::Zero();
-  for (std::size_t b = 0; 3 * b < v.size(); ++b) {
-    const double m = 1 / in.m[2 * b], I = 1 / in.m[2 * b + 1];
-    const double px = m * v[3 * b], py = m * v[3 * b + 1];
-    total += Eigen::Vector3d(px, py, in.q[5 * b] * py - in.q[5 * b + 1] * px + I * v[3 * b + 2]);
+bool joins_bodies_only(const AnyBlock& block) {
+  return block.immovable < 0 && block.bodies > 1 &&
+         !has_word(spec_text(std::string(block.space()), block.joint), "world");
+}
+
+// Linear momentum, and angular momentum about the origin: the sums of p and of x cross p + I w. In
+// the plane the third of the former and the first two of the latter are zero.
+Eigen::VectorXd momentum(const AnyBlock& block, const Inputs& in, const std::vector<double>& v) {
+  const Eigen::VectorXd p = inverse_masses(block, in).inverse() * vector(v);
+  const Eigen::Index dimension = block.planar() ? 2 : 3;
+  Eigen::VectorXd total = Eigen::VectorXd::Zero(6);
+  for (Eigen::Index b = 0; b < block.bodies; ++b) {
+    const auto w = static_cast<Eigen::Index>(block.width());
+    Eigen::Vector3d x = Eigen::Vector3d::Zero(), linear = x, spin = x;
+    x.head(dimension) =
+        vector(in.q).segment(static_cast<Eigen::Index>(block.pose()) * b, dimension);
+    linear.head(dimension) = p.segment(w * b, dimension);
+    spin.tail(w - dimension) = p.segment(w * b + dimension, w - dimension);
+    total.head<3>() += linear;
+    total.tail<3>() += x.cross(linear) + spin;
   }
   return total;
 }
@@ -54,49 +67,41 @@ Eigen::Vector3d momentum(const Inputs& in, const std::vector<double>& v) {
 TEST(Physics, a_joint_without_world_keeps_momentum) {
   std::set<std::string> free;
   for_all([&](const AnyBlock& block, const Inputs& random) {
-    if (block.immovable >= 0 || block.bodies < 2 || has_word(spec_text(block.joint), "world"))
-      return;
+    if (!joins_bodies_only(block)) return;
     free.insert(block.joint);
     Inputs in = random;
     in.time[0] = 0;
     block.set_defaults(in);
     const std::vector<double> v = evaluate_one(block, in).of[apply];
-    expect_near(block, "momentum x, y and angular, after an impulse", momentum(in, v),
-                momentum(in, in.v), 1e-12);
+    expect_near(block, "momentum, linear and angular, after an impulse", momentum(block, in, v),
+                momentum(block, in, in.v), 1e-12);
   });
   EXPECT_GE(free.size(), 10u) << "most of the catalogue joins bodies to each other only";
 }
 
 TEST(Physics, moving_all_bodies_together_changes_nothing) {
   for_all([](const AnyBlock& block, const Inputs& in) {
-    if (block.immovable >= 0 || block.bodies < 2 || has_word(spec_text(block.joint), "world"))
-      return;
-    Inputs moved = in;
-    const double turn = 0.7, c = std::cos(turn), s = std::sin(turn);
-    for (std::size_t b = 0; 5 * b < in.q.size(); ++b) {
-      const double x = in.q[5 * b], y = in.q[5 * b + 1];
-      moved.q[5 * b] = c * x - s * y + 3;
-      moved.q[5 * b + 1] = s * x + c * y - 2;
-      move(moved, 3 * b + 2, turn);
-    }
+    if (!joins_bodies_only(block)) return;
+    const Inputs moved = moved_together(block, in);
     const Outputs before = evaluate_one(block, in), after = evaluate_one(block, moved);
     // Rows along the world's axes (x and y of pa = pb) turn with the bodies and mix: what they
     // measure together stays.
     EXPECT_NEAR(vector(after.of[position]).norm(), vector(before.of[position]).norm(), 1e-12)
-        << block.joint << ", " << block.block << ": length of C";
+        << block.space() << ' ' << block.joint << ", " << block.block << ": length of C";
     const Eigen::MatrixXd K = symmetric(before.of[effective_mass], block.rows);
     const Eigen::MatrixXd K_moved = symmetric(after.of[effective_mass], block.rows);
     EXPECT_NEAR(K_moved.trace(), K.trace(), 1e-10)
-        << block.joint << ", " << block.block << ": trace of K";
+        << block.space() << ' ' << block.joint << ", " << block.block << ": trace of K";
     EXPECT_NEAR(K_moved.determinant(), K.determinant(), 1e-9 * (1 + std::abs(K.determinant())))
-        << block.joint << ", " << block.block << ": determinant of K";
+        << block.space() << ' ' << block.joint << ", " << block.block << ": determinant of K";
   });
 }
 
 // Parameters left out are taken from the initial pose such that the joint starts together. A point
-// on a curve cannot be: where the curve does not pass, no default of its parameters moves it there.
+// on a curve or a surface cannot be: where it does not pass, no default of its parameters moves it
+// there.
 TEST(Physics, defaults_start_the_joint_at_rest_position) {
-  const std::set<std::string> without_promise = {"sine_track"};
+  const std::set<std::string> without_promise = {"sine_track", "surface"};
   for_all([&](const AnyBlock& block, const Inputs& random) {
     if (block.immovable >= 0 || block.is_coordinate || without_promise.contains(block.joint))
       return;
@@ -115,7 +120,12 @@ TEST(Physics, default_directions_have_length_one) {
     for (const ParameterInfo& info : block.parameters) {
       if (info.kind != ParameterKind::unit && info.kind != ParameterKind::frame) continue;
       const auto at = static_cast<std::size_t>(info.offset);
-      EXPECT_NEAR(std::hypot(in.p[at], in.p[at + 1]), 1, 1e-14) << block.joint << ": " << info.name;
+      const Eigen::Index dimension = block.planar() ? 2 : 3;
+      const Eigen::MatrixXd axes = Eigen::Map<const Eigen::MatrixXd>(
+          &in.p[at], dimension, static_cast<Eigen::Index>(info.size) / dimension);
+      const Eigen::MatrixXd products = axes.transpose() * axes;
+      expect_near(block, "axes of a frame, or a direction: " + std::string(info.name), products,
+                  Eigen::MatrixXd::Identity(products.rows(), products.cols()), 1e-14);
     }
   });
 }
