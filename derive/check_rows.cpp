@@ -4,6 +4,7 @@
 
 #include "derive/check_parts.hpp"
 #include "derive/finite_field.hpp"
+#include "derive/held.hpp"
 #include "derive/prove_words.hpp"
 
 namespace cdot::derive {
@@ -161,33 +162,12 @@ void find_absent_bodies(const Subject& subject, Findings& findings) {
   }
 }
 
-// What an include brought along stands where the include does.
-bool is_included(const Block& coordinate, const Joint& joint) {
-  const Span where = place_of(coordinate, joint);
-  return !joint.file || joint.file->text.compare(static_cast<std::size_t>(where.begin),
-                                                 coordinate.name.size(), coordinate.name) != 0;
-}
-
-// A coordinate that equations hold is not free: a motor on it would fight them. One that came with
-// an include is no mistake of this spec.
+// A coordinate that equations hold is not free: a motor on it would fight them.
 void find_held_coordinates(const Subject& subject, Findings& findings) {
-  std::vector<ScalarRow> rows;
-  for (const ScalarRow& row : subject.block.rows) {
-    if (row.kind != RowKind::inequality) rows.push_back(row);
-  }
-  const GenericRank before = generic_rank(rows);
-  for (const Block& coordinate : subject.coordinates) {
-    rows.push_back(coordinate.rows.front());
-    const GenericRank after = generic_rank(rows);
-    rows.pop_back();
-    if (after.poses == 0 || after.rank > before.rank || is_included(coordinate, subject.joint))
-      continue;
-    findings.push_back({Level::error,
-                        "held",
-                        place_of(coordinate, subject.joint),
-                        {},
-                        "the coordinate " + coordinate.name + " is not free: the rows hold it",
-                        "drop the coordinate"});
+  for (const Coordinate& c : held_coordinates(subject.joint)) {
+    if (!c.from.empty()) continue;  // dropped, and no mistake of this spec
+    const Diagnostic said = held_error(c);
+    findings.push_back({Level::error, "held", said.where, said.also, said.message, said.fix});
   }
 }
 

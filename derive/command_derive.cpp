@@ -9,6 +9,7 @@
 #include "derive/commands.hpp"
 #include "derive/diff.hpp"
 #include "derive/generate.hpp"
+#include "derive/held.hpp"
 #include "derive/prove.hpp"
 #include "derive/specs_folder.hpp"
 
@@ -40,6 +41,10 @@ std::vector<Joint> read_and_prove(const std::vector<fs::path>& paths, const Spec
     if (!read.joint) {
       failed = true;
       continue;
+    }
+    for (const Coordinate& held : held_coordinates(*read.joint)) {
+      failed = true;
+      std::cerr << render(*read.file, held_error(held));
     }
     const Proof proof = prove(*read.joint, derive_rows(*read.joint));
     for (const Law& law : proof.laws) {

@@ -190,8 +190,9 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
   }
   joint_.uses_time |= depends_on_role(v.e, Role::time);
   const Unit unit = d.unit ? d.unit->unit : v.unit.value_or(Unit{});
+  const std::string from = source.include ? source.including.back() : "";
   joint_.coordinates.push_back(
-      {full, v.e, unit, in_spec(source, d.name.where), written(source, s)});
+      {full, v.e, unit, in_spec(source, d.name.where), written(source, s), from, {}});
 }
 
 // A row or the right side of a coordinate as its author wrote it, in one line, with the names that

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "derive/explain_lecture.hpp"
+#include "derive/held.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -42,14 +43,6 @@ void describe(const Lecture& lecture, const Parameter& p, Step& step) {
     formulas.push_back(lecture.notation.of(p.default_value));
   }
   step.list(words, std::move(formulas));
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string all;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    all += (i == 0 ? "" : i + 1 == names.size() ? " and " : ", ") + names[i];
-  }
-  return all;
 }
 
 void explain_rows(Lecture& lecture, const Part& part) {
@@ -113,7 +106,7 @@ void introduce(Lecture& lecture) {
   if (!joint.source.empty()) step.say("Source: " + joint.source);
   if (!joint.includes.empty()) {
     const std::string word = joint.includes.size() > 1 ? "joints " : "joint ";
-    step.say("Composed of the " + word + joined(joint.includes) + ".");
+    step.say("Composed of the " + word + listed(joint.includes) + ".");
   }
   step.say(
       "Vectors are in world axes; × is the cross product of the plane, "
@@ -121,12 +114,16 @@ void introduce(Lecture& lecture) {
   const BodySymbols a = body_symbols(joint, 0);
   const std::string others = joint.bodies.size() > 1 ? "; likewise the others" : "";
   step.list(
-      (joint.bodies.size() > 1 ? "bodies " : "body ") + joined(joint.bodies) +
+      (joint.bodies.size() > 1 ? "bodies " : "body ") + listed(joint.bodies) +
           "; of a: centre of mass {} [m], angle {} [rad], their rates {} [m/s] and {} [rad/s], "
           "inverse mass {} [1/kg], inverse inertia {} [1/(kg m^2)]" +
           others,
       {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
   for (const Parameter& p : joint.parameters) describe(lecture, p, step);
+  for (const Coordinate& c : joint.dropped) {
+    step.say("The coordinate " + c.name + " that the included joint " + c.from + " leaves free (`" + c.text +
+             "`) is none here: " + held_text(c) + ".");
+  }
 }
 
 Explanation explain(const Joint& joint) {

@@ -54,6 +54,8 @@ struct Coordinate {
   Unit unit;
   Span where;
   std::string text;
+  std::string from;                  // the included joint that it came from; empty if written here
+  std::vector<std::string> held_by;  // rows that leave it no freedom (held.hpp)
 };
 
 // Folders, namespaces and headers of specs are named so.
@@ -70,6 +72,7 @@ struct Joint {
   std::vector<Let> lets;
   std::vector<Row> rows;
   std::vector<Coordinate> coordinates;
+  std::vector<Coordinate> dropped;  // that an include brought, but rows hold
   std::shared_ptr<const SourceFile> file;  // for messages of later stages
   bool uses_world = false;  // some parameter is fixed in the world: momentum is not conserved, and need not be
   bool uses_time = false;

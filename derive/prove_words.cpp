@@ -34,15 +34,6 @@ std::string vanishing_vector(Expr u, const Joint& joint) {
   return said(u, joint) + " = 0";
 }
 
-std::string listed(std::span<const std::string> parts, std::string_view last) {
-  std::string s;
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    s += i == 0 ? "" : i + 1 == parts.size() ? last : ", ";
-    s += parts[i];
-  }
-  return s;
-}
-
 std::vector<Span> occurrences(const SourceFile& file, Span where,
                               const std::set<std::string>& words) {
   const std::string& text = file.text;

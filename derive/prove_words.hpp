@@ -18,9 +18,6 @@ std::string said(Expr e, const Joint& joint);
 // The equation that holds u at zero: `pa = pb` if u is pa - pb, else `u = 0`.
 std::string vanishing_vector(Expr u, const Joint& joint);
 
-// "x, y and z"
-std::string listed(std::span<const std::string> parts, std::string_view last = " and ");
-
 // Where the words stand in this part of the file, as whole words, in order.
 std::vector<Span> occurrences(const SourceFile& file, Span where,
                               const std::set<std::string>& words);

@@ -248,6 +248,15 @@ std::string render(const SourceFile& file, const Diagnostics& all) {
   return out;
 }
 
+std::string listed(std::span<const std::string> parts, std::string_view last) {
+  std::string s;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    s += i == 0 ? "" : i + 1 == parts.size() ? last : ", ";
+    s += parts[i];
+  }
+  return s;
+}
+
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates) {
   if (word.size() > 64) return {};
   const std::string lower = lower_case(word);

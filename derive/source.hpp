@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,6 +58,9 @@ struct Diagnostics {
 //     fix: ...
 std::string render(const SourceFile& file, const Diagnostic& d);
 std::string render(const SourceFile& file, const Diagnostics& all);
+
+// "x, y and z"
+std::string listed(std::span<const std::string> parts, std::string_view last = " and ");
 
 // The nearest of the candidates for "did you mean", empty if none is near.
 std::string nearest(std::string_view word, const std::vector<std::string>& candidates);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "derive/held.hpp"
+
 namespace cdot::derive {
 
 namespace fs = std::filesystem;
@@ -50,7 +52,9 @@ ReadResult SpecsFolder::read(const fs::path& spec, const ReadOptions& options) c
   Library library;
   if (fs::is_directory(space)) library = load_library(space);
   library.merge(load_library(spec.has_parent_path() ? spec.parent_path() : fs::path(".")));
-  return read_joint(file, library, options);
+  ReadResult result = read_joint(file, library, options);
+  if (result.joint) drop_held_coordinates(*result.joint);
+  return result;
 }
 
 }  // namespace cdot::derive

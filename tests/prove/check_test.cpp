@@ -56,6 +56,38 @@ TEST(Check, AbsoluteAnglesDoNotConserveMomentum) {
   EXPECT_TRUE(mentions(said, "angle(a) and angle(b)")) << said;
 }
 
+TEST(Check, ACoordinateThatARowHoldsIsAnError) {
+  std::string said;
+  const std::string rows = "  pa = pb\n  angle(b) = angle(a)\n  coordinate turn = angle(b) - angle(a)\n";
+  EXPECT_FALSE(checked(rows, &said).clean());
+  EXPECT_TRUE(mentions(said, "own.joint:7:14: error: the coordinate turn is not free: the row C2 holds it")) << said;
+  EXPECT_TRUE(mentions(said, "fix: drop the coordinate")) << said;
+}
+
+// A limit holds nothing: what it limits is still free below it.
+TEST(Check, AnInequalityHoldsNoCoordinate) {
+  EXPECT_TRUE(checked("  norm(pa - pb) <= 2 [m]\n  coordinate length = norm(pa - pb)\n").clean());
+}
+
+// A revolute's angle in a weld: gone from the joint, and no mistake of its spec.
+TEST(Check, WhatAnIncludeLeavesFreeAndARowHoldsIsDropped) {
+  const SpecsFolder folder(std::filesystem::path(CDOT_SOURCE_DIR) / "specs");
+  for (const auto& [name, row] : {std::pair{"weld", "angular"}, {"driven_crank", "crank"}}) {
+    const ReadResult read = folder.read(folder.find(name));
+    ASSERT_TRUE(read.joint);
+    EXPECT_TRUE(read.joint->coordinates.empty());
+    ASSERT_EQ(read.joint->dropped.size(), 1u);
+    const Coordinate& dropped = read.joint->dropped.front();
+    EXPECT_EQ(dropped.name, "angle");
+    EXPECT_EQ(dropped.from, "revolute");
+    EXPECT_EQ(dropped.held_by, std::vector<std::string>{row});
+    EXPECT_TRUE(check(read).clean());
+  }
+  const ReadResult free = folder.read(folder.find("prismatic"));
+  EXPECT_EQ(free.joint->coordinates.size(), 1u);
+  EXPECT_TRUE(free.joint->dropped.empty());
+}
+
 TEST(Check, TellsWhereTheEffectiveMassIsSingular) {
   std::string said;
   EXPECT_TRUE(checked("  pa = pb\n", &said).clean());
