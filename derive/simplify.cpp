@@ -231,9 +231,34 @@ std::optional<Program> take_out_factor(const Program& program) {
   });
 }
 
+// -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for whatever uses the sum, not one per term.
+Program take_out_coefficients(const Program& program) {
+  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
+                           const std::vector<int>& at) -> std::optional<int> {
+    // What has a name in the spec keeps it.
+    if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
+    const bool alike = std::all_of(op.coefs.begin(), op.coefs.end(),
+                                   [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
+    const bool negative = std::all_of(op.coefs.begin(), op.coefs.end(),
+                                      [](Rational c) { return c.sign() < 0; });
+    const Rational factor = (negative ? Rational(-1) : Rational(1)) *
+                            (alike ? abs(op.coefs[0]) : Rational(1));
+    if (factor == Rational(1)) return std::nullopt;
+    std::vector<int> args;
+    std::vector<Rational> coefs;
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      args.push_back(at[static_cast<std::size_t>(op.args[i])]);
+      coefs.push_back(op.coefs[i] / factor);
+    }
+    const int core = builder.sum(std::move(args), std::move(coefs));
+    return builder.sum({core}, {factor});
+  });
+}
+
 // (x + y) + z = x + y + z and -(x - y) = y - x, where the inner sum is nobody else's.
-bool flattens(const Operation& outer, const Operation& inner, int uses) {
+bool flattens(const Operation& outer, Rational coef, const Operation& inner, int uses) {
   if (inner.kind != OpKind::sum || uses != 1) return false;
+  if (abs(coef) != Rational(1) && inner.args.size() > 1) return false;  // 2 (x + y) is cheaper
   const bool opens_with_minus = outer.args.size() == 1 && outer.coefs[0] == Rational(-1);
   const bool has_minus = std::any_of(inner.coefs.begin(), inner.coefs.end(),
                                      [](Rational c) { return c.sign() < 0; });
@@ -245,9 +270,10 @@ Program flatten_sums(const Program& program) {
   std::vector<bool> absorbed(program.ops.size());
   for (std::size_t i = 0; i < program.ops.size(); ++i) {
     if (uses[i] == 0 || program.ops[i].kind != OpKind::sum) continue;
-    for (const int arg : program.ops[i].args) {
-      const std::size_t a = static_cast<std::size_t>(arg);
-      absorbed[a] = flattens(program.ops[i], program.ops[a], uses[a]);
+    const Operation& outer = program.ops[i];
+    for (std::size_t k = 0; k < outer.args.size(); ++k) {
+      const auto a = static_cast<std::size_t>(outer.args[k]);
+      absorbed[a] = flattens(outer, outer.coefs[k], program.ops[a], uses[a]);
     }
   }
   return copy(program, [&](ProgramBuilder& builder, const Operation& op, int index,
@@ -297,11 +323,17 @@ Program simplify(const Program& program) {
     improved = false;
     const Program start = best;
     for (const auto& order : orders) {
-      Program candidate = start;
-      for (const Pass pass : order) candidate = flatten_sums(exhaust(std::move(candidate), pass));
-      if (weight(count(candidate)) >= weight(count(best))) continue;
-      best = std::move(candidate);
-      improved = true;
+      for (const bool coefficients_out : {false, true}) {
+        const auto tidied = [&](const Program& p) {
+          return flatten_sums(coefficients_out ? take_out_coefficients(p) : p);
+        };
+        Program candidate = tidied(start);
+        for (const Pass pass : order) candidate = flatten_sums(exhaust(std::move(candidate), pass));
+        candidate = tidied(candidate);
+        if (weight(count(candidate)) >= weight(count(best))) continue;
+        best = std::move(candidate);
+        improved = true;
+      }
     }
   }
   return best;

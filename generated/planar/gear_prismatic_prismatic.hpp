@@ -252,7 +252,7 @@ struct gear_prismatic_prismatic {
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_eb;
   }
 
-  // -Jdot v - d/dt(dC/dt): 54 +, 63 *
+  // -Jdot v - d/dt(dC/dt): 52 +, 63 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -281,7 +281,7 @@ struct gear_prismatic_prismatic {
     const T ua_x = a.x - c.x + ra_x - rc_x;
     const T ua_y = a.y - c.y + ra_y - rc_y;
     const T qa = ua_x * ea_x + ua_y * ea_y;
-    const T qa_dot_dot = dot_ua_dot_dot_ea + vc.w * (-T(2) * ua_dot_x_ea - vc.w * qa);
+    const T qa_dot_dot = dot_ua_dot_dot_ea - vc.w * (T(2) * ua_dot_x_ea + vc.w * qa);
     const T eb_x = d.c * p.eb_x - d.s * p.eb_y;
     const T eb_y = d.c * p.eb_y + d.s * p.eb_x;
     const T g1_3 = vb.w * vb.w;
@@ -299,7 +299,7 @@ struct gear_prismatic_prismatic {
     const T ub_x = b.x - d.x + rb_x - rd_x;
     const T ub_y = b.y - d.y + rb_y - rd_y;
     const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T qb_dot_dot = dot_ub_dot_dot_eb + vd.w * (-T(2) * ub_dot_x_eb - vd.w * qb);
+    const T qb_dot_dot = dot_ub_dot_dot_eb - vd.w * (T(2) * ub_dot_x_eb + vd.w * qb);
     g[0] = -qa_dot_dot - p.ratio * qb_dot_dot;
   }
 
@@ -802,7 +802,7 @@ struct gear_prismatic_prismatic::a_immovable : gear_prismatic_prismatic {
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_eb;
   }
 
-  // -Jdot v - d/dt(dC/dt): 48 +, 55 *
+  // -Jdot v - d/dt(dC/dt): 47 +, 55 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -843,7 +843,7 @@ struct gear_prismatic_prismatic::a_immovable : gear_prismatic_prismatic {
     const T ub_x = b.x - d.x + rb_x - rd_x;
     const T ub_y = b.y - d.y + rb_y - rd_y;
     const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T qb_dot_dot = dot_ub_dot_dot_eb + vd.w * (-T(2) * ub_dot_x_eb - vd.w * qb);
+    const T qb_dot_dot = dot_ub_dot_dot_eb - vd.w * (T(2) * ub_dot_x_eb + vd.w * qb);
     g[0] = -vc.w * (vc.w * (dot_rc_ea - qa) - T(2) * ua_dot_x_ea) - p.ratio * qb_dot_dot;
   }
 
@@ -966,14 +966,14 @@ struct gear_prismatic_prismatic::b_immovable : gear_prismatic_prismatic {
         J.ratio * J.ratio * (md.m + md.I * J.rd_ub_x_eb * J.rd_ub_x_eb);
   }
 
-  // J v: 9 +, 8 *
+  // J v: 8 +, 8 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[4], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vc = v[2];
     const Velocity<T>& vd = v[3];
-    Jv[0] = J.ra_x_ea * va.w - J.rc_ua_x_ea * vc.w + J.ratio *
-        (-J.eb_x * vd.x - J.eb_y * vd.y - J.rd_ub_x_eb * vd.w) + J.ea_x * (va.x - vc.x) + J.ea_y *
+    Jv[0] = J.ra_x_ea * va.w - J.rc_ua_x_ea * vc.w - J.ratio *
+        (J.eb_x * vd.x + J.eb_y * vd.y + J.rd_ub_x_eb * vd.w) + J.ea_x * (va.x - vc.x) + J.ea_y *
         (va.y - vc.y);
   }
 
@@ -1041,7 +1041,7 @@ struct gear_prismatic_prismatic::b_immovable : gear_prismatic_prismatic {
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_eb;
   }
 
-  // -Jdot v - d/dt(dC/dt): 48 +, 55 *
+  // -Jdot v - d/dt(dC/dt): 47 +, 55 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -1071,7 +1071,7 @@ struct gear_prismatic_prismatic::b_immovable : gear_prismatic_prismatic {
     const T ua_x = a.x - c.x + ra_x - rc_x;
     const T ua_y = a.y - c.y + ra_y - rc_y;
     const T qa = ua_x * ea_x + ua_y * ea_y;
-    const T qa_dot_dot = dot_ua_dot_dot_ea + vc.w * (-T(2) * ua_dot_x_ea - vc.w * qa);
+    const T qa_dot_dot = dot_ua_dot_dot_ea - vc.w * (T(2) * ua_dot_x_ea + vc.w * qa);
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
     const T ub_dot_x = vd.w * rd_y - vd.x;
@@ -1282,7 +1282,7 @@ struct gear_prismatic_prismatic::c_immovable : gear_prismatic_prismatic {
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_eb;
   }
 
-  // -Jdot v - d/dt(dC/dt): 32 +, 44 *
+  // -Jdot v - d/dt(dC/dt): 31 +, 44 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -1317,7 +1317,7 @@ struct gear_prismatic_prismatic::c_immovable : gear_prismatic_prismatic {
     const T ub_x = b.x - d.x + rb_x - rd_x;
     const T ub_y = b.y - d.y + rb_y - rd_y;
     const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T qb_dot_dot = dot_ub_dot_dot_eb + vd.w * (-T(2) * ub_dot_x_eb - vd.w * qb);
+    const T qb_dot_dot = dot_ub_dot_dot_eb - vd.w * (T(2) * ub_dot_x_eb + vd.w * qb);
     g[0] = va.w * va.w * dot_ra_ea - p.ratio * qb_dot_dot;
   }
 
@@ -1502,7 +1502,7 @@ struct gear_prismatic_prismatic::d_immovable : gear_prismatic_prismatic {
     D[0][8] = -mc.I * J.rc_ua_x_ea;
   }
 
-  // -Jdot v - d/dt(dC/dt): 32 +, 44 *
+  // -Jdot v - d/dt(dC/dt): 31 +, 44 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -1532,7 +1532,7 @@ struct gear_prismatic_prismatic::d_immovable : gear_prismatic_prismatic {
     const T ua_x = a.x - c.x + ra_x - rc_x;
     const T ua_y = a.y - c.y + ra_y - rc_y;
     const T qa = ua_x * ea_x + ua_y * ea_y;
-    const T qa_dot_dot = dot_ua_dot_dot_ea + vc.w * (-T(2) * ua_dot_x_ea - vc.w * qa);
+    const T qa_dot_dot = dot_ua_dot_dot_ea - vc.w * (T(2) * ua_dot_x_ea + vc.w * qa);
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T eb_x = d.c * p.eb_x - d.s * p.eb_y;

@@ -200,7 +200,7 @@ struct gear_revolute_prismatic {
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_e;
   }
 
-  // -Jdot v - d/dt(dC/dt): 27 +, 32 *
+  // -Jdot v - d/dt(dC/dt): 26 +, 32 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -225,7 +225,7 @@ struct gear_revolute_prismatic {
     const T ub_x = b.x - d.x + rb_x - rd_x;
     const T ub_y = b.y - d.y + rb_y - rd_y;
     const T qb = ub_x * e_x + ub_y * e_y;
-    const T qb_dot_dot = dot_ub_dot_dot_e + vd.w * (-T(2) * ub_dot_x_e - vd.w * qb);
+    const T qb_dot_dot = dot_ub_dot_dot_e - vd.w * (T(2) * ub_dot_x_e + vd.w * qb);
     g[0] = -p.ratio * qb_dot_dot;
   }
 
@@ -455,13 +455,13 @@ struct gear_revolute_prismatic::b_immovable : gear_revolute_prismatic {
     K[0] = ma.I + mc.I + J.ratio * J.ratio * (md.m + md.I * J.rd_ub_x_e * J.rd_ub_x_e);
   }
 
-  // J v: 5 +, 4 *
+  // J v: 4 +, 4 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[4], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vc = v[2];
     const Velocity<T>& vd = v[3];
-    Jv[0] = va.w - vc.w + J.ratio * (-J.e_x * vd.x - J.e_y * vd.y - J.rd_ub_x_e * vd.w);
+    Jv[0] = va.w - vc.w - J.ratio * (J.e_x * vd.x + J.e_y * vd.y + J.rd_ub_x_e * vd.w);
   }
 
   // v += M^-1 J^T lambda: 5 +, 8 *
@@ -651,7 +651,7 @@ struct gear_revolute_prismatic::c_immovable : gear_revolute_prismatic {
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_e;
   }
 
-  // -Jdot v - d/dt(dC/dt): 27 +, 32 *
+  // -Jdot v - d/dt(dC/dt): 26 +, 32 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -678,7 +678,7 @@ struct gear_revolute_prismatic::c_immovable : gear_revolute_prismatic {
     const T ub_x = b.x - d.x + rb_x - rd_x;
     const T ub_y = b.y - d.y + rb_y - rd_y;
     const T qb = ub_x * e_x + ub_y * e_y;
-    const T qb_dot_dot = dot_ub_dot_dot_e + vd.w * (-T(2) * ub_dot_x_e - vd.w * qb);
+    const T qb_dot_dot = dot_ub_dot_dot_e - vd.w * (T(2) * ub_dot_x_e + vd.w * qb);
     g[0] = -p.ratio * qb_dot_dot;
   }
 };

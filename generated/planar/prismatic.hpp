@@ -137,7 +137,7 @@ struct prismatic {
     Jv[1] = va.w - vb.w;
   }
 
-  // v += M^-1 J^T lambda: 9 +, 10 *
+  // v += M^-1 J^T lambda: 8 +, 10 *
   template <class T>
   static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[2],
       Velocity<T> (&v)[2]) {
@@ -152,7 +152,7 @@ struct prismatic {
     v[0].w = va.w + ma.I * (lambda[1] + J.ra_x_t * lambda[0]);
     v[1].x = vb.x - v2_1 * J.t_x;
     v[1].y = vb.y - v2_1 * J.t_y;
-    v[1].w = vb.w + mb.I * (-lambda[1] - J.rb_u_x_t * lambda[0]);
+    v[1].w = vb.w - mb.I * (lambda[1] + J.rb_u_x_t * lambda[0]);
   }
 
   // J with its zeros: v_x, v_y, w of each body: 3 +
@@ -575,7 +575,7 @@ struct prismatic::a_immovable : prismatic {
     Jv[1] = -vb.w;
   }
 
-  // v += M^-1 J^T lambda: 5 +, 5 *
+  // v += M^-1 J^T lambda: 4 +, 5 *
   template <class T>
   static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[2],
       Velocity<T> (&v)[2]) {
@@ -584,7 +584,7 @@ struct prismatic::a_immovable : prismatic {
     const T v2_1 = mb.m * lambda[0];
     v[1].x = vb.x - v2_1 * J.t_x;
     v[1].y = vb.y - v2_1 * J.t_y;
-    v[1].w = vb.w + mb.I * (-lambda[1] - J.rb_u_x_t * lambda[0]);
+    v[1].w = vb.w - mb.I * (lambda[1] + J.rb_u_x_t * lambda[0]);
   }
 
   // J with its zeros: v_x, v_y, w of each body: 3 +

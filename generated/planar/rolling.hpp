@@ -146,7 +146,7 @@ struct rolling {
     Jv[1] = J.radius * va.w - J.e_y * vb.y - J.n_x * va.y + J.wb_2 * vb.w + J.n_y * Jv1_1;
   }
 
-  // v += M^-1 J^T lambda: 11 +, 14 *
+  // v += M^-1 J^T lambda: 10 +, 14 *
   template <class T>
   static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[2],
       Velocity<T> (&v)[2]) {
@@ -160,7 +160,7 @@ struct rolling {
     v[0].y = va.y + ma.m * (v1_1_2 - J.n_x * lambda[1]);
     v[0].w = va.w + ma.I * J.radius * lambda[1];
     v[1].x = vb.x - mb.m * v1_1;
-    v[1].y = vb.y + mb.m * (-J.e_y * lambda[1] - v1_1_2);
+    v[1].y = vb.y - mb.m * (J.e_y * lambda[1] + v1_1_2);
     v[1].w = vb.w + mb.I * (J.wb_2 * lambda[1] - J.rb_u_x_n * lambda[0]);
   }
 
@@ -560,14 +560,14 @@ struct rolling::a_immovable : rolling {
     Jv[1] = J.wb_2 * vb.w - J.e_y * vb.y - J.n_y * vb.x;
   }
 
-  // v += M^-1 J^T lambda: 8 +, 9 *
+  // v += M^-1 J^T lambda: 6 +, 9 *
   template <class T>
   static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[2],
       Velocity<T> (&v)[2]) {
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
-    v[1].x = vb.x + mb.m * (-J.n_x * lambda[0] - J.n_y * lambda[1]);
-    v[1].y = vb.y + mb.m * (-J.e_y * lambda[1] - J.n_y * lambda[0]);
+    v[1].x = vb.x - mb.m * (J.n_x * lambda[0] + J.n_y * lambda[1]);
+    v[1].y = vb.y - mb.m * (J.e_y * lambda[1] + J.n_y * lambda[0]);
     v[1].w = vb.w + mb.I * (J.wb_2 * lambda[1] - J.rb_u_x_n * lambda[0]);
   }
 

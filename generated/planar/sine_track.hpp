@@ -82,7 +82,7 @@ struct sine_track {
     C[0] = -u_x_f_x - p.amplitude * sin(p.k * s_x);
   }
 
-  // C and J: 25 +, 27 *, 2 call
+  // C and J: 24 +, 27 *, 2 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -102,15 +102,15 @@ struct sine_track {
     const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T C1_1 = p.k * s_x;
     const T va_x_1 = cos(C1_1) * p.amplitude * p.k;
-    const T va_x_2 = -f_x_y - va_x_1 * f_x_x;
+    const T va_x_2 = f_x_y + va_x_1 * f_x_x;
     const T va_y_1 = f_x_x - va_x_1 * f_x_y;
     C[0] = -u_x_f_x - p.amplitude * sin(C1_1);
-    J.va_x = va_x_2;
+    J.va_x = -va_x_2;
     J.va_y = va_y_1;
-    J.wa = va_y_1 * ra_x - va_x_2 * ra_y;
-    J.vb_x = -va_x_2;
+    J.wa = va_y_1 * ra_x + va_x_2 * ra_y;
+    J.vb_x = va_x_2;
     J.vb_y = -va_y_1;
-    J.wb = va_x_1 * u_x_f_x - s_x - va_y_1 * rb_x + va_x_2 * rb_y;
+    J.wb = va_x_1 * u_x_f_x - s_x - va_y_1 * rb_x - va_x_2 * rb_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 5 +, 10 *
@@ -192,7 +192,7 @@ struct sine_track {
     D[0][5] = mb.I * J.wb;
   }
 
-  // -Jdot v - d/dt(dC/dt): 35 +, 46 *, 2 call
+  // -Jdot v - d/dt(dC/dt): 34 +, 46 *, 2 call
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -220,11 +220,11 @@ struct sine_track {
     const T u_y = a.y - b.y + ra_y - rb_y;
     const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
     const T s_x_dot = dot_u_dot_f_x - vb.w * u_x_f_x;
-    const T s_y_dot_dot = vb.w * (-s_x_dot - dot_u_dot_f_x) - u_dot_dot_x_f_x;
+    const T s_y_dot_dot = -u_dot_dot_x_f_x - vb.w * (s_x_dot + dot_u_dot_f_x);
     const T dot_u_dot_dot_f_x = f_x_x * u_dot_dot_x + f_x_y * u_dot_dot_y;
     const T u_dot_x_f_x = u_dot_x * f_x_y - u_dot_y * f_x_x;
     const T s_x = u_x * f_x_x + u_y * f_x_y;
-    const T s_x_dot_dot = dot_u_dot_dot_f_x + vb.w * (-T(2) * u_dot_x_f_x - vb.w * s_x);
+    const T s_x_dot_dot = dot_u_dot_dot_f_x - vb.w * (T(2) * u_dot_x_f_x + vb.w * s_x);
     const T g1_3 = p.k * s_x;
     g[0] = p.amplitude * p.k * (s_x_dot_dot * cos(g1_3) - p.k * s_x_dot * s_x_dot * sin(g1_3)) -
         s_y_dot_dot;
@@ -644,7 +644,7 @@ struct sine_track::a_immovable : sine_track {
     D[0][5] = mb.I * J.wb;
   }
 
-  // -Jdot v - d/dt(dC/dt): 29 +, 39 *, 2 call
+  // -Jdot v - d/dt(dC/dt): 28 +, 39 *, 2 call
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -671,9 +671,9 @@ struct sine_track::a_immovable : sine_track {
     const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T dot_rb_f_x = f_x_x * rb_x + f_x_y * rb_y;
     const T g1_1 = p.k * s_x;
-    g[0] = p.amplitude * p.k * (vb.w * (vb.w * (dot_rb_f_x - s_x) - T(2) * u_dot_x_f_x) *
-        cos(g1_1) - p.k * s_x_dot * s_x_dot * sin(g1_1)) - vb.w *
-        (-s_x_dot - dot_u_dot_f_x - vb.w * rb_x_f_x);
+    g[0] = vb.w * (s_x_dot + dot_u_dot_f_x + vb.w * rb_x_f_x) + p.amplitude * p.k *
+        (vb.w * (vb.w * (dot_rb_f_x - s_x) - T(2) * u_dot_x_f_x) * cos(g1_1) - p.k * s_x_dot *
+        s_x_dot * sin(g1_1));
   }
 
   // d(J^T lambda)/dq: x, y, angle of each body: 32 +, 51 *, 2 call
@@ -845,7 +845,7 @@ struct sine_track::b_immovable : sine_track {
         s_x_dot * sin(g1_2);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 19 +, 36 *, 2 call
+  // d(J^T lambda)/dq: x, y, angle of each body: 18 +, 36 *, 2 call
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[6][6]) {
@@ -884,7 +884,7 @@ struct sine_track::b_immovable : sine_track {
     H[2][0] = H1_1_3;
     H[2][1] = H2_1_2;
     H[2][2] = H1_3 * ra_x_f_x * ra_x_f_x - lambda[0] *
-        ((f_x_x - H3_1 * f_x_y) * ra_y + (-f_x_y - H3_1 * f_x_x) * ra_x);
+        ((f_x_x - H3_1 * f_x_y) * ra_y - (f_x_y + H3_1 * f_x_x) * ra_x);
   }
 };
 
