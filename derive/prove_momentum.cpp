@@ -74,6 +74,17 @@ class Momentum {
     return all_vanish(components_of(felt.translation));
   }
   bool rotation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.rotation)); }
+  // A vector C that turns with the bodies, dC/dt = w x C, is felt by its components along the axes e
+  // of the world, e . (w x C) = w . (C x e), and that only where C is not zero.
+  bool turns_with_the_bodies(const ScalarRow& row, const Felt& felt) {
+    if (row.component < 0 || row.kind != RowKind::equality) return false;
+    const Expr axis = world_axes(*joint_.pool)[static_cast<std::size_t>(row.component)];
+    for (const Expr e : components_of(felt.rotation - cross(row.row->C, axis))) {
+      if (names_.is_zero(names_.of(e)) != Algebra::Zero::yes) return false;
+    }
+    only_on_constraint_ = true;
+    return true;
+  }
   bool only_on_constraint() const { return only_on_constraint_; }
 
   // The fewest terms of a row whose removal leaves nothing to feel.
@@ -208,7 +219,8 @@ Law conserves_momentum(const Joint& joint, const Block& block, Algebra& names) {
     if (!momentum.translation_vanishes(felt)) {
       return broken(joint, block, row, felt, false, momentum);
     }
-    if (!momentum.rotation_vanishes(felt)) return broken(joint, block, row, felt, true, momentum);
+    if (!momentum.turns_with_the_bodies(row, felt) && !momentum.rotation_vanishes(felt))
+      return broken(joint, block, row, felt, true, momentum);
   }
   law.verdict = Verdict::holds;
   if (momentum.only_on_constraint()) law.text = "where C = 0";
