@@ -20,7 +20,9 @@ std::string kind_of(const Joint& joint, const Parameter& p) {
     case ParameterKind::unit:
       return "a direction (a vector of length 1) fixed in " + where;
     case ParameterKind::frame:
-      return "the x axis of a frame fixed in " + where;
+      return (joint.dimension == 2 ? "the x axis of a frame fixed in "
+                                   : "the x axis of a right-handed frame fixed in ") +
+             where;
     case ParameterKind::scalar:
       break;
   }
@@ -37,12 +39,44 @@ void describe(const Lecture& lecture, const Parameter& p, Step& step) {
     formulas.push_back(leaf(p.symbol));
     formulas.push_back(leaf(body_symbols(lecture.joint, p.body).x));
   }
+  if (frame && !p.axes.empty()) {
+    words += ", with the axes {} and {}";
+    formulas.push_back(leaf(p.axes[1]));
+    formulas.push_back(leaf(p.axes[2]));
+  }
   if (p.default_value) {
     const bool constant = p.default_value->kind == Kind::number;
     words += constant ? "; by default {}" : "; by default {} at the start";
     formulas.push_back(lecture.notation.of(p.default_value));
   }
   step.list(words, std::move(formulas));
+}
+
+void introduce_bodies(const Joint& joint, Step& step) {
+  const BodySymbols a = body_symbols(joint, 0);
+  const std::string who = (joint.bodies.size() > 1 ? "bodies " : "body ") + listed(joint.bodies);
+  const std::string others = joint.bodies.size() > 1 ? "; likewise the others" : "";
+  const std::string rates = "their rates {} [m/s] and {} [rad/s], inverse mass {} [1/kg], ";
+  if (joint.dimension == 2) {
+    step.say(
+        "Vectors are in world axes; × is the cross product of the plane, "
+        "w × r = w perp(r), perp(r) = (-r.y, r.x).");
+    step.list(who + "; of a: centre of mass {} [m], angle {} [rad], " + rates +
+                  "inverse inertia {} [1/(kg m^2)]" + others,
+              {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
+    return;
+  }
+  step.say(
+      "Vectors are in world axes. What is fixed in a body turns with it, d/dt of a body-fixed "
+      "vector "
+      "= w × r; S(r) is the matrix with S(r) u = r × u.");
+  step.list(who +
+                "; of a: centre of mass {} [m], rotation matrix {} (of the Euler parameters {}, a "
+                "unit quaternion), " +
+                rates + "inverse inertia {} [1/(kg m^2)], a symmetric tensor in world axes" +
+                others,
+            {leaf(a.x), leaf({}, "A_a"), leaf({}, "e_a"), leaf(a.v), leaf(a.w), leaf(a.inv_m),
+             leaf(a.inv_I)});
 }
 
 void explain_rows(Lecture& lecture, const Part& part) {
@@ -108,27 +142,17 @@ void introduce(Lecture& lecture) {
     const std::string word = joint.includes.size() > 1 ? "joints " : "joint ";
     step.say("Composed of the " + word + listed(joint.includes) + ".");
   }
-  step.say(
-      "Vectors are in world axes; × is the cross product of the plane, "
-      "w × r = w perp(r), perp(r) = (-r.y, r.x).");
-  const BodySymbols a = body_symbols(joint, 0);
-  const std::string others = joint.bodies.size() > 1 ? "; likewise the others" : "";
-  step.list(
-      (joint.bodies.size() > 1 ? "bodies " : "body ") + listed(joint.bodies) +
-          "; of a: centre of mass {} [m], angle {} [rad], their rates {} [m/s] and {} [rad/s], "
-          "inverse mass {} [1/kg], inverse inertia {} [1/(kg m^2)]" +
-          others,
-      {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
+  introduce_bodies(joint, step);
   for (const Parameter& p : joint.parameters) describe(lecture, p, step);
   for (const Coordinate& c : joint.dropped) {
-    step.say("The coordinate " + c.name + " that the included joint " + c.from + " leaves free (`" + c.text +
-             "`) is none here: " + held_text(c) + ".");
+    step.say("The coordinate " + c.name + " that the included joint " + c.from + " leaves free (`" +
+             c.text + "`) is none here: " + held_text(c) + ".");
   }
 }
 
 Explanation explain(const Joint& joint) {
   Lecture lecture(joint);
-  const Part rows = rows_part(joint);
+  const Part rows = rows_part(joint, lecture.notation);
   std::vector<Part> coordinates;
   for (const Coordinate& c : joint.coordinates) coordinates.push_back(coordinate_part(joint, c));
   introduce(lecture);

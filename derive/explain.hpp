@@ -57,6 +57,11 @@ std::string explanation_html(const Explanation& explanation);  // one file, no l
 std::string explanation_latex(
     const Explanation& explanation);  // an article that needs amsmath only
 
+// The names, C, J and K of the joint, then of each of its coordinates, without the way to them.
+std::vector<std::vector<Chain>> summarise(const Joint& joint);
+// For a terminal or a comment: one or more whole lines.
+std::string chain_text(const Chain& chain, std::size_t page_width);
+
 // C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain_json.cpp
 // gives the schema.
 nlohmann::ordered_json explanation_json(const Joint& joint);

@@ -149,8 +149,11 @@ std::vector<SignedFormula> terms_of(const Formula& f) {
 }
 
 std::string world_axis(Expr axis) {
-  const Expr ex = world_x(*axis->pool);
-  return axis == ex ? "x" : axis == perp(ex) ? "y" : "";
+  const std::vector<Expr> axes = world_axes(*axis->pool);
+  for (std::size_t k = 0; k < axes.size(); ++k) {
+    if (axis == axes[k]) return std::string(1, "xyz"[k]);
+  }
+  return "";
 }
 
 std::optional<AngleBetween> angle_between(Expr e) {
@@ -192,7 +195,7 @@ Formula Notation::written(Expr e) const {
     case Kind::dot:
       return dot_of(e);
     case Kind::cross:
-      return cross(of(e->args[0]), of(e->args[1]));
+      return cross_of(e);
     case Kind::perp:
       return form(Form::perp, of(e->args[0]));
     case Kind::tensor:
@@ -245,8 +248,10 @@ Formula Notation::sum_of(Expr e) const {
     Formula f = points.at[i]         ? leaf(points.at[i]->value, points.at[i]->name)
                 : is_one(e->args[i]) ? number(1)
                                      : of(e->args[i]);
+    const bool minus = is_negative(f);
+    if (minus) f = Formula(f.args[0]);
     f = is_one(f) ? number(abs(c)) : times(abs(c), std::move(f));
-    terms.push_back({c.sign() < 0, std::move(f)});
+    terms.push_back({(c.sign() < 0) != minus, std::move(f)});
   }
   return sum(positive_first(std::move(terms)));
 }
@@ -265,7 +270,16 @@ Formula Notation::dot_of(Expr e) const {
   const Expr u = e->args[0], v = e->args[1];
   if (const std::string axis = world_axis(u); !axis.empty()) return component(of(v), axis);
   if (const std::string axis = world_axis(v); !axis.empty()) return component(of(u), axis);
-  return v->unit_length && !u->unit_length ? dot(of(v), of(u)) : dot(of(u), of(v));
+  const Formula left = of(u);
+  if (u == v && left.form != Form::leaf) return power(form(Form::norm, left), 2);
+  return v->unit_length && !u->unit_length ? dot(of(v), left) : dot(left, of(v));
+}
+
+// The normal form has the arm first; -(r × w) is written w × r.
+Formula Notation::cross_of(Expr e) const {
+  const Expr u = e->args[0], v = e->args[1];
+  const bool turns = v->kind == Kind::symbol && v->role == Role::spin;
+  return turns ? negative(cross(of(v), of(u))) : cross(of(u), of(v));
 }
 
 // w perp(r) is written w × r.
@@ -311,7 +325,7 @@ Expr value_of(const Formula& f, Pool& pool) {
     case Form::unit:
       return unit(args[0]);
     case Form::component:
-      return dot(f.name == "x" ? world_x(pool) : perp(world_x(pool)), args[0]);
+      return dot(world_axes(pool)[static_cast<std::size_t>(f.name[0] - 'x')], args[0]);
     default:
       break;
   }

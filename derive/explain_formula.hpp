@@ -115,6 +115,7 @@ class Notation {
   Formula sum_of(Expr e) const;
   Formula product_of(Expr e) const;
   Formula dot_of(Expr e) const;
+  Formula cross_of(Expr e) const;
   Formula scale_of(Expr e) const;
 
   std::vector<Point> points_;

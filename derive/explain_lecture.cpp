@@ -21,15 +21,17 @@ Expr at_rest(Expr Cdot) {
   return sum(*Cdot->pool, terms, true);
 }
 
-// S(r) for perp(r), term by term; other columns as they are.
-Formula column(const Notation& notation, Expr w) {
-  std::vector<SignedFormula> terms;
-  for (const Term& term : terms_of(w)) {
-    Formula f = term.e->kind == Kind::perp ? form(Form::skew, notation.of(term.e->args[0]))
-                                           : notation.of(term.e);
-    terms.push_back({term.coef.sign() < 0, times(abs(term.coef), std::move(f))});
-  }
-  return sum(std::move(terms));
+// A vector as a row; a number is one already.
+Formula row_of(const Notation& notation, Expr e) {
+  if (is_zero(e)) return number(0);
+  if (!e->vector) return notation.of(e);
+  const Term term = split_coefficient(e);
+  const bool scaled = term.e->kind == Kind::scale && !Notation::has_name(term.e);
+  if (!scaled) return form(Form::transpose, notation.of(e));
+  Formula row = times(
+      abs(term.coef),
+      product({notation.of(term.e->args[0]), form(Form::transpose, notation.of(term.e->args[1]))}));
+  return term.coef.sign() < 0 ? negative(std::move(row)) : row;
 }
 
 }  // namespace
@@ -39,20 +41,20 @@ Step& Lecture::section(std::string heading) {
   return out.steps.back();
 }
 
-Part rows_part(const Joint& joint) {
+Part rows_part(const Joint& joint, const Notation& notation) {
   Part part{derive_rows(joint), {}};
   const std::vector<ScalarRow>& rows = part.block.rows;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = *rows[i].row;
     const bool vector = row.C->vector;
     const Expr Cdot = row.kind == RowKind::velocity ? row.C : time_derivative(row.C, joint);
-    const auto entries = vector ? isolate_vector(Cdot, joint) : std::nullopt;
+    const auto entries = vector ? isolate_vector(Cdot, joint, notation) : std::nullopt;
     if (!entries) {
       part.statements.push_back(scalar_statement(rows[i], i));
       continue;
     }
     part.statements.push_back({row.name, &row, row.kind, row.C, i, at_rest(Cdot), *entries});
-    ++i;  // its second component
+    i += static_cast<std::size_t>(joint.dimension) - 1;  // its other components
   }
   if (part.statements.size() == 1) part.statements[0].name.clear();
   return part;
@@ -80,17 +82,13 @@ Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& s) {
 }
 
 Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
-  if (s.vector()) {
-    const Expr v = s.entries[body].v;
-    return is_zero(v) ? number(0) : product({lecture.notation.of(v), identity()});
-  }
-  const Expr v = part.block.rows[s.first].J[body].v;
-  return is_zero(v) ? number(0) : form(Form::transpose, lecture.notation.of(v));
+  if (s.vector()) return s.entries[body].v;
+  return row_of(lecture.notation, part.block.rows[s.first].J[body].v);
 }
 
 Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
-  if (s.vector()) return column(lecture.notation, s.entries[body].w);
-  return lecture.notation.of(part.block.rows[s.first].J[body].w);
+  if (s.vector()) return s.entries[body].w;
+  return row_of(lecture.notation, part.block.rows[s.first].J[body].w);
 }
 
 }  // namespace cdot::derive

@@ -13,10 +13,10 @@ struct Statement {
   std::string name;          // "line"; empty if it is the only one
   const Row* row = nullptr;  // null for a coordinate
   RowKind kind = RowKind::equality;
-  Expr C;                            // scalar or vector; a velocity row: its velocity expression
-  std::size_t first = 0;             // its first scalar row in the block
-  Expr C_t;                          // dC/dt with the bodies at rest
-  std::vector<VectorEntry> entries;  // J of a vector row, by body
+  Expr C;                               // scalar or vector; a velocity row: its velocity expression
+  std::size_t first = 0;                // its first scalar row in the block
+  Expr C_t;                             // dC/dt with the bodies at rest
+  std::vector<VelocityBlocks> entries;  // J of a vector row, by body
 
   bool vector() const { return C->vector; }
 };
@@ -38,7 +38,7 @@ struct Lecture {
   Step& section(std::string heading);
 };
 
-Part rows_part(const Joint& joint);
+Part rows_part(const Joint& joint, const Notation& notation);
 Part coordinate_part(const Joint& joint, const Coordinate& coordinate);
 
 // "C", or "C_line" where there are several; e is what it equals, if that is an expression.
@@ -56,6 +56,9 @@ void state_constraint(Lecture& lecture, const Part& part);
 void differentiate(Lecture& lecture, const Part& part, Step& step);
 void isolate_velocities(Lecture& lecture, const Part& part, Step& step);
 void read_jacobian(Lecture& lecture, const Part& part, Step& step);
+Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s);
+// K entry by entry: scalar rows simplified, vector rows in blocks.
+void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>& chains);
 void multiply_mass(Lecture& lecture, const Part& part, Step& step);
 void differentiate_again(Lecture& lecture, const Part& part, Step& step);
 void state_limits(Lecture& lecture, const std::vector<const Part*>& parts);

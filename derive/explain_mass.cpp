@@ -32,13 +32,21 @@ void add_scalar_product(const Notation& notation, Expr inverse_mass, Expr vi, Ex
   terms.push_back({f.coef.sign() < 0, product({number(abs(f.coef)), leaf(inverse_mass), written})});
 }
 
+// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t) · inv_I_a (ra
+// × t).
 void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj,
                  std::vector<SignedFormula>& terms) {
   if (is_zero(wi) || is_zero(wj)) return;
   const Factors f = factors(wi, wj);
   const Formula a = notation.of(f.i), b = notation.of(f.j);
-  const Formula both = wi == wj ? power(a, 2) : product({a, b});
-  terms.push_back({f.coef.sign() < 0, product({number(abs(f.coef)), leaf(inverse), both})});
+  std::vector<Formula> parts{number(abs(f.coef))};
+  if (wi->vector) {
+    parts.push_back(dot(a, product({leaf(inverse), b})));
+  } else {
+    parts.push_back(leaf(inverse));
+    parts.push_back(wi == wj ? power(a, 2) : product({a, b}));
+  }
+  terms.push_back({f.coef.sign() < 0, product(std::move(parts))});
 }
 
 class MassProduct {
@@ -55,10 +63,11 @@ class MassProduct {
         add_scalar_product(lecture_.notation, body.inv_m, Js.v, Jt.v, terms);
         add_product(lecture_.notation, body.inv_I, Js.w, Jt.w, terms);
       } else {
+        const bool tensor = lecture_.joint.dimension == 3;
         add_blocks(body.inv_m, block_of_v(lecture_, part_, s, b), block_of_v(lecture_, part_, t, b),
-                   terms);
+                   false, terms);
         add_blocks(body.inv_I, block_of_w(lecture_, part_, s, b), block_of_w(lecture_, part_, t, b),
-                   terms);
+                   tensor, terms);
       }
     }
     return sum(std::move(terms));
@@ -69,35 +78,54 @@ class MassProduct {
     return part_.block.rows[s.first].J[body];
   }
 
+  // (A B)' = B' A', term by term.
   static Formula transposed(const Formula& f) {
     if (f.form == Form::transpose) return f.args[0];
-    if (f.form == Form::sum && f.args.size() == 1) return negative(transposed(f.args[0]));
-    const bool symmetric =
-        f.form == Form::identity || f.form == Form::number || (f.leaf && !f.leaf->vector);
+    if (f.form == Form::sum) {
+      std::vector<SignedFormula> terms = terms_of(f);
+      for (SignedFormula& term : terms) term.formula = transposed(term.formula);
+      return sum(std::move(terms));
+    }
+    if (f.form == Form::product) {
+      std::vector<Formula> factors;
+      for (auto factor = f.args.rbegin(); factor != f.args.rend(); ++factor) {
+        const Formula t = transposed(*factor);
+        factors.insert(is_scalar(t) ? factors.begin() : factors.end(), t);
+      }
+      return product(std::move(factors));
+    }
+    const bool symmetric = f.form == Form::identity || is_scalar(f);
     return symmetric ? f : form(Form::transpose, f);
   }
 
-  static void add_blocks(Expr inverse, const Formula& i, const Formula& j,
+  static bool is_scalar(const Formula& f) {
+    const bool leaf_or_call = f.form == Form::leaf || f.form == Form::call;
+    return f.form == Form::number || f.form == Form::dot || f.form == Form::power ||
+           f.form == Form::norm || f.form == Form::quotient || f.form == Form::component ||
+           (leaf_or_call && (!f.leaf || !f.leaf->vector));
+  }
+
+  // inverse i j', or i inverse j' where `inverse` is a matrix; E beside anything is not written.
+  static void add_blocks(Expr inverse, const Formula& i, const Formula& j, bool tensor,
                          std::vector<SignedFormula>& terms) {
     if (i == number(0) || j == number(0)) return;
-    const Formula right = transposed(j);
-    // E E' is E, and E beside anything is not written.
-    std::vector<Formula> both{leaf(inverse), i, right};
-    const bool with_identity = is_identity(i) || is_identity(right);
-    if (with_identity && !(is_identity(i) && is_identity(right))) {
-      both = {leaf(inverse), unsigned_one(i), unsigned_one(right)};
-    } else if (with_identity) {
-      both = {leaf(inverse), i, unsigned_one(right)};
-    }
-    terms.push_back({false, product(std::move(both))});
+    Formula left = i, right = transposed(j);
+    const bool left_is_E = is_identity(left), right_is_E = is_identity(right);
+    if (left_is_E && (tensor || !right_is_E)) left = unsigned_one(left);
+    if (right_is_E) right = unsigned_one(right);
+    std::vector<Formula> factors;
+    if (tensor)
+      factors = {std::move(left), leaf(inverse), std::move(right)};
+    else
+      factors = {leaf(inverse), std::move(left), std::move(right)};
+    terms.push_back({false, product(std::move(factors))});
   }
 
   static bool is_identity(const Formula& f) {
     return f.form == Form::identity || f == negative(identity());
   }
   static Formula unsigned_one(const Formula& f) {
-    if (f.form == Form::identity) return number(1);
-    return is_identity(f) ? negative(number(1)) : f;
+    return f.form == Form::identity ? number(1) : negative(number(1));
   }
 
   const Lecture& lecture_;
@@ -130,26 +158,44 @@ std::string identities_used(const Lecture& lecture, const Part& part, const Stat
   return used.empty() ? "simplified" : used;
 }
 
-std::size_t rows_of(const Statement& s) { return s.vector() ? 2 : 1; }
+std::size_t rows_of(const Lecture& lecture, const Statement& s) {
+  return s.vector() ? static_cast<std::size_t>(lecture.joint.dimension) : 1;
+}
 
 // Entries of block.K, which holds the lower triangle, for the rows of s and the columns of t.
 Formula simplified(const Lecture& lecture, const Part& part, const Statement& s,
                    const Statement& t) {
   std::vector<Formula> entries;
-  for (std::size_t i = s.first; i < s.first + rows_of(s); ++i) {
-    for (std::size_t j = t.first; j < t.first + rows_of(t); ++j) {
+  for (std::size_t i = s.first; i < s.first + rows_of(lecture, s); ++i) {
+    for (std::size_t j = t.first; j < t.first + rows_of(lecture, t); ++j) {
       entries.push_back(lecture.notation.definition(part.block.K[std::max(i, j)][std::min(i, j)]));
     }
   }
   if (entries.size() == 1) return entries[0];
-  return matrix(static_cast<int>(rows_of(t)), std::move(entries));
+  return matrix(static_cast<int>(rows_of(lecture, t)), std::move(entries));
 }
 
 Formula J_M_J(const Formula& J) {
   return product({J, power(leaf({}, "M"), -1), form(Form::transpose, J)});
 }
 
+bool stays_in_blocks(const Lecture& lecture, const Statement& s, const Statement& t) {
+  return lecture.joint.dimension == 3 && (s.vector() || t.vector());
+}
+
 }  // namespace
+
+void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>& chains) {
+  const MassProduct product(lecture, part);
+  for (const Statement& s : part.statements) {
+    for (const Statement& t : part.statements) {
+      if (&t < &s) continue;
+      const bool blocks = s.vector() || t.vector();
+      chains.push_back({name_of_K(part, s.name, t.name),
+                        {{blocks ? product.of(s, t) : simplified(lecture, part, s, t), ""}}});
+    }
+  }
+}
 
 void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
   std::vector<Formula> blocks;
@@ -165,7 +211,8 @@ void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
       Chain chain{name, {}};
       if (part.statements.size() == 1) chain.links.push_back({J_M_J(label("J", s)), ""});
       chain.links.push_back({full, "body by body"});
-      if (!same_terms(result, full))
+      // In space the blocks say more than nine numbers with six components of each tensor.
+      if (!stays_in_blocks(lecture, s, t) && !same_terms(result, full))
         chain.links.push_back({result, identities_used(lecture, part, s, t)});
       step.show(std::move(chain));
     }

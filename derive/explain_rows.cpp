@@ -71,14 +71,28 @@ void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step
   step.show({label("Cdot", s, row.Cdot), {{result, ""}}});
 }
 
+// E v is written v.
+Formula without_identity(Formula f) {
+  if (f.form == Form::identity) return number(1);
+  if (f.form == Form::product && f.args.back().form == Form::identity) {
+    f.args.pop_back();
+    return product(std::move(f.args));
+  }
+  return f;
+}
+
+const char* turning_by_skew(int dimension) {
+  return dimension == 2 ? "w × r = S(r) w, with S(r) = perp(r) as a column"
+                        : "w × r = -S(r) w, with S(r) u = r × u";
+}
+
 void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
   std::vector<SignedFormula> terms;
-  const auto add = [&terms](Formula block, Expr velocity) {
+  const auto add = [&terms](const Formula& block, Expr velocity) {
     if (block == number(0)) return;
-    // E v is written v.
-    if (block.form == Form::identity) block = number(1);
-    if (block == negative(identity())) block = negative(number(1));
-    terms.push_back({false, product({std::move(block), leaf(velocity)})});
+    for (const SignedFormula& term : terms_of(block)) {
+      terms.push_back({term.minus, product({without_identity(term.formula), leaf(velocity)})});
+    }
   };
   for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
@@ -87,7 +101,7 @@ void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& 
   }
   if (!is_zero(s.C_t)) terms.push_back({false, lecture.notation.of(s.C_t)});
   step.show({label("Cdot", s, Cdot_of(lecture, part, s)),
-             {{sum(std::move(terms)), "w × r = S(r) w, with S(r) = perp(r) as a column"}}});
+             {{sum(std::move(terms)), turning_by_skew(lecture.joint.dimension)}}});
 }
 
 // Products multiplied out, so that what occurs twice is added up.
@@ -123,6 +137,22 @@ bool turns_twice(const Formula& f) {
   return std::any_of(f.args.begin(), f.args.end(), turns_twice);
 }
 
+void list_columns(const Lecture& lecture, const Part& part, const Statement& s, Step& step) {
+  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
+    const Formula v = block_of_v(lecture, part, s, b), w = block_of_w(lecture, part, s, b);
+    if (v != number(0)) step.list("{} is multiplied by {}", {leaf(body.v), v});
+    if (w != number(0)) step.list("{} is multiplied by {}", {leaf(body.w), w});
+  }
+}
+
+const char* kept_together(int dimension) {
+  return dimension == 2 ? ". Two rows, x and y, kept together as a vector:"
+                        : ". Three rows, x, y and z, kept together as a vector:";
+}
+
+}  // namespace
+
 Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s) {
   std::vector<Formula> blocks;
   for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
@@ -133,17 +163,6 @@ Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s) {
   return matrix(columns, std::move(blocks));
 }
 
-void list_columns(const Lecture& lecture, const Part& part, const Statement& s, Step& step) {
-  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
-    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
-    const Formula v = block_of_v(lecture, part, s, b), w = block_of_w(lecture, part, s, b);
-    if (v != number(0)) step.list("{} is multiplied by {}", {leaf(body.v), v});
-    if (w != number(0)) step.list("{} is multiplied by {}", {leaf(body.w), w});
-  }
-}
-
-}  // namespace
-
 void state_constraint(Lecture& lecture, const Part& part) {
   Step& step = lecture.section("Position constraint");
   if (!lecture.joint.lets.empty()) step.say("Names:");
@@ -153,7 +172,7 @@ void state_constraint(Lecture& lecture, const Part& part) {
   for (const Statement& s : part.statements) {
     std::string as_written = "Row `" + s.row->name + "`: `" + s.row->text + "`";
     if (!s.row->from.empty()) as_written += ", from the included joint " + s.row->from;
-    step.say(as_written + (s.vector() ? ". Two rows, x and y, kept together as a vector:" : ":"));
+    step.say(as_written + (s.vector() ? kept_together(lecture.joint.dimension) : ":"));
     const Formula C = lecture.notation.definition(s.C);
     if (s.kind == RowKind::velocity) {
       step.show({label("Cdot", s, s.C), {{C, ""}}});

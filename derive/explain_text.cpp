@@ -7,7 +7,7 @@
 namespace cdot::derive {
 namespace {
 
-constexpr std::size_t page_width = 100;
+constexpr std::size_t text_width = 100;
 constexpr std::size_t rule_column = 64;
 
 class TextFormula : public FormulaWriter {
@@ -55,7 +55,8 @@ std::size_t width(const std::string& s) {
 }
 
 // Words broken at blanks; further lines start at `indent`.
-std::string wrapped(const std::string& words, std::size_t indent) {
+std::string wrapped(const std::string& words, std::size_t indent,
+                    std::size_t page_width = text_width) {
   std::string out, line;
   std::size_t at = 0;
   while (at < words.size()) {
@@ -74,13 +75,17 @@ std::string wrapped(const std::string& words, std::size_t indent) {
 // "name = a + b", later links under the first sign of equality.
 class ChainText {
  public:
+  // Lines start with `margin` blanks and, rules aside, end within `page_width`.
+  ChainText(std::size_t margin, std::size_t page_width)
+      : margin_(margin), page_width_(page_width) {}
+
   std::string write(const Chain& chain) {
-    std::string left = "    " + formula_.write(chain.left);
+    std::string left = std::string(margin_, ' ') + formula_.write(chain.left);
     indent_ = width(left);
     // A long left side keeps its line.
-    if (indent_ > page_width / 2) {
+    if (indent_ > page_width_ / 2) {
       out_ += left + "\n";
-      indent_ = 6;
+      indent_ = margin_ + 2;
       left = std::string(indent_, ' ');
     }
     for (std::size_t i = 0; i < chain.links.size(); ++i) {
@@ -96,7 +101,7 @@ class ChainText {
   void write_formula(const Formula& f) {
     if (f.form == Form::matrix) return write_matrix(f);
     for (const std::string& piece : formula_.pieces(f)) {
-      if (width(line_) + width(piece) > page_width && width(line_) > indent_ + 3) {
+      if (width(line_) + width(piece) > page_width_ && width(line_) > indent_ + 3) {
         finish_line();
         line_ = std::string(indent_ + 2, ' ');
       }
@@ -107,7 +112,7 @@ class ChainText {
   void write_matrix(const Formula& f) {
     const std::string whole = formula_.write(f);
     const bool one_row = f.args.size() == static_cast<std::size_t>(f.columns);
-    const bool fits = width(line_) + width(whole) <= page_width;
+    const bool fits = width(line_) + width(whole) <= page_width_;
     if (one_row && fits)
       line_ += whole;
     else if (fits || width(whole) / f.args.size() * static_cast<std::size_t>(f.columns) < 80)
@@ -160,12 +165,12 @@ class ChainText {
     if (!rule.empty()) {
       const std::string words = "(" + rule + ")";
       const std::size_t used = width(line_), beside = std::max(used + 2, rule_column);
-      if (beside + width(words) <= page_width + 20) {
+      if (beside + width(words) <= page_width_ + 20) {
         line_ += std::string(beside - used, ' ') + words;
       } else {
         finish_line();
-        const std::size_t below = std::min<std::size_t>(indent_ + 5, page_width / 2);
-        line_ = std::string(below, ' ') + wrapped(words, below);
+        const std::size_t below = std::min<std::size_t>(indent_ + 5, page_width_ / 2);
+        line_ = std::string(below, ' ') + wrapped(words, below, page_width_);
       }
     }
     finish_line();
@@ -178,11 +183,11 @@ class ChainText {
 
   TextFormula formula_;
   std::string out_, line_;
-  std::size_t indent_ = 0;
+  std::size_t margin_, page_width_, indent_ = 0;
 };
 
 std::string item_text(const Item& item) {
-  if (item.kind == Item::Kind::chain) return ChainText().write(item.chain);
+  if (item.kind == Item::Kind::chain) return ChainText(4, text_width).write(item.chain);
   const TextFormula formula;
   const std::string words = fill(
       item.words, [](const std::string& s) { return s; },
@@ -192,6 +197,10 @@ std::string item_text(const Item& item) {
 }
 
 }  // namespace
+
+std::string chain_text(const Chain& chain, std::size_t page_width) {
+  return ChainText(0, page_width).write(chain);
+}
 
 std::string explanation_text(const Explanation& explanation) {
   std::string out = explanation.title + "\n" + std::string(width(explanation.title), '=') + "\n";

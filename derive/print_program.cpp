@@ -247,14 +247,24 @@ std::set<std::string> inputs_read(const Program& program, const Printing& printi
   return read;
 }
 
+// Where the character in that column starts, or the end.
+static std::size_t byte_of_column(const std::string& line, std::size_t column) {
+  std::size_t i = 0;
+  for (; i < line.size(); ++i) {
+    const bool starts = (static_cast<unsigned char>(line[i]) & 0xC0) != 0x80;
+    if (starts && column-- == 0) break;
+  }
+  return i;
+}
+
 std::vector<std::string> wrapped(std::string line, Break where) {
   constexpr std::size_t columns = 100;
   std::vector<std::string> lines;
   const std::size_t indent = line.find_first_not_of(' ');
-  while (line.size() > columns) {
+  for (std::size_t end; (end = byte_of_column(line, columns)) < line.size();) {
     std::size_t best = std::string::npos;
     int depth = 0, best_depth = 1000;
-    for (std::size_t i = indent; i < columns; ++i) {
+    for (std::size_t i = indent; i < end; ++i) {
       if (line[i] == '(' || line[i] == '[') ++depth;
       if (line[i] == ')' || line[i] == ']') --depth;
       const bool after_operator = i > indent && std::string_view("+-*,|").find(line[i - 1]) != std::string_view::npos;

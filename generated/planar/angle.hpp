@@ -3,10 +3,9 @@
 // angle: The angle from b to a stays phi; the bodies may move apart.
 // Source: dyn4j.org, Angle Constraint, 2010
 //
-// angular = theta_a - theta_b - phi
-// J by [ v_a | w_a | v_b | w_b ]
-//   angular: [ 0 | 1 | 0 | -1 ]
-// K11 = inv_I_a + inv_I_b
+// C = theta_a - theta_b - phi
+// J = [ 0 | 1 | 0 | -1 ]                                          (columns v_a | w_a | v_b | w_b)
+// K = inv_I_a + inv_I_b
 #pragma once
 
 #include "runtime/kernel.hpp"

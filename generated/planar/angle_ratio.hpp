@@ -3,10 +3,11 @@
 // angle_ratio: The angle of b is ratio times that of a, plus phi; both are counted from the ground.
 // Source: dyn4j, AngleJoint with ratio
 //
-// angular = theta_b - phi - theta_a*ratio
-// J by [ v_a | w_a | v_b | w_b ]
-//   angular: [ 0 | -ratio | 0 | 1 ]
-// K11 = inv_I_b + inv_I_a*ratio^2
+// qa = theta_a
+// qb = theta_b
+// C = theta_b - phi - theta_a ratio
+// J = [ 0 | -ratio | 0 | 1 ]                                      (columns v_a | w_a | v_b | w_b)
+// K = inv_I_b + inv_I_a ratio^2
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,10 +3,11 @@
 // gear: The angle of a and ratio times that of b keep their sum; both are counted from the ground.
 // Source: Box2D, gear joint with revolute joints to the ground; Chipmunk, cpGearJoint
 //
-// teeth = theta_a - phi + theta_b*ratio
-// J by [ v_a | w_a | v_b | w_b ]
-//   teeth: [ 0 | 1 | 0 | ratio ]
-// K11 = inv_I_a + inv_I_b*ratio^2
+// qa = theta_a
+// qb = theta_b
+// C = theta_a + theta_b ratio - phi
+// J = [ 0 | 1 | 0 | ratio ]                                       (columns v_a | w_a | v_b | w_b)
+// K = inv_I_a + inv_I_b ratio^2
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,12 +3,12 @@
 // gear_on_base: A gear between wheels a and b whose axles are in the same base c.
 // Source: Box2D v2.4, gear joint with bodies C and D the same
 //
-// teeth = qa - phi + ratio*qb
-//   qa = theta_a - theta_c
-//   qb = theta_b - theta_c
-// J by [ v_a | w_a | v_b | w_b | v_c | w_c ]
-//   teeth: [ 0 | 1 | 0 | ratio | 0 | -ratio - 1 ]
-// K11 = inv_I_a + inv_I_b*ratio^2 + inv_I_c*(-ratio - 1)^2
+// qa = theta_a - theta_c
+// qb = theta_b - theta_c
+// C = qa + ratio qb - phi
+// J = [ 0 | 1 | 0 | ratio | 0 | -ratio - 1 ]                      (columns v_a | w_a | v_b | w_b |
+//     v_c | w_c)
+// K = inv_I_a + inv_I_b ratio^2 + inv_I_c (-ratio - 1)^2
 #pragma once
 
 #include "runtime/kernel.hpp"

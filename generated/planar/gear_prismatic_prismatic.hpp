@@ -4,22 +4,28 @@
 //     along eb of its base d, keep their sum.
 // Source: Box2D v2.4, gear joint (bodies A, B, C, D)
 //
-// teeth = ratio*qb - offset + qa
-//   ub = x_b - x_d + rb - rd
-//   qb = dot(ub, eb)
-//   ua = x_a - x_c + ra - rc
-//   qa = dot(ua, ea)
-// J by [ v_a | w_a | v_b | w_b | v_c | w_c | v_d | w_d ]
-//   teeth: [ ea | cross(ra, ea) | ratio*eb | ratio*cross(rb, eb) | -ea | -cross(rc + ua, ea) |
-//       -ratio*eb | -ratio*cross(rd + ub, eb) ]
-// K11 = inv_m_a + inv_m_c + inv_m_b*ratio^2 + inv_m_d*ratio^2 + inv_I_a*cross(ra, ea)^2 +
-//     inv_I_b*ratio^2*cross(rb, eb)^2 + inv_I_c*cross(rc + ua, ea)^2 + inv_I_d*ratio^2*cross(rd +
-//     ub, eb)^2
+// ua = pa - pc
+// ub = pb - pd
+// qa = ea · ua
+// qb = eb · ub
+// C = ratio qb + qa - offset
+// J = [ ea'
+//     | ra × ea
+//     | ratio eb'
+//     | ratio (rb × eb)
+//     | -ea'
+//     | -((rc + ua) × ea)
+//     | -ratio eb'
+//     | -ratio ((rd + ub) × eb) ]
+//       (columns v_a | w_a | v_b | w_b | v_c | w_c | v_d | w_d)
+// K = inv_m_a + inv_m_c + inv_m_b ratio^2 + inv_m_d ratio^2 + inv_I_a (ra × ea)^2
+//     + inv_I_b ratio^2 (rb × eb)^2 + inv_I_c ((rc + ua) × ea)^2
+//     + inv_I_d ratio^2 ((rd + ub) × eb)^2
 //
-// coordinate slide = dot(ua, ea)
-// J by [ v_a | w_a | v_b | w_b | v_c | w_c | v_d | w_d ]
-//   slide: [ ea | cross(ra, ea) | 0 | 0 | -ea | -cross(rc + ua, ea) | 0 | 0 ]
-// K11 = inv_m_a + inv_m_c + inv_I_a*cross(ra, ea)^2 + inv_I_c*cross(rc + ua, ea)^2
+// coordinate slide = ea · ua
+// J_slide = [ ea' | ra × ea | 0 | 0 | -ea' | -((rc + ua) × ea) | 0 | 0 ]
+//             (columns v_a | w_a | v_b | w_b | v_c | w_c | v_d | w_d)
+// K_slide = inv_m_a + inv_m_c + inv_I_a (ra × ea)^2 + inv_I_c ((rc + ua) × ea)^2
 #pragma once
 
 #include "runtime/kernel.hpp"

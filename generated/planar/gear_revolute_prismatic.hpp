@@ -4,14 +4,14 @@
 //     e of its base d, keep their sum.
 // Source: Box2D v2.4, gear joint (bodies A, B, C, D)
 //
-// teeth = qa - phi + ratio*qb
-//   qa = theta_a - theta_c
-//   ub = x_b - x_d + rb - rd
-//   qb = dot(ub, e)
-// J by [ v_a | w_a | v_b | w_b | v_c | w_c | v_d | w_d ]
-//   teeth: [ 0 | 1 | ratio*e | ratio*cross(rb, e) | 0 | -1 | -ratio*e | -ratio*cross(rd + ub, e) ]
-// K11 = inv_I_a + inv_I_c + inv_m_b*ratio^2 + inv_m_d*ratio^2 + inv_I_b*ratio^2*cross(rb, e)^2 +
-//     inv_I_d*ratio^2*cross(rd + ub, e)^2
+// qa = theta_a - theta_c
+// ub = pb - pd
+// qb = e · ub
+// C = qa + ratio qb - phi
+// J = [ 0 | 1 | ratio e' | ratio (rb × e) | 0 | -1 | -ratio e' | -ratio ((rd + ub) × e) ]
+//       (columns v_a | w_a | v_b | w_b | v_c | w_c | v_d | w_d)
+// K = inv_I_a + inv_I_c + inv_m_b ratio^2 + inv_m_d ratio^2 + inv_I_b ratio^2 (rb × e)^2
+//     + inv_I_d ratio^2 ((rd + ub) × e)^2
 #pragma once
 
 #include "runtime/kernel.hpp"

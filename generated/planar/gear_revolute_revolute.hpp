@@ -4,12 +4,12 @@
 //     base d, keep their sum.
 // Source: Box2D v2.4, gear joint (bodies A, B, C, D)
 //
-// teeth = qa - phi + ratio*qb
-//   qa = theta_a - theta_c
-//   qb = theta_b - theta_d
-// J by [ v_a | w_a | v_b | w_b | v_c | w_c | v_d | w_d ]
-//   teeth: [ 0 | 1 | 0 | ratio | 0 | -1 | 0 | -ratio ]
-// K11 = inv_I_a + inv_I_c + inv_I_b*ratio^2 + inv_I_d*ratio^2
+// qa = theta_a - theta_c
+// qb = theta_b - theta_d
+// C = qa + ratio qb - phi
+// J = [ 0 | 1 | 0 | ratio | 0 | -1 | 0 | -ratio ]
+//       (columns v_a | w_a | v_b | w_b | v_c | w_c | v_d | w_d)
+// K = inv_I_a + inv_I_c + inv_I_b ratio^2 + inv_I_d ratio^2
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,12 +3,11 @@
 // max_distance: The points pa of a and pb of b are never farther apart than l.
 // Source: dyn4j.org, Max Distance Constraint, 2010; Box2D, distance joint, upper limit
 //
-// string = l - norm(u) >= 0
-//   u = x_a - x_b + ra - rb
-//   n = unit(u)
-// J by [ v_a | w_a | v_b | w_b ]
-//   string: [ -n | -cross(ra, n) | unit(u) | cross(rb, n) ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*cross(ra, n)^2 + inv_I_b*cross(rb, n)^2
+// u = pa - pb
+// n = unit(u)
+// C = l - |u|                                                     (C >= 0 must hold, lambda >= 0)
+// J = [ -n' | -(ra × n) | n' | rb × n ]                           (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a + inv_m_b + inv_I_a (ra × n)^2 + inv_I_b (rb × n)^2
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -4,19 +4,15 @@
 //     phi to a.
 // Source: Box2D, motor joint; dyn4j, MotorJoint
 //
-// linear_x = (x_b - x_a - offset + rb).x
-// linear_y = (x_b - x_a - offset + rb).y
-// angular = theta_b - theta_a - phi
-// J by [ v_a | w_a | v_b | w_b ]
-//   linear_x: [ -world.x | offset.y | world.x | -rb.y ]
-//   linear_y: [ -perp(world.x) | -offset.x | perp(world.x) | rb.x ]
-//   angular: [ 0 | -1 | 0 | 1 ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*offset.y^2 + inv_I_b*rb.y^2
-// K21 = -inv_I_a*offset.x*offset.y - inv_I_b*rb.x*rb.y
-// K22 = inv_m_a + inv_m_b + inv_I_a*offset.x^2 + inv_I_b*rb.x^2
-// K31 = -inv_I_a*offset.y - inv_I_b*rb.y
-// K32 = inv_I_a*offset.x + inv_I_b*rb.x
-// K33 = inv_I_a + inv_I_b
+// ra = offset
+// C_linear = pb - x_a - offset
+// C_angular = theta_b - theta_a - phi
+// J = [ -E | -S(offset) | E | S(rb)
+//       0  | -1         | 0 | 1     ]                             (columns v_a | w_a | v_b | w_b)
+// S(r) = perp(r)
+// K[linear, linear] = inv_m_a E + inv_I_a S(offset) S(offset)' + inv_m_b E + inv_I_b S(rb) S(rb)'
+// K[linear, angular] = inv_I_a S(offset) + inv_I_b S(rb)
+// K[angular, angular] = inv_I_a + inv_I_b
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,20 +3,18 @@
 // prismatic: a slides on the line through pb of b with the normal t, and does not turn against b.
 // Source: dyn4j.org, Prismatic Constraint, 2011; Box2D, prismatic joint
 //
-// line = dot(u, t)
-// angular = theta_a - theta_b - phi
-//   u = x_a - x_b + ra - rb
-// J by [ v_a | w_a | v_b | w_b ]
-//   line: [ t | cross(ra, t) | -t | -cross(rb + u, t) ]
-//   angular: [ 0 | 1 | 0 | -1 ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*cross(ra, t)^2 + inv_I_b*cross(rb + u, t)^2
-// K21 = inv_I_a*cross(ra, t) + inv_I_b*cross(rb + u, t)
-// K22 = inv_I_a + inv_I_b
+// u = pa - pb
+// C_line = t · u
+// C_angular = theta_a - theta_b - phi
+// J = [ t' | ra × t | -t' | -((rb + u) × t)
+//       0  | 1      | 0   | -1              ]                     (columns v_a | w_a | v_b | w_b)
+// K[line, line] = inv_m_a + inv_m_b + inv_I_a (ra × t)^2 + inv_I_b ((rb + u) × t)^2
+// K[line, angular] = inv_I_a (ra × t) + inv_I_b ((rb + u) × t)
+// K[angular, angular] = inv_I_a + inv_I_b
 //
-// coordinate slide = cross(u, t)
-// J by [ v_a | w_a | v_b | w_b ]
-//   slide: [ -perp(t) | -dot(ra, t) | perp(t) | dot(rb + u, t) ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*dot(ra, t)^2 + inv_I_b*dot(rb + u, t)^2
+// coordinate slide = u × t
+// J_slide = [ -perp(t)' | -t · ra | perp(t)' | t · (rb + u) ]     (columns v_a | w_a | v_b | w_b)
+// K_slide = inv_m_a + inv_m_b + inv_I_a (t · ra)^2 + inv_I_b (t · (rb + u))^2
 #pragma once
 
 #include "runtime/kernel.hpp"

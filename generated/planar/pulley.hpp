@@ -3,16 +3,15 @@
 // pulley: A rope from pa over ga and gb to pb: la + ratio lb keeps its length.
 // Source: dyn4j.org, Pulley Constraint, 2010; Box2D, pulley joint
 //
-// rope = length - ratio*lb - la
-//   ub = x_b - gb + rb
-//   lb = norm(ub)
-//   ua = x_a - ga + ra
-//   la = norm(ua)
-//   na = unit(ua)
-//   nb = unit(ub)
-// J by [ v_a | w_a | v_b | w_b ]
-//   rope: [ -na | -cross(ra, na) | -ratio*nb | -ratio*cross(rb, nb) ]
-// K11 = inv_m_a + inv_m_b*ratio^2 + inv_I_a*cross(ra, na)^2 + inv_I_b*ratio^2*cross(rb, nb)^2
+// ua = pa - ga
+// la = |ua|
+// na = unit(ua)
+// ub = pb - gb
+// lb = |ub|
+// nb = unit(ub)
+// C = length - ratio lb - la
+// J = [ -na' | -(ra × na) | -ratio nb' | -ratio (rb × nb) ]       (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a + inv_m_b ratio^2 + inv_I_a (ra × na)^2 + inv_I_b ratio^2 (rb × nb)^2
 #pragma once
 
 #include "runtime/kernel.hpp"

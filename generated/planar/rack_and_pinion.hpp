@@ -4,16 +4,14 @@
 // Source: Jolt, RackAndPinionConstraint; Box2D, gear joint of a revolute and a prismatic joint to
 //     the ground
 //
-// teeth = dot(ub, e) - offset - theta_a*radius
-//   ub = x_b - g + rb
-// J by [ v_a | w_a | v_b | w_b ]
-//   teeth: [ 0 | -radius | e | cross(rb, e) ]
-// K11 = inv_m_b + inv_I_a*radius^2 + inv_I_b*cross(rb, e)^2
+// ub = pb - g
+// C = e · ub - offset - theta_a radius
+// J = [ 0 | -radius | e' | rb × e ]                               (columns v_a | w_a | v_b | w_b)
+// K = inv_m_b + inv_I_a radius^2 + inv_I_b (rb × e)^2
 //
-// coordinate slide = dot(ub, e)
-// J by [ v_a | w_a | v_b | w_b ]
-//   slide: [ 0 | 0 | e | cross(rb, e) ]
-// K11 = inv_m_b + inv_I_b*cross(rb, e)^2
+// coordinate slide = e · ub
+// J_slide = [ 0 | 0 | e' | rb × e ]                               (columns v_a | w_a | v_b | w_b)
+// K_slide = inv_m_b + inv_I_b (rb × e)^2
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,19 +3,14 @@
 // revolute: The point pa of a and the point pb of b stay together; the bodies turn about them.
 // Source: dyn4j.org, Point-to-Point Constraint, 2010; Box2D, revolute joint
 //
-// pin_x = (x_a - x_b + ra - rb).x
-// pin_y = (x_a - x_b + ra - rb).y
-// J by [ v_a | w_a | v_b | w_b ]
-//   pin_x: [ world.x | -ra.y | -world.x | rb.y ]
-//   pin_y: [ perp(world.x) | ra.x | -perp(world.x) | -rb.x ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*ra.y^2 + inv_I_b*rb.y^2
-// K21 = -inv_I_a*ra.x*ra.y - inv_I_b*rb.x*rb.y
-// K22 = inv_m_a + inv_m_b + inv_I_a*ra.x^2 + inv_I_b*rb.x^2
+// C = pa - pb
+// J = [ E | S(ra) | -E | -S(rb) ]                                 (columns v_a | w_a | v_b | w_b)
+// S(r) = perp(r)
+// K = inv_m_a E + inv_I_a S(ra) S(ra)' + inv_m_b E + inv_I_b S(rb) S(rb)'
 //
 // coordinate angle = theta_b - theta_a
-// J by [ v_a | w_a | v_b | w_b ]
-//   angle: [ 0 | -1 | 0 | 1 ]
-// K11 = inv_I_a + inv_I_b
+// J_angle = [ 0 | -1 | 0 | 1 ]                                    (columns v_a | w_a | v_b | w_b)
+// K_angle = inv_I_a + inv_I_b
 #pragma once
 
 #include "runtime/kernel.hpp"

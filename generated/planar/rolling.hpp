@@ -3,23 +3,21 @@
 // rolling: The disc a touches the line of b with the normal n, and rolls on it without slip.
 // Source: Own derivation from the rolling arc: way = -radius angle
 //
-// touch = dot(u, n) - radius
-// roll = radius*q - start + s
-//   u = x_a - x_b - rb
-//   q = theta_a - theta_b
-//   s = cross(u, n)
-//   e = -perp(n)
-// J by [ v_a | w_a | v_b | w_b ]
-//   touch: [ n | 0 | -n | -cross(rb + u, n) ]
-//   roll: [ -perp(n) | radius | -e | dot(rb + u, n) - radius ]
-// K11 = inv_m_a + inv_m_b + inv_I_b*cross(rb + u, n)^2
-// K21 = -inv_I_b*(dot(rb + u, n) - radius)*cross(rb + u, n)
-// K22 = inv_m_a + inv_m_b + inv_I_a*radius^2 + inv_I_b*(dot(rb + u, n) - radius)^2
+// u = x_a - pb
+// e = -perp(n)
+// s = u × n
+// q = theta_a - theta_b
+// C_touch = n · u - radius
+// C_roll = radius q + s - start
+// J = [ n' | 0      | -n' | -((rb + u) × n)
+//       e' | radius | -e' | n · (rb + u) - radius ]               (columns v_a | w_a | v_b | w_b)
+// K[touch, touch] = inv_m_a + inv_m_b + inv_I_b ((rb + u) × n)^2
+// K[touch, roll] = -inv_I_b (n · (rb + u) - radius) ((rb + u) × n)
+// K[roll, roll] = inv_m_a + inv_m_b + inv_I_a radius^2 + inv_I_b (n · (rb + u) - radius)^2
 //
-// coordinate slide = cross(u, n)
-// J by [ v_a | w_a | v_b | w_b ]
-//   slide: [ -perp(n) | 0 | -e | dot(rb + u, n) ]
-// K11 = inv_m_a + inv_m_b + inv_I_b*dot(rb + u, n)^2
+// coordinate slide = u × n
+// J_slide = [ e' | 0 | -e' | n · (rb + u) ]                       (columns v_a | w_a | v_b | w_b)
+// K_slide = inv_m_a + inv_m_b + inv_I_b (n · (rb + u))^2
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -4,25 +4,24 @@
 //     from the origin pb.
 // Source: Own derivation: chain rule in the frame of b
 //
-// track = s_y - amplitude*sin(k*s_x)
-//   u = x_a - x_b + ra - rb
-//   s_y = -cross(u, f_x)
-//   s_x = dot(u, f_x)
-// J by [ v_a | w_a | v_b | w_b ]
-//   track: [ perp(f_x) - amplitude*k*cos(k*s_x)*f_x | cross(ra, perp(f_x) -
-//       amplitude*k*cos(k*s_x)*f_x) | amplitude*k*cos(k*s_x)*f_x - perp(f_x) |
-//       amplitude*k*cos(k*s_x)*cross(u, f_x) - s_x + cross(rb, amplitude*k*cos(k*s_x)*f_x -
-//       perp(f_x)) ]
-// K11 = inv_m_a*dot(perp(f_x) - amplitude*k*cos(k*s_x)*f_x, perp(f_x) -
-//     amplitude*k*cos(k*s_x)*f_x) + inv_m_b*dot(amplitude*k*cos(k*s_x)*f_x - perp(f_x),
-//     amplitude*k*cos(k*s_x)*f_x - perp(f_x)) + inv_I_a*cross(ra, perp(f_x) -
-//     amplitude*k*cos(k*s_x)*f_x)^2 + inv_I_b*(amplitude*k*cos(k*s_x)*cross(u, f_x) - s_x +
-//     cross(rb, amplitude*k*cos(k*s_x)*f_x - perp(f_x)))^2
+// u = pa - pb
+// s_x = f_x · u
+// s_y = -(u × f_x)
+// C = s_y - amplitude sin(k s_x)
+// J = [ (perp(f_x) - amplitude k cos(k s_x) f_x)'
+//     | ra × (perp(f_x) - amplitude k cos(k s_x) f_x)
+//     | (amplitude k cos(k s_x) f_x - perp(f_x))'
+//     | amplitude k cos(k s_x) (u × f_x) + rb × (amplitude k cos(k s_x) f_x - perp(f_x)) - s_x ]
+//       (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a |perp(f_x) - amplitude k cos(k s_x) f_x|^2
+//     + inv_m_b |amplitude k cos(k s_x) f_x - perp(f_x)|^2
+//     + inv_I_a (ra × (perp(f_x) - amplitude k cos(k s_x) f_x))^2
+//     + inv_I_b (amplitude k cos(k s_x) (u × f_x) + rb × (amplitude k cos(k s_x) f_x - perp(f_x))
+//         - s_x)^2
 //
-// coordinate slide = dot(u, f_x)
-// J by [ v_a | w_a | v_b | w_b ]
-//   slide: [ f_x | cross(ra, f_x) | -f_x | s_y - cross(rb, f_x) ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*cross(ra, f_x)^2 + inv_I_b*(s_y - cross(rb, f_x))^2
+// coordinate slide = f_x · u
+// J_slide = [ f_x' | ra × f_x | -f_x' | s_y - rb × f_x ]          (columns v_a | w_a | v_b | w_b)
+// K_slide = inv_m_a + inv_m_b + inv_I_a (ra × f_x)^2 + inv_I_b (s_y - rb × f_x)^2
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,16 +3,14 @@
 // slot: The point pa of a stays on a line through pb fixed in b.
 // Source: Chipmunk, cpGrooveJoint; the example of specs/README.md
 //
-// line = dot(u, t)
-//   u = x_a - x_b + ra - rb
-// J by [ v_a | w_a | v_b | w_b ]
-//   line: [ t | cross(ra, t) | -t | -cross(rb + u, t) ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*cross(ra, t)^2 + inv_I_b*cross(rb + u, t)^2
+// u = pa - pb
+// C = t · u
+// J = [ t' | ra × t | -t' | -((rb + u) × t) ]                     (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a + inv_m_b + inv_I_a (ra × t)^2 + inv_I_b ((rb + u) × t)^2
 //
-// coordinate slide = -cross(u, t)
-// J by [ v_a | w_a | v_b | w_b ]
-//   slide: [ perp(t) | dot(ra, t) | -perp(t) | -dot(rb + u, t) ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*dot(ra, t)^2 + inv_I_b*dot(rb + u, t)^2
+// coordinate slide = -(u × t)
+// J_slide = [ perp(t)' | t · ra | -perp(t)' | -t · (rb + u) ]     (columns v_a | w_a | v_b | w_b)
+// K_slide = inv_m_a + inv_m_b + inv_I_a (t · ra)^2 + inv_I_b (t · (rb + u))^2
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,19 +3,14 @@
 // target: The point pa of a stays at the point goal of the world.
 // Source: Box2D, mouse joint; dyn4j, PinJoint
 //
-// pin_x = (x_a - goal + ra).x
-// pin_y = (x_a - goal + ra).y
-// J by [ v_a | w_a ]
-//   pin_x: [ world.x | -ra.y ]
-//   pin_y: [ perp(world.x) | ra.x ]
-// K11 = inv_m_a + inv_I_a*ra.y^2
-// K21 = -inv_I_a*ra.x*ra.y
-// K22 = inv_m_a + inv_I_a*ra.x^2
+// C = pa - goal
+// J = [ E | S(ra) ]                                               (columns v_a | w_a)
+// S(r) = perp(r)
+// K = inv_m_a E + inv_I_a S(ra) S(ra)'
 //
 // coordinate angle = theta_a
-// J by [ v_a | w_a ]
-//   angle: [ 0 | 1 ]
-// K11 = inv_I_a
+// J_angle = [ 0 | 1 ]                                             (columns v_a | w_a)
+// K_angle = inv_I_a
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,19 +3,14 @@
 // weld: a and b move and turn as one body.
 // Source: dyn4j.org, Weld Constraint, 2010; Box2D, weld joint
 //
-// pin_x = (x_a - x_b + ra - rb).x
-// pin_y = (x_a - x_b + ra - rb).y
-// angular = theta_a - theta_b - phi
-// J by [ v_a | w_a | v_b | w_b ]
-//   pin_x: [ world.x | -ra.y | -world.x | rb.y ]
-//   pin_y: [ perp(world.x) | ra.x | -perp(world.x) | -rb.x ]
-//   angular: [ 0 | 1 | 0 | -1 ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*ra.y^2 + inv_I_b*rb.y^2
-// K21 = -inv_I_a*ra.x*ra.y - inv_I_b*rb.x*rb.y
-// K22 = inv_m_a + inv_m_b + inv_I_a*ra.x^2 + inv_I_b*rb.x^2
-// K31 = -inv_I_a*ra.y - inv_I_b*rb.y
-// K32 = inv_I_a*ra.x + inv_I_b*rb.x
-// K33 = inv_I_a + inv_I_b
+// C_pin = pa - pb
+// C_angular = theta_a - theta_b - phi
+// J = [ E | S(ra) | -E | -S(rb)
+//       0 | 1     | 0  | -1     ]                                 (columns v_a | w_a | v_b | w_b)
+// S(r) = perp(r)
+// K[pin, pin] = inv_m_a E + inv_I_a S(ra) S(ra)' + inv_m_b E + inv_I_b S(rb) S(rb)'
+// K[pin, angular] = inv_I_a S(ra) + inv_I_b S(rb)
+// K[angular, angular] = inv_I_a + inv_I_b
 #pragma once
 
 #include "runtime/kernel.hpp"

@@ -3,22 +3,19 @@
 // wheel: The point pb of b slides along ax, fixed in a, through pa; b may turn.
 // Source: Box2D, wheel joint; dyn4j, WheelJoint
 //
-// line = -cross(d, ax)
-//   d = x_b - x_a - ra + rb
-//   ay = perp(ax)
-// J by [ v_a | w_a | v_b | w_b ]
-//   line: [ -ay | -dot(ra + d, ax) | perp(ax) | dot(rb, ax) ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*dot(ra + d, ax)^2 + inv_I_b*dot(rb, ax)^2
+// ay = perp(ax)
+// d = pb - pa
+// C = -(d × ax)
+// J = [ -ay' | -ax · (ra + d) | ay' | ax · rb ]                   (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a + inv_m_b + inv_I_a (ax · (ra + d))^2 + inv_I_b (ax · rb)^2
 //
-// coordinate slide = dot(d, ax)
-// J by [ v_a | w_a | v_b | w_b ]
-//   slide: [ -ax | -cross(ra + d, ax) | ax | cross(rb, ax) ]
-// K11 = inv_m_a + inv_m_b + inv_I_a*cross(ra + d, ax)^2 + inv_I_b*cross(rb, ax)^2
+// coordinate slide = ax · d
+// J_slide = [ -ax' | -((ra + d) × ax) | ax' | rb × ax ]           (columns v_a | w_a | v_b | w_b)
+// K_slide = inv_m_a + inv_m_b + inv_I_a ((ra + d) × ax)^2 + inv_I_b (rb × ax)^2
 //
 // coordinate angle = theta_b - theta_a
-// J by [ v_a | w_a | v_b | w_b ]
-//   angle: [ 0 | -1 | 0 | 1 ]
-// K11 = inv_I_a + inv_I_b
+// J_angle = [ 0 | -1 | 0 | 1 ]                                    (columns v_a | w_a | v_b | w_b)
+// K_angle = inv_I_a + inv_I_b
 #pragma once
 
 #include "runtime/kernel.hpp"
