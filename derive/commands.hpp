@@ -1,5 +1,6 @@
-// The commands of `cdot`, one file each: derive (command_derive.cpp), explain, diff, check. Each adds itself to the
-// command line and returns what to run; the exit status is 0 all well, 1 the answer is no, 2 bad usage or input.
+// The commands of `cdot`, one file each: derive (command_derive.cpp), explain, diff, check. Each
+// adds itself to the command line and returns what to run; the exit status is 0 all well, 1 the
+// answer is no, 2 bad usage or input.
 #pragma once
 
 #include <functional>

@@ -62,9 +62,9 @@ void Elaborator::add_row(Source& source, const StatementAst& s, Row row) {
   joint_.rows.push_back(std::move(row));
 }
 
-// n x m = 0 says that m is parallel to n: two conditions in three components. With n = f.x an axis of a frame, what is
-// kept are the components along its other axes, f.z . (f.x x m) = f.y . m and -f.y . (f.x x m) = f.z . m, which stay
-// independent as long as the row holds.
+// n x m = 0 says that m is parallel to n: two conditions in three components. With n = f.x an axis
+// of a frame, what is kept are the components along its other axes, f.z . (f.x x m) = f.y . m and
+// -f.y . (f.x x m) = f.z . m, which stay independent as long as the row holds.
 void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
   Diagnostics& d = source.diagnostics;
   const Term term = split_coefficient(whole.C);
@@ -89,7 +89,8 @@ void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
     return;
   }
   d.error(s.left.where, "no side of this cross product is an axis of a frame of a body",
-          "declare `frame f on a` in place of the unit vector and write cross(f.x, ...): the rows along f.y and f.z are "
+          "declare `frame f on a` in place of the unit vector and write cross(f.x, ...): the rows "
+          "along f.y and f.z are "
           "kept");
 }
 

@@ -1,4 +1,5 @@
-// All generated files of a set of joints, in memory: what `cdot derive` writes and `cdot derive --check` compares.
+// All generated files of a set of joints, in memory: what `cdot derive` writes and `cdot derive
+// --check` compares.
 #pragma once
 
 #include <map>

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "derive/canonical.hpp"
+#include "derive/kernel_factor.hpp"
 #include "derive/matrix.hpp"
 #include "derive/symbols.hpp"
 
@@ -29,7 +30,8 @@ class BlockPlanner {
     store_jacobian();
     add_position_and_jacobian();
     add_effective_mass();
-    add_factor_and_solve();
+    add("factor", "K = L D L^T; F holds L and, on the diagonal, D^-1", factor_outputs(out_.block));
+    add("solve", "lambda = K^-1 rhs", solve_outputs(out_.block));
     add_velocity();
     add_apply();
     add_dense();
@@ -49,16 +51,10 @@ class BlockPlanner {
  private:
   std::size_t rows() const { return out_.block.rows.size(); }
   std::size_t bodies() const { return joint_.bodies.size(); }
-  static std::string at(const std::string& array, std::size_t i) {
-    return array + "[" + std::to_string(i) + "]";
-  }
-  static std::string triangle(const std::string& array, std::size_t i, std::size_t j) {
-    return at(array, i * (i + 1) / 2 + j);
-  }
-
   void add(std::string name, std::string summary, const std::vector<NamedExpr>& outputs) {
     if (isotropic_) summary += ", for sphere-like bodies";
-    out_.functions.push_back({std::move(name), std::move(summary), simplify(assemble(outputs)), isotropic_});
+    out_.functions.push_back(
+        {std::move(name), std::move(summary), simplify(assemble(outputs)), isotropic_});
   }
 
   // Which numbers Jacobian<T> holds: the factors of J's entries that are neither zero nor one.
@@ -67,7 +63,8 @@ class BlockPlanner {
     for (std::size_t i = 0; i < rows(); ++i) {
       std::vector<StoredEntry> row;
       for (std::size_t b = 0; b < bodies(); ++b) {
-        const std::string suffix = joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
+        const std::string suffix =
+            joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
         const std::vector<Expr> entries = columns_of(out_.block.rows[i].J[b]);
         for (std::size_t k = 0; k < width_; ++k) {
           row.push_back(store(components.of(entries[k]), column_name(k, suffix)));
@@ -91,7 +88,8 @@ class BlockPlanner {
     const bool plain_factors =
         term.e->kind == Kind::product && term.e->name.empty() &&
         std::all_of(term.e->args.begin(), term.e->args.end(), [](Expr f) { return simple(f); }) &&
-        std::all_of(term.e->exponents.begin(), term.e->exponents.end(), [](int k) { return k == 1; });
+        std::all_of(term.e->exponents.begin(), term.e->exponents.end(),
+                    [](int k) { return k == 1; });
     if (!plain_factors) {
       stored.fields.push_back(field(term.e, column));
       return stored;
@@ -124,20 +122,21 @@ class BlockPlanner {
   void add_position_and_jacobian() {
     std::vector<NamedExpr> outputs;
     for (std::size_t i = 0; i < rows(); ++i) {
-      outputs.push_back({at("C", i), pose_.of(out_.block.rows[i].C)});
+      outputs.push_back({element("C", i), pose_.of(out_.block.rows[i].C)});
     }
     add("position", "C", outputs);
     for (const Field& f : out_.fields) outputs.push_back({"J." + f.name, pose_.of(f.value)});
     add("jacobian", "C and J", outputs);
   }
 
-  // K in the form that the derivation simplified it to, reading what J has stored. If that form needs something that
-  // J does not hold, the plain sum over J's entries is used.
+  // K in the form that the derivation simplified it to, reading what J has stored. If that form
+  // needs something that J does not hold, the plain sum over J's entries is used.
   void add_effective_mass() {
     Components components;
     std::map<const Node*, Expr> held;
     for (const Field& f : out_.fields) held.emplace(&*f.value, f.symbol);
-    const auto K_of_rows = effective_mass(joint_, out_.block.rows, out_.block.immovable, isotropic_);
+    const auto K_of_rows =
+        effective_mass(joint_, out_.block.rows, out_.block.immovable, isotropic_);
     std::vector<NamedExpr> simplified, plain;
     bool complete = true;
     for (std::size_t i = 0; i < rows(); ++i) {
@@ -145,11 +144,11 @@ class BlockPlanner {
         const Expr K = substitute(components.of(K_of_rows[i][j]), held);
         for (const Expr e : topological(std::span(&K, 1))) {
           complete = complete && (e->kind != Kind::symbol || e->role == Role::given ||
-                                  e->role == Role::inverse_mass || e->role == Role::inverse_inertia ||
-                                  e->role == Role::constant);
+                                  e->role == Role::inverse_mass ||
+                                  e->role == Role::inverse_inertia || e->role == Role::constant);
         }
-        simplified.push_back({triangle("K", i, j), K});
-        plain.push_back({triangle("K", i, j), plain_effective_mass(i, j)});
+        simplified.push_back({triangle_element("K", i, j), K});
+        plain.push_back({triangle_element("K", i, j), plain_effective_mass(i, j)});
       }
     }
     const std::string summary = "K = J M^-1 J^T, lower triangle, from J";
@@ -176,7 +175,8 @@ class BlockPlanner {
     return inverse_mass_times(column, [&](std::size_t c) { return stored(row, c); });
   }
 
-  // Row `column` of M^-1 times a column of numbers: 1/m for what moves the centre, 1/I or the tensor I^-1 for what turns.
+  // Row `column` of M^-1 times a column of numbers: 1/m for what moves the centre, 1/I or the
+  // tensor I^-1 for what turns.
   template <class Numbers>
   Expr inverse_mass_times(std::size_t column, Numbers numbers) const {
     const BodySymbols body = body_symbols(joint_, static_cast<int>(column / width_));
@@ -188,68 +188,6 @@ class BlockPlanner {
       sum = sum + tensor_component(body.inv_I, k - 3, l) * numbers(first + l);
     }
     return sum;
-  }
-
-  // K = L D L^T column by column; what is zero in K for every pose stays zero and is not computed.
-  void add_factor_and_solve() {
-    const std::size_t n = rows();
-    std::vector<std::vector<Expr>> L(n, std::vector<Expr>(n)), K(n, std::vector<Expr>(n));
-    std::vector<Expr> D(n), D_inverse(n);
-    std::vector<NamedExpr> factor;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t j = 0; j <= i; ++j) {
-        K[i][j] = is_zero(out_.block.K[i][j]) ? pool_.number(0)
-                                              : pool_.symbol(triangle("K", i, j), Role::given);
-        Expr e = K[i][j];
-        for (std::size_t k = 0; k < j; ++k) e = e - L[i][k] * L[j][k] * D[k];
-        if (i == j) {
-          D[i] = opaque(e, "D" + std::to_string(i + 1));
-          const Expr pivot[] = {D[i], K[i][i]};
-          D_inverse[i] = opaque(call(Fn::pivot, pivot), "inv_D" + std::to_string(i + 1));
-        } else {
-          L[i][j] = opaque(e * D_inverse[j], "L" + std::to_string(i + 1) + std::to_string(j + 1));
-        }
-        factor.push_back({triangle("F", i, j), i == j ? D_inverse[i] : L[i][j]});
-      }
-    }
-    add("factor", "K = L D L^T; F holds L and, on the diagonal, D^-1", factor);
-    add_solve();
-  }
-
-  Expr opaque(Expr e, const std::string& name) {
-    pool_.name(e, name, false);
-    return e;
-  }
-
-  void add_solve() {
-    const std::size_t n = rows();
-    const auto L = [&](std::size_t i, std::size_t j) {
-      return is_zero_in_factor(i, j) ? pool_.number(0)
-                                     : pool_.symbol(triangle("F", i, j), Role::given);
-    };
-    std::vector<Expr> y(n), x(n);
-    for (std::size_t i = 0; i < n; ++i) {
-      y[i] = pool_.symbol(at("rhs", i), Role::given);
-      for (std::size_t k = 0; k < i; ++k) y[i] = y[i] - L(i, k) * y[k];
-      y[i] = opaque(y[i], "y" + std::to_string(i + 1));
-    }
-    for (std::size_t i = n; i-- > 0;) {
-      x[i] = L(i, i) * y[i];
-      for (std::size_t k = i + 1; k < n; ++k) x[i] = x[i] - L(k, i) * x[k];
-      x[i] = opaque(x[i], "x" + std::to_string(i + 1));
-    }
-    std::vector<NamedExpr> outputs;
-    for (std::size_t i = 0; i < n; ++i) outputs.push_back({at("lambda", i), x[i]});
-    add("solve", "lambda = K^-1 rhs", outputs);
-  }
-
-  // L's entry vanishes for every pose if K's does and no fill arises.
-  bool is_zero_in_factor(std::size_t i, std::size_t j) const {
-    if (!is_zero(out_.block.K[i][j])) return false;
-    for (std::size_t k = 0; k < j; ++k) {
-      if (!is_zero_in_factor(i, k) && !is_zero_in_factor(j, k)) return false;
-    }
-    return true;
   }
 
   std::vector<Expr> velocity_components(std::size_t b) const {
@@ -269,7 +207,7 @@ class BlockPlanner {
         const std::vector<Expr> v = velocity_components(b);
         for (std::size_t k = 0; k < width_; ++k) Jv = Jv + stored(i, width_ * b + k) * v[k];
       }
-      outputs.push_back({at("Jv", i), Jv});
+      outputs.push_back({element("Jv", i), Jv});
     }
     add("velocity", "J v", outputs);
   }
@@ -278,7 +216,8 @@ class BlockPlanner {
   Expr force(std::size_t column) const {
     Expr force = pool_.number(0);
     for (std::size_t i = 0; i < rows(); ++i) {
-      force = force + stored(i, column) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
+      force = force +
+              stored(i, column) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
     }
     return force;
   }
@@ -295,7 +234,7 @@ class BlockPlanner {
     for (std::size_t c = 0; c < width_ * bodies(); ++c) {
       const Expr change = inverse_mass_times(c, [&](std::size_t column) { return force(column); });
       if (static_cast<int>(c / width_) == out_.block.immovable || is_zero(change)) continue;
-      outputs.push_back({at("v", c / width_) + "." + velocity_member(c % width_, width_),
+      outputs.push_back({element("v", c / width_) + "." + velocity_member(c % width_, width_),
                          velocity_components(c / width_)[c % width_] + change});
     }
     add("apply", "v += M^-1 J^T lambda", outputs);
@@ -304,40 +243,50 @@ class BlockPlanner {
   void add_dense() {
     std::vector<NamedExpr> J;
     for (std::size_t i = 0; i < rows(); ++i) {
-      for (std::size_t c = 0; c < width_ * bodies(); ++c) J.push_back({at(at("D", i), c), stored(i, c)});
+      for (std::size_t c = 0; c < width_ * bodies(); ++c)
+        J.push_back({element(element("D", i), c), stored(i, c)});
     }
-    add("dense", std::string("J with its zeros: ") + (width_ == 3 ? "v_x, v_y, w" : "v, w") + " of each body", J);
+    add("dense",
+        std::string("J with its zeros: ") + (width_ == 3 ? "v_x, v_y, w" : "v, w") +
+            " of each body",
+        J);
   }
 
   void add_inverse_mass_jacobian() {
     std::vector<NamedExpr> outputs;
     for (std::size_t i = 0; i < rows(); ++i) {
-      for (std::size_t c = 0; c < width_ * bodies(); ++c) outputs.push_back({at(at("D", i), c), weighted(i, c)});
+      for (std::size_t c = 0; c < width_ * bodies(); ++c)
+        outputs.push_back({element(element("D", i), c), weighted(i, c)});
     }
     add("inverse_mass_jacobian", "(M^-1 J^T)^T, laid out like dense", outputs);
   }
 
-  // The other two velocity forms in space: J_b = J diag(E, A) for w = A w', J_c = J diag(E, 2 G) for w = 2 G de/dt.
+  // The other two velocity forms in space: J_b = J diag(E, A) for w = A w', J_c = J diag(E, 2 G)
+  // for w = 2 G de/dt.
   void add_other_forms() {
     std::vector<NamedExpr> local, euler;
     for (std::size_t i = 0; i < rows(); ++i) {
       for (std::size_t b = 0; b < bodies(); ++b) {
         for (std::size_t k = 0; k < 3; ++k) {
-          local.push_back({at(at("D", i), 6 * b + k), stored(i, 6 * b + k)});
-          euler.push_back({at(at("D", i), 7 * b + k), stored(i, 6 * b + k)});
+          local.push_back({element(element("D", i), 6 * b + k), stored(i, 6 * b + k)});
+          euler.push_back({element(element("D", i), 7 * b + k), stored(i, 6 * b + k)});
         }
         const auto A = rotation_matrix(joint_, static_cast<int>(b));
         for (std::size_t k = 0; k < 3; ++k) {
-          local.push_back({at(at("D", i), 6 * b + 3 + k), times_column(i, b, {A[0][k], A[1][k], A[2][k]})});
+          local.push_back({element(element("D", i), 6 * b + 3 + k),
+                           times_column(i, b, {A[0][k], A[1][k], A[2][k]})});
         }
         const std::array<std::array<Expr, 3>, 4> G = euler_columns(b);
         for (std::size_t k = 0; k < 4; ++k) {
-          euler.push_back({at(at("D", i), 7 * b + 3 + k), Rational(2) * times_column(i, b, G[k])});
+          euler.push_back(
+              {element(element("D", i), 7 * b + 3 + k), Rational(2) * times_column(i, b, G[k])});
         }
       }
     }
-    add("local_jacobian", "form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A)", local);
-    add("euler_jacobian", "form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G)", euler);
+    add("local_jacobian",
+        "form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A)", local);
+    add("euler_jacobian", "form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G)",
+        euler);
   }
 
   Expr times_column(std::size_t row, std::size_t body, const std::array<Expr, 3>& column) const {
@@ -350,7 +299,8 @@ class BlockPlanner {
   std::array<std::array<Expr, 3>, 4> euler_columns(std::size_t body) const {
     std::array<Expr, 4> e;
     for (std::size_t k = 0; k < 4; ++k) {
-      e[k] = pool_.symbol(joint_.bodies[body] + ".e" + std::to_string(k), Role::given, static_cast<int>(body));
+      e[k] = pool_.symbol(joint_.bodies[body] + ".e" + std::to_string(k), Role::given,
+                          static_cast<int>(body));
     }
     return {{{-e[1], -e[2], -e[3]}, {e[0], e[3], -e[2]}, {-e[3], e[0], e[1]}, {e[2], -e[1], e[0]}}};
   }
@@ -358,22 +308,25 @@ class BlockPlanner {
   void add_from_pose() {
     std::vector<NamedExpr> gamma, C_t, H;
     for (std::size_t i = 0; i < rows(); ++i) {
-      gamma.push_back({at("g", i), pose_.of(out_.block.rows[i].gamma)});
-      C_t.push_back({at("C_t", i), pose_.of(out_.block.rows[i].C_t)});
+      gamma.push_back({element("g", i), pose_.of(out_.block.rows[i].gamma)});
+      C_t.push_back({element("C_t", i), pose_.of(out_.block.rows[i].C_t)});
     }
     for (std::size_t r = 0; r < out_.block.stiffness.size(); ++r) {
       for (std::size_t c = 0; c < out_.block.stiffness[r].size(); ++c) {
-        H.push_back({at(at("H", r), c), pose_.of(out_.block.stiffness[r][c])});
+        H.push_back({element(element("H", r), c), pose_.of(out_.block.stiffness[r][c])});
       }
     }
     add("gamma", "-Jdot v - d/dt(dC/dt)", gamma);
     add("time_derivative", "dC/dt at fixed q", C_t);
-    add("stiffness", std::string("d(J^T lambda)/dq: ") + (width_ == 3 ? "x, y, angle" : "x, y, z and small turns") + " of each body", H);
+    add("stiffness",
+        std::string("d(J^T lambda)/dq: ") +
+            (width_ == 3 ? "x, y, angle" : "x, y, z and small turns") + " of each body",
+        H);
   }
 
   const Joint& joint_;
   Pool& pool_;
-  std::size_t width_;  // columns of J per body
+  std::size_t width_;       // columns of J per body
   bool isotropic_ = false;  // inverse inertias are numbers, not tensors
   PoseInputs pose_;
   KernelBlock out_;
@@ -399,107 +352,13 @@ KernelBlock plan_block(const Joint& joint, std::string name, Derive derive) {
   return out;
 }
 
-// The default of a parameter in the frame that it is fixed in: R^T (p - x) for a point, R^T u for a vector.
-DefaultValue plan_default(const Joint& joint, int index) {
-  const Parameter& parameter = joint.parameters[static_cast<std::size_t>(index)];
-  PoseInputs pose(joint);
-  Pool& pool = *joint.pool;
-  const std::vector<std::string> fields = fields_of(joint, parameter);
-  std::vector<NamedExpr> outputs;
-  const auto output = [&](Expr e) { outputs.push_back({"p." + fields[outputs.size()], pose.of(e)}); };
-  if (parameter.kind == ParameterKind::scalar) {
-    output(parameter.default_value);
-    return {index, simplify(assemble(outputs))};
-  }
-  std::vector<Expr> values = {parameter.default_value};
-  if (!parameter.default_axes.empty()) values = parameter.default_axes;
-  if (parameter.kind == ParameterKind::point && parameter.body >= 0) {
-    values[0] = values[0] - body_symbols(joint, parameter.body).x;
-  }
-  for (const Expr value : values) {
-    for (const Expr axis : body_axes(pool, parameter.body)) output(dot(axis, value));
-  }
-  return {index, simplify(assemble(outputs))};
-}
-
 }  // namespace
-
-std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter) {
-  if (parameter.kind == ParameterKind::scalar) return {parameter.name};
-  std::vector<std::string> stems = {parameter.name}, fields;
-  if (!parameter.axes.empty()) stems = {parameter.name + "_x", parameter.name + "_y", parameter.name + "_z"};
-  for (const std::string& stem : stems) {
-    for (int k = 0; k < joint.dimension; ++k) fields.push_back(stem + "_" + "xyz"[k]);
-  }
-  return fields;
-}
-
-std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter) {
-  if (parameter.kind == ParameterKind::scalar) return {parameter.symbol};
-  std::vector<Expr> symbols;
-  for (const std::string& field : fields_of(joint, parameter)) {
-    symbols.push_back(joint.pool->symbol("p." + field, Role::parameter));
-  }
-  return symbols;
-}
-
-std::vector<std::vector<Expr>> rotation_matrix(const Joint& joint, int body) {
-  const auto member = [&](const std::string& name) {
-    return joint.pool->symbol(joint.bodies[static_cast<std::size_t>(body)] + "." + name, Role::given, body);
-  };
-  if (joint.dimension == 2) return {{member("c"), -member("s")}, {member("s"), member("c")}};
-  std::vector<std::vector<Expr>> A(3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) A[i].push_back(member(std::string{"xyz"[i], "xyz"[j]}));
-  }
-  return A;
-}
-
-PoseInputs::PoseInputs(const Joint& joint) {
-  for (const Parameter& parameter : joint.parameters) {
-    if (parameter.kind != ParameterKind::scalar && parameter.symbol) rotate(joint, parameter);
-  }
-  Components components;
-  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-    const int body = static_cast<int>(b);
-    const auto A = rotation_matrix(joint, body);
-    const std::vector<Expr> axes = body_axes(*joint.pool, body);
-    for (std::size_t k = 0; k < axes.size() && axes[k]->kind == Kind::symbol; ++k) {
-      const std::vector<Expr> world = components.of_vector(axes[k]);
-      for (std::size_t i = 0; i < world.size(); ++i) rotated_.emplace(&*world[i], A[i][k]);
-    }
-  }
-}
-
-// r = R l for each vector leaf behind the parameter.
-void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
-  Components components;
-  const std::vector<Expr> local = local_symbols(joint, parameter);
-  const std::vector<Expr> leaves = parameter.axes.empty() ? std::vector{parameter.symbol} : parameter.axes;
-  for (std::size_t n = 0; n < leaves.size(); ++n) {
-    const std::vector<Expr> world = components.of_vector(leaves[n]);
-    for (std::size_t i = 0; i < world.size(); ++i) {
-      Expr component = local[n * world.size() + i];
-      if (parameter.body >= 0) {
-        const std::vector<Expr> row = rotation_matrix(joint, parameter.body)[i];
-        component = joint.pool->number(0);
-        for (std::size_t k = 0; k < row.size(); ++k) component = component + row[k] * local[n * row.size() + k];
-        joint.pool->name(component, world[i]->symbol, true);
-      }
-      rotated_.emplace(&*world[i], component);
-    }
-  }
-}
-
-Expr PoseInputs::of(Expr scalar) {
-  Components components;
-  return substitute(components.of(scalar), rotated_);
-}
 
 Kernel plan_kernel(const Joint& joint) {
   Kernel kernel;
   kernel.joint = &joint;
-  kernel.rows = plan_block(joint, joint.name, [&](int immovable) { return derive_rows(joint, immovable); });
+  kernel.rows =
+      plan_block(joint, joint.name, [&](int immovable) { return derive_rows(joint, immovable); });
   for (const Coordinate& coordinate : joint.coordinates) {
     kernel.coordinates.push_back(plan_block(joint, coordinate.name, [&](int immovable) {
       return derive_coordinate(joint, coordinate, immovable);

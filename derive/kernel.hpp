@@ -1,4 +1,5 @@
-// What a kernel computes: every function of the contract (runtime/kernel.hpp) as a program, before it becomes text.
+// What a kernel computes: every function of the contract (runtime/kernel.hpp) as a program, before
+// it becomes text.
 #pragma once
 
 #include <string>
@@ -18,9 +19,9 @@ struct Field {
 
 // A function of the contract. Inputs are found by the names of the program's input operations.
 struct KernelFunction {
-  std::string name;     // "jacobian"
-  std::string summary;  // "C and J"
-  Program program;      // outputs carry the text of what is assigned: "C[0]", "J.t_x"
+  std::string name;        // "jacobian"
+  std::string summary;     // "C and J"
+  Program program;         // outputs carry the text of what is assigned: "C[0]", "J.t_x"
   bool isotropic = false;  // the overload for bodies whose inertia is a number, in space
 };
 
@@ -47,9 +48,9 @@ struct Kernel {
 
 Kernel plan_kernel(const Joint& joint);
 
-// Everything written out in components and read from poses and parameters: arms become c l_x - s l_y, in space
-// xx l_x + xy l_y + xz l_z.
-// Shared by the kernel, the ledger and the hand derivations, so that all are counted alike.
+// Everything written out in components and read from poses and parameters: arms become c l_x - s
+// l_y, in space xx l_x + xy l_y + xz l_z. Shared by the kernel, the ledger and the hand
+// derivations, so that all are counted alike.
 class PoseInputs {
  public:
   explicit PoseInputs(const Joint& joint);
@@ -61,7 +62,11 @@ class PoseInputs {
   std::map<const Node*, Expr> rotated_;
 };
 
-// The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space "f_x_x" to "f_z_z".
+// The default of a parameter that has one, in the frame that it is fixed in.
+DefaultValue plan_default(const Joint& joint, int index);
+
+// The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space
+// "f_x_x" to "f_z_z".
 std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter);
 // The rotation matrix of a body's pose, as a kernel reads it: [c -s; s c], or [xx xy xz; ...].
 std::vector<std::vector<Expr>> rotation_matrix(const Joint& joint, int body);

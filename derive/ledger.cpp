@@ -13,7 +13,8 @@ void add_functions(const Joint& joint, const KernelBlock& block, const std::stri
                    std::vector<LedgerRow>& rows) {
   for (const KernelFunction& f : block.functions) {
     const std::string quantity = f.name + (f.isotropic ? "_isotropic" : "");
-    rows.push_back({name_of_space(joint.dimension), joint.name, name, quantity, "generated", count(f.program)});
+    rows.push_back({name_of_space(joint.dimension), joint.name, name, quantity, "generated",
+                    count(f.program)});
   }
   for (const KernelBlock& variant : block.variants) {
     add_functions(joint, variant, (name == "rows" ? "" : name + ".") + variant.name, rows);
@@ -63,8 +64,8 @@ std::string emit_ledger(std::vector<LedgerRow> rows) {
   std::string s = "space,joint,block,quantity,source,add,multiply,divide,root,compare,call,total\n";
   for (const LedgerRow& r : rows) {
     const Count& c = r.count;
-    s += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", r.space, r.joint, r.block, r.quantity, r.source, c.add,
-                     c.multiply, c.divide, c.root, c.compare, c.call, c.total());
+    s += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", r.space, r.joint, r.block, r.quantity,
+                     r.source, c.add, c.multiply, c.divide, c.root, c.compare, c.call, c.total());
   }
   return s;
 }

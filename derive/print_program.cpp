@@ -13,8 +13,11 @@ constexpr const char* letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTU
 class StatementPrinter {
  public:
   StatementPrinter(const Program& program, const Printing& printing)
-      : program_(program), printing_(printing), uses_(program.ops.size()),
-        variable_(program.ops.size()), used_(printing.reserved) {
+      : program_(program),
+        printing_(printing),
+        uses_(program.ops.size()),
+        variable_(program.ops.size()),
+        used_(printing.reserved) {
     for (const Output& o : program.outputs) ++uses_[index(o.op)];
     for (std::size_t i = program.ops.size(); i-- > 0;) {
       if (uses_[i] == 0) continue;
@@ -25,7 +28,8 @@ class StatementPrinter {
   std::vector<std::string> print() {
     // Quantities first, then the outputs, so that an argument may be read and written.
     for (std::size_t i = 0; i < program_.ops.size(); ++i) {
-      if (uses_[i] > 0 && !program_.ops[i].name.empty()) named_[program_.ops[i].name] = static_cast<int>(i);
+      if (uses_[i] > 0 && !program_.ops[i].name.empty())
+        named_[program_.ops[i].name] = static_cast<int>(i);
     }
     for (const Output& output : program_.outputs) {
       label_ = plain(output.name);
@@ -60,7 +64,8 @@ class StatementPrinter {
 
   bool is_zero(int op) const { return at(op).kind == OpKind::number && at(op).value.is_zero(); }
 
-  // What a nameless quantity of this output is called after: "K21" for "K[1]", "wb" for "J.wb", "g1" for "g[0]".
+  // What a nameless quantity of this output is called after: "K21" for "K[1]", "wb" for "J.wb",
+  // "g1" for "g[0]".
   static std::string plain(const std::string& output) {
     const std::size_t open = output.find('[');
     if (output.compare(0, 2, "J.") == 0) return output.substr(2);
@@ -73,12 +78,14 @@ class StatementPrinter {
     return fmt::format("{}{}{}", output[0], row + 1, i - row * (row + 1) / 2 + 1);
   }
 
-  // ia_ra_x_t for I_a^-1 (ra x t): products with a body's inverse mass or inertia are called after both.
+  // ia_ra_x_t for I_a^-1 (ra x t): products with a body's inverse mass or inertia are called after
+  // both.
   std::string natural_name(const Operation& o) const {
     if (o.kind != OpKind::product || o.args.size() != 2) return "";
     if (o.exponents[0] != 1 || o.exponents[1] != 1) return "";
     const std::string mass = input_text(o.args[0]), other = operand(o.args[1], in_power);
-    const bool inertia = mass.size() == 4 && mass[0] == 'm' && (mass.ends_with(".I") || mass.ends_with(".m"));
+    const bool inertia =
+        mass.size() == 4 && mass[0] == 'm' && (mass.ends_with(".I") || mass.ends_with(".m"));
     const std::size_t dot = other.find("J.") == 0 ? 2 : 0;
     if (!inertia || other.find_first_not_of(letters, dot) != std::string::npos) return "";
     return fmt::format("{}{}_{}", mass[3] == 'I' ? "i" : "m", mass[1], other.substr(dot));
@@ -159,14 +166,18 @@ class StatementPrinter {
     const Operation& o = at(op);
     if (!variable_[index(op)].empty()) return variable_[index(op)];
     switch (o.kind) {
-      case OpKind::number: return number(o.value);
+      case OpKind::number:
+        return number(o.value);
       case OpKind::input: {
         const auto found = printing_.inputs.find(o.input);
         return found == printing_.inputs.end() ? o.input : found->second;
       }
-      case OpKind::sum: return sum_text(o, level);
-      case OpKind::product: return parenthesised(product_text(o), level >= in_power);
-      case OpKind::function: return function_text(o);
+      case OpKind::sum:
+        return sum_text(o, level);
+      case OpKind::product:
+        return parenthesised(product_text(o), level >= in_power);
+      case OpKind::function:
+        return function_text(o);
     }
     return "";
   }
@@ -179,8 +190,10 @@ class StatementPrinter {
     std::string s;
     const auto append = [&](std::size_t i) {
       const Rational c = o.coefs[i];
-      if (s.empty()) s += c.sign() < 0 ? "-" : "";
-      else s += c.sign() < 0 ? " - " : " + ";
+      if (s.empty())
+        s += c.sign() < 0 ? "-" : "";
+      else
+        s += c.sign() < 0 ? " - " : " + ";
       if (at(o.args[i]).kind == OpKind::number) {
         s += number(abs(c) * at(o.args[i]).value);
         return;
@@ -267,7 +280,8 @@ std::vector<std::string> wrapped(std::string line, Break where) {
     for (std::size_t i = indent; i < end; ++i) {
       if (line[i] == '(' || line[i] == '[') ++depth;
       if (line[i] == ')' || line[i] == ']') --depth;
-      const bool after_operator = i > indent && std::string_view("+-*,|").find(line[i - 1]) != std::string_view::npos;
+      const bool after_operator =
+          i > indent && std::string_view("+-*,|").find(line[i - 1]) != std::string_view::npos;
       const bool allowed = line[i] == ' ' && i > columns / 3 &&
                            (where == Break::at_spaces || (after_operator && depth <= best_depth));
       if (allowed) best = i, best_depth = depth;

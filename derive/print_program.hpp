@@ -11,8 +11,9 @@
 namespace cdot::derive {
 
 struct Printing {
-  std::map<std::string, std::string> inputs;  // how an input is read: "x_a_x" -> "a.x"; others stand for themselves
-  std::set<std::string> reserved;             // names that a local must not take
+  std::map<std::string, std::string>
+      inputs;  // how an input is read: "x_a_x" -> "a.x"; others stand for themselves
+  std::set<std::string> reserved;  // names that a local must not take
   std::string indent;
   bool zeroed = false;  // the outputs are zero beforehand: those that stay so are not assigned
 };
@@ -23,8 +24,8 @@ std::vector<std::string> print_statements(const Program& program, const Printing
 // The texts of the inputs that the program reads, as printed.
 std::set<std::string> inputs_read(const Program& program, const Printing& printing);
 
-// Breaks a line after 100 columns at the outermost operator that fits (in prose: at the last space); what follows is
-// indented by four more.
+// Breaks a line after 100 columns at the outermost operator that fits (in prose: at the last
+// space); what follows is indented by four more.
 enum class Break { at_operators, at_spaces };
 std::vector<std::string> wrapped(std::string line, Break where = Break::at_operators);
 

@@ -1,4 +1,5 @@
-// A function of a kernel as a flat list of scalar operations by index: the form that passes rewrite and printers read.
+// A function of a kernel as a flat list of scalar operations by index: the form that passes rewrite
+// and printers read.
 #pragma once
 
 #include <map>
@@ -14,10 +15,11 @@ enum class OpKind { number, input, sum, product, function };
 // Operands come before their users. Sums and products have any number of operands.
 struct Operation {
   OpKind kind = OpKind::number;
-  Rational value;               // number
-  std::string input;            // input: the symbol's name
-  bool is_position = false;     // input: a coordinate of a centre of mass (large, so differences come first)
-  Fn fn = Fn::sqrt;             // function
+  Rational value;     // number
+  std::string input;  // input: the symbol's name
+  bool is_position =
+      false;         // input: a coordinate of a centre of mass (large, so differences come first)
+  Fn fn = Fn::sqrt;  // function
   std::vector<int> args;
   std::vector<Rational> coefs;  // sum
   std::vector<int> exponents;   // product, positive
@@ -34,8 +36,9 @@ struct Program {
   std::vector<Output> outputs;
 };
 
-// Operations by kind. A power x^n is n - 1 products; a subtraction or negation counts as an addition; the guarded
-// inverse is a division and a comparison, a guarded pivot another product besides.
+// Operations by kind. A power x^n is n - 1 products; a subtraction or negation counts as an
+// addition; the guarded inverse is a division and a comparison, a guarded pivot another product
+// besides.
 struct Count {
   int add = 0, multiply = 0, divide = 0, root = 0, compare = 0, call = 0;
 
@@ -52,7 +55,8 @@ struct NamedExpr {
 // The program that computes `outputs`, shared work shared, nothing else done.
 Program assemble(const std::vector<NamedExpr>& outputs);
 
-// The cheapest of what the passes find: common pairs of terms and of factors shared, common factors taken out.
+// The cheapest of what the passes find: common pairs of terms and of factors shared, common factors
+// taken out.
 Program simplify(const Program& program);
 
 // Only operations that an output needs count.

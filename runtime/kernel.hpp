@@ -30,8 +30,18 @@
 //   B::local_jacobian  (q, J, D)                                    J by v and w' = A^T w (body axes), D[rows][6 bodies]
 //   B::euler_jacobian  (q, J, D)                                    J by v and the rates of e0 e1 e2 e3, D[rows][7 bodies]
 //
-// A joint has besides: Parameters<T>, `parameters` (their names, kinds and units), `row_kinds`, `default_value`,
-// `Coordinates` and `Immovable` (tuples of its coordinates and of its variants).
+// What the three kinds of row block have besides (strings are std::string_view, arrays std::array):
+//   members of a joint                                               and of
+//   name                                                             a coordinate: "line"; "slide"
+//   title                                                            what it does, in a sentence
+//   unit                                                             a coordinate only: "m", "rad"
+//   body_names, row_names, row_kinds                                 a coordinate: the last two
+//   Parameters<T>, parameters                                        the numbers, and a ParameterInfo for each parameter
+//   default_value      (index, q, p, t)                              writes p's parameter `index` from q and those before
+//   Coordinates                                                      std::tuple of the coordinates
+//   Immovable                                                        a coordinate: std::tuple of the variants
+//   immovable_body                                                   a variant only: the index of that body
+// A variant inherits from the block that it is a variant of whatever is the same there.
 // T is float, double, cdot::Pack, or any type with + - * /, comparison, select and the functions used.
 #pragma once
 
