@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "derive/check_parts.hpp"
+#include "derive/newton.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -10,8 +11,6 @@ namespace {
 constexpr int poses = 12;
 constexpr int most_steps = 100;
 constexpr double reached = 1e-11, converged = 1e-14;  // |C|
-
-using Matrix = std::vector<std::vector<double>>;
 
 // The rows that a pose can satisfy.
 std::vector<std::size_t> position_rows(const Block& block) {
@@ -22,8 +21,8 @@ std::vector<std::size_t> position_rows(const Block& block) {
   return rows;
 }
 
-Matrix jacobian(Numbers& numbers, const Block& block, const std::vector<std::size_t>& rows) {
-  Matrix J;
+Gradients jacobian(Numbers& numbers, const Block& block, const std::vector<std::size_t>& rows) {
+  Gradients J;
   for (const std::size_t i : rows) {
     std::vector<double> entries;
     for (const Expr entry : columns_of(block.rows[i].J)) entries.push_back(numbers.scalar(entry));
@@ -43,44 +42,6 @@ double norm_of(const std::vector<double>& v) {
   double total = 0;
   for (const double x : v) total += x * x;
   return std::sqrt(total);
-}
-
-// x of A x = b by Gaussian elimination; A is symmetric, positive and, by a little on its diagonal,
-// regular.
-std::vector<double> solve(Matrix A, std::vector<double> b) {
-  const std::size_t n = b.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double factor = A[k][k] == 0 ? 0 : A[i][k] / A[k][k];
-      for (std::size_t j = k; j < n; ++j) A[i][j] -= factor * A[k][j];
-      b[i] -= factor * b[k];
-    }
-  }
-  for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t j = k + 1; j < n; ++j) b[k] -= A[k][j] * b[j];
-    b[k] = A[k][k] == 0 ? 0 : b[k] / A[k][k];
-  }
-  return b;
-}
-
-// The shortest step in q that makes C + J dq = 0: dq = -J^T (J J^T + little)^-1 C.
-std::vector<double> newton_step(const Matrix& J, const std::vector<double>& C) {
-  const std::size_t n = J.size();
-  Matrix K(n, std::vector<double>(n));
-  double largest = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      for (std::size_t k = 0; k < J[i].size(); ++k) K[i][j] += J[i][k] * J[j][k];
-    }
-    largest = std::max(largest, K[i][i]);
-  }
-  for (std::size_t i = 0; i < n; ++i) K[i][i] += 1e-13 * largest;
-  const std::vector<double> lambda = solve(K, C);
-  std::vector<double> step(J[0].size());
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t k = 0; k < step.size(); ++k) step[k] -= J[i][k] * lambda[i];
-  }
-  return step;
 }
 
 Sample moved(int dimension, Sample sample, const std::vector<double>& step, double fraction) {
@@ -112,7 +73,7 @@ bool project(const Joint& joint, const Block& block, Sample& sample) {
     const std::vector<double> C = values(numbers, block, rows);
     error = norm_of(C);
     if (!std::isfinite(error)) return false;
-    const std::vector<double> step = newton_step(jacobian(numbers, block, rows), C);
+    const std::vector<double> step = shortest_step(jacobian(numbers, block, rows), C);
     Sample next = sample;
     double next_error = INFINITY;
     for (double fraction = 1; fraction > 1e-3 && !(next_error < error); fraction /= 2) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "derive/diff.hpp"
+#include "derive/diff_confirm.hpp"
 #include "derive/diff_words.hpp"
 
 namespace cdot::derive {
@@ -23,28 +24,50 @@ class EntryJudge {
     std::vector<int> sign;  // of each row: -1 where the source counts C the other way round
   };
 
+  // diff_entry.cpp
   std::vector<ScalarRow> rows_named(const std::vector<std::string>& names) const;
   Generated generated_for(const std::vector<ScalarRow>& rows) const;
+  std::vector<Expr> assumed_equations() const;
   void prepare_poses();
   const Poses& poses() const { return assumed_ ? *assumed_ : *anywhere_; }
+  const Poses& poses_on_constraint();
+  std::vector<Expr> constraints() const;
   bool equal(Expr hand, Expr generated);
   bool proved(Expr difference) const;
-
-  void find_signs(Part& part);
-  int agreeing(const Part& part, const HandItem& item, std::size_t row, int sign);
-  void judge_item(Part& part, const HandItem& item);
-  void compare(Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
-  std::vector<Contribution> contributions(const ScalarRow& row, std::size_t entry, Rational sign) const;
-  void compare_entry(Part& part, const HandItem& item, int row, int column, Expr hand, Expr generated);
-  void judge_bound(const Part& part, const HandItem& item);
-  void judge_updates(Part& part);  // diff_update.cpp
-  void compare_update(const HandItem& item, const std::string& column, Expr hand, Expr generated);
-  void judge_momentum(const Part& part, const Matrix& J);
+  void judge_item(const Part& part, const HandItem& item);
+  void conclude();
   void add_cost(const Part& part, const HandItem& item);
+
+  // diff_sign.cpp: which sign of C an entry means.
+  struct Misfit {
+    int entries = 0;        // that differ
+    std::size_t terms = 0;  // that differ in them
+  };
+  Misfit misfit(const Part& part, const HandItem& item, std::size_t row, int sign) const;
+  void find_signs(std::vector<Part>& parts);
+  std::vector<int> signs_of_mass(const Part& part) const;
+
+  // diff_compare.cpp: entry by entry.
+  void compare(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
+  void compare_entry(const Part& part, const HandItem& item, int row, int column, Expr hand,
+                     Expr generated);
+  void compare_sizes(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
+  void judge_problem(const Part& part, const HandItem& item);
+  Place place_of(const Part& part, const HandItem& item, int row, int column) const;
+  std::vector<Contribution> contributions(const ScalarRow& row, std::size_t entry, Rational sign) const;
   std::string confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand,
-                           Expr generated) const;
+                           Expr generated);
+  Confirm confirm() const { return {joint_, immovable_, poses()}; }
   void add(const HandItem& item, Difference difference, Expr hand, Expr generated);
-  void add_plain(const HandItem& item, std::string what, std::string kind, std::string sentence);
+  void add_plain(const HandItem& item, const Place& place, std::string kind, std::string sentence,
+                 std::string confirmed);
+
+  // diff_update.cpp: impulses and their bounds.
+  void judge_updates(const Part& part);
+  void judge_bound(const Part& part, const HandItem& item);
+
+  // diff_momentum.cpp
+  void judge_momentum(const Part& part, const Matrix& J);
 
   const Joint& joint_;
   Pool& pool_;
@@ -52,13 +75,10 @@ class EntryJudge {
   Block block_;
   std::vector<Block> coordinates_;
   HandEntry entry_;
-  std::optional<Poses> anywhere_, assumed_;
+  std::optional<Poses> anywhere_, assumed_, on_constraint_;
   bool needs_assumptions_ = false, only_by_numbers_ = false;
   std::map<std::string, std::string> changed_anchors_;
   Judgement out_;
 };
-
-// K^-1 b by elimination, for the impulse that a source should apply.
-std::vector<Expr> solved(const Matrix& K, std::vector<Expr> b);
 
 }  // namespace cdot::derive

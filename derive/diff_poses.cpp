@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+
+#include "derive/newton.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -22,7 +23,9 @@ std::vector<double*> variables_of(Sample& sample, std::size_t dimension) {
     else take(body.e, 4);
   }
   for (auto& [name, value] : sample.scalars) variables.push_back(&value);
-  for (auto& [name, value] : sample.local) take(value, dimension);
+  for (auto& [name, value] : sample.local) {
+    if (!name.starts_with("world.") && !name.starts_with("axis_")) take(value, dimension);
+  }
   for (auto& [triad, e] : sample.triads) take(e, 4);
   return variables;
 }
@@ -38,22 +41,50 @@ void normalise(Numbers& numbers) {
 void restore_unit_lengths(Sample& sample) {
   for (const Expr leaf : sample.leaves) {
     const auto found = sample.local.find(leaf->symbol);
-    if (!leaf->unit_length || found == sample.local.end()) continue;
-    normalise(found->second);
+    if (leaf->unit_length && found != sample.local.end()) normalise(found->second);
   }
   for (Sample::Body& body : sample.bodies) normalise(body.e);
   for (auto& [triad, e] : sample.triads) normalise(e);
 }
 
-std::vector<double> values_of(const Joint& joint, const std::vector<Expr>& expressions,
-                              const Sample& sample) {
-  Numbers numbers(world_values(joint, sample));
-  std::vector<double> values;
-  for (const Expr e : expressions) values.push_back(numbers.scalar(e));
-  return values;
+// What is positive by its nature, and still is: masses, and symbols that an entry declares free.
+bool still_positive(const Sample& sample) {
+  return std::none_of(sample.leaves.begin(), sample.leaves.end(), [&](Expr leaf) {
+    const bool positive = leaf->role == Role::given || leaf->role == Role::inverse_mass;
+    const auto found = sample.scalars.find(leaf->symbol);
+    return positive && found != sample.scalars.end() && found->second <= 0;
+  });
+}
+
+double largest(const std::vector<double>& numbers) {
+  double most = 0;
+  for (const double x : numbers) most = std::max(most, std::isfinite(x) ? std::abs(x) : HUGE_VAL);
+  return most;
+}
+
+Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations, Sample& sample) {
+  constexpr double step = 1e-6;
+  Gradients G(equations.size());
+  for (double* x : variables_of(sample, static_cast<std::size_t>(joint.dimension))) {
+    const double kept = *x;
+    *x = kept + step;
+    const std::vector<double> above = values_at(joint, equations, sample);
+    *x = kept - step;
+    const std::vector<double> below = values_at(joint, equations, sample);
+    *x = kept;
+    for (std::size_t i = 0; i < G.size(); ++i) G[i].push_back((above[i] - below[i]) / (2 * step));
+  }
+  return G;
 }
 
 }  // namespace
+
+std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample) {
+  Numbers numbers(world_values(joint, sample));
+  std::vector<double> values;
+  for (const Expr e : scalars) values.push_back(numbers.scalar(e));
+  return values;
+}
 
 Poses::Poses(const Joint& joint, std::vector<Expr> expressions) : joint_(&joint) {
   for (int i = 0; i < number_of_poses; ++i) {
@@ -67,42 +98,36 @@ Poses::Poses(const Joint& joint, std::vector<Expr> expressions) : joint_(&joint)
   }
 }
 
-bool Poses::satisfy(const std::vector<Expr>& equations, Sample& sample) const {
-  // Gauss-Newton with the smallest step: dx = -G^T (G G^T)^-1 e, one equation after the other (Kaczmarz), repeated.
-  for (int sweep = 0; sweep < 40; ++sweep) {
-    double worst = 0;
-    for (const Expr equation : equations) {
-      const auto value = [&] { return values_of(*joint_, {equation}, sample)[0]; };
-      const double residual = value();
-      worst = std::max(worst, std::abs(residual));
-      if (std::abs(residual) < 1e-13) continue;
-      const std::vector<double*> variables = variables_of(sample, static_cast<std::size_t>(joint_->dimension));
-      std::vector<double> gradient;
-      double square = 0;
-      for (double* x : variables) {
-        const double kept = *x, step = 1e-6;
-        *x = kept + step;
-        const double above = value();
-        *x = kept - step;
-        const double below = value();
-        *x = kept;
-        gradient.push_back((above - below) / (2 * step));
-        square += gradient.back() * gradient.back();
-      }
-      if (!(square > 1e-20)) return false;
-      for (std::size_t i = 0; i < variables.size(); ++i) *variables[i] -= residual * gradient[i] / square;
-      restore_unit_lengths(sample);
+// Gauss-Newton with the shortest step, halved while it does not help.
+bool Poses::satisfy(Sample& sample) const {
+  constexpr double reached = 1e-12;
+  double error = largest(values_at(*joint_, equations_, sample));
+  for (int iteration = 0; iteration < 40 && error > reached; ++iteration) {
+    const std::vector<double> residual = values_at(*joint_, equations_, sample);
+    const std::vector<double> step = shortest_step(gradients_of(*joint_, equations_, sample), residual);
+    double fraction = 1;
+    for (; fraction > 1e-3; fraction /= 2) {
+      Sample moved = sample;
+      const std::vector<double*> variables = variables_of(moved, static_cast<std::size_t>(joint_->dimension));
+      for (std::size_t i = 0; i < variables.size(); ++i) *variables[i] += fraction * step[i];
+      restore_unit_lengths(moved);
+      const double moved_error = largest(values_at(*joint_, equations_, moved));
+      if (!(moved_error < error)) continue;
+      sample = std::move(moved);
+      error = moved_error;
+      break;
     }
-    if (worst < 1e-12) return true;
+    if (fraction <= 1e-3) return false;
   }
-  return false;
+  return error <= reached && still_positive(sample);
 }
 
 Poses Poses::where(const std::vector<Expr>& equations) const {
   Poses moved = *this;
   moved.samples_.clear();
+  moved.equations_.insert(moved.equations_.end(), equations.begin(), equations.end());
   for (Sample sample : samples_) {
-    if (satisfy(equations, sample)) moved.samples_.push_back(std::move(sample));
+    if (moved.satisfy(sample)) moved.samples_.push_back(std::move(sample));
   }
   if (moved.samples_.size() * 2 < samples_.size()) moved.samples_.clear();
   return moved;
@@ -117,7 +142,7 @@ Poses Poses::first(std::size_t count) const {
 bool Poses::equal(Expr a, Expr b) const {
   if (samples_.empty()) return false;
   return std::all_of(samples_.begin(), samples_.end(), [&](const Sample& sample) {
-    const std::vector<double> v = values_of(*joint_, {a, b}, sample);
+    const std::vector<double> v = values_at(*joint_, {a, b}, sample);
     return std::abs(v[0] - v[1]) <= round_off * (1 + std::abs(v[0]) + std::abs(v[1]));
   });
 }
@@ -125,39 +150,13 @@ bool Poses::equal(Expr a, Expr b) const {
 std::optional<double> Poses::constant_ratio(Expr a, Expr b) const {
   std::optional<double> ratio;
   for (const Sample& sample : samples_) {
-    const std::vector<double> v = values_of(*joint_, {a, b}, sample);
+    const std::vector<double> v = values_at(*joint_, {a, b}, sample);
     if (std::abs(v[1]) < 1e-6) continue;
     const double k = v[0] / v[1];
     if (ratio && std::abs(k - *ratio) > 1e-7 * (1 + std::abs(k))) return std::nullopt;
     ratio = k;
   }
   return ratio;
-}
-
-Poses::Errors Poses::against(const Measure& measured, Expr derived, Expr published) const {
-  Errors errors;
-  for (const Sample& sample : samples_) {
-    const double truth = measured(sample);
-    const std::vector<double> v = values_of(*joint_, {derived, published}, sample);
-    errors.derived = std::max(errors.derived, std::abs(v[0] - truth) / (1 + std::abs(truth)));
-    errors.published = std::max(errors.published, std::abs(v[1] - truth) / (1 + std::abs(truth)));
-    ++errors.poses;
-  }
-  return errors;
-}
-
-std::vector<double> measured_row(const Joint& joint, Expr C, const Sample& sample) {
-  constexpr double step = 1e-6;
-  std::vector<double> row;
-  for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
-    for (std::size_t k = 0; k < columns_per_body(joint.dimension); ++k) {
-      Sample above = sample, below = sample;
-      above.bodies[b].move(joint.dimension, k, step);
-      below.bodies[b].move(joint.dimension, k, -step);
-      row.push_back((values_of(joint, {C}, above)[0] - values_of(joint, {C}, below)[0]) / (2 * step));
-    }
-  }
-  return row;
 }
 
 }  // namespace cdot::derive

@@ -1,4 +1,5 @@
-// Update rules: what a source adds to velocities or positions, against M^-1 J^T lambda with the right impulse.
+// Update rules: what a source adds to velocities or positions, against M^-1 J^T lambda with the right impulse; and the
+// bounds of the impulse.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,25 +14,14 @@ using Target = HandItem::Target;
 bool is_linear(Target t) { return t == Target::velocity || t == Target::position; }
 bool is_position_level(Target t) { return t == Target::position || t == Target::angle; }
 
-std::string target_name(Target t, const std::string& body) {
-  switch (t) {
-    case Target::velocity: return "v_" + body;
-    case Target::spin: return "w_" + body;
-    case Target::position: return "x_" + body;
-    case Target::angle: return "angle_" + body;
-  }
-  return "";
-}
-
 bool contains_multiplier(const HandItem& item) {
-  for (const Expr e : topological(item.value->entries)) {
-    if (e->kind == Kind::symbol && e->role == Role::multiplier) return true;
-  }
-  return false;
+  const std::vector<Expr> nodes = topological(item.value->entries);
+  return std::any_of(nodes.begin(), nodes.end(), [](Expr e) {
+    return e->kind == Kind::symbol && e->role == Role::multiplier;
+  });
 }
 
-}  // namespace
-
+// K^-1 b by elimination.
 std::vector<Expr> solved(const Matrix& K, std::vector<Expr> b) {
   const int n = K.rows;
   std::vector<Expr> A = K.entries;
@@ -51,75 +41,113 @@ std::vector<Expr> solved(const Matrix& K, std::vector<Expr> b) {
   return b;
 }
 
-void EntryJudge::compare_update(const HandItem& item, const std::string& column, Expr hand,
-                                Expr generated) {
-  if (equal(hand, generated)) return;
-  const Place place{"update", "", column, {}, {}, &joint_};
-  add(item, describe_difference(place, hand, generated, poses()), hand, generated);
+// M^-1 J^T lambda, column by column.
+std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda) {
+  std::vector<Expr> columns;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    JacobianEntry impulse{zero_vector(*joint.pool), zero_spin(*joint.pool)};
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      impulse.v = impulse.v + lambda[i] * rows[i].J[b].v;
+      impulse.w = impulse.w + lambda[i] * rows[i].J[b].w;
+    }
+    const JacobianEntry change{body.inv_m * impulse.v, apply(body.inv_I, impulse.w)};
+    for (const Expr e : columns_of(change)) columns.push_back(e);
+  }
+  return columns;
 }
+
+// What a source does to one column of J: the first update that speaks of its body is where it is said.
+struct Column {
+  const HandItem* item = nullptr;
+  std::string name;
+};
+
+std::string column_name(const Joint& joint, std::size_t column, bool positions) {
+  const std::size_t width = columns_per_body(joint.dimension), linear = static_cast<std::size_t>(joint.dimension);
+  const std::size_t k = column % width;
+  const std::string& body = joint.bodies[column / width];
+  if (k < linear) return fmt::format("{}_{}.{}", positions ? "x" : "v", body, "xyz"[k]);
+  const std::string turning = fmt::format("{}_{}", positions ? "angle" : "w", body);
+  return linear == 2 ? turning : fmt::format("{}.{}", turning, "xyz"[k - linear]);
+}
+
+}  // namespace
 
 // The impulse is what the source calls lambda (then only the direction M^-1 J^T is judged, either sign of C), or what
 // makes Cdot (positions: C) vanish.
-void EntryJudge::judge_updates(Part& part) {
+void EntryJudge::judge_updates(const Part& part) {
   std::vector<const HandItem*> updates;
   for (const HandItem& item : part.hand->items) {
     if (item.kind == HandItem::Kind::update && item.value) updates.push_back(&item);
   }
   if (updates.empty()) return;
   const std::size_t n = part.rows.size();
-  const bool direction_only = std::any_of(updates.begin(), updates.end(),
-                                          [](const HandItem* item) { return contains_multiplier(*item); });
+  const bool any_impulse = std::any_of(updates.begin(), updates.end(),
+                                       [](const HandItem* item) { return contains_multiplier(*item); });
   const bool positions = is_position_level(updates[0]->target);
   std::vector<Expr> lambda;
   for (std::size_t i = 0; i < n; ++i) {
     const std::string name = n == 1 ? "lambda" : "lambda_" + std::to_string(i + 1);
-    lambda.push_back(direction_only ? pool_.symbol(name, Role::multiplier)
-                     : positions    ? -part.generated.C.entries[i]
-                                    : -part.generated.Cdot.entries[i]);
+    lambda.push_back(any_impulse ? pool_.symbol(name, Role::multiplier)
+                     : positions ? -part.generated.C.entries[i]
+                                 : -part.generated.Cdot.entries[i]);
   }
-  if (!direction_only) lambda = solved(part.generated.K, std::move(lambda));
+  if (!any_impulse) lambda = solved(part.generated.K, std::move(lambda));
 
-  const auto derived = [&](std::size_t body, int component) {
-    const BodySymbols symbols = body_symbols(joint_, static_cast<int>(body));
-    Expr force = pool_.number(0);
-    for (std::size_t i = 0; i < n; ++i) {
-      force = force + part.generated.J.at(static_cast<int>(i), static_cast<int>(3 * body) + component) * lambda[i];
-    }
-    return (component == 2 ? symbols.inv_I : symbols.inv_m) * force;
-  };
-  struct Change {
-    const HandItem* item;
-    std::string column;
-    Expr hand, generated;
-  };
-  std::vector<Change> changes;
-  for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
-    for (const bool linear : {true, false}) {
-      const HandItem* source = nullptr;
-      Expr hand[2] = {pool_.number(0), pool_.number(0)};
-      Target target = linear ? (positions ? Target::position : Target::velocity)
-                             : (positions ? Target::angle : Target::spin);
-      for (const HandItem* item : updates) {
-        if (item->body != static_cast<int>(b) || is_linear(item->target) != linear) continue;
-        source = item;
-        for (std::size_t k = 0; k < item->value->entries.size() && k < 2; ++k) {
-          hand[k] = hand[k] + item->value->entries[k];
-        }
-      }
-      for (int k = 0; k < (linear ? 2 : 1); ++k) {
-        const std::string axis = linear ? (k == 0 ? ".x" : ".y") : "";
-        changes.push_back({source != nullptr ? source : updates[0], target_name(target, joint_.bodies[b]) + axis,
-                           hand[k], derived(b, linear ? k : 2)});
-      }
+  Confirm::Change change{changes_by(joint_, part.rows, lambda), {}};
+  change.published.assign(change.generated.size(), pool_.number(0));
+  std::vector<Column> columns(change.generated.size(), {updates[0], ""});
+  const std::size_t width = columns_per_body(joint_.dimension), linear = static_cast<std::size_t>(joint_.dimension);
+  for (const HandItem* item : updates) {
+    const std::size_t first = static_cast<std::size_t>(item->body) * width + (is_linear(item->target) ? 0 : linear);
+    for (std::size_t k = 0; k < item->value->entries.size(); ++k) {
+      change.published[first + k] = change.published[first + k] + item->value->entries[k];
+      columns[first + k].item = item;
     }
   }
   const auto wrong = [&](Rational sign) {
-    return std::count_if(changes.begin(), changes.end(), [&](const Change& c) {
-      return !poses().equal(c.hand, sign * c.generated);
-    });
+    int count = 0;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      count += poses().equal(change.published[c], sign * change.generated[c]) ? 0 : 1;
+    }
+    return count;
   };
-  const Rational sign(direction_only && wrong(Rational(-1)) < wrong(Rational(1)) ? -1 : 1);
-  for (const Change& c : changes) compare_update(*c.item, c.column, c.hand, sign * c.generated);
+  if (any_impulse && wrong(Rational(-1)) < wrong(Rational(1))) {
+    for (Expr& e : change.generated) e = -e;
+  }
+  std::string confirmed;
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    if (equal(change.published[c], change.generated[c])) continue;
+    if (confirmed.empty()) {
+      confirmed = any_impulse ? confirm().work(part.rows, change)
+                  : positions ? confirm().positions_after(part.rows, change)
+                              : confirm().velocities_after(part.rows, change);
+    }
+    const Place place{"update", "", column_name(joint_, c, positions), {}, {}, &joint_};
+    Difference d = describe_difference(place, change.published[c], change.generated[c], poses());
+    d.confirmed = confirmed;
+    add(*columns[c].item, std::move(d), change.published[c], change.generated[c]);
+  }
+}
+
+void EntryJudge::judge_bound(const Part& part, const HandItem& item) {
+  const bool inequality = std::all_of(part.rows.begin(), part.rows.end(), [](const ScalarRow& row) {
+    return row.kind == RowKind::inequality;
+  });
+  if (inequality == item.pushes_only) return;
+  std::vector<Expr> b;
+  for (const Expr e : part.generated.Cdot.entries) b.push_back(-e);
+  const std::string confirmed = confirm().bound(part.rows, solved(part.generated.K, b), inequality);
+  const Place place{"update", "", "", {}, {}, &joint_};
+  if (inequality) {
+    add_plain(item, place, "missing term",
+              "the impulse has to stay >= 0: an inequality may push C up, never pull it back; without that the row "
+              "also stops bodies that are already on their way back",
+              confirmed);
+  } else {
+    add_plain(item, place, "extra term", "the row is an equation, its impulse may have either sign", confirmed);
+  }
 }
 
 }  // namespace cdot::derive

@@ -3,86 +3,29 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+
+#include "derive/diff_terms.hpp"
+#include "derive/matrix.hpp"
 
 namespace cdot::derive {
 namespace {
 
-// e as a sum of products: dot, cross, products and squares are distributed over sums that have no name.
-class Expansion {
- public:
-  Expr of(Expr e) {
-    if (!e->name.empty() && !at_root_) return e;
-    at_root_ = false;
-    switch (e->kind) {
-      case Kind::sum: {
-        std::vector<Term> terms;
-        for (std::size_t i = 0; i < e->args.size(); ++i) terms.push_back({e->coefs[i], of(e->args[i])});
-        return sum(*e->pool, terms, e->vector);
-      }
-      case Kind::dot: return bilinear(e, [](Expr u, Expr v) { return dot(u, v); });
-      case Kind::cross: return bilinear(e, [](Expr u, Expr v) { return cross(u, v); });
-      case Kind::product: return product_of_sums(e);
-      default: return e;
-    }
-  }
+// A formula that is longer does not fit a sentence; it stands in the lines below.
+constexpr std::size_t longest_formula = 120;
 
- private:
-  template <class Operator>
-  Expr bilinear(Expr e, Operator op) {
-    Expr total = e->pool->number(0);
-    for (const Term& u : terms_of(of(e->args[0]))) {
-      for (const Term& v : terms_of(of(e->args[1]))) total = total + (u.coef * v.coef) * op(u.e, v.e);
-    }
-    return total;
-  }
-
-  Expr product_of_sums(Expr e) {
-    std::vector<Term> terms = {{Rational(1), e->pool->number(1)}};
-    for (std::size_t i = 0; i < e->args.size(); ++i) {
-      const bool expands = e->exponents[i] > 0 && e->exponents[i] <= 2;
-      const Expr factor = expands ? of(e->args[i]) : pow(e->args[i], e->exponents[i]);
-      for (int k = 0; k < (expands ? e->exponents[i] : 1); ++k) {
-        std::vector<Term> next;
-        for (const Term& t : terms) {
-          for (const Term& f : terms_of(factor)) next.push_back({t.coef * f.coef, t.e * f.e});
-        }
-        terms = std::move(next);
-      }
-    }
-    return sum(*e->pool, terms, false);
-  }
-
-  bool at_root_ = true;
+struct Explained {
+  std::string kind, sentence;
+  std::size_t effort = 0;  // to read: the explanation with the least is given
 };
 
-Expr expanded(Expr e) { return e->vector ? e : Expansion().of(e); }
-
-// The terms of a that b lacks; each with its coefficient.
-std::vector<Term> terms_without(Expr a, Expr b) {
-  const std::vector<Term> left = terms_of(expanded(a)), right = terms_of(expanded(b));
-  std::vector<Term> only;
-  for (const Term& t : left) {
-    if (is_zero(t.e) || t.coef.is_zero()) continue;
-    const bool found = std::any_of(right.begin(), right.end(), [&](const Term& u) {
-      return u.e == t.e && u.coef == t.coef;
-    });
-    if (!found) only.push_back(t);
-  }
-  return only;
-}
-
-Expr sum_of(const std::vector<Term>& terms, Pool& pool) { return collected(sum(pool, terms, false)); }
-
-std::string place_name(const Place& place) {
-  std::string s = place.what;
-  if (!place.row.empty()) s += ", row " + place.row;
-  if (!place.column.empty()) s += ", " + place.column;
-  return s;
+// What stands there, and what belongs there.
+std::string instead(const std::string& has, const std::string& lacks) {
+  if (has.size() + lacks.size() > longest_formula) return "it is not the generated one";
+  return fmt::format("it has {} where {} belongs", has, lacks);
 }
 
 std::string where_from(const Contribution& source, const Joint& joint) {
-  const std::string body = source.leaf->body >= 0 ? joint.bodies[static_cast<std::size_t>(source.leaf->body)] : "?";
+  const std::string body = joint.bodies[static_cast<std::size_t>(source.leaf->body)];
   const std::string& s = source.leaf->symbol;
   if (source.leaf->role == Role::body_vector) {
     return fmt::format("{0} turns with {1} (d{0}/dt = w_{1} x {0}), so the product rule has a term for it", s, body);
@@ -90,50 +33,70 @@ std::string where_from(const Contribution& source, const Joint& joint) {
   return fmt::format("{} moves with {}", s, body);
 }
 
-// The expression in which body-dependent symbols of one class belong to another body: inverse masses, or arms.
-std::vector<Expr> with_bodies_swapped(Expr e, const Joint& joint) {
-  std::vector<Expr> swapped;
-  if (joint.bodies.size() < 2) return swapped;
-  const BodySymbols a = body_symbols(joint, 0), b = body_symbols(joint, 1);
-  for (const auto& [x, y] : {std::pair{a.inv_m, b.inv_m}, {a.inv_I, b.inv_I}, {a.w, b.w}, {a.v, b.v}}) {
-    for (const auto& map : {std::map<const Node*, Expr>{{&*x, y}}, std::map<const Node*, Expr>{{&*y, x}},
-                            std::map<const Node*, Expr>{{&*x, y}, {&*y, x}}}) {
-      swapped.push_back(substitute(e, map, KeepNames::no));
-    }
+using Replacements = std::map<const Node*, Expr>;
+
+// What belongs to one body, class by class: its masses, its inertias, its velocities.
+std::vector<std::vector<Expr>> symbols_by_class(const Joint& joint, std::size_t body) {
+  const BodySymbols s = body_symbols(joint, static_cast<int>(body));
+  std::vector<Expr> inertia = {s.inv_I};
+  if (is_tensor(s.inv_I)) {
+    const Matrix components = tensor_matrix(s.inv_I);
+    inertia.insert(inertia.end(), components.entries.begin(), components.entries.end());
   }
-  std::vector<Expr> arms;
-  for (const Parameter& p : joint.parameters) {
-    if (p.kind == ParameterKind::point && p.body >= 0) arms.push_back(p.symbol);
-  }
-  for (const Expr from : arms) {
-    for (const Expr to : arms) {
-      if (from != to) swapped.push_back(substitute(e, {{&*from, to}}, KeepNames::no));
-    }
-  }
-  return swapped;
+  return {{s.inv_m}, inertia, {s.w}, {s.v}};
 }
 
-struct Explained {
-  std::string kind, sentence;
-};
+// Each way in which one class of symbols may have got to another body: one for the other, or both exchanged.
+std::vector<Replacements> exchanges(const Joint& joint) {
+  std::vector<Replacements> all;
+  for (std::size_t a = 0; a < joint.bodies.size(); ++a) {
+    for (std::size_t b = a + 1; b < joint.bodies.size(); ++b) {
+      const auto ours = symbols_by_class(joint, a), theirs = symbols_by_class(joint, b);
+      for (std::size_t c = 0; c < ours.size(); ++c) {
+        Replacements forth, back;
+        for (std::size_t i = 0; i < ours[c].size(); ++i) {
+          forth.emplace(&*ours[c][i], theirs[c][i]);
+          back.emplace(&*theirs[c][i], ours[c][i]);
+        }
+        Replacements both = forth;
+        both.insert(back.begin(), back.end());
+        all.insert(all.end(), {forth, back, both});
+      }
+    }
+  }
+  for (const Parameter& from : joint.parameters) {
+    for (const Parameter& to : joint.parameters) {
+      const bool arms = from.kind == ParameterKind::point && from.body >= 0 &&
+                        to.kind == ParameterKind::point && to.body >= 0;
+      if (arms && from.symbol != to.symbol) all.push_back({{&*from.symbol, to.symbol}});
+    }
+  }
+  return all;
+}
+
+bool belongs_to_another_body(Expr hand, Expr generated, const Joint& joint, const Poses& poses) {
+  const std::vector<Replacements> all = exchanges(joint);
+  return std::any_of(all.begin(), all.end(), [&](const Replacements& exchange) {
+    return poses.equal(substitute(hand, exchange, KeepNames::no), generated);
+  });
+}
 
 std::optional<Explained> whole_entry(const Place& place, Expr hand, Expr generated, const Poses& poses) {
   if (poses.equal(hand, -generated)) return Explained{"sign", "the sign is wrong"};
   for (const Expr other : place.elsewhere) {
     if (is_zero(other)) continue;
     if (poses.equal(hand, other) || poses.equal(hand, -other)) {
-      return Explained{"wrong body", "this is what belongs to another body's column"};
+      return Explained{"wrong body", fmt::format("{} is what belongs to another body's column", text(hand))};
     }
   }
-  if (is_zero(expanded(hand))) return Explained{"missing term", "nothing stands here"};
-  if (is_zero(expanded(generated))) return Explained{"extra term", "nothing belongs here"};
+  const Expr zero = hand->pool->number(0);
+  if (poses.equal(hand, zero)) return Explained{"missing term", "nothing stands here"};
+  if (poses.equal(generated, zero)) return Explained{"extra term", "nothing belongs here"};
   if (const std::optional<double> k = poses.constant_ratio(hand, generated)) {
     return Explained{"factor", fmt::format("it is {:.6g} times what it should be", *k)};
   }
-  for (const Expr swapped : with_bodies_swapped(hand, *place.joint)) {
-    if (poses.equal(swapped, generated)) {
-      return Explained{"wrong body", "a quantity of one body stands where the other's belongs"};
-    }
+  if (belongs_to_another_body(hand, generated, *place.joint, poses)) {
+    return Explained{"wrong body", "a quantity of one body stands where the other's belongs"};
   }
   return std::nullopt;
 }
@@ -156,86 +119,81 @@ std::optional<Explained> single_source(const Place& place, Expr difference, cons
   return std::nullopt;
 }
 
-Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& poses) {
-  Pool& pool = *hand->pool;
-  const Expr lacks = sum_of(terms_without(generated, hand), pool);
-  const Expr has = sum_of(terms_without(hand, generated), pool);
-  if (is_zero(has)) return {"missing term", fmt::format("the hand derivation lacks {}", text(lacks))};
-  if (is_zero(lacks)) return {"extra term", fmt::format("{} does not belong here", text(has))};
-  if (poses.equal(has, -lacks)) {
-    return {"sign", fmt::format("it has {} where {} belongs", text(has), text(lacks))};
+// All that is left over of the published side is what is left over of the generated one, but for a factor.
+std::optional<Explained> by_factor(const Leftover& left, Expr has, Expr lacks, const Poses& poses) {
+  if (left.hand.size() != left.generated.size()) return std::nullopt;
+  for (const Term& theirs : left.generated) {
+    const Factors f = leftover_factors(left.hand[0], theirs);
+    if (f.rest->kind == Kind::number || !poses.equal(has * f.generated, lacks * f.hand)) continue;
+    const std::string ours = text(f.hand), right = text(f.generated), where = text(has);
+    const std::string at = where.size() > longest_formula ? "" : " in " + where;
+    if (is_one(f.hand)) return Explained{"factor", fmt::format("the factor {} is missing{}", right, at)};
+    if (is_one(f.generated)) return Explained{"factor", fmt::format("the factor {} does not belong{}", ours, at)};
+    if (ours.size() + right.size() > longest_formula) return std::nullopt;
+    return Explained{"factor", fmt::format("the factor {} stands where {} belongs", ours, right)};
   }
-  const std::vector<Expr> swapped = with_bodies_swapped(has, *place.joint);
-  const bool wrong_body = std::any_of(swapped.begin(), swapped.end(),
-                                      [&](Expr e) { return poses.equal(e, lacks); });
-  return {wrong_body ? "wrong body" : "factor",
-          fmt::format("it has {} where {} belongs", text(has), text(lacks))};
+  return std::nullopt;
+}
+
+Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& poses, Opened opened) {
+  Pool& pool = *hand->pool;
+  const Leftover left = leftover_terms(hand, generated, *place.joint, opened);
+  const Expr has = sum_of(left.hand, pool), lacks = sum_of(left.generated, pool);
+  const std::string ours = text(has), theirs = text(lacks);
+  const bool brief = ours.size() + theirs.size() <= longest_formula;
+  const std::size_t effort = ours.size() + theirs.size();
+  if (is_zero(has)) {
+    return {"missing term", fmt::format("the hand derivation lacks {}", brief ? theirs : "terms"), effort};
+  }
+  if (is_zero(lacks)) {
+    return {"extra term", brief ? fmt::format("{} does not belong here", ours) : "it has terms that do not belong here",
+            effort};
+  }
+  const std::string sentence = instead(ours, theirs);
+  if (poses.equal(has, -lacks)) return {"sign", sentence, effort};
+  if (belongs_to_another_body(has, lacks, *place.joint, poses)) return {"wrong body", sentence, effort};
+  if (std::optional<Explained> factor = by_factor(left, has, lacks, poses)) {
+    factor->effort = std::min(effort, factor->sentence.size());
+    return *factor;
+  }
+  constexpr std::size_t vague = 1000;  // any other kind says more
+  return {"factor", sentence, effort + vague};
+}
+
+Explained explained(const Place& place, Expr hand, Expr generated, Expr difference, const Poses& poses) {
+  if (const auto whole = whole_entry(place, hand, generated, poses)) return *whole;
+  if (const auto source = single_source(place, difference, poses)) return *source;
+  Explained best = by_terms(place, hand, generated, poses, Opened::nothing);
+  for (const Opened opened : {Opened::rates, Opened::own_lets, Opened::everything}) {
+    Explained next = by_terms(place, hand, generated, poses, opened);
+    if (next.effort < best.effort) best = std::move(next);
+  }
+  return best;
 }
 
 }  // namespace
 
-Expr difference_of(Expr hand, Expr generated) {
-  const Expr plain = hand - generated;
-  const Expr shorter = collected(expanded(plain));
-  return text(shorter).size() <= text(plain).size() ? shorter : plain;
+std::string name_of(const Place& place) {
+  const auto is_digit = [](const std::string& s) { return s.find_first_not_of("0123456789") == s.npos; };
+  std::string s = place.what;
+  if (!place.row.empty()) s += ", row " + place.row;
+  if (!place.column.empty()) s += (is_digit(place.column) ? ", column " : ", ") + place.column;
+  return s;
 }
 
 Difference describe_difference(const Place& place, Expr hand, Expr generated, const Poses& poses) {
+  const Expr difference = difference_of(hand, generated, *place.joint);
+  const Explained why = explained(place, hand, generated, difference, poses);
   Difference d;
   d.what = place.what;
   d.row = place.row;
   d.column = place.column;
+  d.kind = why.kind;
   d.generated = text(generated);
   d.hand = text(hand);
-  const Expr difference = difference_of(hand, generated);
   d.difference = text(difference);
-  std::optional<Explained> explained = whole_entry(place, hand, generated, poses);
-  if (!explained) explained = single_source(place, difference, poses);
-  if (!explained) explained = by_terms(place, hand, generated, poses);
-  d.kind = explained->kind;
-  d.sentence = fmt::format("{}: {}", place_name(place), explained->sentence);
+  d.sentence = fmt::format("{}: {}", name_of(place), why.sentence);
   return d;
-}
-
-std::string hidden_assumption(const Joint& joint, const std::vector<Expr>& constraints, Expr hand,
-                              Expr generated, const Poses& poses) {
-  Pool& pool = *joint.pool;
-  const Expr ex = world_x(pool);
-  const auto holds = [&](const std::vector<Expr>& equations) {
-    // Most candidates fail at the first poses.
-    return poses.first(2).where(equations).equal(hand, generated) &&
-           poses.where(equations).equal(hand, generated);
-  };
-  if (!constraints.empty() && holds(constraints)) return "C = 0";
-  for (const Parameter& p : joint.parameters) {
-    if (p.kind != ParameterKind::scalar) continue;
-    for (const int value : {1, -1, 0}) {
-      if (holds({p.symbol - pool.number(value)})) return fmt::format("{} = {}", p.name, value);
-    }
-  }
-  std::vector<std::pair<std::string, Expr>> vectors;
-  for (const Let& let : joint.lets) {
-    if (let.value->vector) vectors.emplace_back(let.name, let.value);
-  }
-  for (const Parameter& p : joint.parameters) {
-    if (p.symbol && p.symbol->vector) vectors.emplace_back(p.symbol->symbol, p.symbol);
-  }
-  for (const auto& [name, v] : vectors) {
-    if (!v->unit_length && holds({dot(ex, v), dot(perp(ex), v)})) return fmt::format("{} = 0", name);
-  }
-  for (std::size_t i = 0; i < vectors.size(); ++i) {
-    for (std::size_t j = i + 1; j < vectors.size(); ++j) {
-      for (const Expr product : {cross(vectors[i].second, vectors[j].second),
-                                 dot(vectors[i].second, vectors[j].second)}) {
-        if (product->kind != Kind::number && holds({product})) return text(product) + " = 0";
-      }
-    }
-  }
-  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
-    if (holds({body.theta})) return fmt::format("angle({}) = 0", joint.bodies[b]);
-  }
-  return "";
 }
 
 }  // namespace cdot::derive

@@ -9,25 +9,26 @@
 
 namespace cdot::derive {
 
-// hand - generated, in the spec's names and as short as expanding and collecting makes it.
-Expr difference_of(Expr hand, Expr generated);
-
 // What a term of J may stem from: one leaf that moves with a body.
 struct Contribution {
   Expr leaf, term;
 };
 
 struct Place {
-  std::string what, row, column;       // as in Difference
-  std::vector<Contribution> sources;   // of a J entry
-  std::vector<Expr> elsewhere;         // the generated entries of the other bodies in the same row
+  std::string what, row, column;      // as in Difference
+  std::vector<Contribution> sources;  // of an entry of J, or of Cdot
+  std::vector<Expr> elsewhere;        // the generated entries of the other bodies in the same row
   const Joint* joint = nullptr;
 };
+
+// "J, row 1, w_b"; "K, row 2, column 1"; "Cdot, row line".
+std::string name_of(const Place& place);
 
 // Fills kind, texts and sentence. `poses` decide what equals what.
 Difference describe_difference(const Place& place, Expr hand, Expr generated, const Poses& poses);
 
 // A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty if none is found.
+// `constraints`: the rows of C.
 std::string hidden_assumption(const Joint& joint, const std::vector<Expr>& constraints, Expr hand,
                               Expr generated, const Poses& poses);
 

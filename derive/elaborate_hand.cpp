@@ -70,6 +70,7 @@ class EntryElaborator final : public Scope {
   void update(const HandItemAst& item);
   void claim(const HandItemAst& item);
   void bound(const HandItemAst& item);
+  std::vector<HandReading> readings(const Ast& ast);
 
   void begin_part(std::vector<std::string> rows);
   const Value* special(const std::string& name);
@@ -320,10 +321,36 @@ void EntryElaborator::quantity(const HandItemAst& item) {
       begin(item, item.kind == Kind::lambda ? HandItem::Kind::lambda : HandItem::Kind::quantity);
   const std::size_t before = findings();
   const Value v = evaluate(item.right, item.word.text == "J");
-  if (v.type == Type::poison) out.problem = reasons_[item.word.text] = problem(item.right, before);
+  if (v.type == Type::poison) {
+    out.problem = reasons_[item.word.text] = problem(item.right, before);
+    out.readings = readings(item.right);
+  }
   store(v, out.value, out.expression);
   if (item.word.text != "b") said_[item.word.text] = v;
   entry_.parts.back().items.push_back(std::move(out));
+}
+
+// Readings in which one velocity is an angular velocity, or the other way round.
+std::vector<HandReading> EntryElaborator::readings(const Ast& ast) {
+  std::vector<HandReading> found;
+  const auto exchange = [&](auto& self, Ast& whole, Ast& node) -> void {
+    const bool velocity = node.text == "v" || node.text == "w";
+    if (node.kind == Ast::Kind::call && velocity && node.args.size() == 1) {
+      const std::string written = node.text, body = node.args[0].text;
+      node.text = written == "v" ? "w" : "v";
+      HandReading reading{"with " + node.text + "(" + body + ") in place of " + written + "(" + body + ")",
+                          node.text + "_" + body, {}};
+      std::optional<Matrix> value;
+      Expr expression;
+      store(evaluate(whole), value, expression);
+      if (value) found.push_back({reading.words, reading.column, *value});
+      node.text = written;
+    }
+    for (Ast& arg : node.args) self(self, whole, arg);
+  };
+  Ast copy = ast;
+  exchange(exchange, copy, copy);
+  return found;
 }
 
 void EntryElaborator::update(const HandItemAst& item) {

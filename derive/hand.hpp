@@ -37,6 +37,13 @@ struct Generated {
 // no names.
 using GeneratedRows = std::function<Generated(const std::vector<std::string>& rows)>;
 
+// Another reading of a formula that has no value as it stands.
+struct HandReading {
+  std::string words;   // "with w(b) in place of v(b)"
+  std::string column;  // what that is about: "w_b"
+  Matrix value;
+};
+
 struct HandItem {
   enum class Kind { quantity, lambda, update, bound, claim };
   enum class Target { velocity, spin, position, angle };
@@ -47,6 +54,7 @@ struct HandItem {
   std::optional<Matrix> right;        // claim: the right side
   Expr expression, right_expression;  // the same, where the author wrote a number or a vector
   std::string problem;                // why there is no value, in a sentence
+  std::vector<HandReading> readings;  // if there is none
   Target target = Target::velocity;   // update
   int body = -1;                      // update
   bool pushes_only = false;           // bound: lambda >= 0; otherwise lambda is free

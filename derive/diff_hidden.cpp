@@ -1,0 +1,103 @@
+// Searches for a condition that an author had in mind and did not write down.
+#include <fmt/format.h>
+
+#include "derive/diff_terms.hpp"
+#include "derive/diff_words.hpp"
+
+namespace cdot::derive {
+namespace {
+
+class Search {
+ public:
+  Search(const Joint& joint, Expr hand, Expr generated, const Poses& poses)
+      : joint_(joint), pool_(*joint.pool), hand_(hand), generated_(generated), poses_(poses) {}
+
+  // Equal there, and not just zero both, as a factor C of both sides would make them.
+  bool holds(const std::vector<Expr>& equations) const {
+    const Expr zero = pool_.number(0);
+    const Poses few = poses_.first(2).where(equations);  // most candidates fail at the first poses
+    if (!few.equal(hand_, generated_) || few.equal(generated_, zero)) return false;
+    return poses_.where(equations).equal(hand_, generated_);
+  }
+
+  // A free symbol that stands for a quantity of the joint.
+  std::string meaning_of_symbols(const std::vector<Expr>& free) const {
+    for (const Expr symbol : free) {
+      for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+        const Expr w = body_symbols(joint_, static_cast<int>(b)).w;
+        if (w->vector) continue;
+        const Expr meant = substitute(hand_, {{&*symbol, w}}, KeepNames::no);
+        if (poses_.equal(meant, generated_)) return fmt::format("{} = {}", symbol->symbol, w->symbol);
+      }
+    }
+    return "";
+  }
+
+  // Ratios of one, and angles or ways of zero.
+  std::string of_scalars() const {
+    for (const Parameter& p : joint_.parameters) {
+      if (p.kind != ParameterKind::scalar) continue;
+      const std::vector<int> values = p.unit == Unit{} ? std::vector{1, -1} : std::vector{0};
+      for (const int value : values) {
+        if (holds({p.symbol - pool_.number(value)})) return fmt::format("{} = {}", p.name, value);
+      }
+    }
+    return "";
+  }
+
+  // Bodies that have not turned: their frame is the world's.
+  std::string of_orientations() const {
+    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+      const BodySymbols body = body_symbols(joint_, static_cast<int>(b));
+      if (body.theta && holds({body.theta})) return fmt::format("angle({}) = 0", joint_.bodies[b]);
+    }
+    return "";
+  }
+
+  std::string of_vectors() const {
+    std::vector<std::pair<std::string, Expr>> vectors;
+    for (const Let& let : joint_.lets) {
+      if (let.value->vector) vectors.emplace_back(let.name, let.value);
+    }
+    for (const Parameter& p : joint_.parameters) {
+      if (p.symbol && p.symbol->vector) vectors.emplace_back(p.symbol->symbol, p.symbol);
+    }
+    for (const auto& [name, v] : vectors) {
+      if (!v->unit_length && holds(components_of(v))) return fmt::format("{} = 0", name);
+    }
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+      for (std::size_t j = i + 1; j < vectors.size(); ++j) {
+        for (const Expr product : {cross(vectors[i].second, vectors[j].second),
+                                   dot(vectors[i].second, vectors[j].second)}) {
+          if (product->kind != Kind::number && !is_zero(product) && holds(components_of(product))) {
+            return text(product) + " = 0";
+          }
+        }
+      }
+    }
+    return "";
+  }
+
+ private:
+  const Joint& joint_;
+  Pool& pool_;
+  Expr hand_, generated_;
+  const Poses& poses_;
+};
+
+}  // namespace
+
+std::string hidden_assumption(const Joint& joint, const std::vector<Expr>& constraints, Expr hand,
+                              Expr generated, const Poses& poses) {
+  const Search search(joint, hand, generated, poses);
+  // Where a symbol stands for anything, the two are equal only by chance or if it means something.
+  const std::vector<Expr> free = free_symbols(hand);
+  if (!free.empty()) return search.meaning_of_symbols(free);
+  if (!constraints.empty() && search.holds(constraints)) return "C = 0";
+  std::string condition = search.of_scalars();
+  if (condition.empty()) condition = search.of_orientations();
+  if (condition.empty()) condition = search.of_vectors();
+  return condition;
+}
+
+}  // namespace cdot::derive

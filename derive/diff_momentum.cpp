@@ -1,0 +1,42 @@
+// A published Jacobian judged alone: moving all bodies together must not be felt by a joint that has nothing to do with
+// the world, whatever C was.
+#include <fmt/format.h>
+
+#include "derive/diff_entry.hpp"
+
+namespace cdot::derive {
+
+// Judged where C = 0: a vector row in world axes turns with the bodies, and is zero only there after it.
+void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
+  if (joint_.uses_world || immovable_ >= 0) return;
+  const std::vector<Expr> axes = world_axes(pool_);
+  const int width = static_cast<int>(columns_per_body(joint_.dimension)), linear = joint_.dimension;
+  const Poses& there = poses_on_constraint();
+  const auto vanishes = [&](Expr e) {
+    for (const Expr component : components_of(e)) {
+      if (!there.equal(component, pool_.number(0))) return false;
+    }
+    return true;
+  };
+  for (int r = 0; r < J.rows && r < static_cast<int>(part.rows.size()); ++r) {
+    Expr moved = zero_vector(pool_), turned = zero_spin(pool_);
+    for (int b = 0; b < static_cast<int>(joint_.bodies.size()); ++b) {
+      Expr v = zero_vector(pool_), w = zero_spin(pool_);
+      for (int k = 0; k < linear; ++k) v = v + J.at(r, b * width + k) * axes[static_cast<std::size_t>(k)];
+      for (int k = linear; k < width; ++k) {
+        const Expr entry = J.at(r, b * width + k);
+        w = w + (linear == 2 ? entry : entry * axes[static_cast<std::size_t>(k - linear)]);
+      }
+      // A turn about the origin gives the centre at x the velocity w x x.
+      moved = moved + v;
+      turned = turned + w + cross(body_symbols(joint_, b).x, v);
+    }
+    const bool translation = !vanishes(moved);
+    if (!translation && vanishes(turned)) continue;
+    out_.remarks.push_back(fmt::format(
+        "row {} of this J breaks conservation of {}: a common {} of all bodies gives J v != 0", r + 1,
+        translation ? "momentum" : "angular momentum", translation ? "translation" : "rotation"));
+  }
+}
+
+}  // namespace cdot::derive
