@@ -55,7 +55,11 @@ std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix&
 
 }  // namespace
 
-// Where an entry of an item stands. Rows are numbered, or named in parts about certain rows.
+// Rows are numbered, or named in parts about certain rows.
+std::string EntryJudge::name_of_row(const Part& part, int row) {
+  return part.hand->rows.empty() ? std::to_string(row + 1) : part.rows[static_cast<std::size_t>(row)].name;
+}
+
 Place EntryJudge::place_of(const Part& part, const HandItem& item, int row, int column) const {
   Place place{item.what, std::to_string(row + 1), "", {}, {}, &joint_};
   if (item.kind == HandItem::Kind::claim) {
@@ -64,11 +68,8 @@ Place EntryJudge::place_of(const Part& part, const HandItem& item, int row, int 
     if (item.value && item.value->columns > 1) place.column = std::to_string(column + 1);
     return place;
   }
-  const auto name = [&](int r) {
-    return part.hand->rows.empty() ? std::to_string(r + 1) : part.rows[static_cast<std::size_t>(r)].name;
-  };
-  place.row = name(row);
-  if (item.what == "K") place.column = name(column);
+  place.row = name_of_row(part, row);
+  if (item.what == "K") place.column = name_of_row(part, column);
   if (item.what == "J") place.column = column_name(joint_, column);
   return place;
 }

@@ -53,6 +53,7 @@ class EntryJudge {
                      Expr generated);
   void compare_sizes(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
   void judge_problem(const Part& part, const HandItem& item);
+  static std::string name_of_row(const Part& part, int row);
   Place place_of(const Part& part, const HandItem& item, int row, int column) const;
   std::vector<Contribution> contributions(const ScalarRow& row, std::size_t entry, Rational sign) const;
   std::string confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand,

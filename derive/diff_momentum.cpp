@@ -34,7 +34,7 @@ void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
     const bool translation = !vanishes(moved);
     if (!translation && vanishes(turned)) continue;
     out_.remarks.push_back(fmt::format(
-        "row {} of this J breaks conservation of {}: a common {} of all bodies gives J v != 0", r + 1,
+        "row {} of this J breaks conservation of {}: a common {} of all bodies gives J v != 0", name_of_row(part, r),
         translation ? "momentum" : "angular momentum", translation ? "translation" : "rotation"));
   }
 }

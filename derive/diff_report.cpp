@@ -20,13 +20,10 @@ std::string to_text(const DiffReport& report, bool all) {
     }
     for (const Difference& d : j.differences) {
       s += fmt::format("         {}: {}\n", d.kind, d.sentence);
-      if (d.generated.empty()) {
-        s += fmt::format("           published   {}\n", d.hand);
-        continue;
-      }
-      s += fmt::format("           generated   {}\n           published   {}\n           difference  {}\n",
-                       d.generated, d.hand, d.difference);
-      if (!d.confirmed.empty()) s += fmt::format("           {}\n", d.confirmed);
+      if (!d.generated.empty()) s += fmt::format("           generated   {}\n", d.generated);
+      s += fmt::format("           published   {}\n", d.hand);
+      if (!d.difference.empty()) s += fmt::format("           difference  {}\n", d.difference);
+      s += fmt::format("           {}\n", d.confirmed);
     }
     for (const std::string& remark : j.remarks) s += fmt::format("         note: {}\n", remark);
   }

@@ -1,92 +1,140 @@
 #include "derive/diff_terms.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "derive/derivation.hpp"
 
 namespace cdot::derive {
 namespace {
 
+// Equal terms added up, in the order of expressions.
+Terms merged(Terms terms) {
+  std::stable_sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) { return compare(a.e, b.e) < 0; });
+  Terms sums;
+  for (const Term& t : terms) {
+    if (is_zero(t.e)) continue;
+    if (!sums.empty() && sums.back().e == t.e) sums.back().coef = sums.back().coef + t.coef;
+    else sums.push_back(t);
+  }
+  std::erase_if(sums, [](const Term& t) { return t.coef.is_zero(); });
+  return sums;
+}
+
 class Expansion {
  public:
-  Expansion(const Joint& joint, Opened opened) : opened_(opened) {
+  Expansion(const Joint& joint, Opened opened) : pool_(*joint.pool), opened_(opened) {
     for (const Let& let : joint.lets) lets_of_spec_.insert(let.name);
   }
 
-  Expr root(Expr e) { return open(e); }
+  // The name of the root itself is always opened.
+  Terms of(Expr e) {
+    switch (e->kind) {
+      case Kind::sum: return sum_of_terms(e);
+      case Kind::dot: return bilinear(e, [&](Expr u, Expr v) { return dot_terms(u, v); });
+      case Kind::cross: return bilinear(e, [&](Expr u, Expr v) { return cross_terms(u, v); });
+      case Kind::scale: return bilinear(e, [](Expr s, Expr v) { return terms_of(s * v); });
+      case Kind::perp: return linear(e, 0, [](Expr u) { return perp(u); });
+      case Kind::tensor: return linear(e, 1, [&](Expr u) { return apply(e->args[0], u); });
+      case Kind::product: return product(e);
+      default: return {split_coefficient(e)};
+    }
+  }
 
  private:
   bool closed(Expr e) const {
-    if (e->name.empty() || opened_ == Opened::everything) return false;
+    if (opened_ == Opened::everything || opened_ == Opened::components) return false;
     if (!e->named_by_let) return opened_ < Opened::rates;
     return opened_ < Opened::own_lets || lets_of_spec_.contains(e->name);
   }
+  bool stays(Expr e) const { return !e->name.empty() && closed(e); }
 
-  Expr of(Expr e) { return closed(e) ? e : open(e); }
+  Terms part(Expr e) { return stays(e) ? Terms{{Rational(1), e}} : of(e); }
 
-  Expr open(Expr e) {
-    switch (e->kind) {
-      case Kind::sum: {
-        std::vector<Term> terms;
-        for (std::size_t i = 0; i < e->args.size(); ++i) terms.push_back({e->coefs[i], of(e->args[i])});
-        return sum(*e->pool, terms, e->vector);
-      }
-      case Kind::dot: return bilinear(e, [](Expr u, Expr v) { return dot(u, v); });
-      case Kind::cross: return bilinear(e, [](Expr u, Expr v) { return cross(u, v); });
-      case Kind::scale: return bilinear(e, [](Expr s, Expr v) { return s * v; });
-      case Kind::perp: return linear(e, 0, [](Expr u) { return perp(u); });
-      case Kind::tensor: return linear(e, 1, [&](Expr u) { return apply(e->args[0], u); });
-      case Kind::product: return product_of_sums(e);
-      default: return e;
-    }
-  }
-
-  static Expr zero_like(Expr e) { return e->vector ? zero_vector(*e->pool) : e->pool->number(0); }
-
-  template <class Operator>
-  Expr linear(Expr e, std::size_t operand, Operator op) {
-    Expr total = zero_like(e);
-    for (const Term& u : terms_of(of(e->args[operand]))) total = total + u.coef * op(u.e);
-    return total;
-  }
-
-  template <class Operator>
-  Expr bilinear(Expr e, Operator op) {
-    Expr total = zero_like(e);
-    for (const Term& u : terms_of(of(e->args[0]))) {
-      for (const Term& v : terms_of(of(e->args[1]))) total = total + (u.coef * v.coef) * op(u.e, v.e);
-    }
-    return total;
-  }
-
-  Expr product_of_sums(Expr e) {
-    std::vector<Term> terms = {{Rational(1), e->pool->number(1)}};
+  Terms sum_of_terms(Expr e) {
+    // A name may stand for the negative: d = -u.
+    const Expr negative = -e;
+    if (stays(negative)) return {{Rational(-1), negative}};
+    Terms terms;
     for (std::size_t i = 0; i < e->args.size(); ++i) {
-      const bool expands = e->exponents[i] > 0 && e->exponents[i] <= 2;
-      const bool below = e->exponents[i] < 0 && opened_ == Opened::everything;
-      const Expr factor = expands ? of(e->args[i]) : pow(below ? of(e->args[i]) : e->args[i], e->exponents[i]);
-      for (int k = 0; k < (expands ? e->exponents[i] : 1); ++k) terms = times(terms, terms_of(factor));
+      for (const Term& t : part(e->args[i])) terms.push_back({e->coefs[i] * t.coef, t.e});
     }
-    return sum(*e->pool, terms, false);
+    return merged(std::move(terms));
   }
 
-  static std::vector<Term> times(const std::vector<Term>& left, const std::vector<Term>& right) {
-    std::vector<Term> products;
+  template <class Operator>
+  Terms linear(Expr e, std::size_t operand, Operator op) {
+    Terms terms;
+    for (const Term& u : part(e->args[operand])) {
+      for (const Term& t : terms_of(op(u.e))) terms.push_back({u.coef * t.coef, t.e});
+    }
+    return merged(std::move(terms));
+  }
+
+  template <class Operator>
+  Terms bilinear(Expr e, Operator op) {
+    Terms terms;
+    for (const Term& u : part(e->args[0])) {
+      for (const Term& v : part(e->args[1])) {
+        for (const Term& t : op(u.e, v.e)) terms.push_back({u.coef * v.coef * t.coef, t.e});
+      }
+    }
+    return merged(std::move(terms));
+  }
+
+  Terms product(Expr e) {
+    Terms terms = {{Rational(1), pool_.number(1)}};
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      const int n = e->exponents[i];
+      if (n > 0 && n <= 2) {
+        for (int k = 0; k < n; ++k) terms = times(terms, part(e->args[i]));
+      } else {
+        terms = times(terms, terms_of(pow(denominator(e->args[i]), n)));
+      }
+    }
+    return merged(std::move(terms));
+  }
+
+  Expr denominator(Expr e) { return stays(e) || opened_ < Opened::everything ? e : sum(pool_, of(e), false); }
+
+  static Terms times(const Terms& left, const Terms& right) {
+    Terms products;
     for (const Term& l : left) {
-      for (const Term& r : right) products.push_back({l.coef * r.coef, l.e * r.e});
+      for (const Term& r : right) {
+        for (const Term& t : terms_of(l.e * r.e)) products.push_back({l.coef * r.coef * t.coef, t.e});
+      }
     }
     return products;
   }
 
+  Terms dot_terms(Expr u, Expr v) const {
+    if (opened_ < Opened::dots || is_axis(u) || is_axis(v)) return terms_of(dot(u, v));
+    Expr total = pool_.number(0);
+    for (const Expr axis : world_axes(pool_)) total = total + dot(axis, u) * dot(axis, v);
+    return terms_of(total);
+  }
+
+  // In the plane; in space the products of its components with other vectors are opened.
+  Terms cross_terms(Expr u, Expr v) const {
+    if (opened_ < Opened::components || pool_.dimension() == 3) return terms_of(cross(u, v));
+    const std::vector<Expr> axes = world_axes(pool_);
+    return terms_of(dot(axes[0], u) * dot(axes[1], v) - dot(axes[1], u) * dot(axes[0], v));
+  }
+
+  bool is_axis(Expr e) const {
+    const std::vector<Expr> axes = world_axes(pool_);
+    return std::find(axes.begin(), axes.end(), e) != axes.end();
+  }
+
+  Pool& pool_;
   Opened opened_;
   std::set<std::string> lets_of_spec_;
 };
 
 // The terms of `of` that `other` lacks; each with its coefficient.
-std::vector<Term> terms_without(const std::vector<Term>& of, const std::vector<Term>& other) {
-  std::vector<Term> only;
+Terms terms_without(const Terms& of, const Terms& other) {
+  Terms only;
   for (const Term& t : of) {
-    if (is_zero(t.e) || t.coef.is_zero()) continue;
     const bool found = std::any_of(other.begin(), other.end(), [&](const Term& u) {
       return u.e == t.e && u.coef == t.coef;
     });
@@ -109,21 +157,23 @@ int shared(int m, int n) { return m * n <= 0 ? 0 : m > 0 ? std::min(m, n) : std:
 
 }  // namespace
 
-Expr expanded(Expr e, const Joint& joint, Opened opened) {
-  return e->vector ? e : Expansion(joint, opened).root(e);
+Terms terms_of_expansion(Expr e, const Joint& joint, Opened opened) {
+  return opened == Opened::top ? merged(terms_of(e)) : Expansion(joint, opened).of(e);
 }
 
 Leftover leftover_terms(Expr hand, Expr generated, const Joint& joint, Opened opened) {
-  const std::vector<Term> ours = terms_of(expanded(hand, joint, opened));
-  const std::vector<Term> theirs = terms_of(expanded(generated, joint, opened));
+  const Terms ours = terms_of_expansion(hand, joint, opened);
+  const Terms theirs = terms_of_expansion(generated, joint, opened);
   return {terms_without(ours, theirs), terms_without(theirs, ours)};
 }
 
-Expr sum_of(const std::vector<Term>& terms, Pool& pool) { return collected(sum(pool, terms, false)); }
+Expr sum_of(const Terms& terms, Pool& pool) { return collected(sum(pool, terms, false)); }
 
 Factors leftover_factors(const Term& hand, const Term& generated) {
   Pool& pool = *hand.e->pool;
-  Factors f{pool.number(hand.coef), pool.number(generated.coef), pool.number(1)};
+  const bool same = abs(hand.coef) == abs(generated.coef), negative = generated.coef.sign() < 0;
+  const Rational common = same ? generated.coef : Rational(negative ? -1 : 1);
+  Factors f{pool.number(hand.coef / common), pool.number(generated.coef / common), pool.number(common)};
   const Powers ours = powers_of(hand.e), theirs = powers_of(generated.e);
   const auto exponent = [](const Powers& powers, const Node* base) {
     const auto found = powers.find(base);
@@ -137,9 +187,6 @@ Factors leftover_factors(const Term& hand, const Term& generated) {
   for (const auto& [base, n] : theirs) {
     f.generated = f.generated * pow(Expr(base), n - shared(n, exponent(ours, base)));
   }
-  if (hand.coef.sign() < 0 && generated.coef.sign() < 0) {
-    f.hand = -f.hand, f.generated = -f.generated, f.rest = -f.rest;
-  }
   return f;
 }
 
@@ -147,7 +194,7 @@ Expr difference_of(Expr hand, Expr generated, const Joint& joint) {
   Expr shortest = hand - generated;
   for (const Opened opened : all_openings) {
     const Leftover left = leftover_terms(hand, generated, joint, opened);
-    std::vector<Term> terms = left.hand;
+    Terms terms = left.hand;
     for (const Term& t : left.generated) terms.push_back({-t.coef, t.e});
     const Expr difference = sum_of(terms, *hand->pool);
     if (text(difference).size() < text(shortest).size()) shortest = difference;

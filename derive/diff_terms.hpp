@@ -1,29 +1,38 @@
 // Two expressions taken apart, so that what they have in common cancels: into terms, and terms into factors.
 #pragma once
 
-#include <set>
-#include <string>
 #include <vector>
 
 #include "derive/joint.hpp"
 
 namespace cdot::derive {
 
-// Which names are opened before terms are compared: the fewer, the better it reads.
-enum class Opened { nothing, rates, own_lets, everything };  // rates: u_dot; own_lets: those of the entry, too
-constexpr Opened all_openings[] = {Opened::nothing, Opened::rates, Opened::own_lets, Opened::everything};
+using Terms = std::vector<Term>;
 
-// e as a sum of products: products are distributed over sums whose names are opened.
-Expr expanded(Expr e, const Joint& joint, Opened opened);
+// How far expressions are taken apart before terms are compared: the less, the better it reads.
+enum class Opened {
+  top,         // nothing is distributed
+  nothing,     // products are distributed over sums, but for those that have a name
+  rates,       // u_dot is opened
+  own_lets,    // names that the entry gives, too
+  everything,  // the spec's names, too, and denominators
+  dots,        // own_lets, and dot products of vectors in components
+  components   // everything, and all products of vectors in components
+};
+constexpr Opened all_openings[] = {Opened::top,        Opened::nothing, Opened::rates,     Opened::own_lets,
+                                   Opened::everything, Opened::dots,    Opened::components};
+
+// e as a sum of products.
+Terms terms_of_expansion(Expr e, const Joint& joint, Opened opened);
 
 // What only one of two expressions has.
 struct Leftover {
-  std::vector<Term> hand, generated;
+  Terms hand, generated;
 };
 Leftover leftover_terms(Expr hand, Expr generated, const Joint& joint, Opened opened);
-Expr sum_of(const std::vector<Term>& terms, Pool& pool);
+Expr sum_of(const Terms& terms, Pool& pool);
 
-// hand = rest * ours, generated = rest * theirs, for single terms.
+// hand = rest * hand', generated = rest * generated', for single terms.
 struct Factors {
   Expr hand, generated, rest;
 };

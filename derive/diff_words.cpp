@@ -18,6 +18,9 @@ struct Explained {
   std::size_t effort = 0;  // to read: the explanation with the least is given
 };
 
+// By its name, if it has one.
+std::string spoken(Expr e) { return e->name.empty() ? text(e) : e->name; }
+
 // What stands there, and what belongs there.
 std::string instead(const std::string& has, const std::string& lacks) {
   if (has.size() + lacks.size() > longest_formula) return "it is not the generated one";
@@ -125,7 +128,7 @@ std::optional<Explained> by_factor(const Leftover& left, Expr has, Expr lacks, c
   for (const Term& theirs : left.generated) {
     const Factors f = leftover_factors(left.hand[0], theirs);
     if (f.rest->kind == Kind::number || !poses.equal(has * f.generated, lacks * f.hand)) continue;
-    const std::string ours = text(f.hand), right = text(f.generated), where = text(has);
+    const std::string ours = spoken(f.hand), right = spoken(f.generated), where = spoken(has);
     const std::string at = where.size() > longest_formula ? "" : " in " + where;
     if (is_one(f.hand)) return Explained{"factor", fmt::format("the factor {} is missing{}", right, at)};
     if (is_one(f.generated)) return Explained{"factor", fmt::format("the factor {} does not belong{}", ours, at)};
@@ -139,7 +142,7 @@ Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& p
   Pool& pool = *hand->pool;
   const Leftover left = leftover_terms(hand, generated, *place.joint, opened);
   const Expr has = sum_of(left.hand, pool), lacks = sum_of(left.generated, pool);
-  const std::string ours = text(has), theirs = text(lacks);
+  const std::string ours = spoken(has), theirs = spoken(lacks);
   const bool brief = ours.size() + theirs.size() <= longest_formula;
   const std::size_t effort = ours.size() + theirs.size();
   if (is_zero(has)) {
@@ -163,8 +166,8 @@ Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& p
 Explained explained(const Place& place, Expr hand, Expr generated, Expr difference, const Poses& poses) {
   if (const auto whole = whole_entry(place, hand, generated, poses)) return *whole;
   if (const auto source = single_source(place, difference, poses)) return *source;
-  Explained best = by_terms(place, hand, generated, poses, Opened::nothing);
-  for (const Opened opened : {Opened::rates, Opened::own_lets, Opened::everything}) {
+  Explained best = by_terms(place, hand, generated, poses, Opened::top);
+  for (const Opened opened : all_openings) {
     Explained next = by_terms(place, hand, generated, poses, opened);
     if (next.effort < best.effort) best = std::move(next);
   }
