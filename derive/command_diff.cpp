@@ -19,47 +19,88 @@ struct Options {
   bool json = false, all = false;
 };
 
-// A .hand file and the spec that it is about: the .joint of the same name beside it, or in the specs folder.
+// A .hand file and the spec that it is about: the .joint of the same name beside it, or in the
+// specs folder.
 struct Pairing {
   fs::path hand, spec;
+  std::string entry;  // the only one that is asked for; empty: all
 };
 
-Pairing pair_of(const std::string& word, const SpecsFolder& folder) {
-  fs::path path = word;
-  if (path.extension() == ".hand") {
-    if (!fs::exists(path)) throw NoSuchSpec(fmt::format("no such file: {}", word));
-    fs::path spec = path;
-    spec.replace_extension(".joint");
-    if (!fs::exists(spec)) spec = folder.find(path.stem().string());
-    return {path, spec};
+fs::path hand_beside(fs::path spec) { return spec.replace_extension(".hand"); }
+
+Pairing pair_of_hand(const fs::path& hand, const SpecsFolder& folder) {
+  if (!fs::exists(hand)) throw NoSuchSpec(fmt::format("no such file: {}", hand.string()));
+  fs::path spec = hand;
+  spec.replace_extension(".joint");
+  if (!fs::exists(spec)) spec = folder.find(hand.stem().string());
+  return {hand, spec, ""};
+}
+
+Pairing pair_of_spec(const std::string& word, const SpecsFolder& folder) {
+  const fs::path spec = folder.find(word), hand = hand_beside(spec);
+  if (fs::exists(hand)) return {hand, spec, ""};
+  throw NoSuchSpec(
+      fmt::format("no hand derivation beside {}: write {} (the language is in specs/README.md)",
+                  spec.string(), hand.string()));
+}
+
+std::vector<Pairing> all_pairs(const SpecsFolder& folder) {
+  std::vector<Pairing> pairs;
+  for (const fs::path& spec : folder.all()) {
+    if (fs::exists(hand_beside(spec))) pairs.push_back({hand_beside(spec), spec, ""});
   }
-  const fs::path spec = folder.find(word);
-  path = spec;
-  path.replace_extension(".hand");
-  if (!fs::exists(path)) {
-    throw NoSuchSpec(fmt::format("no hand derivation beside {}: write {} (the language is in specs/README.md)",
-                                 spec.string(), path.string()));
+  return pairs;
+}
+
+// LIN-4, JO-12, L-n1: an entry of some .hand file; there may be one of that name beside several
+// joints.
+bool is_id(const std::string& word) {
+  return !word.empty() && word[0] >= 'A' && word[0] <= 'Z' && word.find('-') != word.npos;
+}
+
+std::vector<Pairing> pairs_with_entry(const std::string& id, const SpecsFolder& folder) {
+  std::vector<Pairing> pairs;
+  std::vector<std::string> ids;
+  for (Pairing& pair : all_pairs(folder)) {
+    bool here = false;
+    for (const HandEntryAst& entry : read_hand(load_source(pair.hand)).entries) {
+      ids.push_back(entry.id);
+      here = here || entry.id == id;
+    }
+    if (here) pairs.push_back({pair.hand, pair.spec, id});
   }
-  return {path, spec};
+  if (!pairs.empty()) return pairs;
+  const std::string near = nearest(id, ids);
+  throw NoSuchSpec(fmt::format("no entry `{}` in any .hand file of the specs{}", id,
+                               near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
+}
+
+std::vector<Pairing> pairs_of(const std::vector<std::string>& words, const SpecsFolder& folder) {
+  if (words.empty()) return all_pairs(folder);
+  std::vector<Pairing> pairs;
+  for (const std::string& word : words) {
+    if (fs::path(word).extension() == ".hand") {
+      pairs.push_back(pair_of_hand(word, folder));
+    } else if (is_id(word) && !fs::exists(word)) {
+      for (Pairing& pair : pairs_with_entry(word, folder)) pairs.push_back(std::move(pair));
+    } else {
+      pairs.push_back(pair_of_spec(word, folder));
+    }
+  }
+  return pairs;
 }
 
 int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
-  std::vector<Pairing> pairs;
-  for (const std::string& word : options.what) pairs.push_back(pair_of(word, folder));
-  if (pairs.empty()) {
-    for (fs::path spec : folder.all()) {
-      fs::path hand = spec;
-      hand.replace_extension(".hand");
-      if (fs::exists(hand)) pairs.push_back({hand, spec});
-    }
-  }
   std::vector<DiffReport> reports;
   bool unreadable = false;
   int counts[4] = {};
-  for (const Pairing& pair : pairs) {
+  for (const Pairing& pair : pairs_of(options.what, folder)) {
     reports.push_back(judge(pair.hand, pair.spec, folder));
-    const DiffReport& report = reports.back();
+    DiffReport& report = reports.back();
+    if (!pair.entry.empty()) {
+      std::erase_if(report.judgements, [&](const Judgement& j) { return j.id != pair.entry; });
+    }
     std::cerr << render(*report.file, report.diagnostics);
     unreadable = unreadable || report.diagnostics.has_errors();
     for (const Judgement& j : report.judgements) ++counts[static_cast<int>(j.agreement)];
@@ -69,8 +110,9 @@ int run(const Options& options) {
   if (options.json) {
     std::cout << to_json(reports);
   } else {
-    fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", counts[0],
-               counts[1], counts[2], counts[3]);
+    fmt::print(
+        "{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n",
+        counts[0], counts[1], counts[2], counts[3]);
   }
   return unreadable ? 2 : counts[2] > 0 ? 1 : 0;
 }
@@ -79,17 +121,25 @@ int run(const Options& options) {
 
 void add_diff_command(CLI::App& app, Command& selected) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "diff", "Compare hand derivations with the generated one: every entry, and what is missing, flipped, doubled or\n"
-              "on the wrong body");
+  CLI::App* command = app.add_subcommand("diff",
+                                         "Compare hand derivations with the generated one: every "
+                                         "entry, and what is missing, flipped, doubled or\n"
+                                         "on the wrong body");
   command->add_option("SPEC", options->what,
-                      "Specs by name or path (their .hand beside them), or .hand files; all if none is given");
-  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
-  command->add_flag("--all", options->all, "Also entries that agree (always shown for named specs)");
+                      "Specs by name or path (their .hand beside them), .hand files, or ids of "
+                      "entries (LIN-4); all if none\n"
+                      "is given");
+  command->add_option("--specs", options->specs_folder, "Folder of specs")
+      ->type_name("DIR")
+      ->capture_default_str();
+  command->add_flag("--all", options->all,
+                    "Also entries that agree (always shown for named specs)");
   command->add_flag("--json", options->json,
-                    "An array with, per entry: id, joint, title, source, verdict (agrees, agrees-if, differs, listed),\n"
-                    "condition or reason, remarks, and items: what, row, column, kind, generated, hand, difference,\n"
-                    "sentence, confirmed");
+                    "An array with, per entry: id, joint, title, source, verdict (agrees, "
+                    "agrees-if, differs, listed),\n"
+                    "condition (of agrees-if; the reason of listed), remarks, and items: what, "
+                    "row, column, kind,\n"
+                    "generated, hand, difference, sentence, confirmed (by which numbers)");
   command->footer("Exit status: 0 nothing differs; 1 something does; 2 bad usage or input.");
   command->callback([options, &selected] { selected = [options] { return run(*options); }; });
 }

@@ -1,5 +1,6 @@
-// The verdict on published derivations: what each claims against what is derived, entry by entry. Every verdict is
-// computed: equality is decided at random poses and proved by GiNaC, and what differs is confirmed by finite differences.
+// The verdict on published derivations: what each claims against what is derived, entry by entry.
+// Every verdict is computed: equality is decided at random poses and proved by GiNaC, and what
+// differs is confirmed by finite differences.
 #pragma once
 
 #include <string>
@@ -16,12 +17,15 @@ std::string_view name_of(Agreement agreement);  // "agrees-if"
 
 // One place where a hand derivation differs.
 struct Difference {
-  std::string what;      // C, Cdot, J, K, b, update
+  std::string what;         // C, Cdot, J, K, b, update
   std::string row, column;  // "1", "w_b"; empty where there are none
-  std::string kind;      // sign, factor, wrong body, missing term, extra term, transposed, undeclared assumption
-  std::string generated, hand, difference;  // infix, in the spec's names; difference = hand - generated
+  std::string kind;  // sign, factor, wrong body, missing term, extra term, transposed, undeclared
+                     // assumption
+  std::string generated, hand,
+      difference;  // infix, in the spec's names; difference = hand - generated
   std::string sentence;
-  std::string confirmed;  // by finite differences: how far the generated and the published value are off; may be empty
+  std::string confirmed;  // by finite differences: how far the generated and the published value
+                          // are off; may be empty
   Span where;
 };
 

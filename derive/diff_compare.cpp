@@ -33,12 +33,14 @@ std::string row_text(const Matrix& m, int row) {
 }
 
 // The rows of `larger` that are none of `smaller`, if the others are those, in order.
-std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix& smaller, const Poses& poses) {
+std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix& smaller,
+                                             const Poses& poses) {
   if (larger.columns != smaller.columns) return std::nullopt;
   const auto same = [&](int i, int j) {
     for (const Rational sign : {Rational(1), Rational(-1)}) {
       bool all = true;
-      for (int c = 0; c < larger.columns; ++c) all = all && poses.equal(larger.at(i, c), sign * smaller.at(j, c));
+      for (int c = 0; c < larger.columns; ++c)
+        all = all && poses.equal(larger.at(i, c), sign * smaller.at(j, c));
       if (all) return true;
     }
     return false;
@@ -46,8 +48,10 @@ std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix&
   std::vector<int> further;
   int found = 0;
   for (int i = 0; i < larger.rows; ++i) {
-    if (found < smaller.rows && same(i, found)) ++found;
-    else further.push_back(i);
+    if (found < smaller.rows && same(i, found))
+      ++found;
+    else
+      further.push_back(i);
   }
   if (found < smaller.rows) return std::nullopt;
   return further;
@@ -57,7 +61,8 @@ std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix&
 
 // Rows are numbered, or named in parts about certain rows.
 std::string EntryJudge::name_of_row(const Part& part, int row) {
-  return part.hand->rows.empty() ? std::to_string(row + 1) : part.rows[static_cast<std::size_t>(row)].name;
+  return part.hand->rows.empty() ? std::to_string(row + 1)
+                                 : part.rows[static_cast<std::size_t>(row)].name;
 }
 
 Place EntryJudge::place_of(const Part& part, const HandItem& item, int row, int column) const {
@@ -86,8 +91,8 @@ void EntryJudge::add(const HandItem& item, Difference difference, Expr hand, Exp
   out_.differences.push_back(std::move(difference));
 }
 
-void EntryJudge::add_plain(const HandItem& item, const Place& place, std::string kind, std::string sentence,
-                           std::string confirmed) {
+void EntryJudge::add_plain(const HandItem& item, const Place& place, std::string kind,
+                           std::string sentence, std::string confirmed) {
   Difference d;
   d.what = item.kind == HandItem::Kind::claim ? item.what : place.what;
   d.row = place.row;
@@ -100,8 +105,10 @@ void EntryJudge::add_plain(const HandItem& item, const Place& place, std::string
   out_.differences.push_back(std::move(d));
 }
 
-// What each leaf of C that moves with a body brings into an entry of J, or into Cdot: the terms of the product rule.
-std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::size_t entry, Rational sign) const {
+// What each leaf of C that moves with a body brings into an entry of J, or into Cdot: the terms of
+// the product rule.
+std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::size_t entry,
+                                                    Rational sign) const {
   std::vector<Contribution> sources;
   if (row.kind == RowKind::velocity) return sources;
   for (const Expr leaf : leaves_of(std::span(&row.C, 1))) {
@@ -114,8 +121,8 @@ std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::s
   return sources;
 }
 
-void EntryJudge::compare_entry(const Part& part, const HandItem& item, int row, int column, Expr hand,
-                               Expr generated) {
+void EntryJudge::compare_entry(const Part& part, const HandItem& item, int row, int column,
+                               Expr hand, Expr generated) {
   if (equal(hand, generated)) return;
   Place place = place_of(part, item, row, column);
   const std::size_t r = static_cast<std::size_t>(row);
@@ -125,7 +132,8 @@ void EntryJudge::compare_entry(const Part& part, const HandItem& item, int row, 
     for (int c = column % width; c < static_cast<int>(mine.size()); c += width) {
       if (c != column) place.elsewhere.push_back(mine[static_cast<std::size_t>(c)]);
     }
-    place.sources = contributions(part.rows[r], static_cast<std::size_t>(column), Rational(part.sign[r]));
+    place.sources =
+        contributions(part.rows[r], static_cast<std::size_t>(column), Rational(part.sign[r]));
   }
   if (item.kind != HandItem::Kind::claim && item.what == "Cdot") {
     place.sources = contributions(part.rows[r], whole_row, Rational(part.sign[r]));
@@ -135,19 +143,21 @@ void EntryJudge::compare_entry(const Part& part, const HandItem& item, int row, 
   add(item, std::move(d), hand, generated);
 }
 
-std::string EntryJudge::confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand,
-                                     Expr generated) {
+std::string EntryJudge::confirmation(const Part& part, const HandItem& item, int row, int column,
+                                     Expr hand, Expr generated) {
   if (item.kind == HandItem::Kind::claim) return confirm().claim(hand, generated);
   const std::size_t r = static_cast<std::size_t>(row), c = static_cast<std::size_t>(column);
   const ScalarRow& of = part.rows[r];
   const double sign = part.sign[r];
   if (item.what == "C") return confirm().value_of_C(of, poses_on_constraint(), generated, hand);
   if (item.what == "J") return confirm().entry_of_J(of, sign, c, generated, hand);
-  if (item.what == "K") return confirm().entry_of_K(of, part.rows[c], sign * part.sign[c], generated, hand);
+  if (item.what == "K")
+    return confirm().entry_of_K(of, part.rows[c], sign * part.sign[c], generated, hand);
   return confirm().rate(of, item.what == "b" ? -sign : sign, generated, hand);
 }
 
-void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated) {
+void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& hand,
+                         const Matrix& generated) {
   const bool claim = item.kind == HandItem::Kind::claim;
   if (hand.rows != generated.rows || hand.columns != generated.columns) {
     return compare_sizes(part, item, hand, generated);
@@ -156,7 +166,8 @@ void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& h
     for (int c = 0; c < hand.columns; ++c) {
       Rational sign(1);
       if (!claim) sign = part.sign[static_cast<std::size_t>(r)];
-      if (!claim && item.what == "K") sign = sign * Rational(part.sign[static_cast<std::size_t>(c)]);
+      if (!claim && item.what == "K")
+        sign = sign * Rational(part.sign[static_cast<std::size_t>(c)]);
       if (item.what == "b" && !claim) sign = -sign;
       compare_entry(part, item, r, c, hand.at(r, c), sign * generated.at(r, c));
     }
@@ -164,13 +175,16 @@ void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& h
 }
 
 // Matrices of different sizes: turned, or with rows too many or too few.
-void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated) {
+void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Matrix& hand,
+                               const Matrix& generated) {
   Place place = place_of(part, item, 0, 0);
   place.row.clear();
   place.column.clear();
   const auto size = [](const Matrix& m) { return fmt::format("{} x {}", m.rows, m.columns); };
-  const std::string sizes = fmt::format("{} numbers stand where {} belong", size(hand), size(generated));
-  const std::string none = fmt::format("{} and {} numbers have no difference", size(hand), size(generated));
+  const std::string sizes =
+      fmt::format("{} numbers stand where {} belong", size(hand), size(generated));
+  const std::string none =
+      fmt::format("{} and {} numbers have no difference", size(hand), size(generated));
   if (hand.columns == generated.rows && hand.rows == generated.columns) {
     const bool right = further_rows(transposed(hand), generated, poses()).has_value();
     return add_plain(item, place, "transposed", sizes + ": it is transposed",
@@ -186,7 +200,8 @@ void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Mat
   }
   place.row = which;
   if (more) {
-    add_plain(item, place, "extra term", fmt::format("{}: this row ({}) does not belong", sizes, what),
+    add_plain(item, place, "extra term",
+              fmt::format("{}: this row ({}) does not belong", sizes, what),
               none + "; without that row both sides agree at 12 poses");
   } else {
     add_plain(item, place, "missing term", fmt::format("{}: this row ({}) is missing", sizes, what),
@@ -197,7 +212,8 @@ void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Mat
 // A formula without a value: as it stands, and as its author may have meant it.
 void EntryJudge::judge_problem(const Part& part, const HandItem& item) {
   Place place{item.what.empty() ? "update" : item.what, "", "", {}, {}, &joint_};
-  if (part.rows.size() == 1 && item.kind == HandItem::Kind::quantity) place = place_of(part, item, 0, 0);
+  if (part.rows.size() == 1 && item.kind == HandItem::Kind::quantity)
+    place = place_of(part, item, 0, 0);
   std::string sentence = item.problem, confirmed = "no value: " + item.problem;
   const Matrix& Cdot = part.generated.Cdot;
   for (const HandReading& reading : item.readings) {

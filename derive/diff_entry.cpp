@@ -70,8 +70,8 @@ Generated EntryJudge::generated_for(const std::vector<ScalarRow>& rows) const {
   g.K = {n, n, {}};
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
-      g.K.entries.push_back(
-          triangle[static_cast<std::size_t>(std::max(i, j))][static_cast<std::size_t>(std::min(i, j))]);
+      g.K.entries.push_back(triangle[static_cast<std::size_t>(std::max(i, j))]
+                                    [static_cast<std::size_t>(std::min(i, j))]);
     }
   }
   return g;
@@ -102,7 +102,9 @@ std::vector<Expr> EntryJudge::constraints() const {
 void EntryJudge::prepare_poses() {
   std::vector<Expr> all = assumed_equations();
   const std::vector<Expr> equations = all;
-  const auto take = [&](const Matrix& m) { all.insert(all.end(), m.entries.begin(), m.entries.end()); };
+  const auto take = [&](const Matrix& m) {
+    all.insert(all.end(), m.entries.begin(), m.entries.end());
+  };
   for (const HandPart& part : entry_.parts) {
     const Generated g = generated_for(rows_named(part.rows));
     for (const Matrix& m : {g.C, g.Cdot, g.J, g.K}) take(m);
@@ -137,7 +139,8 @@ const Poses& EntryJudge::poses_on_constraint() {
   return *on_constraint_;
 }
 
-// Exact arithmetic modulo a prime decides; GiNaC's algebra, where the expression is small enough for it, as well.
+// Exact arithmetic modulo a prime decides; GiNaC's algebra, where the expression is small enough
+// for it, as well.
 bool EntryJudge::proved(Expr difference) const {
   constexpr std::size_t few_nodes = 40;
   if (!vanishes_modulo_prime(difference).value_or(false)) return false;
@@ -169,7 +172,10 @@ void EntryJudge::judge_item(const Part& part, const HandItem& item) {
   if (item.kind != HandItem::Kind::quantity) return;
   const Generated& g = part.generated;
   const std::size_t before = out_.differences.size();
-  const Matrix& generated = item.what == "C" ? g.C : item.what == "J" ? g.J : item.what == "K" ? g.K : g.Cdot;
+  const Matrix& generated = item.what == "C"   ? g.C
+                            : item.what == "J" ? g.J
+                            : item.what == "K" ? g.K
+                                               : g.Cdot;
   compare(part, item, *item.value, generated);
   if (item.what == "J" && item.value->columns == g.J.columns) judge_momentum(part, *item.value);
   if (out_.differences.size() == before) add_cost(part, item);
@@ -191,7 +197,8 @@ void EntryJudge::add_cost(const Part& part, const HandItem& item) {
       for (int j = 0; j <= i; ++j) entries.push_back(item.value->at(i, j));
     }
   }
-  out_.costs.push_back({name_of_space(joint_.dimension), joint_.name, block, item.what, entry_.id, cost_from_poses(joint_, entries)});
+  out_.costs.push_back({name_of_space(joint_.dimension), joint_.name, block, item.what, entry_.id,
+                        cost_from_poses(joint_, entries)});
 }
 
 Judgement EntryJudge::judge() {
@@ -214,16 +221,21 @@ Judgement EntryJudge::judge() {
   const bool other_way_round = std::any_of(parts.begin(), parts.end(), [](const Part& part) {
     return std::count(part.sign.begin(), part.sign.end(), -1) > 0;
   });
-  if (other_way_round) out_.remarks.push_back("C is counted the other way round: J flips its sign, K does not");
-  if (only_by_numbers_) out_.remarks.push_back("equal at 12 random poses; algebra alone did not decide");
+  if (other_way_round)
+    out_.remarks.push_back("C is counted the other way round: J flips its sign, K does not");
+  if (only_by_numbers_)
+    out_.remarks.push_back("equal at 12 random poses; algebra alone did not decide");
   conclude();
   return out_;
 }
 
 void EntryJudge::conclude() {
   std::string condition;
-  const auto append = [&](const std::string& c) { condition += (condition.empty() ? "" : ", ") + c; };
-  for (const auto& [name, body] : changed_anchors_) append(fmt::format("{} is fixed in {}", name, body));
+  const auto append = [&](const std::string& c) {
+    condition += (condition.empty() ? "" : ", ") + c;
+  };
+  for (const auto& [name, body] : changed_anchors_)
+    append(fmt::format("{} is fixed in {}", name, body));
   if (needs_assumptions_) {
     for (const HandAssumption& a : entry_.assumptions) {
       if (a.left && a.right) append(a.text);

@@ -51,11 +51,13 @@ class EntryJudge {
   void compare(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
   void compare_entry(const Part& part, const HandItem& item, int row, int column, Expr hand,
                      Expr generated);
-  void compare_sizes(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
+  void compare_sizes(const Part& part, const HandItem& item, const Matrix& hand,
+                     const Matrix& generated);
   void judge_problem(const Part& part, const HandItem& item);
   static std::string name_of_row(const Part& part, int row);
   Place place_of(const Part& part, const HandItem& item, int row, int column) const;
-  std::vector<Contribution> contributions(const ScalarRow& row, std::size_t entry, Rational sign) const;
+  std::vector<Contribution> contributions(const ScalarRow& row, std::size_t entry,
+                                          Rational sign) const;
   std::string confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand,
                            Expr generated);
   Confirm confirm() const { return {joint_, immovable_, poses()}; }
@@ -63,8 +65,14 @@ class EntryJudge {
   void add_plain(const HandItem& item, const Place& place, std::string kind, std::string sentence,
                  std::string confirmed);
 
-  // diff_update.cpp: impulses and their bounds.
+  // diff_update.cpp: impulses and their bounds. An update of velocities or positions with the
+  // impulse spelled out, or with an impulse of any size, of which only the direction M^-1 J^T can
+  // be judged.
+  enum class UpdateLevel { velocities, positions, any_impulse };
   void judge_updates(const Part& part);
+  std::vector<Expr> impulse(const Part& part, UpdateLevel level) const;
+  void compare_change(const Part& part, UpdateLevel level, Confirm::Change change,
+                      const std::vector<const HandItem*>& said_by);
   void judge_bound(const Part& part, const HandItem& item);
 
   // diff_momentum.cpp

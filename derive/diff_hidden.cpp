@@ -27,7 +27,8 @@ class Search {
         const Expr w = body_symbols(joint_, static_cast<int>(b)).w;
         if (w->vector) continue;
         const Expr meant = substitute(hand_, {{&*symbol, w}}, KeepNames::no);
-        if (poses_.equal(meant, generated_)) return fmt::format("{} = {}", symbol->symbol, w->symbol);
+        if (poses_.equal(meant, generated_))
+          return fmt::format("{} = {}", symbol->symbol, w->symbol);
       }
     }
     return "";

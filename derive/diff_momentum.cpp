@@ -1,12 +1,13 @@
-// A published Jacobian judged alone: moving all bodies together must not be felt by a joint that has nothing to do with
-// the world, whatever C was.
+// A published Jacobian judged alone: moving all bodies together must not be felt by a joint that
+// has nothing to do with the world, whatever C was.
 #include <fmt/format.h>
 
 #include "derive/diff_entry.hpp"
 
 namespace cdot::derive {
 
-// Judged where C = 0: a vector row in world axes turns with the bodies, and is zero only there after it.
+// Judged where C = 0: a vector row in world axes turns with the bodies, and is zero only there
+// after it.
 void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
   if (joint_.uses_world || immovable_ >= 0) return;
   const std::vector<Expr> axes = world_axes(pool_);
@@ -22,7 +23,8 @@ void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
     Expr moved = zero_vector(pool_), turned = zero_spin(pool_);
     for (int b = 0; b < static_cast<int>(joint_.bodies.size()); ++b) {
       Expr v = zero_vector(pool_), w = zero_spin(pool_);
-      for (int k = 0; k < linear; ++k) v = v + J.at(r, b * width + k) * axes[static_cast<std::size_t>(k)];
+      for (int k = 0; k < linear; ++k)
+        v = v + J.at(r, b * width + k) * axes[static_cast<std::size_t>(k)];
       for (int k = linear; k < width; ++k) {
         const Expr entry = J.at(r, b * width + k);
         w = w + (linear == 2 ? entry : entry * axes[static_cast<std::size_t>(k - linear)]);
@@ -34,8 +36,9 @@ void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
     const bool translation = !vanishes(moved);
     if (!translation && vanishes(turned)) continue;
     out_.remarks.push_back(fmt::format(
-        "row {} of this J breaks conservation of {}: a common {} of all bodies gives J v != 0", name_of_row(part, r),
-        translation ? "momentum" : "angular momentum", translation ? "translation" : "rotation"));
+        "row {} of this J breaks conservation of {}: a common {} of all bodies gives J v != 0",
+        name_of_row(part, r), translation ? "momentum" : "angular momentum",
+        translation ? "translation" : "rotation"));
   }
 }
 

@@ -19,8 +19,10 @@ std::vector<double*> variables_of(Sample& sample, std::size_t dimension) {
   };
   for (Sample::Body& body : sample.bodies) {
     take(body.x, dimension);
-    if (dimension == 2) variables.push_back(&body.theta);
-    else take(body.e, 4);
+    if (dimension == 2)
+      variables.push_back(&body.theta);
+    else
+      take(body.e, 4);
   }
   for (auto& [name, value] : sample.scalars) variables.push_back(&value);
   for (auto& [name, value] : sample.local) {
@@ -79,7 +81,8 @@ Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations, S
 
 }  // namespace
 
-std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample) {
+std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars,
+                              const Sample& sample) {
   Numbers numbers(world_values(joint, sample));
   std::vector<double> values;
   for (const Expr e : scalars) values.push_back(numbers.scalar(e));
@@ -104,11 +107,13 @@ bool Poses::satisfy(Sample& sample) const {
   double error = largest(values_at(*joint_, equations_, sample));
   for (int iteration = 0; iteration < 40 && error > reached; ++iteration) {
     const std::vector<double> residual = values_at(*joint_, equations_, sample);
-    const std::vector<double> step = shortest_step(gradients_of(*joint_, equations_, sample), residual);
+    const std::vector<double> step =
+        shortest_step(gradients_of(*joint_, equations_, sample), residual);
     double fraction = 1;
     for (; fraction > 1e-3; fraction /= 2) {
       Sample moved = sample;
-      const std::vector<double*> variables = variables_of(moved, static_cast<std::size_t>(joint_->dimension));
+      const std::vector<double*> variables =
+          variables_of(moved, static_cast<std::size_t>(joint_->dimension));
       for (std::size_t i = 0; i < variables.size(); ++i) *variables[i] += fraction * step[i];
       restore_unit_lengths(moved);
       const double moved_error = largest(values_at(*joint_, equations_, moved));

@@ -1,5 +1,5 @@
-// The sign of C is the author's choice, row by row: the one is taken with which the fewest entries of C, Cdot, J and b
-// differ over the whole entry, and in them the fewest terms.
+// The sign of C is the author's choice, row by row: the one is taken with which the fewest entries
+// of C, Cdot, J and b differ over the whole entry, and in them the fewest terms.
 #include <algorithm>
 
 #include "derive/diff_entry.hpp"
@@ -8,7 +8,8 @@
 namespace cdot::derive {
 
 // How badly one row of an item fits if the row is counted with this sign.
-EntryJudge::Misfit EntryJudge::misfit(const Part& part, const HandItem& item, std::size_t row, int sign) const {
+EntryJudge::Misfit EntryJudge::misfit(const Part& part, const HandItem& item, std::size_t row,
+                                      int sign) const {
   Misfit misfit;
   if (item.kind != HandItem::Kind::quantity || !item.value || item.what == "K") return misfit;
   const Generated& g = part.generated;
@@ -50,7 +51,8 @@ void EntryJudge::find_signs(std::vector<Part>& parts) {
     bool any = false;
     for (std::size_t row = 0; row < part.rows.size(); ++row) {
       const Evidence& e = evidence.at(part.rows[row].name);
-      const bool turned = std::pair(e.minus.entries, e.minus.terms) < std::pair(e.plus.entries, e.plus.terms);
+      const bool turned =
+          std::pair(e.minus.entries, e.minus.terms) < std::pair(e.plus.entries, e.plus.terms);
       part.sign.push_back(turned ? -1 : 1);
       any = any || e.any;
     }

@@ -10,12 +10,15 @@ namespace {
 
 // Equal terms added up, in the order of expressions.
 Terms merged(Terms terms) {
-  std::stable_sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) { return compare(a.e, b.e) < 0; });
+  std::stable_sort(terms.begin(), terms.end(),
+                   [](const Term& a, const Term& b) { return compare(a.e, b.e) < 0; });
   Terms sums;
   for (const Term& t : terms) {
     if (is_zero(t.e)) continue;
-    if (!sums.empty() && sums.back().e == t.e) sums.back().coef = sums.back().coef + t.coef;
-    else sums.push_back(t);
+    if (!sums.empty() && sums.back().e == t.e)
+      sums.back().coef = sums.back().coef + t.coef;
+    else
+      sums.push_back(t);
   }
   std::erase_if(sums, [](const Term& t) { return t.coef.is_zero(); });
   return sums;
@@ -27,21 +30,39 @@ class Expansion {
     for (const Let& let : joint.lets) lets_of_spec_.insert(let.name);
   }
 
-  // The name of the root itself is always opened.
+  // The name of the root itself is always opened. What has too many terms for a person to read
+  // stays as it is.
   Terms of(Expr e) {
-    switch (e->kind) {
-      case Kind::sum: return sum_of_terms(e);
-      case Kind::dot: return bilinear(e, [&](Expr u, Expr v) { return dot_terms(u, v); });
-      case Kind::cross: return bilinear(e, [&](Expr u, Expr v) { return cross_terms(u, v); });
-      case Kind::scale: return bilinear(e, [](Expr s, Expr v) { return terms_of(s * v); });
-      case Kind::perp: return linear(e, 0, [](Expr u) { return perp(u); });
-      case Kind::tensor: return linear(e, 1, [&](Expr u) { return apply(e->args[0], u); });
-      case Kind::product: return product(e);
-      default: return {split_coefficient(e)};
-    }
+    constexpr std::size_t most_terms = 40;
+    const auto known = known_.find(&*e);
+    if (known != known_.end()) return known->second;
+    Terms terms = distributed(e);
+    if (terms.size() > most_terms) terms = {split_coefficient(e)};
+    return known_.emplace(&*e, std::move(terms)).first->second;
   }
 
  private:
+  Terms distributed(Expr e) {
+    switch (e->kind) {
+      case Kind::sum:
+        return sum_of_terms(e);
+      case Kind::dot:
+        return bilinear(e, [&](Expr u, Expr v) { return dot_terms(u, v); });
+      case Kind::cross:
+        return bilinear(e, [&](Expr u, Expr v) { return cross_terms(u, v); });
+      case Kind::scale:
+        return bilinear(e, [](Expr s, Expr v) { return terms_of(s * v); });
+      case Kind::perp:
+        return linear(e, 0, [](Expr u) { return perp(u); });
+      case Kind::tensor:
+        return linear(e, 1, [&](Expr u) { return apply(e->args[0], u); });
+      case Kind::product:
+        return product(e);
+      default:
+        return {split_coefficient(e)};
+    }
+  }
+
   bool closed(Expr e) const {
     if (opened_ == Opened::everything || opened_ == Opened::components) return false;
     if (!e->named_by_let) return opened_ < Opened::rates;
@@ -95,13 +116,16 @@ class Expansion {
     return merged(std::move(terms));
   }
 
-  Expr denominator(Expr e) { return stays(e) || opened_ < Opened::everything ? e : sum(pool_, of(e), false); }
+  Expr denominator(Expr e) {
+    return stays(e) || opened_ < Opened::everything ? e : sum(pool_, of(e), false);
+  }
 
   static Terms times(const Terms& left, const Terms& right) {
     Terms products;
     for (const Term& l : left) {
       for (const Term& r : right) {
-        for (const Term& t : terms_of(l.e * r.e)) products.push_back({l.coef * r.coef * t.coef, t.e});
+        for (const Term& t : terms_of(l.e * r.e))
+          products.push_back({l.coef * r.coef * t.coef, t.e});
       }
     }
     return products;
@@ -129,15 +153,15 @@ class Expansion {
   Pool& pool_;
   Opened opened_;
   std::set<std::string> lets_of_spec_;
+  std::map<const Node*, Terms> known_;
 };
 
 // The terms of `of` that `other` lacks; each with its coefficient.
 Terms terms_without(const Terms& of, const Terms& other) {
   Terms only;
   for (const Term& t : of) {
-    const bool found = std::any_of(other.begin(), other.end(), [&](const Term& u) {
-      return u.e == t.e && u.coef == t.coef;
-    });
+    const bool found = std::any_of(other.begin(), other.end(),
+                                   [&](const Term& u) { return u.e == t.e && u.coef == t.coef; });
     if (!found) only.push_back(t);
   }
   return only;
@@ -173,7 +197,8 @@ Factors leftover_factors(const Term& hand, const Term& generated) {
   Pool& pool = *hand.e->pool;
   const bool same = abs(hand.coef) == abs(generated.coef), negative = generated.coef.sign() < 0;
   const Rational common = same ? generated.coef : Rational(negative ? -1 : 1);
-  Factors f{pool.number(hand.coef / common), pool.number(generated.coef / common), pool.number(common)};
+  Factors f{pool.number(hand.coef / common), pool.number(generated.coef / common),
+            pool.number(common)};
   const Powers ours = powers_of(hand.e), theirs = powers_of(generated.e);
   const auto exponent = [](const Powers& powers, const Node* base) {
     const auto found = powers.find(base);

@@ -1,4 +1,5 @@
-// Two expressions taken apart, so that what they have in common cancels: into terms, and terms into factors.
+// Two expressions taken apart, so that what they have in common cancels: into terms, and terms into
+// factors.
 #pragma once
 
 #include <vector>
@@ -19,8 +20,9 @@ enum class Opened {
   dots,        // own_lets, and dot products of vectors in components
   components   // everything, and all products of vectors in components
 };
-constexpr Opened all_openings[] = {Opened::top,        Opened::nothing, Opened::rates,     Opened::own_lets,
-                                   Opened::everything, Opened::dots,    Opened::components};
+constexpr Opened all_openings[] = {Opened::top,       Opened::nothing,    Opened::rates,
+                                   Opened::own_lets,  Opened::everything, Opened::dots,
+                                   Opened::components};
 
 // e as a sum of products.
 Terms terms_of_expansion(Expr e, const Joint& joint, Opened opened);

@@ -1,5 +1,5 @@
-// Update rules: what a source adds to velocities or positions, against M^-1 J^T lambda with the right impulse; and the
-// bounds of the impulse.
+// Update rules: what a source adds to velocities or positions, against M^-1 J^T lambda with the
+// right impulse; and the bounds of the impulse.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,9 +16,8 @@ bool is_position_level(Target t) { return t == Target::position || t == Target::
 
 bool contains_multiplier(const HandItem& item) {
   const std::vector<Expr> nodes = topological(item.value->entries);
-  return std::any_of(nodes.begin(), nodes.end(), [](Expr e) {
-    return e->kind == Kind::symbol && e->role == Role::multiplier;
-  });
+  return std::any_of(nodes.begin(), nodes.end(),
+                     [](Expr e) { return e->kind == Kind::symbol && e->role == Role::multiplier; });
 }
 
 // K^-1 b by elimination.
@@ -42,7 +41,8 @@ std::vector<Expr> solved(const Matrix& K, std::vector<Expr> b) {
 }
 
 // M^-1 J^T lambda, column by column.
-std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda) {
+std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& rows,
+                             const std::vector<Expr>& lambda) {
   std::vector<Expr> columns;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
@@ -57,14 +57,9 @@ std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& r
   return columns;
 }
 
-// What a source does to one column of J: the first update that speaks of its body is where it is said.
-struct Column {
-  const HandItem* item = nullptr;
-  std::string name;
-};
-
 std::string column_name(const Joint& joint, std::size_t column, bool positions) {
-  const std::size_t width = columns_per_body(joint.dimension), linear = static_cast<std::size_t>(joint.dimension);
+  const std::size_t width = columns_per_body(joint.dimension),
+                    linear = static_cast<std::size_t>(joint.dimension);
   const std::size_t k = column % width;
   const std::string& body = joint.bodies[column / width];
   if (k < linear) return fmt::format("{}_{}.{}", positions ? "x" : "v", body, "xyz"[k]);
@@ -74,60 +69,75 @@ std::string column_name(const Joint& joint, std::size_t column, bool positions) 
 
 }  // namespace
 
-// The impulse is what the source calls lambda (then only the direction M^-1 J^T is judged, either sign of C), or what
-// makes Cdot (positions: C) vanish.
+// The impulse that the changes are compared with: a symbol where the source's is, or else what
+// makes Cdot vanish (positions: C).
+std::vector<Expr> EntryJudge::impulse(const Part& part, UpdateLevel level) const {
+  const std::size_t n = part.rows.size();
+  std::vector<Expr> lambda;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::string name = n == 1 ? "lambda" : "lambda_" + std::to_string(i + 1);
+    lambda.push_back(level == UpdateLevel::any_impulse ? pool_.symbol(name, Role::multiplier)
+                     : level == UpdateLevel::positions ? -part.generated.C.entries[i]
+                                                       : -part.generated.Cdot.entries[i]);
+  }
+  return level == UpdateLevel::any_impulse ? lambda : solved(part.generated.K, std::move(lambda));
+}
+
 void EntryJudge::judge_updates(const Part& part) {
   std::vector<const HandItem*> updates;
   for (const HandItem& item : part.hand->items) {
     if (item.kind == HandItem::Kind::update && item.value) updates.push_back(&item);
   }
   if (updates.empty()) return;
-  const std::size_t n = part.rows.size();
-  const bool any_impulse = std::any_of(updates.begin(), updates.end(),
-                                       [](const HandItem* item) { return contains_multiplier(*item); });
   const bool positions = is_position_level(updates[0]->target);
-  std::vector<Expr> lambda;
-  for (std::size_t i = 0; i < n; ++i) {
-    const std::string name = n == 1 ? "lambda" : "lambda_" + std::to_string(i + 1);
-    lambda.push_back(any_impulse ? pool_.symbol(name, Role::multiplier)
-                     : positions ? -part.generated.C.entries[i]
-                                 : -part.generated.Cdot.entries[i]);
-  }
-  if (!any_impulse) lambda = solved(part.generated.K, std::move(lambda));
-
-  Confirm::Change change{changes_by(joint_, part.rows, lambda), {}};
+  const bool any_impulse = std::any_of(updates.begin(), updates.end(), [](const HandItem* item) {
+    return contains_multiplier(*item);
+  });
+  const UpdateLevel level = any_impulse ? UpdateLevel::any_impulse
+                            : positions ? UpdateLevel::positions
+                                        : UpdateLevel::velocities;
+  Confirm::Change change{changes_by(joint_, part.rows, impulse(part, level)), {}};
   change.published.assign(change.generated.size(), pool_.number(0));
-  std::vector<Column> columns(change.generated.size(), {updates[0], ""});
-  const std::size_t width = columns_per_body(joint_.dimension), linear = static_cast<std::size_t>(joint_.dimension);
+  std::vector<const HandItem*> said_by(change.generated.size(), updates[0]);
+  const std::size_t width = columns_per_body(joint_.dimension),
+                    linear = static_cast<std::size_t>(joint_.dimension);
   for (const HandItem* item : updates) {
-    const std::size_t first = static_cast<std::size_t>(item->body) * width + (is_linear(item->target) ? 0 : linear);
+    const std::size_t first =
+        static_cast<std::size_t>(item->body) * width + (is_linear(item->target) ? 0 : linear);
     for (std::size_t k = 0; k < item->value->entries.size(); ++k) {
       change.published[first + k] = change.published[first + k] + item->value->entries[k];
-      columns[first + k].item = item;
+      said_by[first + k] = item;
     }
   }
+  compare_change(part, level, std::move(change), said_by);
+}
+
+// An impulse of any size counts C either way round.
+void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Change change,
+                                const std::vector<const HandItem*>& said_by) {
   const auto wrong = [&](Rational sign) {
     int count = 0;
-    for (std::size_t c = 0; c < columns.size(); ++c) {
+    for (std::size_t c = 0; c < said_by.size(); ++c) {
       count += poses().equal(change.published[c], sign * change.generated[c]) ? 0 : 1;
     }
     return count;
   };
-  if (any_impulse && wrong(Rational(-1)) < wrong(Rational(1))) {
+  if (level == UpdateLevel::any_impulse && wrong(Rational(-1)) < wrong(Rational(1))) {
     for (Expr& e : change.generated) e = -e;
   }
   std::string confirmed;
-  for (std::size_t c = 0; c < columns.size(); ++c) {
+  for (std::size_t c = 0; c < said_by.size(); ++c) {
     if (equal(change.published[c], change.generated[c])) continue;
     if (confirmed.empty()) {
-      confirmed = any_impulse ? confirm().work(part.rows, change)
-                  : positions ? confirm().positions_after(part.rows, change)
-                              : confirm().velocities_after(part.rows, change);
+      confirmed = level == UpdateLevel::any_impulse ? confirm().work(part.rows, change)
+                  : level == UpdateLevel::positions ? confirm().positions_after(part.rows, change)
+                                                    : confirm().velocities_after(part.rows, change);
     }
-    const Place place{"update", "", column_name(joint_, c, positions), {}, {}, &joint_};
+    const std::string column = column_name(joint_, c, level == UpdateLevel::positions);
+    const Place place{"update", "", column, {}, {}, &joint_};
     Difference d = describe_difference(place, change.published[c], change.generated[c], poses());
     d.confirmed = confirmed;
-    add(*columns[c].item, std::move(d), change.published[c], change.generated[c]);
+    add(*said_by[c], std::move(d), change.published[c], change.generated[c]);
   }
 }
 
@@ -142,11 +152,13 @@ void EntryJudge::judge_bound(const Part& part, const HandItem& item) {
   const Place place{"update", "", "", {}, {}, &joint_};
   if (inequality) {
     add_plain(item, place, "missing term",
-              "the impulse has to stay >= 0: an inequality may push C up, never pull it back; without that the row "
+              "the impulse has to stay >= 0: an inequality may push C up, never pull it back; "
+              "without that the row "
               "also stops bodies that are already on their way back",
               confirmed);
   } else {
-    add_plain(item, place, "extra term", "the row is an equation, its impulse may have either sign", confirmed);
+    add_plain(item, place, "extra term", "the row is an equation, its impulse may have either sign",
+              confirmed);
   }
 }
 

@@ -13,6 +13,9 @@ namespace {
 // A formula that is longer does not fit a sentence; it stands in the lines below.
 constexpr std::size_t longest_formula = 120;
 
+// Added to the effort of what says less than a missing term, a sign or a single factor.
+constexpr std::size_t unspecific = 500;
+
 struct Explained {
   std::string kind, sentence;
   std::size_t effort = 0;  // to read: the explanation with the least is given
@@ -20,6 +23,17 @@ struct Explained {
 
 // By its name, if it has one.
 std::string spoken(Expr e) { return e->name.empty() ? text(e) : e->name; }
+
+// A name that the entry gave, with what it stands for: "theta_initial = -phi".
+std::string introduced(Expr e, const Joint& joint) {
+  constexpr std::size_t longest_value = 40;
+  const bool of_spec = std::any_of(joint.lets.begin(), joint.lets.end(),
+                                   [&](const Let& let) { return let.name == e->name; });
+  const std::string value = text(e);
+  if (e->name.empty() || !e->named_by_let || of_spec || value.size() > longest_value)
+    return spoken(e);
+  return fmt::format("{} = {}", e->name, value);
+}
 
 // What stands there, and what belongs there.
 std::string instead(const std::string& has, const std::string& lacks) {
@@ -31,7 +45,9 @@ std::string where_from(const Contribution& source, const Joint& joint) {
   const std::string body = joint.bodies[static_cast<std::size_t>(source.leaf->body)];
   const std::string& s = source.leaf->symbol;
   if (source.leaf->role == Role::body_vector) {
-    return fmt::format("{0} turns with {1} (d{0}/dt = w_{1} x {0}), so the product rule has a term for it", s, body);
+    return fmt::format(
+        "{0} turns with {1} (d{0}/dt = w_{1} x {0}), so the product rule has a term for it", s,
+        body);
   }
   return fmt::format("{} moves with {}", s, body);
 }
@@ -49,7 +65,8 @@ std::vector<std::vector<Expr>> symbols_by_class(const Joint& joint, std::size_t 
   return {{s.inv_m}, inertia, {s.w}, {s.v}};
 }
 
-// Each way in which one class of symbols may have got to another body: one for the other, or both exchanged.
+// Each way in which one class of symbols may have got to another body: one for the other, or both
+// exchanged.
 std::vector<Replacements> exchanges(const Joint& joint) {
   std::vector<Replacements> all;
   for (std::size_t a = 0; a < joint.bodies.size(); ++a) {
@@ -84,12 +101,14 @@ bool belongs_to_another_body(Expr hand, Expr generated, const Joint& joint, cons
   });
 }
 
-std::optional<Explained> whole_entry(const Place& place, Expr hand, Expr generated, const Poses& poses) {
+std::optional<Explained> whole_entry(const Place& place, Expr hand, Expr generated,
+                                     const Poses& poses) {
   if (poses.equal(hand, -generated)) return Explained{"sign", "the sign is wrong"};
   for (const Expr other : place.elsewhere) {
     if (is_zero(other)) continue;
     if (poses.equal(hand, other) || poses.equal(hand, -other)) {
-      return Explained{"wrong body", fmt::format("{} is what belongs to another body's column", text(hand))};
+      return Explained{"wrong body",
+                       fmt::format("{} is what belongs to another body's column", text(hand))};
     }
   }
   const Expr zero = hand->pool->number(0);
@@ -122,7 +141,8 @@ std::optional<Explained> single_source(const Place& place, Expr difference, cons
   return std::nullopt;
 }
 
-// All that is left over of the published side is what is left over of the generated one, but for a factor.
+// All that is left over of the published side is what is left over of the generated one, but for a
+// factor.
 std::optional<Explained> by_factor(const Leftover& left, Expr has, Expr lacks, const Poses& poses) {
   if (left.hand.size() != left.generated.size()) return std::nullopt;
   for (const Term& theirs : left.generated) {
@@ -130,15 +150,19 @@ std::optional<Explained> by_factor(const Leftover& left, Expr has, Expr lacks, c
     if (f.rest->kind == Kind::number || !poses.equal(has * f.generated, lacks * f.hand)) continue;
     const std::string ours = spoken(f.hand), right = spoken(f.generated), where = spoken(has);
     const std::string at = where.size() > longest_formula ? "" : " in " + where;
-    if (is_one(f.hand)) return Explained{"factor", fmt::format("the factor {} is missing{}", right, at)};
-    if (is_one(f.generated)) return Explained{"factor", fmt::format("the factor {} does not belong{}", ours, at)};
+    if (is_one(f.hand))
+      return Explained{"factor", fmt::format("the factor {} is missing{}", right, at)};
+    if (is_one(f.generated))
+      return Explained{"factor", fmt::format("the factor {} does not belong{}", ours, at)};
     if (ours.size() + right.size() > longest_formula) return std::nullopt;
-    return Explained{"factor", fmt::format("the factor {} stands where {} belongs", ours, right)};
+    return Explained{"factor", fmt::format("the factor {} stands where {} belongs", ours, right),
+                     unspecific};
   }
   return std::nullopt;
 }
 
-Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& poses, Opened opened) {
+Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& poses,
+                   Opened opened) {
   Pool& pool = *hand->pool;
   const Leftover left = leftover_terms(hand, generated, *place.joint, opened);
   const Expr has = sum_of(left.hand, pool), lacks = sum_of(left.generated, pool);
@@ -146,24 +170,28 @@ Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& p
   const bool brief = ours.size() + theirs.size() <= longest_formula;
   const std::size_t effort = ours.size() + theirs.size();
   if (is_zero(has)) {
-    return {"missing term", fmt::format("the hand derivation lacks {}", brief ? theirs : "terms"), effort};
-  }
-  if (is_zero(lacks)) {
-    return {"extra term", brief ? fmt::format("{} does not belong here", ours) : "it has terms that do not belong here",
+    return {"missing term", fmt::format("the hand derivation lacks {}", brief ? theirs : "terms"),
             effort};
   }
-  const std::string sentence = instead(ours, theirs);
+  if (is_zero(lacks)) {
+    return {"extra term",
+            brief ? fmt::format("{} does not belong here", ours)
+                  : "it has terms that do not belong here",
+            effort};
+  }
+  const std::string sentence = instead(introduced(has, *place.joint), theirs);
   if (poses.equal(has, -lacks)) return {"sign", sentence, effort};
-  if (belongs_to_another_body(has, lacks, *place.joint, poses)) return {"wrong body", sentence, effort};
+  if (belongs_to_another_body(has, lacks, *place.joint, poses))
+    return {"wrong body", sentence, effort};
   if (std::optional<Explained> factor = by_factor(left, has, lacks, poses)) {
-    factor->effort = std::min(effort, factor->sentence.size());
+    factor->effort += std::min(effort, factor->sentence.size());
     return *factor;
   }
-  constexpr std::size_t vague = 1000;  // any other kind says more
-  return {"factor", sentence, effort + vague};
+  return {"factor", sentence, effort + 2 * unspecific};
 }
 
-Explained explained(const Place& place, Expr hand, Expr generated, Expr difference, const Poses& poses) {
+Explained explained(const Place& place, Expr hand, Expr generated, Expr difference,
+                    const Poses& poses) {
   if (const auto whole = whole_entry(place, hand, generated, poses)) return *whole;
   if (const auto source = single_source(place, difference, poses)) return *source;
   Explained best = by_terms(place, hand, generated, poses, Opened::top);
@@ -177,7 +205,9 @@ Explained explained(const Place& place, Expr hand, Expr generated, Expr differen
 }  // namespace
 
 std::string name_of(const Place& place) {
-  const auto is_digit = [](const std::string& s) { return s.find_first_not_of("0123456789") == s.npos; };
+  const auto is_digit = [](const std::string& s) {
+    return s.find_first_not_of("0123456789") == s.npos;
+  };
   std::string s = place.what;
   if (!place.row.empty()) s += ", row " + place.row;
   if (!place.column.empty()) s += (is_digit(place.column) ? ", column " : ", ") + place.column;

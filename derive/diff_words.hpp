@@ -1,4 +1,5 @@
-// Names what is wrong with a published expression: its kind, and a sentence that says why the right one is right.
+// Names what is wrong with a published expression: its kind, and a sentence that says why the right
+// one is right.
 #pragma once
 
 #include <string>
@@ -27,8 +28,8 @@ std::string name_of(const Place& place);
 // Fills kind, texts and sentence. `poses` decide what equals what.
 Difference describe_difference(const Place& place, Expr hand, Expr generated, const Poses& poses);
 
-// A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty if none is found.
-// `constraints`: the rows of C.
+// A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty
+// if none is found. `constraints`: the rows of C.
 std::string hidden_assumption(const Joint& joint, const std::vector<Expr>& constraints, Expr hand,
                               Expr generated, const Poses& poses);
 

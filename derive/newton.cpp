@@ -5,7 +5,8 @@
 namespace cdot::derive {
 namespace {
 
-// x of A x = b by Gaussian elimination; A is symmetric, positive and, by a little on its diagonal, regular.
+// x of A x = b by Gaussian elimination; A is symmetric, positive and, by a little on its diagonal,
+// regular.
 std::vector<double> solve(Gradients A, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t k = 0; k < n; ++k) {
