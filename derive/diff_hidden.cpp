@@ -16,7 +16,8 @@ class Search {
   bool holds(const std::vector<Expr>& equations) const {
     const Expr zero = pool_.number(0);
     const Poses few = poses_.first(2).where(equations);  // most candidates fail at the first poses
-    if (!few.equal(hand_, generated_) || few.equal(generated_, zero)) return false;
+    const bool vanishes = few.equal(generated_, zero) && !poses_.equal(generated_, zero);
+    if (!few.equal(hand_, generated_) || vanishes) return false;
     return poses_.where(equations).equal(hand_, generated_);
   }
 

@@ -52,7 +52,11 @@ std::string where_from(const Contribution& source, const Joint& joint) {
   return fmt::format("{} moves with {}", s, body);
 }
 
-using Replacements = std::map<const Node*, Expr>;
+// A way in which one class of symbols may have got to another body.
+struct Exchange {
+  std::map<const Node*, Expr> replacements;  // that would mend it
+  std::string words;
+};
 
 // What belongs to one body, class by class: its masses, its inertias, its velocities.
 std::vector<std::vector<Expr>> symbols_by_class(const Joint& joint, std::size_t body) {
@@ -65,45 +69,55 @@ std::vector<std::vector<Expr>> symbols_by_class(const Joint& joint, std::size_t 
   return {{s.inv_m}, inertia, {s.w}, {s.v}};
 }
 
-// Each way in which one class of symbols may have got to another body: one for the other, or both
-// exchanged.
-std::vector<Replacements> exchanges(const Joint& joint) {
-  std::vector<Replacements> all;
+// One for the other, the other for the one, or both exchanged.
+void add_exchanges(const std::vector<Expr>& ours, const std::vector<Expr>& theirs,
+                   std::vector<Exchange>& all) {
+  Exchange forth, back;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    forth.replacements.emplace(&*ours[i], theirs[i]);
+    back.replacements.emplace(&*theirs[i], ours[i]);
+  }
+  const std::string &one = ours[0]->symbol, &other = theirs[0]->symbol;
+  forth.words = fmt::format("{} stands where {} belongs", one, other);
+  back.words = fmt::format("{} stands where {} belongs", other, one);
+  Exchange both = forth;
+  both.replacements.insert(back.replacements.begin(), back.replacements.end());
+  both.words = fmt::format("{} and {} are exchanged", one, other);
+  all.insert(all.end(), {forth, back, both});
+}
+
+std::vector<Exchange> exchanges(const Joint& joint) {
+  std::vector<Exchange> all;
   for (std::size_t a = 0; a < joint.bodies.size(); ++a) {
     for (std::size_t b = a + 1; b < joint.bodies.size(); ++b) {
       const auto ours = symbols_by_class(joint, a), theirs = symbols_by_class(joint, b);
-      for (std::size_t c = 0; c < ours.size(); ++c) {
-        Replacements forth, back;
-        for (std::size_t i = 0; i < ours[c].size(); ++i) {
-          forth.emplace(&*ours[c][i], theirs[c][i]);
-          back.emplace(&*theirs[c][i], ours[c][i]);
-        }
-        Replacements both = forth;
-        both.insert(back.begin(), back.end());
-        all.insert(all.end(), {forth, back, both});
-      }
+      for (std::size_t c = 0; c < ours.size(); ++c) add_exchanges(ours[c], theirs[c], all);
     }
   }
-  for (const Parameter& from : joint.parameters) {
-    for (const Parameter& to : joint.parameters) {
-      const bool arms = from.kind == ParameterKind::point && from.body >= 0 &&
-                        to.kind == ParameterKind::point && to.body >= 0;
-      if (arms && from.symbol != to.symbol) all.push_back({{&*from.symbol, to.symbol}});
-    }
+  std::vector<Expr> arms;
+  for (const Parameter& p : joint.parameters) {
+    if (p.kind == ParameterKind::point && p.body >= 0) arms.push_back(p.symbol);
+  }
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    for (std::size_t j = i + 1; j < arms.size(); ++j) add_exchanges({arms[i]}, {arms[j]}, all);
   }
   return all;
 }
 
-bool belongs_to_another_body(Expr hand, Expr generated, const Joint& joint, const Poses& poses) {
-  const std::vector<Replacements> all = exchanges(joint);
-  return std::any_of(all.begin(), all.end(), [&](const Replacements& exchange) {
-    return poses.equal(substitute(hand, exchange, KeepNames::no), generated);
-  });
+// What of one body stands where another body's belongs; empty if that is not it.
+std::string of_another_body(Expr hand, Expr generated, const Joint& joint, const Poses& poses) {
+  for (const Exchange& exchange : exchanges(joint)) {
+    if (poses.equal(substitute(hand, exchange.replacements, KeepNames::no), generated))
+      return exchange.words;
+  }
+  return "";
 }
 
 std::optional<Explained> whole_entry(const Place& place, Expr hand, Expr generated,
                                      const Poses& poses) {
   if (poses.equal(hand, -generated)) return Explained{"sign", "the sign is wrong"};
+  const std::string exchanged = of_another_body(hand, generated, *place.joint, poses);
+  if (!exchanged.empty()) return Explained{"wrong body", exchanged};
   for (const Expr other : place.elsewhere) {
     if (is_zero(other)) continue;
     if (poses.equal(hand, other) || poses.equal(hand, -other)) {
@@ -116,9 +130,6 @@ std::optional<Explained> whole_entry(const Place& place, Expr hand, Expr generat
   if (poses.equal(generated, zero)) return Explained{"extra term", "nothing belongs here"};
   if (const std::optional<double> k = poses.constant_ratio(hand, generated)) {
     return Explained{"factor", fmt::format("it is {:.6g} times what it should be", *k)};
-  }
-  if (belongs_to_another_body(hand, generated, *place.joint, poses)) {
-    return Explained{"wrong body", "a quantity of one body stands where the other's belongs"};
   }
   return std::nullopt;
 }
@@ -181,8 +192,8 @@ Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& p
   }
   const std::string sentence = instead(introduced(has, *place.joint), theirs);
   if (poses.equal(has, -lacks)) return {"sign", sentence, effort};
-  if (belongs_to_another_body(has, lacks, *place.joint, poses))
-    return {"wrong body", sentence, effort};
+  const std::string other = of_another_body(has, lacks, *place.joint, poses);
+  if (!other.empty()) return {"wrong body", fmt::format("{}: {}", sentence, other), effort};
   if (std::optional<Explained> factor = by_factor(left, has, lacks, poses)) {
     factor->effort += std::min(effort, factor->sentence.size());
     return *factor;
