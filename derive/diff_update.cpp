@@ -67,6 +67,18 @@ std::string column_name(const Joint& joint, std::size_t column, bool positions) 
   return linear == 2 ? turning : fmt::format("{}.{}", turning, "xyz"[k - linear]);
 }
 
+// All columns are the same multiple of what is generated.
+bool same_direction(const Confirm::Change& change, const Poses& poses) {
+  for (std::size_t i = 0; i < change.generated.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!poses.equal(change.published[i] * change.generated[j], change.published[j] * change.generated[i])) {
+        return false;
+      }
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 // The impulse that the changes are compared with: a symbol where the source's is, or else what
@@ -125,6 +137,7 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
   if (level == UpdateLevel::any_impulse && wrong(Rational(-1)) < wrong(Rational(1))) {
     for (Expr& e : change.generated) e = -e;
   }
+  const bool only_size = level != UpdateLevel::any_impulse && same_direction(change, poses());
   std::string confirmed;
   for (std::size_t c = 0; c < said_by.size(); ++c) {
     if (equal(change.published[c], change.generated[c])) continue;
@@ -137,6 +150,7 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
     const Place place{"update", "", column, {}, {}, &joint_};
     Difference d = describe_difference(place, change.published[c], change.generated[c], poses());
     d.confirmed = confirmed;
+    if (only_size && d.kind == "factor") d.sentence += "; the direction of the impulse is right, its size is not";
     add(*said_by[c], std::move(d), change.published[c], change.generated[c]);
   }
 }
