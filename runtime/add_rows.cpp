@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "runtime/joint_table.hpp"
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 
 namespace cdot {
 namespace {
@@ -54,8 +54,9 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
   world.prepared = false;
 }
 
+template <class S>
 int coordinate_index(int type, std::string_view name) {
-  const JointType& joint = joint_types()[static_cast<size_t>(type)];
+  const JointType& joint = joint_types(S::dimension)[static_cast<size_t>(type)];
   std::string known;
   for (size_t k = 0; k < joint.coordinates.size(); ++k) {
     if (joint.coordinates[k].name == name) return static_cast<int>(k);
@@ -71,20 +72,20 @@ void add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordi
   if (joint < 0 || joint >= static_cast<int>(world.joints.size()))
     throw Error(fmt::format("there is no joint number {}", joint));
   JointRecord& record = world.joints[joint];
-  const int index = coordinate_index(record.type, coordinate);
+  const int index = coordinate_index<S>(record.type, coordinate);
   if (record.places.empty()) return;
   const auto& variants = joint_entries<S>()[record.type].coordinates[index];
   add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality},
            constants);
 }
 
-template void add_rows(WorldState<Planar<double>>&, int, const BlockOps<Planar<double>>*,
-                       const Law<Planar<double>>*, std::vector<RowKind>, std::span<const double>);
-template void add_rows(WorldState<Planar<float>>&, int, const BlockOps<Planar<float>>*,
-                       const Law<Planar<float>>*, std::vector<RowKind>, std::span<const double>);
-template void add_coordinate_row(WorldState<Planar<double>>&, int, std::string_view,
-                                 const Law<Planar<double>>*, std::span<const double>);
-template void add_coordinate_row(WorldState<Planar<float>>&, int, std::string_view,
-                                 const Law<Planar<float>>*, std::span<const double>);
+#define CDOT_INSTANTIATE(S)                                                              \
+  template void add_rows(WorldState<S>&, int, const BlockOps<S>*, const Law<S>*,         \
+                         std::vector<RowKind>, std::span<const double>);                 \
+  template void add_coordinate_row(WorldState<S>&, int, std::string_view, const Law<S>*, \
+                                   std::span<const double>);                             \
+  template int coordinate_index<S>(int, std::string_view);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -18,6 +18,7 @@ void add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordi
                         const Law<S>* law, std::span<const double> constants);
 
 // Index into JointType::coordinates. Throws Error, listing those there are.
+template <class S>
 int coordinate_index(int type, std::string_view name);
 
 }  // namespace cdot

@@ -48,10 +48,10 @@ struct BlockOps {
   void (*dense)(const Batch<S>&, int slot, const Bodies<S>&, double* J, double* weighted);
   // J^T lambda of one slot: the impulse by body.
   void (*transposed)(const Batch<S>&, int slot, const T* lambda, Velocity* impulse);
-  // stiffness -= the diagonal of d(J^T lambda)/dq, by body, lambda from the last step with its
-  // drift correction.
+  // stiffness -= what d(J^T lambda)/dq says of each body's own turning, lambda from the last step
+  // with its drift correction.
   void (*add_stiffness)(const Batch<S>&, int begin, int end, const Bodies<S>&, T time,
-                        Velocity* stiffness);
+                        typename S::Stiffness* stiffness);
 };
 
 // How rows that are not plainly exact get their bias, softness and bounds: one constant per effect,

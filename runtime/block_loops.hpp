@@ -230,7 +230,7 @@ struct BlockLoops {
   }
 
   static void add_stiffness(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time,
-                            Velocity* stiffness) {
+                            typename S::Stiffness* stiffness) {
     for (int slot = begin; slot < end; ++slot) {
       const int* body = bodies_of(batch, slot);
       Pose q[bodies];
@@ -239,12 +239,7 @@ struct BlockLoops {
       for (int r = 0; r < rows; ++r)
         lambda[r] = batch.lambda[slot * rows + r] + batch.correction[slot * rows + r];
       Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, H);
-      for (int k = 0; k < bodies; ++k) {
-        T diagonal[S::freedom];
-        for (int c = 0; c < S::freedom; ++c)
-          diagonal[c] = -H[k * S::freedom + c][k * S::freedom + c];
-        stiffness[body[k]] = S::sum(stiffness[body[k]], S::from(diagonal), T(1));
-      }
+      for (int k = 0; k < bodies; ++k) S::subtract(stiffness[body[k]], H, k);
     }
   }
 

@@ -23,6 +23,7 @@ struct Bodies {
       acceleration;  // M^-1 force + gravity, constant between calls to set_force
   std::vector<typename S::Velocity> displacement;  // of the drift correction in this step
   std::vector<typename S::Velocity> increment;     // scratch: 0 between its uses
+  std::vector<typename S::Stiffness> stiffness;    // of the last step's impulses
   std::vector<typename S::Pose> start;  // where the body was added: zero of its potential energy
 
   int count() const { return static_cast<int>(pose.size()); }

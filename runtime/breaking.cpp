@@ -75,18 +75,19 @@ void break_overloaded(WorldState<S>& world, typename S::Scalar h) {
 
 }  // namespace
 
-template <class T>
-void set_breaking_load(World<T>& world, int joint, double load) {
+template <class S>
+void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
   auto& state = world.state();
   if (joint < 0 || joint >= world.joint_count())
     throw Error(fmt::format("there is no joint number {}", joint));
   if (!(load > 0)) throw Error("a breaking load must be > 0");
   if (state.joints[joint].places.empty()) return;
-  if (state.breaking_loads.empty()) state.after_substep.push_back({break_overloaded<Planar<T>>});
+  if (state.breaking_loads.empty()) state.after_substep.push_back({break_overloaded<S>});
   state.breaking_loads.emplace_back(joint, load);
 }
 
-template void set_breaking_load(World<double>&, int, double);
-template void set_breaking_load(World<float>&, int, double);
+#define CDOT_INSTANTIATE(S) template void set_breaking_load(BasicWorld<S>&, int, double);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

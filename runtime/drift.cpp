@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
@@ -59,6 +59,7 @@ typename S::Scalar find_errors(WorldState<S>& world, Island<S>& island, typename
 
 template <class S>
 void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+  if constexpr (S::has_gyroscopes) turn_inertias(world, island);
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, time);
 }
@@ -260,9 +261,10 @@ void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   island.factored = direct && !island.system.lawful();
 }
 
-template void settle_poses(WorldState<Planar<double>>&, Island<Planar<double>>&);
-template void settle_poses(WorldState<Planar<float>>&, Island<Planar<float>>&);
-template void correct_drift(WorldState<Planar<double>>&, Island<Planar<double>>&, double);
-template void correct_drift(WorldState<Planar<float>>&, Island<Planar<float>>&, float);
+#define CDOT_INSTANTIATE(S)                               \
+  template void settle_poses(WorldState<S>&, Island<S>&); \
+  template void correct_drift(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

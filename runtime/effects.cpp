@@ -88,49 +88,48 @@ constexpr Law<S> spring_law{4, false, fill_spring<S>, nullptr, energy_spring<S>}
 
 }  // namespace
 
-template <class T>
-void add_limit(World<T>& world, int joint, std::string_view coordinate, const Limit& limit) {
+template <class S>
+void add_limit(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit) {
   const double constants[] = {limit.lower.value_or(-unlimited), limit.upper.value_or(unlimited)};
   if (!(constants[0] <= constants[1]))
     throw Error(fmt::format("a limit's lower end {} must not lie above its upper end {}",
                             constants[0], constants[1]));
   if (!limit.lower && !limit.upper) throw Error("a limit needs a lower or an upper end");
-  add_coordinate_row(world.state(), joint, coordinate, &limit_law<Planar<T>>, constants);
+  add_coordinate_row(world.state(), joint, coordinate, &limit_law<S>, constants);
 }
 
-template <class T>
-void add_motor(World<T>& world, int joint, std::string_view coordinate, const Motor& motor) {
+template <class S>
+void add_motor(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor) {
   if (!std::isfinite(motor.speed)) throw Error("a motor's speed must be finite");
   if (!(motor.max_force >= 0)) throw Error("a motor's largest force must be >= 0");
   const double constants[] = {motor.speed, motor.max_force};
-  add_coordinate_row(world.state(), joint, coordinate, &motor_law<Planar<T>>, constants);
+  add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants);
 }
 
-template <class T>
-void add_spring(World<T>& world, int joint, std::string_view coordinate,
+template <class S>
+void add_spring(BasicWorld<S>& world, int joint, std::string_view coordinate,
                 const CoordinateSpring& spring) {
   double constants[4];
   spring_constants(spring.softness, constants);
   if (!std::isfinite(spring.rest)) throw Error("a spring's rest position must be finite");
   constants[3] = spring.rest;
-  add_coordinate_row(world.state(), joint, coordinate, &spring_law<Planar<T>>, constants);
+  add_coordinate_row(world.state(), joint, coordinate, &spring_law<S>, constants);
 }
 
-template <class T>
-void add_friction(World<T>& world, int joint, std::string_view coordinate,
+template <class S>
+void add_friction(BasicWorld<S>& world, int joint, std::string_view coordinate,
                   const DryFriction& friction) {
   if (!(friction.max_force >= 0)) throw Error("the largest force of dry friction must be >= 0");
   const double constants[] = {0, friction.max_force};
-  add_coordinate_row(world.state(), joint, coordinate, &motor_law<Planar<T>>, constants);
+  add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants);
 }
 
-template void add_limit(World<double>&, int, std::string_view, const Limit&);
-template void add_limit(World<float>&, int, std::string_view, const Limit&);
-template void add_motor(World<double>&, int, std::string_view, const Motor&);
-template void add_motor(World<float>&, int, std::string_view, const Motor&);
-template void add_spring(World<double>&, int, std::string_view, const CoordinateSpring&);
-template void add_spring(World<float>&, int, std::string_view, const CoordinateSpring&);
-template void add_friction(World<double>&, int, std::string_view, const DryFriction&);
-template void add_friction(World<float>&, int, std::string_view, const DryFriction&);
+#define CDOT_INSTANTIATE(S)                                                                 \
+  template void add_limit(BasicWorld<S>&, int, std::string_view, const Limit&);             \
+  template void add_motor(BasicWorld<S>&, int, std::string_view, const Motor&);             \
+  template void add_spring(BasicWorld<S>&, int, std::string_view, const CoordinateSpring&); \
+  template void add_friction(BasicWorld<S>&, int, std::string_view, const DryFriction&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -32,19 +32,19 @@ struct DryFriction {
   double max_force = 0;  // [N] or [N m]
 };
 
-template <class T>
-void add_limit(World<T>& world, int joint, std::string_view coordinate, const Limit& limit);
-template <class T>
-void add_motor(World<T>& world, int joint, std::string_view coordinate, const Motor& motor);
-template <class T>
-void add_spring(World<T>& world, int joint, std::string_view coordinate,
+template <class S>
+void add_limit(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit);
+template <class S>
+void add_motor(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor);
+template <class S>
+void add_spring(BasicWorld<S>& world, int joint, std::string_view coordinate,
                 const CoordinateSpring& spring);
-template <class T>
-void add_friction(World<T>& world, int joint, std::string_view coordinate,
+template <class S>
+void add_friction(BasicWorld<S>& world, int joint, std::string_view coordinate,
                   const DryFriction& friction);
 // The joint disappears after the first step in which the norm of its row forces exceeds the load
 // [N, N m].
-template <class T>
-void set_breaking_load(World<T>& world, int joint, double load);
+template <class S>
+void set_breaking_load(BasicWorld<S>& world, int joint, double load);
 
 }  // namespace cdot

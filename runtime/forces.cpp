@@ -1,5 +1,5 @@
 // What acts on bodies without a joint: gravity, constant forces, springs between points, drag.
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
@@ -25,7 +25,8 @@ void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h)
   for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.acceleration[i], h);
 }
 
-template void apply_forces(WorldState<Planar<double>>&, Island<Planar<double>>&, double);
-template void apply_forces(WorldState<Planar<float>>&, Island<Planar<float>>&, float);
+#define CDOT_INSTANTIATE(S) template void apply_forces(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -4,7 +4,7 @@
 #include <numeric>
 
 #include "runtime/joints.hpp"
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
@@ -118,6 +118,10 @@ void give_out_forces(WorldState<S>& world) {
   }
   for (const auto& drag : world.drags)
     world.islands[world.island_of[drag.body]].drags.push_back(drag);
+  if constexpr (S::has_gyroscopes)
+    for (size_t i = 0; i < world.gyroscopes.size(); ++i)
+      world.islands[world.island_of[world.gyroscopes[i].body]].gyroscopes.push_back(
+          static_cast<int>(i));
 }
 
 }  // namespace
@@ -141,7 +145,8 @@ void prepare_topology(WorldState<S>& world) {
   world.prepared = true;
 }
 
-template void prepare_topology(WorldState<Planar<double>>&);
-template void prepare_topology(WorldState<Planar<float>>&);
+#define CDOT_INSTANTIATE(S) template void prepare_topology(WorldState<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "generated/planar/registry.hpp"
+#include "generated/spatial/registry.hpp"
 
 namespace cdot {
 namespace {
@@ -36,13 +37,15 @@ std::vector<JointType> describe_all(std::type_identity<std::tuple<Joints...>>) {
 
 }  // namespace
 
-std::span<const JointType> joint_types() {
-  static const std::vector<JointType> types = describe_all(std::type_identity<planar::Joints>{});
-  return types;
+std::span<const JointType> joint_types(Dimension dimension) {
+  static const std::vector<JointType> in_plane = describe_all(std::type_identity<planar::Joints>{});
+  static const std::vector<JointType> in_space =
+      describe_all(std::type_identity<spatial::Joints>{});
+  return dimension == Dimension::planar ? in_plane : in_space;
 }
 
-const JointType* find_joint_type(std::string_view name) {
-  const auto types = joint_types();
+const JointType* find_joint_type(Dimension dimension, std::string_view name) {
+  const auto types = joint_types(dimension);
   const auto found = std::find_if(types.begin(), types.end(),
                                   [&](const JointType& type) { return type.name == name; });
   return found == types.end() ? nullptr : &*found;

@@ -28,9 +28,11 @@ struct JointType {
   bool explicit_time;
 };
 
-// Every registered joint, in the order of the registry.
-std::span<const JointType> joint_types();
+enum class Dimension { planar, spatial };
+
+// Every registered joint of a dimension, in the order of its registry.
+std::span<const JointType> joint_types(Dimension dimension);
 // nullptr if there is none of that name.
-const JointType* find_joint_type(std::string_view name);
+const JointType* find_joint_type(Dimension dimension, std::string_view name);
 
 }  // namespace cdot

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 
 namespace cdot {
 namespace {
@@ -96,9 +96,10 @@ const Law<S>& soft_law() {
   return law;
 }
 
-template const Law<Planar<double>>& unilateral_law();
-template const Law<Planar<float>>& unilateral_law();
-template const Law<Planar<double>>& soft_law();
-template const Law<Planar<float>>& soft_law();
+#define CDOT_INSTANTIATE(S)                \
+  template const Law<S>& unilateral_law(); \
+  template const Law<S>& soft_law();
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "runtime/joint_table.hpp"
+#include "runtime/spaces.hpp"
 
 namespace cdot {
 namespace {
@@ -25,7 +26,9 @@ const ParameterInfo& find_parameter(const JointType& type, const std::string& na
 }
 
 void check_numbers(const JointType& type, const ParameterInfo& info, const NamedValue& value) {
-  if (static_cast<int>(value.numbers.size()) != info.size)
+  const int count = static_cast<int>(value.numbers.size());
+  const bool part_of_a_triad = info.kind == ParameterKind::frame && (count == 3 || count == 6);
+  if (count != info.size && !(part_of_a_triad && info.size == 9))
     throw Error(fmt::format("parameter `{}` of joint `{}` takes {} number{}, not {}", info.name,
                             type.name, info.size, info.size == 1 ? "" : "s", value.numbers.size()));
   for (double number : value.numbers)
@@ -34,23 +37,54 @@ void check_numbers(const JointType& type, const ParameterInfo& info, const Named
 }
 
 // A direction of any length but zero stands for the unit vector along it.
-void normalise(const JointType& type, const ParameterInfo& info, double* numbers) {
-  if (info.kind != ParameterKind::unit && info.kind != ParameterKind::frame) return;
-  const double x = numbers[0], y = numbers[1];
-  const double length = std::hypot(x, y);
+void normalise(const JointType& type, const ParameterInfo& info, double* numbers, int size) {
+  double square = 0;
+  for (int k = 0; k < size; ++k) square += numbers[k] * numbers[k];
+  const double length = size == 2 ? std::hypot(numbers[0], numbers[1]) : std::sqrt(square);
   if (!(length >= std::numeric_limits<double>::min()))
     throw Error(fmt::format("parameter `{}` of joint `{}` is a direction and must not be zero",
                             info.name, type.name));
-  numbers[0] = x / length;
-  numbers[1] = y / length;
+  for (int k = 0; k < size; ++k) numbers[k] /= length;
+}
+
+// The triad of which the x axis is given, or the x axis and where y roughly points: x stays, y is
+// made perpendicular to it, z = x cross y. Without y the world's axis furthest from x serves.
+void complete_triad(const JointType& type, const ParameterInfo& info, double* numbers,
+                    bool with_y) {
+  using Vector = spatial::Vector<double>;
+  normalise(type, info, numbers, 3);
+  const Vector x = {numbers[0], numbers[1], numbers[2]};
+  Vector y = {numbers[3], numbers[4], numbers[5]};
+  if (!with_y) {
+    const double ax = std::abs(x.x), ay = std::abs(x.y), az = std::abs(x.z);
+    y = {0, 0, 0};
+    (ay <= ax && ay <= az ? y.y : ax <= az ? y.x : y.z) = 1;
+  }
+  y = y - spatial::dot(x, y) * x;
+  if (!(spatial::norm(y) >= 1e-9))
+    throw Error(fmt::format("the y axis of parameter `{}` of joint `{}` is parallel to its x axis",
+                            info.name, type.name));
+  y = (1 / spatial::norm(y)) * y;
+  const Vector z = spatial::cross(x, y);
+  const double triad[] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
+  std::copy_n(triad, 9, numbers);
+}
+
+void make_directions(const JointType& type, const ParameterInfo& info, double* numbers,
+                     size_t given) {
+  if (info.kind == ParameterKind::frame && info.size == 9)
+    complete_triad(type, info, numbers, given > 3);
+  else if (info.kind == ParameterKind::unit || info.kind == ParameterKind::frame)
+    normalise(type, info, numbers, info.size);
 }
 
 }  // namespace
 
+template <class S>
 std::vector<double> parameter_numbers(int type_index, const std::vector<NamedValue>& given,
-                                      const planar::Pose<double>* poses, double time) {
-  const JointType& type = joint_types()[static_cast<size_t>(type_index)];
-  const auto& entry = joint_entries<Planar<double>>()[static_cast<size_t>(type_index)];
+                                      const typename S::Pose* poses, double time) {
+  const JointType& type = joint_types(S::dimension)[static_cast<size_t>(type_index)];
+  const auto& entry = joint_entries<S>()[static_cast<size_t>(type_index)];
   std::vector<double> numbers(static_cast<size_t>(type.parameter_size), 0.0);
   std::vector<const NamedValue*> value_of(type.parameters.size(), nullptr);
   for (const NamedValue& value : given) {
@@ -67,7 +101,7 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
     double* at = numbers.data() + info.offset;
     if (value_of[i]) {
       std::copy(value_of[i]->numbers.begin(), value_of[i]->numbers.end(), at);
-      normalise(type, info, at);
+      make_directions(type, info, at, value_of[i]->numbers.size());
     } else if (info.has_default) {
       entry.default_value(static_cast<int>(i), poses, numbers.data(), time);
     } else {
@@ -81,5 +115,11 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
   }
   return numbers;
 }
+
+template std::vector<double> parameter_numbers<Planar<double>>(int, const std::vector<NamedValue>&,
+                                                               const planar::Pose<double>*, double);
+template std::vector<double> parameter_numbers<Spatial<double>>(int, const std::vector<NamedValue>&,
+                                                                const spatial::Pose<double>*,
+                                                                double);
 
 }  // namespace cdot

@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "runtime/joints.hpp"
-#include "runtime/planar.hpp"
 #include "runtime/settings.hpp"
 
 namespace cdot {
 
-// All numbers of Parameters<double>: given ones checked and normalised, the others by the spec's
-// default from the poses of the joint's bodies. Throws Error.
+// S computes in doubles. All numbers of Parameters<double>: given ones checked and normalised, the
+// others by the spec's default from the poses of the joint's bodies. Throws Error.
+template <class S>
 std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given,
-                                      const planar::Pose<double>* poses, double time);
+                                      const typename S::Pose* poses, double time);
 
 }  // namespace cdot

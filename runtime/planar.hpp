@@ -5,13 +5,33 @@
 
 #include <cmath>
 
+#include "runtime/joints.hpp"
 #include "runtime/kernel.hpp"
+#include "runtime/settings.hpp"
 
 namespace cdot {
+
+namespace planar {
+// What a caller hands in and out, in doubles whatever the World computes in.
+struct Place {
+  double x, y, angle;
+};
+// A force [N] and a torque about the centre of mass [N m].
+struct Wrench {
+  double force_x = 0, force_y = 0, torque = 0;
+};
+}  // namespace planar
 
 template <class T>
 struct Planar {
   using Scalar = T;
+  using Exact = Planar<double>;
+  using BodyDefinition = cdot::BodyDefinition;
+  using Place = planar::Place;
+  using Wrench = planar::Wrench;
+  static constexpr Dimension dimension = Dimension::planar;
+  static constexpr bool has_gyroscopes = false;  // an inertia is one number and never turns
+  struct Gyroscope {};
   using Pose = planar::Pose<T>;
   using Velocity =
       planar::Velocity<T>;  // also a displacement, an acceleration, or an impulse by components
@@ -19,6 +39,24 @@ struct Planar {
   static constexpr int freedom = 3;  // numbers in a Velocity
 
   static Pose pose(T x, T y, T angle) { return {x, y, std::cos(angle), std::sin(angle), angle}; }
+
+  static Pose placed(const Place& p) { return pose(T(p.x), T(p.y), T(p.angle)); }
+  static Place place_of(const Pose& q) { return {q.x, q.y, q.angle}; }
+  static Place place_of(const BodyDefinition& d) { return {d.x, d.y, d.angle}; }
+  static Velocity velocity_of(const BodyDefinition& d) { return {T(d.vx), T(d.vy), T(d.w)}; }
+  static Wrench wrench_of(const BodyDefinition& d) { return {d.force_x, d.force_y, d.torque}; }
+  static InverseMass inverse_mass_of(const BodyDefinition& d) {
+    const bool turns = !d.is_static && !d.fixed_rotation && d.inertia > 0;
+    return {d.is_static ? T(0) : T(1 / d.mass), turns ? T(1 / d.inertia) : T(0)};
+  }
+  static Velocity components(const Wrench& f) { return {T(f.force_x), T(f.force_y), T(f.torque)}; }
+  // From doubles.
+  static Velocity rounded(const planar::Velocity<double>& v) { return {T(v.x), T(v.y), T(v.w)}; }
+  static void add(Wrench& sum, const Velocity& impulse, double time) {
+    sum.force_x += impulse.x / time;
+    sum.force_y += impulse.y / time;
+    sum.torque += impulse.w / time;
+  }
 
   // c and s are recomputed from the angle: composing rotations would let them leave the unit
   // circle.
@@ -63,6 +101,10 @@ struct Planar {
     T ax, ay, bx, by;
     T stiffness, rest_length, damping;
   };
+  static PointSpring point_spring(const SpringDefinition& d) {
+    return {d.body_a, d.body_b,       T(d.ax),          T(d.ay),     T(d.bx),
+            T(d.by),  T(d.stiffness), T(d.rest_length), T(d.damping)};
+  }
   // Length, and the direction from a to b together with the arms: what its force and its energy
   // need.
   struct Stretch {
@@ -86,16 +128,20 @@ struct Planar {
   static Velocity pull_on_a(const Stretch& s, T f) { return {f * s.x, f * s.y, f * s.arm_a}; }
   static Velocity pull_on_b(const Stretch& s, T f) { return {-f * s.x, -f * s.y, -f * s.arm_b}; }
 
-  static Velocity from(const T (&numbers)[freedom]) { return {numbers[0], numbers[1], numbers[2]}; }
-
-  // I + h stiffness. Only what stiffens (tension), and only the turning: linear momentum stays what
-  // it is.
-  static InverseMass stiffened(const InverseMass& m, const Velocity& stiffness, T h) {
-    const T added = select(stiffness.w > T(0), h * stiffness.w, T(0));
+  // What a row block's d(J^T lambda)/dq says about one body's turning; the rest is left alone, so
+  // that linear momentum stays what it is.
+  using Stiffness = T;
+  template <int width>
+  static void subtract(Stiffness& stiffness, const T (&H)[width][width], int body) {
+    stiffness -= H[3 * body + 2][3 * body + 2];
+  }
+  // I + h stiffness, where that stiffens (tension).
+  static InverseMass stiffened(const InverseMass& m, Stiffness stiffness, T h) {
+    const T added = select(stiffness > T(0), h * stiffness, T(0));
     return {m.m, m.I / (T(1) + added * m.I)};
   }
 
-  static Velocity gravity(T x, T y) { return {x, y, T(0)}; }
+  static Velocity gravity(const Settings& s) { return {T(s.gravity_x), T(s.gravity_y), T(0)}; }
 
   static InverseMass unit_mass() { return {T(1), T(1)}; }
 

@@ -95,7 +95,7 @@ class Probe {
 template <class S>
 std::vector<typename S::Scalar> total_impulse(const WorldState<S>& world,
                                               const JointRecord& joint) {
-  const auto rows = joint_types()[joint.type].row_kinds.size();
+  const auto rows = joint_types(S::dimension)[joint.type].row_kinds.size();
   std::vector<typename S::Scalar> lambda(rows, 0);
   if (joint.places.empty() || joint.broken) return lambda;
   const Batch<S>& batch = *world.batches[joint.places[0].batch];

@@ -57,6 +57,12 @@ void move_poses(WorldState<S>& world, Island<S>& island) {
     all.pose[i] = S::moved(all.pose[i], all.increment[i]);
     all.increment[i] = {};
   }
+  // The velocities are those of the scene: a start that is moved keeps them.
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
+      S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i]);
+      all.effective_mass[i] = all.inverse_mass[i];
+    });
 }
 
 template <class S>
@@ -99,8 +105,8 @@ void project_velocities(WorldState<S>& world, Island<S>& island, double toleranc
 
 }  // namespace
 
-template <class T>
-bool World<T>::project(double tolerance) {
+template <class S>
+bool BasicWorld<S>::project(double tolerance) {
   prepare();
   for (auto& island : state_->islands) {
     if (island.segments.empty()) continue;
@@ -112,7 +118,8 @@ bool World<T>::project(double tolerance) {
   return inconsistencies(tolerance).empty();
 }
 
-template bool World<double>::project(double);
-template bool World<float>::project(double);
+#define CDOT_INSTANTIATE(S) template bool BasicWorld<S>::project(double);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

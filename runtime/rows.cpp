@@ -1,7 +1,7 @@
 // Evaluates the rows of an island, once per step, before the solver of the settings sees them.
 #include <algorithm>
 
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
@@ -11,17 +11,16 @@ void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar 
   using T = typename S::Scalar;
   if (!world.settings.geometric_stiffness) return;
   Bodies<S>& all = world.bodies;
-  for (int i : island.bodies) all.increment[i] = {};
+  for (int i : island.bodies) all.stiffness[i] = {};
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all,
-                                      T(world.time), all.increment.data());
+                                      T(world.time), all.stiffness.data());
   // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq, an implicit Euler step of the
   // turning forces: v starts as (M + h G)^-1 M v.
   for (int i : island.bodies) {
-    all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.increment[i], h);
+    all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.stiffness[i], h);
     all.velocity[i] =
         S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
-    all.increment[i] = {};
   }
   island.factored = false;
 }
@@ -59,11 +58,11 @@ void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   }
 }
 
-template void stiffen_bodies(WorldState<Planar<double>>&, Island<Planar<double>>&, double);
-template void stiffen_bodies(WorldState<Planar<float>>&, Island<Planar<float>>&, float);
-template void factorize_rows(WorldState<Planar<double>>&, Island<Planar<double>>&);
-template void factorize_rows(WorldState<Planar<float>>&, Island<Planar<float>>&);
-template void evaluate_rows(WorldState<Planar<double>>&, Island<Planar<double>>&, double);
-template void evaluate_rows(WorldState<Planar<float>>&, Island<Planar<float>>&, float);
+#define CDOT_INSTANTIATE(S)                                            \
+  template void stiffen_bodies(WorldState<S>&, Island<S>&, S::Scalar); \
+  template void factorize_rows(WorldState<S>&, Island<S>&);            \
+  template void evaluate_rows(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

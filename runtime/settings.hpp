@@ -38,6 +38,7 @@ struct Settings {
   bool geometric_stiffness = false;
   double gravity_x = 0;  // [m/s^2]
   double gravity_y = 0;
+  double gravity_z = 0;    // in space
   double sleep_after = 0;  // [s] that an island must rest before it sleeps; 0: nothing ever sleeps
   double sleep_speed = 1e-3;  // [m/s] and [rad/s] below which a body counts as resting
 };
@@ -55,9 +56,30 @@ struct BodyDefinition {
   double angular_damping = 0;       // [1/s]
 };
 
+// Symmetric, about the centre of mass in the body's frame [kg m^2].
+struct Inertia {
+  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+};
+
+struct SpatialBodyDefinition {
+  double x = 0, y = 0, z = 0;                    // centre of mass [m]
+  double e0 = 1, e1 = 0, e2 = 0, e3 = 0;         // orientation as a quaternion of any length but 0
+  double vx = 0, vy = 0, vz = 0;                 // [m/s]
+  double wx = 0, wy = 0, wz = 0;                 // in world axes [rad/s]
+  double mass = 0;                               // [kg]; must be > 0 unless is_static
+  Inertia inertia = {};                        // all 0: a point mass, which does not turn
+  bool is_static = false;                        // immovable
+  bool fixed_rotation = false;                   // inverse inertia exactly 0
+  double force_x = 0, force_y = 0, force_z = 0;  // constant, at the centre of mass [N]
+  double torque_x = 0, torque_y = 0, torque_z = 0;  // constant, in world axes [N m]
+  double linear_damping = 0, angular_damping = 0;   // [1/s]
+};
+
 struct NamedValue {
   std::string name;
-  std::vector<double> numbers;  // 2 for a point, vector, unit or frame, 1 for a scalar
+  // In the plane 2 for a point, vector, unit or frame; in space 3, and for a frame its x axis (3),
+  // its x and y axes (6) or all three (9); 1 for a scalar.
+  std::vector<double> numbers;
 };
 
 // How stiff something soft is: either a frequency [Hz] with a damping ratio, referred to the
@@ -80,10 +102,11 @@ struct JointDefinition {
 // (length - rest) + damping * d(length)/dt.
 struct SpringDefinition {
   int body_a = 0, body_b = 0;
-  double ax = 0, ay = 0, bx = 0, by = 0;  // in the frames of the bodies [m]
-  double stiffness = 0;                   // [N/m]
-  double rest_length = 0;                 // [m]
-  double damping = 0;                     // [N s/m]
+  double ax = 0, ay = 0, az = 0;  // in the frames of the bodies [m]; z only in space
+  double bx = 0, by = 0, bz = 0;
+  double stiffness = 0;    // [N/m]
+  double rest_length = 0;  // [m]
+  double damping = 0;      // [N s/m]
 };
 
 // What was accepted but does nothing, in a sentence about that joint.

@@ -2,7 +2,7 @@
 // them.
 #include <algorithm>
 
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
@@ -54,9 +54,10 @@ void wake(WorldState<S>& world, int body) {
   }
 }
 
-template void put_to_sleep(WorldState<Planar<double>>&, double);
-template void put_to_sleep(WorldState<Planar<float>>&, double);
-template void wake(WorldState<Planar<double>>&, int);
-template void wake(WorldState<Planar<float>>&, int);
+#define CDOT_INSTANTIATE(S)                           \
+  template void put_to_sleep(WorldState<S>&, double); \
+  template void wake(WorldState<S>&, int);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -1,6 +1,6 @@
 // The island's whole K at once: J v = -bias to round-off, whatever the mass ratios and however long
 // the chain.
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
@@ -30,7 +30,8 @@ void solve_direct(WorldState<S>& world, Island<S>& island) {
                               segment.batch->lambda.data(), all.velocity.data());
 }
 
-template void solve_direct(WorldState<Planar<double>>&, Island<Planar<double>>&);
-template void solve_direct(WorldState<Planar<float>>&, Island<Planar<float>>&);
+#define CDOT_INSTANTIATE(S) template void solve_direct(WorldState<S>&, Island<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -1,7 +1,7 @@
 // Sequential impulses: each block brings its own rows to J v = -bias, in turn, again and again.
 #include <algorithm>
 
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
@@ -30,7 +30,8 @@ void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar
   }
 }
 
-template void solve_iterative(WorldState<Planar<double>>&, Island<Planar<double>>&, double);
-template void solve_iterative(WorldState<Planar<float>>&, Island<Planar<float>>&, float);
+#define CDOT_INSTANTIATE(S) template void solve_iterative(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -29,9 +29,18 @@ void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar
 template <class S>
 void solve_direct(WorldState<S>& world, Island<S>& island);
 
-// q += h v
+// q += h v; bodies whose inertia tensor turns with them keep I w.
 template <class S>
 void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+
+// The inertia tensors at the present poses, w = I^-1 L with them: for whoever moves poses, in a space
+// that has gyroscopes.
+template <class S>
+void turn_inertias(WorldState<S>& world, Island<S>& island);
+template <class S, class F>
+void for_each_gyroscope(WorldState<S>& world, const Island<S>& island, F f) {
+  for (int index : island.gyroscopes) f(world.gyroscopes[index], world.gyroscopes[index].body);
+}
 
 // Brings the poses back to C = 0, and the velocities with them. Only for Drift::projection.
 template <class S>

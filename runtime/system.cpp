@@ -5,7 +5,7 @@
 #include <limits>
 #include <map>
 
-#include "runtime/planar.hpp"
+#include "runtime/spaces.hpp"
 
 namespace cdot {
 
@@ -192,7 +192,8 @@ int System<S>::solve_bounded() {
   return dependent;
 }
 
-template class System<Planar<double>>;
-template class System<Planar<float>>;
+#define CDOT_INSTANTIATE(S) template class System<S>;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -144,11 +144,11 @@ double Painter::slide_direction(int joint, const CoordinateInfo& coordinate, int
   const planar::Pose<double> pose = world_.pose(body);
   const double step = 1e-3 / drawing_.view.scale,
                before = world_.coordinate(joint, coordinate.name);
-  world_.set_pose(body, pose.x + step, pose.y, pose.angle);
+  world_.set_pose(body, {pose.x + step, pose.y, pose.angle});
   const double along_x = world_.coordinate(joint, coordinate.name) - before;
-  world_.set_pose(body, pose.x, pose.y + step, pose.angle);
+  world_.set_pose(body, {pose.x, pose.y + step, pose.angle});
   const double along_y = world_.coordinate(joint, coordinate.name) - before;
-  world_.set_pose(body, pose.x, pose.y, pose.angle);
+  world_.set_pose(body, {pose.x, pose.y, pose.angle});
   return std::atan2(-along_y, along_x) * degrees_per_radian;
 }
 

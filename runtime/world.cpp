@@ -24,18 +24,76 @@ void check(const Settings& s) {
   require(s.iterations >= 1, "iterations must be at least 1");
   require(s.substeps >= 1, "substeps must be at least 1");
   require(s.baumgarte >= 0 && s.baumgarte <= 1, "baumgarte must lie between 0 and 1");
-  require(std::isfinite(s.gravity_x) && std::isfinite(s.gravity_y), "gravity must be finite");
+  require(std::isfinite(s.gravity_x) && std::isfinite(s.gravity_y) && std::isfinite(s.gravity_z),
+          "gravity must be finite");
   require(s.sleep_after >= 0 && s.sleep_speed >= 0, "sleep settings must be >= 0");
 }
 
-void check(const BodyDefinition& d) {
-  for (double number : {d.x, d.y, d.angle, d.vx, d.vy, d.w, d.mass, d.inertia, d.force_x, d.force_y,
-                        d.torque, d.linear_damping, d.angular_damping})
+// What bodies of both dimensions have in common.
+template <class Definition>
+void check_common(const Definition& d, bool moves, std::initializer_list<double> numbers) {
+  for (double number : numbers)
     require(std::isfinite(number), "every number of a body must be finite");
   require(d.is_static || d.mass > 0, "a body needs a mass > 0, or to be static");
-  require(d.mass >= 0 && d.inertia >= 0, "mass and inertia must not be negative");
-  require(!d.is_static || (d.vx == 0 && d.vy == 0 && d.w == 0), "a static body has no velocity");
+  require(d.mass >= 0, "mass and inertia must not be negative");
+  require(!d.is_static || !moves, "a static body has no velocity");
   require(d.linear_damping >= 0 && d.angular_damping >= 0, "damping must not be negative");
+}
+
+void check(const BodyDefinition& d) {
+  check_common(d, d.vx != 0 || d.vy != 0 || d.w != 0,
+               {d.x, d.y, d.angle, d.vx, d.vy, d.w, d.mass, d.inertia, d.force_x, d.force_y,
+                d.torque, d.linear_damping, d.angular_damping});
+  require(d.inertia >= 0, "mass and inertia must not be negative");
+}
+
+// A tensor that some mass distribution has: positive, and no principal moment larger than the sum
+// of the other two.
+void check(const Inertia& I) {
+  for (double number : {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz})
+    require(std::isfinite(number), "every number of a body must be finite");
+  if (I.xx == 0 && I.yy == 0 && I.zz == 0 && I.xy == 0 && I.xz == 0 && I.yz == 0) return;
+  const double minor = I.xx * I.yy - I.xy * I.xy;
+  const double determinant =
+      minor * I.zz - I.xx * I.yz * I.yz - I.yy * I.xz * I.xz + 2 * I.xy * I.xz * I.yz;
+  require(I.xx > 0 && minor > 0 && determinant > 0,
+          "an inertia tensor must be positive definite, or 0 for a point mass");
+  // With half = trace / 2 that is: half E - I, the tensor of second moments, is positive.
+  const double half = (I.xx + I.yy + I.zz) / 2, slack = -1e-9 * half;
+  const double x = half - I.xx, y = half - I.yy, z = half - I.zz;
+  require(x >= slack && y >= slack && z >= slack && x * y - I.xy * I.xy >= slack * half &&
+              x * z - I.xz * I.xz >= slack * half && y * z - I.yz * I.yz >= slack * half,
+          "no body has this inertia tensor: a principal moment is at most the sum of the others");
+}
+
+void check(const SpatialBodyDefinition& d) {
+  const bool moves = d.vx != 0 || d.vy != 0 || d.vz != 0 || d.wx != 0 || d.wy != 0 || d.wz != 0;
+  check_common(d, moves,
+               {d.x,
+                d.y,
+                d.z,
+                d.e0,
+                d.e1,
+                d.e2,
+                d.e3,
+                d.vx,
+                d.vy,
+                d.vz,
+                d.wx,
+                d.wy,
+                d.wz,
+                d.mass,
+                d.force_x,
+                d.force_y,
+                d.force_z,
+                d.torque_x,
+                d.torque_y,
+                d.torque_z,
+                d.linear_damping,
+                d.angular_damping});
+  check(d.inertia);
+  require(d.e0 * d.e0 + d.e1 * d.e1 + d.e2 * d.e2 + d.e3 * d.e3 > 1e-100,
+          "an orientation must not be the zero quaternion");
 }
 
 template <class S>
@@ -62,7 +120,7 @@ void check_joint_bodies(const WorldState<S>& world, const JointType& type,
 // spring: both may.
 template <class S>
 void check_directions(const WorldState<S>& world, const JointRecord& record) {
-  const JointType& type = joint_types()[record.type];
+  const JointType& type = joint_types(S::dimension)[record.type];
   Probe<S> probe(world);
   for (size_t r = 0; r < type.row_kinds.size(); ++r) {
     if (type.row_kinds[r] == RowKind::velocity) continue;
@@ -76,51 +134,48 @@ void check_directions(const WorldState<S>& world, const JointRecord& record) {
 }
 
 template <class S>
-planar::Pose<double> exact_pose(const WorldState<S>& world, int body) {
-  const auto& q = world.bodies.pose[body];
-  return Planar<double>::pose(q.x, q.y, q.angle);
-}
-
-template <class S>
 void set_acceleration(WorldState<S>& world, int body) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   const auto own = S::weighted(all.inverse_mass[body], all.force[body]);
-  const auto gravity = S::gravity(T(world.settings.gravity_x), T(world.settings.gravity_y));
+  const auto gravity = S::gravity(world.settings);
   const bool falls = !all.immovable(body);
   all.acceleration[body] = S::sum(own, gravity, falls ? T(1) : T(0));
+  if constexpr (S::has_gyroscopes)
+    for (auto& gyroscope : world.gyroscopes)
+      if (gyroscope.body == body) S::set_torque(gyroscope, all.force[body]);
 }
 
 }  // namespace
 
-template <class T>
-World<T>::World(const Settings& settings) : state_(std::make_unique<WorldState<Planar<T>>>()) {
+template <class S>
+BasicWorld<S>::BasicWorld(const Settings& settings) : state_(std::make_unique<WorldState<S>>()) {
   check(settings);
   state_->settings = settings;
 }
-template <class T>
-World<T>::~World() = default;
-template <class T>
-World<T>::World(World&&) noexcept = default;
-template <class T>
-World<T>& World<T>::operator=(World&&) noexcept = default;
+template <class S>
+BasicWorld<S>::~BasicWorld() = default;
+template <class S>
+BasicWorld<S>::BasicWorld(BasicWorld&&) noexcept = default;
+template <class S>
+BasicWorld<S>& BasicWorld<S>::operator=(BasicWorld&&) noexcept = default;
 
-template <class T>
-int World<T>::add_body(const BodyDefinition& d) {
+template <class S>
+int BasicWorld<S>::add_body(const BodyDefinition& d) {
   check(d);
-  using S = Planar<T>;
   Bodies<S>& all = state_->bodies;
   const int body = all.count();
-  const bool turns = !d.is_static && !d.fixed_rotation && d.inertia > 0;
-  const typename S::InverseMass m{d.is_static ? T(0) : T(1 / d.mass),
-                                  turns ? T(1 / d.inertia) : T(0)};
-  all.pose.push_back(S::pose(T(d.x), T(d.y), T(d.angle)));
-  all.velocity.push_back({T(d.vx), T(d.vy), T(d.w)});
+  const auto m = S::inverse_mass_of(d);
+  all.pose.push_back(S::placed(S::place_of(d)));
+  all.velocity.push_back(S::velocity_of(d));
   all.inverse_mass.push_back(m);
   all.effective_mass.push_back(m);
-  all.force.push_back({T(d.force_x), T(d.force_y), T(d.torque)});
+  all.force.push_back(S::components(S::wrench_of(d)));
+  all.stiffness.push_back({});
   for (auto* array : {&all.acceleration, &all.displacement, &all.increment}) array->push_back({});
   all.start.push_back(all.pose.back());
+  if constexpr (S::has_gyroscopes)
+    if (S::is_gyroscope(d)) state_->gyroscopes.push_back(S::gyroscope_of(body, d));
   set_acceleration(*state_, body);
   if (!d.is_static && (d.linear_damping > 0 || d.angular_damping > 0))
     state_->drags.push_back({body, T(d.linear_damping), T(d.angular_damping)});
@@ -128,23 +183,25 @@ int World<T>::add_body(const BodyDefinition& d) {
   return body;
 }
 
-template <class T>
-int World<T>::ground() {
+template <class S>
+int BasicWorld<S>::ground() {
   if (state_->ground < 0) state_->ground = add_body({.is_static = true});
   return state_->ground;
 }
 
-template <class T>
-int World<T>::add_joint(const JointDefinition& definition) {
-  const JointType* type = find_joint_type(definition.type);
+template <class S>
+int BasicWorld<S>::add_joint(const JointDefinition& definition) {
+  const JointType* type = find_joint_type(S::dimension, definition.type);
   if (!type) throw Error(fmt::format("there is no joint `{}`", definition.type));
   check_joint_bodies(*state_, *type, definition.bodies);
   JointRecord record{
-      static_cast<int>(type - joint_types().data()), definition.bodies, {}, {}, false};
-  std::vector<planar::Pose<double>> poses;
-  for (int body : record.bodies) poses.push_back(exact_pose(*state_, body));
+      static_cast<int>(type - joint_types(S::dimension).data()), definition.bodies, {}, {}, false};
+  using Exact = typename S::Exact;
+  std::vector<typename Exact::Pose> poses;
+  for (int body : record.bodies)
+    poses.push_back(Exact::placed(S::place_of(state_->bodies.pose[body])));
   record.parameters =
-      parameter_numbers(record.type, definition.parameters, poses.data(), state_->time);
+      parameter_numbers<Exact>(record.type, definition.parameters, poses.data(), state_->time);
   double spring[spring_constants_count] = {};
   if (definition.soft) spring_constants(*definition.soft, spring);
 
@@ -156,7 +213,6 @@ int World<T>::add_joint(const JointDefinition& definition) {
     state_->notes.push_back({joint, "connects only immovable bodies and does nothing"});
     return joint;
   }
-  using S = Planar<T>;
   const auto& kinds = type->row_kinds;
   const bool unilateral = std::count(kinds.begin(), kinds.end(), RowKind::inequality) > 0;
   const Law<S>* law = definition.soft ? &soft_law<S>()
@@ -168,61 +224,68 @@ int World<T>::add_joint(const JointDefinition& definition) {
   return joint;
 }
 
-template <class T>
-int World<T>::add_spring(const SpringDefinition& d) {
+template <class S>
+int BasicWorld<S>::add_spring(const SpringDefinition& d) {
   check_body(*state_, d.body_a);
   check_body(*state_, d.body_b);
   require(d.body_a != d.body_b, "a spring connects two different bodies");
-  for (double number : {d.ax, d.ay, d.bx, d.by, d.stiffness, d.rest_length, d.damping})
+  for (double number : {d.ax, d.ay, d.az, d.bx, d.by, d.bz, d.stiffness, d.rest_length, d.damping})
     require(std::isfinite(number), "every number of a spring must be finite");
   require(d.stiffness >= 0 && d.damping >= 0, "stiffness and damping must not be negative");
   require(d.rest_length >= 0, "a rest length must not be negative");
-  state_->springs.push_back({d.body_a, d.body_b, T(d.ax), T(d.ay), T(d.bx), T(d.by), T(d.stiffness),
-                             T(d.rest_length), T(d.damping)});
+  state_->springs.push_back(S::point_spring(d));
   state_->prepared = false;
   return static_cast<int>(state_->springs.size()) - 1;
 }
 
-template <class T>
-void World<T>::set_force(int body, double force_x, double force_y, double torque) {
+template <class S>
+void BasicWorld<S>::set_force(int body, const Wrench& force) {
   check_body(*state_, body);
-  state_->bodies.force[body] = {T(force_x), T(force_y), T(torque)};
+  state_->bodies.force[body] = S::components(force);
   set_acceleration(*state_, body);
   wake(*state_, body);
 }
 
-template <class T>
-void World<T>::set_pose(int body, double x, double y, double angle) {
+template <class S>
+void BasicWorld<S>::set_pose(int body, const Place& place) {
   check_body(*state_, body);
-  state_->bodies.pose[body] = Planar<T>::pose(T(x), T(y), T(angle));
+  Bodies<S>& all = state_->bodies;
+  all.pose[body] = S::placed(place);
+  if constexpr (S::has_gyroscopes)
+    for (auto& gyroscope : state_->gyroscopes)
+      if (gyroscope.body == body) {
+        S::set_inertia(gyroscope, all.pose[body], all.inverse_mass[body]);
+        all.effective_mass[body] = all.inverse_mass[body];
+        set_acceleration(*state_, body);
+      }
   wake(*state_, body);
 }
 
-template <class T>
-void World<T>::set_velocity(int body, double vx, double vy, double w) {
+template <class S>
+void BasicWorld<S>::set_velocity(int body, const typename S::Exact::Velocity& velocity) {
   check_body(*state_, body);
   require(!is_static(body), "a static body has no velocity");
-  state_->bodies.velocity[body] = {T(vx), T(vy), T(w)};
+  state_->bodies.velocity[body] = S::rounded(velocity);
   wake(*state_, body);
 }
 
-template <class T>
-void World<T>::apply_impulse(int body, double x, double y, double angular) {
+template <class S>
+void BasicWorld<S>::apply_impulse(int body, const typename S::Exact::Velocity& impulse) {
   check_body(*state_, body);
   auto& all = state_->bodies;
-  const auto change = Planar<T>::weighted(all.inverse_mass[body], {T(x), T(y), T(angular)});
-  all.velocity[body] = Planar<T>::sum(all.velocity[body], change, T(1));
+  const auto change = S::weighted(all.inverse_mass[body], S::rounded(impulse));
+  all.velocity[body] = S::sum(all.velocity[body], change, T(1));
   wake(*state_, body);
 }
 
-template <class T>
-void World<T>::prepare() {
+template <class S>
+void BasicWorld<S>::prepare() {
   prepare_topology(*state_);
 }
 
-template <class T>
-void World<T>::step(double h) {
-  WorldState<Planar<T>>& world = *state_;
+template <class S>
+void BasicWorld<S>::step(double h) {
+  WorldState<S>& world = *state_;
   if (!(h > 0)) return;
   prepare_topology(world);
   const double part = h / world.settings.substeps;
@@ -248,7 +311,8 @@ void World<T>::step(double h) {
   put_to_sleep(world, h);
 }
 
-template class World<double>;
-template class World<float>;
+#define CDOT_INSTANTIATE(S) template class BasicWorld<S>;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -19,6 +19,7 @@
 #include "runtime/kernel.hpp"
 #include "runtime/planar.hpp"
 #include "runtime/settings.hpp"
+#include "runtime/spaces.hpp"
 
 namespace cdot {
 
@@ -40,20 +41,20 @@ struct Inconsistency {
   double value;
 };
 
-// The force [N] and the torque about the centre of mass [N m] that a joint exerted on a body in the
-// last step.
-struct Reaction {
-  double force_x, force_y, torque;
-};
-
-// T is double or float.
-template <class T>
-class World {
+// S is a space: Planar<double>, Planar<float>, Spatial<double>, Spatial<float>.
+template <class S>
+class BasicWorld {
  public:
-  explicit World(const Settings& settings = {});
-  ~World();
-  World(World&&) noexcept;
-  World& operator=(World&&) noexcept;
+  using T = typename S::Scalar;
+  using BodyDefinition = typename S::BodyDefinition;
+  using Place =
+      typename S::Place;  // in the plane {x, y, angle}, in space {x, y, z, e0, e1, e2, e3}
+  using Wrench = typename S::Wrench;  // force [N] and torque about the centre of mass [N m]
+
+  explicit BasicWorld(const Settings& settings = {});
+  ~BasicWorld();
+  BasicWorld(BasicWorld&&) noexcept;
+  BasicWorld& operator=(BasicWorld&&) noexcept;
 
   // --- setting up: throws cdot::Error, may allocate ---
 
@@ -61,7 +62,7 @@ class World {
   int ground();  // the index of one static body at the origin, made when first asked for
   int add_joint(const JointDefinition& definition);
   int add_spring(const SpringDefinition& definition);
-  void set_force(int body, double force_x, double force_y, double torque);
+  void set_force(int body, const Wrench& force);
 
   // Rows of joints that the present pose or velocity violates by more than the tolerance ([m] or
   // [rad], and /s).
@@ -78,9 +79,9 @@ class World {
   void step(double h);
 
   // Each of these wakes the body's island.
-  void set_pose(int body, double x, double y, double angle);
-  void set_velocity(int body, double vx, double vy, double w);
-  void apply_impulse(int body, double impulse_x, double impulse_y, double angular_impulse);
+  void set_pose(int body, const Place& place);
+  void set_velocity(int body, const typename S::Exact::Velocity& velocity);
+  void apply_impulse(int body, const typename S::Exact::Velocity& impulse);
 
   // --- looking ---
 
@@ -88,9 +89,9 @@ class World {
   const Settings& settings() const;
 
   int body_count() const;
-  planar::Pose<T> pose(int body) const;
-  planar::Velocity<T> velocity(int body) const;
-  planar::InverseMass<T> inverse_mass(int body) const;
+  typename S::Pose pose(int body) const;
+  typename S::Velocity velocity(int body) const;
+  typename S::InverseMass inverse_mass(int body) const;
   bool is_static(int body) const;
   bool asleep(int body) const;
 
@@ -104,7 +105,8 @@ class World {
   std::vector<double> position_error(int joint) const;  // C
   std::vector<double> velocity_error(int joint) const;  // Cdot = J v + dC/dt
   std::vector<double> impulse(int joint) const;         // lambda of the last (sub)step [N s, N m s]
-  Reaction reaction(int joint, int body) const;
+  // What a joint exerted on a body in the last step.
+  Wrench reaction(int joint, int body) const;
   double coordinate(int joint, std::string_view name) const;  // value of a free coordinate [m, rad]
   double coordinate_rate(int joint, std::string_view name) const;  // and its rate
 
@@ -113,7 +115,8 @@ class World {
   // At the present poses; inequality rows do not count.
   WorstError worst_velocity_error() const;
   // Kinetic energy + gravity and constant forces (zero where each body was added) + springs, soft
-  // joints included.
+  // joints included. A constant torque has a potential in the plane; in space it has none, and is
+  // counted along the shortest turn from the start.
   double energy() const;
   // Rows that the direct solver found to depend on others in its last factorisation.
   int redundant_rows() const;
@@ -122,13 +125,21 @@ class World {
   std::uint64_t hash() const;  // of every bit of poses and velocities
 
   // For runtime/effects.hpp.
-  WorldState<Planar<T>>& state() { return *state_; }
+  WorldState<S>& state() { return *state_; }
 
  private:
-  std::unique_ptr<WorldState<Planar<T>>> state_;
+  std::unique_ptr<WorldState<S>> state_;
 };
 
-extern template class World<float>;
-extern template class World<double>;
+// T is double or float.
+template <class T>
+using World = BasicWorld<Planar<T>>;
+template <class T>
+using SpatialWorld = BasicWorld<Spatial<T>>;
+
+extern template class BasicWorld<Planar<double>>;
+extern template class BasicWorld<Planar<float>>;
+extern template class BasicWorld<Spatial<double>>;
+extern template class BasicWorld<Spatial<float>>;
 
 }  // namespace cdot

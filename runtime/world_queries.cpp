@@ -29,7 +29,7 @@ WorstError worst_of(const WorldState<S>& world, F value) {
     const JointRecord& joint = world.joints[j];
     if (joint.broken || is_soft(world, joint)) continue;
     probe.look_at(joint);
-    const auto& kinds = joint_types()[joint.type].row_kinds;
+    const auto& kinds = joint_types(S::dimension)[joint.type].row_kinds;
     for (int r = 0; r < probe.rows(); ++r) {
       const double size = std::abs(value(probe, r, kinds[r]));
       if (worst.joint < 0 || beats(size, worst.value)) worst = {size, static_cast<int>(j), r};
@@ -66,136 +66,133 @@ double potential_of_rows(const WorldState<S>& world) {
 
 }  // namespace
 
-template <class T>
-double World<T>::time() const {
+template <class S>
+double BasicWorld<S>::time() const {
   return state_->time;
 }
-template <class T>
-const Settings& World<T>::settings() const {
+template <class S>
+const Settings& BasicWorld<S>::settings() const {
   return state_->settings;
 }
-template <class T>
-const std::vector<Note>& World<T>::notes() const {
+template <class S>
+const std::vector<Note>& BasicWorld<S>::notes() const {
   return state_->notes;
 }
-template <class T>
-int World<T>::body_count() const {
+template <class S>
+int BasicWorld<S>::body_count() const {
   return state_->bodies.count();
 }
-template <class T>
-planar::Pose<T> World<T>::pose(int body) const {
+template <class S>
+typename S::Pose BasicWorld<S>::pose(int body) const {
   return state_->bodies.pose.at(body);
 }
-template <class T>
-planar::Velocity<T> World<T>::velocity(int body) const {
+template <class S>
+typename S::Velocity BasicWorld<S>::velocity(int body) const {
   return state_->bodies.velocity.at(body);
 }
-template <class T>
-planar::InverseMass<T> World<T>::inverse_mass(int body) const {
+template <class S>
+typename S::InverseMass BasicWorld<S>::inverse_mass(int body) const {
   return state_->bodies.inverse_mass.at(body);
 }
-template <class T>
-bool World<T>::is_static(int body) const {
-  return Planar<T>::immovable(inverse_mass(body));
+template <class S>
+bool BasicWorld<S>::is_static(int body) const {
+  return S::immovable(inverse_mass(body));
 }
-template <class T>
-bool World<T>::asleep(int body) const {
+template <class S>
+bool BasicWorld<S>::asleep(int body) const {
   if (!state_->prepared) return false;
   const int island = state_->island_of.at(body);
   return island >= 0 && state_->islands[island].asleep;
 }
-template <class T>
-int World<T>::joint_count() const {
+template <class S>
+int BasicWorld<S>::joint_count() const {
   return static_cast<int>(state_->joints.size());
 }
-template <class T>
-const JointType& World<T>::joint_type(int joint) const {
-  return joint_types()[state_->joints.at(joint).type];
+template <class S>
+const JointType& BasicWorld<S>::joint_type(int joint) const {
+  return joint_types(S::dimension)[state_->joints.at(joint).type];
 }
-template <class T>
-std::vector<int> World<T>::joint_bodies(int joint) const {
+template <class S>
+std::vector<int> BasicWorld<S>::joint_bodies(int joint) const {
   return state_->joints.at(joint).bodies;
 }
-template <class T>
-std::vector<double> World<T>::joint_parameters(int joint) const {
+template <class S>
+std::vector<double> BasicWorld<S>::joint_parameters(int joint) const {
   return state_->joints.at(joint).parameters;
 }
-template <class T>
-bool World<T>::broken(int joint) const {
+template <class S>
+bool BasicWorld<S>::broken(int joint) const {
   return state_->joints.at(joint).broken;
 }
 
-template <class T>
-std::vector<double> World<T>::position_error(int joint) const {
-  Probe<Planar<T>> probe(*state_);
+template <class S>
+std::vector<double> BasicWorld<S>::position_error(int joint) const {
+  Probe<S> probe(*state_);
   probe.look_at(state_->joints.at(joint));
   std::vector<double> C;
   for (int r = 0; r < probe.rows(); ++r) C.push_back(probe.C(r));
   return C;
 }
 
-template <class T>
-std::vector<double> World<T>::velocity_error(int joint) const {
-  Probe<Planar<T>> probe(*state_);
+template <class S>
+std::vector<double> BasicWorld<S>::velocity_error(int joint) const {
+  Probe<S> probe(*state_);
   probe.look_at(state_->joints.at(joint));
   return in_doubles(probe.Cdot());
 }
 
-template <class T>
-std::vector<double> World<T>::impulse(int joint) const {
+template <class S>
+std::vector<double> BasicWorld<S>::impulse(int joint) const {
   return in_doubles(total_impulse(*state_, state_->joints.at(joint)));
 }
 
-template <class T>
-Reaction World<T>::reaction(int joint, int body) const {
+template <class S>
+typename S::Wrench BasicWorld<S>::reaction(int joint, int body) const {
   const JointRecord& record = state_->joints.at(joint);
-  Reaction sum{0, 0, 0};
+  Wrench sum;
   if (state_->last_step <= 0) return sum;
-  Probe<Planar<T>> probe(*state_);
+  Probe<S> probe(*state_);
   probe.look_at(record);
   const auto lambda = total_impulse(*state_, record);
   for (size_t k = 0; k < record.bodies.size(); ++k) {
     if (record.bodies[k] != body) continue;
-    const auto impulse = probe.impulse_on(static_cast<int>(k), lambda);
-    sum.force_x += impulse.x / state_->last_step;
-    sum.force_y += impulse.y / state_->last_step;
-    sum.torque += impulse.w / state_->last_step;
+    S::add(sum, probe.impulse_on(static_cast<int>(k), lambda), state_->last_step);
   }
   return sum;
 }
 
-template <class T>
-double World<T>::coordinate(int joint, std::string_view name) const {
+template <class S>
+double BasicWorld<S>::coordinate(int joint, std::string_view name) const {
   const JointRecord& record = state_->joints.at(joint);
-  Probe<Planar<T>> probe(*state_);
-  probe.look_at(record, coordinate_index(record.type, name));
+  Probe<S> probe(*state_);
+  probe.look_at(record, coordinate_index<S>(record.type, name));
   return probe.C(0);
 }
 
-template <class T>
-double World<T>::coordinate_rate(int joint, std::string_view name) const {
+template <class S>
+double BasicWorld<S>::coordinate_rate(int joint, std::string_view name) const {
   const JointRecord& record = state_->joints.at(joint);
-  Probe<Planar<T>> probe(*state_);
-  probe.look_at(record, coordinate_index(record.type, name));
+  Probe<S> probe(*state_);
+  probe.look_at(record, coordinate_index<S>(record.type, name));
   return probe.Cdot()[0];
 }
 
-template <class T>
-WorstError World<T>::worst_position_error() const {
-  return worst_of(*state_, position_violation<Planar<T>>);
+template <class S>
+WorstError BasicWorld<S>::worst_position_error() const {
+  return worst_of(*state_, position_violation<S>);
 }
 
-template <class T>
-WorstError World<T>::worst_velocity_error() const {
-  return worst_of(*state_, [](Probe<Planar<T>>& probe, int row, RowKind kind) {
+template <class S>
+WorstError BasicWorld<S>::worst_velocity_error() const {
+  return worst_of(*state_, [](Probe<S>& probe, int row, RowKind kind) {
     return kind == RowKind::inequality ? 0.0 : double(probe.Cdot()[row]);
   });
 }
 
-template <class T>
-std::vector<Inconsistency> World<T>::inconsistencies(double tolerance) const {
+template <class S>
+std::vector<Inconsistency> BasicWorld<S>::inconsistencies(double tolerance) const {
   std::vector<Inconsistency> found;
-  Probe<Planar<T>> probe(*state_);
+  Probe<S> probe(*state_);
   for (int j = 0; j < joint_count(); ++j) {
     const JointRecord& joint = state_->joints[j];
     if (joint.broken || is_soft(*state_, joint)) continue;
@@ -213,9 +210,8 @@ std::vector<Inconsistency> World<T>::inconsistencies(double tolerance) const {
   return found;
 }
 
-template <class T>
-double World<T>::energy() const {
-  using S = Planar<T>;
+template <class S>
+double BasicWorld<S>::energy() const {
   const Bodies<S>& all = state_->bodies;
   double energy = potential_of_rows(*state_);
   for (int i = 0; i < all.count(); ++i) {
@@ -232,24 +228,24 @@ double World<T>::energy() const {
   return energy;
 }
 
-template <class T>
-int World<T>::redundant_rows() const {
+template <class S>
+int BasicWorld<S>::redundant_rows() const {
   int sum = 0;
   for (const auto& island : state_->islands) sum += island.redundant_rows;
   return sum;
 }
-template <class T>
-int World<T>::island_count() const {
+template <class S>
+int BasicWorld<S>::island_count() const {
   return static_cast<int>(state_->islands.size());
 }
-template <class T>
-int World<T>::sleeping_islands() const {
+template <class S>
+int BasicWorld<S>::sleeping_islands() const {
   return island_count() - static_cast<int>(state_->awake.size());
 }
 
 // FNV-1a over the bytes of poses and velocities.
-template <class T>
-std::uint64_t World<T>::hash() const {
+template <class S>
+std::uint64_t BasicWorld<S>::hash() const {
   std::uint64_t hash = 14695981039346656037ull;
   const auto add = [&](const auto& items) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(items.data());
@@ -261,7 +257,8 @@ std::uint64_t World<T>::hash() const {
   return hash;
 }
 
-template class World<double>;
-template class World<float>;
+#define CDOT_INSTANTIATE(S) template class BasicWorld<S>;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -44,6 +44,7 @@ struct Island {
   std::vector<Segment<S>> segments;
   std::vector<typename S::PointSpring> springs;
   std::vector<Drag<S>> drags;
+  std::vector<int> gyroscopes;                      // into WorldState::gyroscopes
   System<S> system;                                 // of the direct solver and of projections
   int redundant_rows = 0;                           // of the last factorisation
   bool restless = false;                            // driven by time: never sleeps
@@ -72,6 +73,7 @@ struct WorldState {
   std::vector<std::unique_ptr<Batch<S>>> batches;
   std::vector<typename S::PointSpring> springs;
   std::vector<Drag<S>> drags;
+  std::vector<typename S::Gyroscope> gyroscopes;  // bodies whose inertia tensor turns with them
   std::vector<std::pair<int, double>> breaking_loads;  // by joint
   std::vector<Hook> after_substep;
   std::vector<Note> notes;

@@ -37,7 +37,7 @@ long allocations_of_a_run(Solver solver, Drift drift, bool geometric_stiffness) 
   const long before = allocations;
   for (int i = 0; i < 200; ++i) {
     world.step(0.005);
-    if (i % 50 == 49) world.apply_impulse(world.body_count() - 1, 0.1, 0, 0);
+    if (i % 50 == 49) world.apply_impulse(world.body_count() - 1, {0.1, 0, 0});
   }
   const long made = allocations - before;
   EXPECT_TRUE(world.broken(7));

@@ -43,8 +43,8 @@ void add_free_mechanism(World<T>& world) {
                     .stiffness = 5,
                     .rest_length = 3,
                     .damping = 0.3});
-  world.apply_impulse(rods[0], 1, 2, 0.5);
-  world.apply_impulse(rods[4], -3, 1, -0.2);
+  world.apply_impulse(rods[0], {1, 2, 0.5});
+  world.apply_impulse(rods[4], {-3, 1, -0.2});
 }
 
 TEST(Conservation, MomentumOfAFreeMechanism) {

@@ -55,7 +55,7 @@ TEST(DryFriction, StopsARunningWheelAfterTheTimeThatMomentumGives) {
     World<double> world(settings(solver));
     int wheel;
     add_friction(world, add_wheel(world, 2, &wheel), "angle", {.max_force = 0.5});
-    world.set_velocity(wheel, 0, 0, 1);
+    world.set_velocity(wheel, {0, 0, 1});
     run(world, 2, 0.01);
     EXPECT_NEAR(world.velocity(wheel).w, 0.5, 1e-9);
     run(world, 3, 0.01);
@@ -91,10 +91,10 @@ TEST(Limit, OneSideOnlyAndNoPullFromIt) {
     int wheel;
     const int joint = add_wheel(world, 2, &wheel);
     add_limit(world, joint, "angle", {.lower = -1, .upper = {}});
-    world.set_velocity(wheel, 0, 0, 4);
+    world.set_velocity(wheel, {0, 0, 4});
     run(world, 3, 0.01);
     EXPECT_NEAR(world.pose(wheel).angle, 12, 1e-9);  // counts turns
-    world.set_velocity(wheel, 0, 0, -4);
+    world.set_velocity(wheel, {0, 0, -4});
     run(world, 3, 0.01);
     EXPECT_NEAR(world.pose(wheel).angle, 0, 1e-9);
     run(world, 1, 0.01);
@@ -106,7 +106,7 @@ TEST(Limit, ThousandTurnsAreCounted) {
   World<double> world;
   int wheel;
   const int joint = add_wheel(world, 2, &wheel);
-  world.set_velocity(wheel, 0, 0, 2 * pi);
+  world.set_velocity(wheel, {0, 0, 2 * pi});
   run(world, 1000, 0.01);
   EXPECT_NEAR(world.coordinate(joint, "angle"), 2000 * pi, 1e-6);
 }

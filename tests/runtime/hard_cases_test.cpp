@@ -80,12 +80,12 @@ TEST(HardCases, HeavyLoadOnALightChain) {
     const int body = add_chain_with_load(world, load);
     run(world, 0.2, h);
     EXPECT_NEAR(-world.reaction(0, world.ground()).force_y, (10 + load) * g, 1e-6 * load);
-    world.apply_impulse(body, load, 0, 0);
+    world.apply_impulse(body, {load, 0, 0});
     const Extremes e = watch(world, 10);
     EXPECT_LT(e.gap, 1e-3) << load;
     EXPECT_LT(e.rise, 1e-3 * 0.5 * load) << load;
     World<float> coarse(heavy());
-    coarse.apply_impulse(add_chain_with_load(coarse, load), load, 0, 0);
+    coarse.apply_impulse(add_chain_with_load(coarse, load), {load, 0, 0});
     run(coarse, 10, h);
     EXPECT_TRUE(finite(coarse));
   }

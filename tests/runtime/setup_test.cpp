@@ -102,8 +102,8 @@ TEST(Setup, InconsistentStartIsReportedAndProjected) {
     const auto rods = add_chain(world, 4, -0.4);
     EXPECT_TRUE(world.inconsistencies(1e-9).empty());
     const auto q = world.pose(rods[2]);
-    world.set_pose(rods[2], q.x + 0.1, q.y - 0.05, q.angle + 0.1);
-    world.set_velocity(rods[0], 0, 0, 1);
+    world.set_pose(rods[2], {q.x + 0.1, q.y - 0.05, q.angle + 0.1});
+    world.set_velocity(rods[0], {0, 0, 1});
     const auto found = world.inconsistencies(1e-9);
     bool position = false, velocity = false;
     for (const Inconsistency& item : found) (item.velocity ? velocity : position) = true;

@@ -50,11 +50,11 @@ TEST(Sleep, EveryTouchWakes) {
     run(two.world, 1, 0.01);
     ASSERT_TRUE(two.world.asleep(two.resting));
     const auto q = two.world.pose(two.resting);
-    if (touch == 0) two.world.apply_impulse(two.resting, 1, 0, 0);
-    if (touch == 1) two.world.set_velocity(two.resting, 1, 0, 0);
-    if (touch == 2) two.world.set_force(two.resting, 3, 0, 0);
-    if (touch == 3) two.world.set_pose(two.resting, q.x + 0.1, q.y, q.angle);
-    if (touch == 4) two.world.set_pose(two.world.ground(), 0.1, 0, 0);
+    if (touch == 0) two.world.apply_impulse(two.resting, {1, 0, 0});
+    if (touch == 1) two.world.set_velocity(two.resting, {1, 0, 0});
+    if (touch == 2) two.world.set_force(two.resting, {3, 0, 0});
+    if (touch == 3) two.world.set_pose(two.resting, {q.x + 0.1, q.y, q.angle});
+    if (touch == 4) two.world.set_pose(two.world.ground(), {0.1, 0, 0});
     if (touch == 5)  // tied to something that moves
       two.world.add_spring({.body_a = two.resting, .body_b = two.swinging, .stiffness = 20});
     two.world.step(0.01);
@@ -70,7 +70,7 @@ TEST(Sleep, ATouchOfOneIslandLeavesTheOthersAsleep) {
   for (int i = 0; i < 5; ++i) ends.push_back(add_chain(world, 2, -pi / 2).back());
   run(world, 1, 0.01);
   EXPECT_EQ(world.sleeping_islands(), 5);
-  world.apply_impulse(ends[2], 1, 0, 0);
+  world.apply_impulse(ends[2], {1, 0, 0});
   EXPECT_EQ(world.sleeping_islands(), 4);
   world.step(0.01);
   EXPECT_FALSE(world.asleep(ends[2]));
@@ -83,8 +83,8 @@ TEST(Sleep, WakingGoesOnAsIfItHadNotSlept) {
   const int resting = add_chain(awake, 2, -pi / 2).back();
   run(slept.world, 2, 0.01);
   run(awake, 2, 0.01);
-  slept.world.apply_impulse(slept.resting, 1, 0, 0);
-  awake.apply_impulse(resting, 1, 0, 0);
+  slept.world.apply_impulse(slept.resting, {1, 0, 0});
+  awake.apply_impulse(resting, {1, 0, 0});
   run(slept.world, 1, 0.01);
   run(awake, 1, 0.01);
   EXPECT_NEAR(slept.world.pose(slept.resting).x, awake.pose(resting).x, 1e-9);

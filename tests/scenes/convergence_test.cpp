@@ -106,7 +106,7 @@ TEST(Reactions, OfTheCantileverAreExactStatics) {
   ASSERT_EQ(json["reactions"].size(), 10u);
   for (int k = 0; k < 10; ++k) {
     const auto& expected = json["reactions"][static_cast<std::size_t>(k)];
-    const Reaction reaction = world.reaction(k, k);  // weld k on its second body, block k
+    const auto reaction = world.reaction(k, k);  // weld k on its second body, block k
     const double force = expected["force_on_body_b"][1],
                  moment = expected["moment_on_body_b_about_joint"];
     // From the centre of the block to the weld, 0.25 m to its left: M = torque - (-0.25) force.
@@ -123,7 +123,7 @@ TEST(Reactions, OfTheCatenaryAreItsTension) {
       nlohmann::json::parse(read_text(source_dir() / "tests/scenes/reference/catenary_100.json"));
   ASSERT_EQ(json["forces"].size(), 100u);
   for (int k = 0; k < 100; ++k) {
-    const Reaction reaction = world.reaction(k, k);  // the joint at the left end of link k
+    const auto reaction = world.reaction(k, k);  // the joint at the left end of link k
     EXPECT_NEAR(reaction.force_x, json["forces"][static_cast<std::size_t>(k)][0], 1e-4);
     EXPECT_NEAR(reaction.force_y, json["forces"][static_cast<std::size_t>(k)][1], 1e-4);
   }

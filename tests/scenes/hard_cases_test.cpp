@@ -69,7 +69,7 @@ TEST(HardCases, BallAndChainAtRestCarriesItsWeight) {
   }
   World<double> world = build_world<double>(scene);
   for (int k = 0; k < 60; ++k) world.step(scene.step);
-  const Reaction top = world.reaction(0, 0);
+  const auto top = world.reaction(0, 0);
   EXPECT_NEAR(top.force_y, 41795.6, 41.8);
   EXPECT_NEAR(top.force_y, (40 * 5.982 + 4021.24) * 9.81, 1e-3);
 }

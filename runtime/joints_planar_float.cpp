@@ -1,5 +1,5 @@
-// Instantiates every generated kernel in float. Apart because this is most of what there is to
-// compile.
+// Instantiates every generated planar kernel in float. Apart because this is most of what there is
+// to compile.
 #include "generated/planar/registry.hpp"
 #include "runtime/joint_table.hpp"
 #include "runtime/planar.hpp"

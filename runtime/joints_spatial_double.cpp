@@ -1,0 +1,16 @@
+// Instantiates every generated spatial kernel in double. Apart because this is most of what there
+// is to compile.
+#include "generated/spatial/registry.hpp"
+#include "runtime/joint_table.hpp"
+#include "runtime/spatial.hpp"
+
+namespace cdot {
+
+template <>
+const std::vector<JointEntry<Spatial<double>>>& joint_entries<Spatial<double>>() {
+  static const auto entries =
+      make_joint_entries<Spatial<double>>(std::type_identity<spatial::Joints>{});
+  return entries;
+}
+
+}  // namespace cdot

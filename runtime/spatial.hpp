@@ -1,0 +1,257 @@
+// Everything that the runtime knows about space, member by member what runtime/planar.hpp knows
+// about the plane.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/gyroscope.hpp"
+#include "runtime/joints.hpp"
+#include "runtime/kernel.hpp"
+#include "runtime/rotation.hpp"
+#include "runtime/settings.hpp"
+
+namespace cdot {
+
+namespace spatial {
+struct Place {
+  double x, y, z;
+  double e0 = 1, e1 = 0, e2 = 0, e3 = 0;  // a quaternion of any length but 0
+};
+// A force [N] and a torque about the centre of mass [N m], in world axes.
+struct Wrench {
+  double force_x = 0, force_y = 0, force_z = 0, torque_x = 0, torque_y = 0, torque_z = 0;
+};
+}  // namespace spatial
+
+template <class T>
+struct Spatial {
+  using Scalar = T;
+  using Exact = Spatial<double>;
+  using Pose = spatial::Pose<T>;
+  using Velocity = spatial::Velocity<T>;  // also a displacement, an acceleration, or an impulse
+  using InverseMass = spatial::InverseMass<T>;
+  using BodyDefinition = SpatialBodyDefinition;
+  using Place = spatial::Place;
+  using Wrench = spatial::Wrench;
+  using Vector = spatial::Vector<T>;
+  using Symmetric = spatial::Symmetric<T>;
+  static constexpr Dimension dimension = Dimension::spatial;
+  static constexpr int freedom = 6;  // numbers in a Velocity
+  static constexpr bool has_gyroscopes = true;
+  using Gyroscope = spatial::Gyroscope<T>;
+
+  static Pose placed(const Place& p) {
+    return spatial::oriented(T(p.x), T(p.y), T(p.z), T(p.e0), T(p.e1), T(p.e2), T(p.e3));
+  }
+  static Place place_of(const Pose& q) { return {q.x, q.y, q.z, q.e0, q.e1, q.e2, q.e3}; }
+  static Place place_of(const BodyDefinition& d) { return {d.x, d.y, d.z, d.e0, d.e1, d.e2, d.e3}; }
+  static Velocity velocity_of(const BodyDefinition& d) {
+    return {T(d.vx), T(d.vy), T(d.vz), T(d.wx), T(d.wy), T(d.wz)};
+  }
+  static Wrench wrench_of(const BodyDefinition& d) {
+    return {d.force_x, d.force_y, d.force_z, d.torque_x, d.torque_y, d.torque_z};
+  }
+  static spatial::Symmetric<double> inertia_of(const BodyDefinition& d) {
+    const Inertia& I = d.inertia;
+    return {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz};
+  }
+  static bool turns(const BodyDefinition& d) {
+    return !d.is_static && !d.fixed_rotation && d.inertia.xx > 0;
+  }
+  static bool isotropic(const Inertia& I) {
+    return I.xx == I.yy && I.yy == I.zz && I.xy == 0 && I.xz == 0 && I.yz == 0;
+  }
+  static InverseMass inverse_mass_of(const BodyDefinition& d) {
+    const T m = d.is_static ? T(0) : T(1 / d.mass);
+    if (!turns(d)) return inverse_mass(m, {});
+    if (isotropic(d.inertia)) {
+      const T I = T(1 / d.inertia.xx);
+      return inverse_mass(m, {I, I, I, T(0), T(0), T(0)});
+    }
+    const Gyroscope gyroscope = gyroscope_of(0, d);
+    return inverse_mass(m, spatial::turned(placed(place_of(d)), gyroscope.inverse));
+  }
+  static InverseMass inverse_mass(T m, const Symmetric& I) {
+    return {m, I.xx, I.yy, I.zz, I.xy, I.xz, I.yz};
+  }
+  static Symmetric inverse_inertia(const InverseMass& m) {
+    return {m.Ixx, m.Iyy, m.Izz, m.Ixy, m.Ixz, m.Iyz};
+  }
+
+  // --- bodies whose inertia tensor turns with them ---
+
+  static bool is_gyroscope(const BodyDefinition& d) { return turns(d) && !isotropic(d.inertia); }
+  static Gyroscope gyroscope_of(int body, const BodyDefinition& d) {
+    const auto I = inertia_of(d), inverse = spatial::inverse(I);
+    const auto cast = [](const spatial::Symmetric<double>& S) {
+      return Symmetric{T(S.xx), T(S.yy), T(S.zz), T(S.xy), T(S.xz), T(S.yz)};
+    };
+    const Symmetric inertia = cast(I);
+    return {body, inertia, cast(inverse), spatial::turned(placed(place_of(d)), inertia), {}, {}};
+  }
+  // The tensors at the present pose.
+  static void set_inertia(Gyroscope& g, const Pose& q, InverseMass& m) {
+    g.world = spatial::turned(q, g.inertia);
+    m = inverse_mass(m.m, spatial::turned(q, g.inverse));
+  }
+  // The same, w with them: L = I w stays.
+  static void turn(Gyroscope& g, const Pose& q, InverseMass& m, Velocity& v) {
+    const Vector momentum = g.world * angular(v);
+    set_inertia(g, q, m);
+    set_angular(v, inverse_inertia(m) * momentum);
+  }
+  static void set_torque(Gyroscope& g, const Velocity& f) { g.torque = angular(f); }
+  // The part of the acceleration that turns with the tensor.
+  static void turn_acceleration(const Gyroscope& g, const InverseMass& m, Velocity& acceleration) {
+    set_angular(acceleration, inverse_inertia(m) * g.torque);
+  }
+  // Puts the mean spin of the step in place of w, and back.
+  static void lend_mean_spin(Gyroscope& g, const Pose& q, Velocity& v, T h) {
+    g.spin = angular(v);
+    set_angular(v, spatial::mean_spin(g, q, g.spin, h));
+  }
+  static void restore_spin(const Gyroscope& g, Velocity& v) { set_angular(v, g.spin); }
+
+  // --- vectors of all six numbers ---
+
+  static Velocity components(const Wrench& f) {
+    return {T(f.force_x), T(f.force_y), T(f.force_z), T(f.torque_x), T(f.torque_y), T(f.torque_z)};
+  }
+  // From doubles.
+  static Velocity rounded(const spatial::Velocity<double>& v) {
+    return {T(v.x), T(v.y), T(v.z), T(v.wx), T(v.wy), T(v.wz)};
+  }
+  static void add(Wrench& sum, const Velocity& impulse, double time) {
+    sum.force_x += impulse.x / time;
+    sum.force_y += impulse.y / time;
+    sum.force_z += impulse.z / time;
+    sum.torque_x += impulse.wx / time;
+    sum.torque_y += impulse.wy / time;
+    sum.torque_z += impulse.wz / time;
+  }
+
+  static Pose moved(const Pose& q, const Velocity& d) {
+    Pose to = spatial::turned_by(q, angular(d));
+    to.x = q.x + d.x, to.y = q.y + d.y, to.z = q.z + d.z;
+    return to;
+  }
+
+  // v + scale * d
+  static Velocity sum(const Velocity& v, const Velocity& d, T scale) {
+    return {v.x + scale * d.x,   v.y + scale * d.y,   v.z + scale * d.z,
+            v.wx + scale * d.wx, v.wy + scale * d.wy, v.wz + scale * d.wz};
+  }
+
+  static Velocity difference(const Pose& q, const Pose& start) {
+    const Vector turn = spatial::turn_between(start, q);
+    return {q.x - start.x, q.y - start.y, q.z - start.z, turn.x, turn.y, turn.z};
+  }
+
+  // M^-1 f
+  static Velocity weighted(const InverseMass& m, const Velocity& f) {
+    const Vector w = inverse_inertia(m) * angular(f);
+    return {m.m * f.x, m.m * f.y, m.m * f.z, w.x, w.y, w.z};
+  }
+
+  // M a: what a force would have to be
+  static Velocity force(const InverseMass& m, const Velocity& a) {
+    const T mass = inverse(m.m);
+    const Vector torque = spatial::inverse(inverse_inertia(m)) * angular(a);
+    return {mass * a.x, mass * a.y, mass * a.z, torque.x, torque.y, torque.z};
+  }
+
+  static Velocity damped(const Velocity& v, T linear, T angular) {
+    return {v.x * linear,   v.y * linear,   v.z * linear,
+            v.wx * angular, v.wy * angular, v.wz * angular};
+  }
+
+  static double dot(const Velocity& f, const Velocity& v) {
+    return double(f.x) * double(v.x) + double(f.y) * double(v.y) + double(f.z) * double(v.z) +
+           double(f.wx) * double(v.wx) + double(f.wy) * double(v.wy) + double(f.wz) * double(v.wz);
+  }
+
+  static bool slower(const Velocity& v, T speed) {
+    return v.x * v.x + v.y * v.y + v.z * v.z < speed * speed &&
+           spatial::dot(angular(v), angular(v)) < speed * speed;
+  }
+
+  // A spring with damping from a point of body a to a point of body b, given in their frames.
+  struct PointSpring {
+    int body_a, body_b;
+    Vector a, b;
+    T stiffness, rest_length, damping;
+  };
+  static PointSpring point_spring(const SpringDefinition& d) {
+    return {d.body_a,
+            d.body_b,
+            {T(d.ax), T(d.ay), T(d.az)},
+            {T(d.bx), T(d.by), T(d.bz)},
+            T(d.stiffness),
+            T(d.rest_length),
+            T(d.damping)};
+  }
+  // Length, and the direction from a to b together with the arms.
+  struct Stretch {
+    T length;
+    Vector direction;     // of length 1; zero where the points coincide
+    Vector arm_a, arm_b;  // r x direction: the levers of a pull along it
+  };
+  static Stretch stretch(const PointSpring& spring, const Pose& a, const Pose& b) {
+    const Vector ra = spatial::to_world(a, spring.a), rb = spatial::to_world(b, spring.b);
+    const Vector d = Vector{b.x - a.x, b.y - a.y, b.z - a.z} + (rb - ra);
+    const T length = spatial::norm(d);
+    const Vector n = inverse(length) * d;
+    return {length, n, spatial::cross(ra, n), spatial::cross(rb, n)};
+  }
+  // The pull on a; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
+  static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a,
+                   const Velocity& b) {
+    const T rate = spatial::dot(s.direction, Vector{b.x - a.x, b.y - a.y, b.z - a.z}) +
+                   spatial::dot(s.arm_b, angular(b)) - spatial::dot(s.arm_a, angular(a));
+    return spring.stiffness * (s.length - spring.rest_length) + spring.damping * rate;
+  }
+  static Velocity pull_on_a(const Stretch& s, T f) { return impulse(f * s.direction, f * s.arm_a); }
+  static Velocity pull_on_b(const Stretch& s, T f) {
+    return impulse(-f * s.direction, -f * s.arm_b);
+  }
+
+  // What a row block's d(J^T lambda)/dq says about one body's turning.
+  using Stiffness = Symmetric;
+  template <int width>
+  static void subtract(Stiffness& stiffness, const T (&H)[width][width], int body) {
+    const int x = 6 * body + 3, y = x + 1, z = x + 2;
+    const T half = T(-0.5);
+    stiffness = stiffness + Symmetric{-H[x][x],
+                                      -H[y][y],
+                                      -H[z][z],
+                                      half * (H[x][y] + H[y][x]),
+                                      half * (H[x][z] + H[z][x]),
+                                      half * (H[y][z] + H[z][y])};
+  }
+  // I + h stiffness, with the part of it that stiffens.
+  static InverseMass stiffened(const InverseMass& m, const Stiffness& stiffness, T h) {
+    if (m.Ixx == T(0)) return m;
+    const Symmetric inertia = spatial::inverse(inverse_inertia(m));
+    return inverse_mass(m.m, spatial::inverse(inertia + h * spatial::positive_part(stiffness)));
+  }
+
+  static Velocity gravity(const Settings& s) {
+    return {T(s.gravity_x), T(s.gravity_y), T(s.gravity_z), T(0), T(0), T(0)};
+  }
+
+  static InverseMass unit_mass() { return {T(1), T(1), T(1), T(1), T(0), T(0), T(0)}; }
+
+  static bool immovable(const InverseMass& m) {
+    return m.m == 0 && m.Ixx == 0 && m.Iyy == 0 && m.Izz == 0;
+  }
+
+ private:
+  static Vector angular(const Velocity& v) { return {v.wx, v.wy, v.wz}; }
+  static void set_angular(Velocity& v, const Vector& w) { v.wx = w.x, v.wy = w.y, v.wz = w.z; }
+  static Velocity impulse(const Vector& f, const Vector& torque) {
+    return {f.x, f.y, f.z, torque.x, torque.y, torque.z};
+  }
+};
+
+}  // namespace cdot
