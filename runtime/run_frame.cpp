@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "runtime/rotation.hpp"
+
 namespace cdot {
 namespace {
 
@@ -15,28 +17,58 @@ double cubic(double p, double u, double q, double v, double h, double s) {
 
 double linear(double p, double q, double s) { return (1 - s) * p + s * q; }
 
+BodyState state_of(const planar::Pose<double>& q, const planar::Velocity<double>& v) {
+  return {q.x, q.y, q.angle, v.x, v.y, v.w};
+}
+
+BodyState state_of(const spatial::Pose<double>& q, const spatial::Velocity<double>& v) {
+  return {q.x, q.y, 0, v.x, v.y, 0, q.z, v.z, q.e0, q.e1, q.e2, q.e3, v.wx, v.wy, v.wz};
+}
+
+spatial::Pose<double> orientation_of(const BodyState& b) {
+  return spatial::oriented(0.0, 0.0, 0.0, b.e0, b.e1, b.e2, b.e3);
+}
+
+// The orientation at the share s of a step: the rotation vector from its start goes along the cubic
+// whose slopes are those of the angular velocities; at the end dr/dt = w - r x w / 2 + r x (r x w)
+// / 12, to fourth order.
+void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState& to) {
+  using Vector = spatial::Vector<double>;
+  const auto from = orientation_of(a);
+  const Vector r = spatial::turn_between(from, orientation_of(b)), w = {b.wx, b.wy, b.wz};
+  const Vector across = spatial::cross(r, w);
+  const Vector end = w - 0.5 * across + (1.0 / 12) * spatial::cross(r, across);
+  const auto q = spatial::turned_by(
+      from, Vector{cubic(0, a.wx, r.x, end.x, h, s), cubic(0, a.wy, r.y, end.y, h, s),
+                   cubic(0, a.wz, r.z, end.z, h, s)});
+  to.e0 = q.e0, to.e1 = q.e1, to.e2 = q.e2, to.e3 = q.e3;
+  to.wx = linear(a.wx, b.wx, s), to.wy = linear(a.wy, b.wy, s), to.wz = linear(a.wz, b.wz, s);
+}
+
 // How far apart two times may be and still be the same, relative to a step.
 constexpr double same_time = 1e-6;
 
 }  // namespace
 
-Frame frame_of(const World<double>& world, double time, int bodies) {
+template <class S>
+Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
   Frame frame;
   frame.time = time;
   frame.bodies.reserve(static_cast<std::size_t>(bodies));
-  for (int k = 0; k < bodies; ++k) {
-    const planar::Pose<double> pose = world.pose(k);
-    const planar::Velocity<double> velocity = world.velocity(k);
-    frame.bodies.push_back({pose.x, pose.y, pose.angle, velocity.x, velocity.y, velocity.w});
-  }
+  for (int k = 0; k < bodies; ++k)
+    frame.bodies.push_back(state_of(world.pose(k), world.velocity(k)));
   frame.energy = world.energy();
   frame.worst = world.worst_position_error();
   return frame;
 }
 
+template Frame frame_of(const World<double>&, double, int);
+template Frame frame_of(const SpatialWorld<double>&, double, int);
+
 bool finite(const Frame& frame) {
   for (const BodyState& b : frame.bodies) {
-    if (!std::isfinite(b.x + b.y + b.angle + b.vx + b.vy + b.w)) return false;
+    if (!std::isfinite(b.x + b.y + b.z + b.angle + b.vx + b.vy + b.vz + b.w)) return false;
+    if (!std::isfinite(b.e0 + b.e1 + b.e2 + b.e3 + b.wx + b.wy + b.wz)) return false;
   }
   return true;
 }
@@ -52,7 +84,10 @@ Frame between(const Frame& before, const Frame& after, double time) {
                        cubic(a.angle, a.w, b.angle, b.w, h, s),
                        linear(a.vx, b.vx, s),
                        linear(a.vy, b.vy, s),
-                       linear(a.w, b.w, s)};
+                       linear(a.w, b.w, s),
+                       cubic(a.z, a.vz, b.z, b.vz, h, s),
+                       linear(a.vz, b.vz, s)};
+    turn(a, b, h, s, frame.bodies[k]);
   }
   frame.energy = linear(before.energy, after.energy, s);
   return frame;

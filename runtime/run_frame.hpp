@@ -10,7 +10,9 @@
 namespace cdot {
 
 struct BodyState {
-  double x, y, angle, vx, vy, w;
+  double x, y, angle, vx, vy, w;  // in space without meaning: angle, w
+  double z = 0, vz = 0;           // and the rest only in space
+  double e0 = 1, e1 = 0, e2 = 0, e3 = 0, wx = 0, wy = 0, wz = 0;
 };
 
 struct Frame {
@@ -20,7 +22,8 @@ struct Frame {
   WorstError worst;   // |C| of the joint that is off most [m], [rad]
 };
 
-Frame frame_of(const World<double>& world, double time, int bodies);
+template <class S>
+Frame frame_of(const BasicWorld<S>& world, double time, int bodies);
 bool finite(const Frame& frame);
 
 // Between two steps: positions by the cubic that has both ends' positions and velocities, the rest

@@ -46,7 +46,7 @@ std::string body_name(const ParameterInfo& parameter) {
 
 std::string list_text() {
   std::string text;
-  for (const JointType& type : joint_types()) {
+  for (const JointType& type : joint_types(Dimension::planar)) {
     text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies,
                         type.bodies == 1 ? "body" : "bodies", type.row_kinds.size(),
                         type.row_kinds.size() == 1 ? "" : "s");
@@ -66,7 +66,7 @@ std::string list_text() {
 
 std::string list_json() {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const JointType& type : joint_types()) {
+  for (const JointType& type : joint_types(Dimension::planar)) {
     nlohmann::ordered_json joint = {{"type", type.name}, {"bodies", type.bodies}};
     for (const RowKind kind : type.row_kinds) joint["rows"].push_back(kind_name(kind));
     joint["parameters"] = nlohmann::ordered_json::array();

@@ -60,9 +60,10 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
       ->check(CLI::PositiveNumber);
   simulate->add_flag("--project", arguments.project,
                      "move a start that does not fit onto its joints");
-  simulate->add_option(
-      "-o,--output", arguments.csv,
-      "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name");
+  simulate->add_option("-o,--output", arguments.csv,
+                       "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by "
+                       "name; in space x, y, "
+                       "z, e0..e3, vx, vy, vz, wx, wy, wz");
   auto* every = simulate
                     ->add_option("--every", arguments.every,
                                  "a CSV row each so many seconds; else one per step")
@@ -101,7 +102,9 @@ cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene
   cdot::RunOptions options;
   if (csv) {
     csv->write(cdot::csv_head(scene));
-    options.row = [csv](const cdot::Frame& frame) { csv->write(cdot::csv_row(frame)); };
+    options.row = [csv, &scene](const cdot::Frame& frame) {
+      csv->write(cdot::csv_row(scene, frame));
+    };
   }
   options.row_times = arguments.times;
   std::sort(options.row_times.begin(), options.row_times.end());

@@ -42,21 +42,33 @@ void write_file(const std::string& path, std::string_view text) {
   file.commit();
 }
 
+namespace {
+
+std::vector<const char*> columns(const Scene& scene) {
+  if (scene.dimension == Dimension::planar) return {"x", "y", "angle", "vx", "vy", "omega"};
+  return {"x", "y", "z", "e0", "e1", "e2", "e3", "vx", "vy", "vz", "wx", "wy", "wz"};
+}
+
+}  // namespace
+
 std::string csv_head(const Scene& scene) {
   std::string head = "time";
   for (const SceneBody& body : scene.bodies) {
-    for (const char* column : {"x", "y", "angle", "vx", "vy", "omega"}) {
-      head += fmt::format(",{}.{}", body.name, column);
-    }
+    for (const char* column : columns(scene)) head += fmt::format(",{}.{}", body.name, column);
   }
   return head + "\n";
 }
 
-std::string csv_row(const Frame& frame) {
+std::string csv_row(const Scene& scene, const Frame& frame) {
+  const bool in_space = scene.dimension == Dimension::spatial;
   std::string row;
   auto out = fmt::format_to(std::back_inserter(row), "{}", frame.time);
   for (const BodyState& b : frame.bodies) {
-    out = fmt::format_to(out, ",{},{},{},{},{},{}", b.x, b.y, b.angle, b.vx, b.vy, b.w);
+    if (in_space)
+      out = fmt::format_to(out, ",{},{},{},{},{},{},{},{},{},{},{},{},{}", b.x, b.y, b.z, b.e0,
+                           b.e1, b.e2, b.e3, b.vx, b.vy, b.vz, b.wx, b.wy, b.wz);
+    else
+      out = fmt::format_to(out, ",{},{},{},{},{},{}", b.x, b.y, b.angle, b.vx, b.vy, b.w);
   }
   row += '\n';
   return row;

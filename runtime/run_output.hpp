@@ -30,9 +30,9 @@ class OutputFile {
 
 void write_file(const std::string& path, std::string_view text);
 
-// time, then x, y, angle, vx, vy, omega of every body by name: "rod.x". Numbers read back to the
-// same bits.
+// time, then of every body by name x, y, angle, vx, vy, omega: "rod.x"; in space x, y, z, e0 to e3,
+// vx, vy, vz, wx, wy, wz. Numbers read back to the same bits.
 std::string csv_head(const Scene& scene);
-std::string csv_row(const Frame& frame);
+std::string csv_row(const Scene& scene, const Frame& frame);
 
 }  // namespace cdot

@@ -22,8 +22,9 @@ double cpu_now() {
 }
 
 // The world at the start, moved onto its joints if the scene asks for it.
-World<double> world_at_start(const Scene& scene, std::string& warnings) {
-  World<double> world = build_world<double>(scene);
+template <class S>
+BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
+  BasicWorld<S> world = build_world_in<S>(scene);
   if (scene.project && !world.project(start_tolerance * start_tolerance)) {
     warnings +=
         fmt::format("{}: warning: the start could not be projected: joints contradict each other\n",
@@ -72,7 +73,8 @@ void judge(const Scene& scene, const Frame& frame, RunResult& result) {
   result.time = frame.time;
 }
 
-void finish(const Scene& scene, const World<double>& world, RunResult& result) {
+template <class S>
+void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
   for (std::size_t k = 0; k < scene.joints.size(); ++k) {
     if (world.broken(static_cast<int>(k))) result.broken_joints.push_back(scene.joints[k].name);
   }
@@ -84,11 +86,10 @@ void finish(const Scene& scene, const World<double>& world, RunResult& result) {
   result.interrupted = interrupted != 0;
 }
 
-}  // namespace
-
-RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
+template <class S>
+RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
-  World<double> world = world_at_start(scene, warnings);
+  BasicWorld<S> world = world_at_start<S>(scene, warnings);
   Sampler rows(
       options.row_times, options.row ? options.row : [](const Frame&) {});
   Sampler film(options.film_times, [&](const Frame& frame) { result.film.push_back(frame); });
@@ -119,6 +120,14 @@ RunResult simulate(const Scene& scene, const RunOptions& options, std::string& w
   std::signal(SIGINT, previous_handler);
   finish(scene, world, result);
   return result;
+}
+
+}  // namespace
+
+RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
+  return scene.dimension == Dimension::planar
+             ? simulate_in<Planar<double>>(scene, options, warnings)
+             : simulate_in<Spatial<double>>(scene, options, warnings);
 }
 
 }  // namespace cdot

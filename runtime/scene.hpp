@@ -18,22 +18,25 @@
 
 namespace cdot {
 
-using Vec2 = std::array<double, 2>;
+using Vec3 = std::array<double, 3>;  // in planar scenes its third number is 0
 
 inline constexpr int world_body = -1;  // the body index that "world" stands for in a scene
 
 // How a body is drawn, and how its mass is spread if no inertia is given.
 struct Shape {
-  enum Kind { none, rod, box, disc } kind = none;
+  enum Kind { none, rod, box, disc, ball } kind = none;
   double length = 0,
          width = 0;  // along and across the body's x axis [m]; a disc's length is its diameter
+  double depth = 0;  // along the body's z axis, in space: of a box, and the thickness of a disc
 };
 
 struct SceneBody {
   std::string name;
-  BodyDefinition definition;
+  BodyDefinition definition;      // of a planar scene
+  SpatialBodyDefinition spatial;  // of a scene in space
+  bool is_static = false;         // of either
   Shape shape;
-  std::vector<Vec2> traces;  // points of the body whose paths are drawn
+  std::vector<Vec3> traces;  // points of the body whose paths are drawn
 };
 
 struct SceneSpring {
@@ -60,6 +63,7 @@ struct SceneJoint {
 
 struct Scene {
   std::string file, title;
+  Dimension dimension = Dimension::planar;
   Settings settings;
   double duration = 10;     // [s]
   double step = 0.001;      // [s]
@@ -81,13 +85,17 @@ Scene read_scene(const std::string& path);
 Scene read_scene(std::string_view text, const std::string& name);
 
 // The World of a scene: body k of the scene is body k of the World. What the World refuses is
-// thrown as SceneError.
+// thrown as SceneError. The scene must be of the space's dimension.
+template <class S>
+BasicWorld<S> build_world_in(const Scene& scene);
 template <class T>
-World<T> build_world(const Scene& scene);
+World<T> build_world(const Scene& scene) {
+  return build_world_in<Planar<T>>(scene);
+}
 
 // The rows that the start violates beyond `tolerance`, one paragraph per joint; empty if there are
 // none.
-template <class T>
-std::string inconsistency_report(const Scene& scene, const World<T>& world, double tolerance);
+template <class S>
+std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance);
 
 }  // namespace cdot

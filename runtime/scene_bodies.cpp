@@ -1,4 +1,5 @@
-// The [[body]] entries of a scene: mass, pose, motion, what is drawn.
+// The [[body]] entries of a scene: what is drawn, and in the plane mass, pose and motion. Those of
+// a body in space are in scene_bodies_spatial.cpp.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,30 +9,41 @@
 namespace cdot {
 namespace {
 
-// { rod = length, width = … }, { box = [along, across] } or { disc = radius }
-Shape read_shape(Entry& body) {
+// { rod = length, width = … }, { box = [along, across] } or { disc = radius }; in space { box = [x,
+// y, z] }, { disc = radius, width = … } and { ball = radius } as well
+Shape read_shape(Entry& body, Dimension dimension) {
+  const bool in_space = dimension == Dimension::spatial;
   Shape shape;
   std::optional<Entry> entry = body.table("shape", "`shape` of " + body.what());
   if (!entry) {
     if (body.has("shape")) {
       body.error(body.where("shape"), "`shape` must be a table",
-                 "shape = { rod = 1.0 }, { box = [1, 0.5] } or { disc = 0.2 }");
+                 in_space ? "shape = { rod = 1.0 }, { box = [1, 0.5, 0.2] } or { ball = 0.2 }"
+                          : "shape = { rod = 1.0 }, { box = [1, 0.5] } or { disc = 0.2 }");
     }
     return shape;
   }
-  const bool rod = entry->has("rod"), box = entry->has("box"), disc = entry->has("disc");
-  if (rod + box + disc != 1) {
-    entry->error(entry->header(), "a shape is one of rod, box and disc", "shape = { rod = 1.0 }");
+  const bool rod = entry->has("rod"), box = entry->has("box"), disc = entry->has("disc"),
+             ball = in_space && entry->has("ball");
+  if (rod + box + disc + ball != 1) {
+    entry->error(entry->header(),
+                 in_space ? "a shape is one of rod, box, disc and ball"
+                          : "a shape is one of rod, box and disc",
+                 "shape = { rod = 1.0 }");
   }
   const Quantity size{Sign::positive};
-  if (const auto length = entry->number("rod", size)) shape = {Shape::rod, *length, 0.06 * *length};
-  if (const auto sides = entry->numbers("box", 2, size))
-    shape = {Shape::box, (*sides)[0], (*sides)[1]};
+  if (const auto length = entry->number("rod", size))
+    shape = {Shape::rod, *length, 0.06 * *length, 0.06 * *length};
+  if (const auto sides = entry->numbers("box", in_space ? 3 : 2, size))
+    shape = {Shape::box, (*sides)[0], (*sides)[1], in_space ? (*sides)[2] : 0};
   if (const auto radius = entry->number("disc", size))
-    shape = {Shape::disc, 2 * *radius, 2 * *radius};
+    shape = {Shape::disc, 2 * *radius, 2 * *radius, 0.2 * *radius};
+  if (const auto radius = ball ? entry->number("ball", size) : std::nullopt)
+    shape = {Shape::ball, 2 * *radius, 2 * *radius, 2 * *radius};
   if (const auto width = entry->number("width", size)) {
-    if (!rod) entry->error(entry->where("width"), "`width` belongs to a rod");
-    shape.width = *width;
+    if (!rod && !(in_space && disc))
+      entry->error(entry->where("width"), "`width` belongs to a rod");
+    (rod ? shape.width : shape.depth) = *width;
   }
   entry->close();
   return shape;
@@ -46,14 +58,14 @@ double uniform_inertia(const Shape& shape, double mass) {
       return mass * (shape.length * shape.length + shape.width * shape.width) / 12;
     case Shape::disc:
       return mass * shape.length * shape.length / 8;
+    case Shape::ball:
     case Shape::none:
       return 0;
   }
   return 0;
 }
 
-void read_mass(Entry& body, const Shape& shape, BodyDefinition& definition) {
-  definition.is_static = body.flag("static").value_or(false);
+void read_planar_mass(Entry& body, const Shape& shape, BodyDefinition& definition) {
   definition.fixed_rotation = body.flag("fixed_rotation").value_or(false);
   const bool mass_given = body.has("mass"), inertia_given = body.has("inertia");
   definition.mass = body.number("mass", {Sign::positive}).value_or(0);
@@ -74,16 +86,16 @@ void read_mass(Entry& body, const Shape& shape, BodyDefinition& definition) {
 }
 
 void read_motion(Entry& body, BodyDefinition& definition) {
-  const Vec2 position = body.vec2("position").value_or(Vec2{});
+  const Vec3 position = read_vector(body, "position", Dimension::planar).value_or(Vec3{});
   definition.x = position[0];
   definition.y = position[1];
   definition.angle = body.number("angle", {Sign::any, true}).value_or(0);
-  const Vec2 velocity = body.vec2("velocity").value_or(Vec2{});
+  const Vec3 velocity = read_vector(body, "velocity", Dimension::planar).value_or(Vec3{});
   definition.vx = velocity[0];
   definition.vy = velocity[1];
   definition.w = body.number("spin", {Sign::any, true}).value_or(0);
   for (const char* key : {"velocity", "spin"}) {
-    const bool moves = std::string_view(key) == "spin" ? definition.w != 0 : velocity != Vec2{};
+    const bool moves = std::string_view(key) == "spin" ? definition.w != 0 : velocity != Vec3{};
     if (definition.is_static && moves) {
       body.error(body.where(key), fmt::format("a static body cannot move: `{}` is not 0", key));
     }
@@ -94,7 +106,7 @@ void read_motion(Entry& body, BodyDefinition& definition) {
 }
 
 void read_forces(Entry& body, BodyDefinition& definition) {
-  const Vec2 force = body.vec2("force").value_or(Vec2{});
+  const Vec3 force = read_vector(body, "force", Dimension::planar).value_or(Vec3{});
   definition.force_x = force[0];
   definition.force_y = force[1];
   definition.torque = body.number("torque").value_or(0);
@@ -103,12 +115,19 @@ void read_forces(Entry& body, BodyDefinition& definition) {
 }
 
 // trace = true for the centre, [x, y] for a point of the body
-std::vector<Vec2> read_trace(Entry& body) {
+std::vector<Vec3> read_trace(Entry& body, Dimension dimension) {
   if (body.is_array("trace")) {
-    const std::optional<Vec2> point = body.vec2("trace");
-    return point ? std::vector<Vec2>{*point} : std::vector<Vec2>{};
+    const std::optional<Vec3> point = read_vector(body, "trace", dimension);
+    return point ? std::vector<Vec3>{*point} : std::vector<Vec3>{};
   }
-  return body.flag("trace").value_or(false) ? std::vector<Vec2>{Vec2{}} : std::vector<Vec2>{};
+  return body.flag("trace").value_or(false) ? std::vector<Vec3>{Vec3{}} : std::vector<Vec3>{};
+}
+
+void read_planar_body(Entry& entry, SceneBody& body) {
+  body.definition.is_static = body.is_static;
+  read_planar_mass(entry, body.shape, body.definition);
+  read_motion(entry, body.definition);
+  read_forces(entry, body.definition);
 }
 
 }  // namespace
@@ -118,11 +137,13 @@ void read_bodies(Entry& top, Scene& scene) {
   for (Entry& entry : top.list("body")) {
     SceneBody body;
     body.name = read_name(entry, used, std::nullopt).value_or("");
-    body.shape = read_shape(entry);
-    read_mass(entry, body.shape, body.definition);
-    read_motion(entry, body.definition);
-    read_forces(entry, body.definition);
-    body.traces = read_trace(entry);
+    body.shape = read_shape(entry, scene.dimension);
+    body.is_static = entry.flag("static").value_or(false);
+    if (scene.dimension == Dimension::planar)
+      read_planar_body(entry, body);
+    else
+      read_spatial_body(entry, body);
+    body.traces = read_trace(entry, scene.dimension);
     entry.close();
     scene.bodies.push_back(std::move(body));
   }

@@ -7,8 +7,8 @@
 namespace cdot {
 namespace {
 
-template <class T>
-void add_effects(World<T>& world, int joint, const SceneJoint& source) {
+template <class S>
+void add_effects(BasicWorld<S>& world, int joint, const SceneJoint& source) {
   for (const SceneEffects& effects : source.effects) {
     const std::string& coordinate = effects.coordinate;
     if (effects.limit) add_limit(world, joint, coordinate, *effects.limit);
@@ -22,15 +22,15 @@ void add_effects(World<T>& world, int joint, const SceneJoint& source) {
   if (source.breaking) set_breaking_load(world, joint, *source.breaking);
 }
 
-template <class T>
-void add_joint(World<T>& world, const SceneJoint& source) {
+template <class S>
+void add_joint(BasicWorld<S>& world, const SceneJoint& source) {
   JointDefinition definition = source.definition;
   for (int& body : definition.bodies) body = body == world_body ? world.ground() : body;
   add_effects(world, world.add_joint(definition), source);
 }
 
-template <class T>
-void add_spring(World<T>& world, SpringDefinition spring) {
+template <class S>
+void add_spring(BasicWorld<S>& world, SpringDefinition spring) {
   for (int* body : {&spring.body_a, &spring.body_b})
     *body = *body == world_body ? world.ground() : *body;
   world.add_spring(spring);
@@ -52,10 +52,15 @@ std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::si
 
 }  // namespace
 
-template <class T>
-World<T> build_world(const Scene& scene) {
-  World<T> world(scene.settings);
-  for (const SceneBody& body : scene.bodies) world.add_body(body.definition);
+template <class S>
+BasicWorld<S> build_world_in(const Scene& scene) {
+  BasicWorld<S> world(scene.settings);
+  for (const SceneBody& body : scene.bodies) {
+    if constexpr (S::dimension == Dimension::planar)
+      world.add_body(body.definition);
+    else
+      world.add_body(body.spatial);
+  }
   std::string report;
   int mistakes = 0;
   for (const SceneJoint& joint : scene.joints) {
@@ -72,8 +77,8 @@ World<T> build_world(const Scene& scene) {
   return world;
 }
 
-template <class T>
-std::string inconsistency_report(const Scene& scene, const World<T>& world, double tolerance) {
+template <class S>
+std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance) {
   std::string report;
   const std::vector<Inconsistency> rows = world.inconsistencies(tolerance);
   for (int joint = 0; joint < world.joint_count(); ++joint) {
@@ -89,9 +94,10 @@ std::string inconsistency_report(const Scene& scene, const World<T>& world, doub
   return report;
 }
 
-template World<double> build_world<double>(const Scene&);
-template World<float> build_world<float>(const Scene&);
-template std::string inconsistency_report(const Scene&, const World<double>&, double);
-template std::string inconsistency_report(const Scene&, const World<float>&, double);
+#define CDOT_INSTANTIATE(S)                               \
+  template BasicWorld<S> build_world_in<S>(const Scene&); \
+  template std::string inconsistency_report(const Scene&, const BasicWorld<S>&, double);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

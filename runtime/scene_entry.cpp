@@ -215,10 +215,23 @@ std::optional<std::vector<double>> Entry::numbers(const std::string& key, std::s
   return values;
 }
 
-std::optional<Vec2> Entry::vec2(const std::string& key) {
-  const std::optional<std::vector<double>> values = numbers(key, 2);
-  if (!values) return {};
-  return Vec2{(*values)[0], (*values)[1]};
+std::optional<std::vector<double>> Entry::rows(const std::string& key, std::size_t count) {
+  const toml::node* node = find(key);
+  if (!node) return {};
+  std::vector<double> values;
+  const toml::array* lists = node->as_array();
+  for (std::size_t i = 0; lists && i < lists->size(); ++i) {
+    const toml::array* row = lists->get(i)->as_array();
+    for (std::size_t j = 0; row && row->size() == 3 && j < 3; ++j) {
+      const std::optional<double> value = plain_number(*row->get(j), key, {});
+      if (!value) return {};
+      values.push_back(*value);
+    }
+  }
+  if (values.size() == 3 * count && lists->size() == count) return values;
+  error(span_of(node->source()),
+        fmt::format("{} must be {} lists of three numbers", quoted(key), count));
+  return {};
 }
 
 std::optional<int> Entry::whole(const std::string& key, int least) {
@@ -327,6 +340,12 @@ bool Entry::is_table(const std::string& key) {
 bool Entry::is_array(const std::string& key) {
   const toml::node* node = find(key);
   return node && node->is_array();
+}
+
+bool Entry::is_array_of_arrays(const std::string& key) {
+  const toml::node* node = find(key);
+  return node && node->is_array() && node->as_array()->get(0) &&
+         node->as_array()->get(0)->is_array();
 }
 
 std::optional<std::string> Entry::choice(const std::string& key,

@@ -50,11 +50,13 @@ class Entry {
   std::optional<std::vector<std::string>> texts(const std::string& key);
   std::optional<std::vector<double>> numbers(const std::string& key, std::size_t size,
                                              Quantity = {});
-  std::optional<Vec2> vec2(const std::string& key);
+  // `count` lists of three numbers, one after the other.
+  std::optional<std::vector<double>> rows(const std::string& key, std::size_t count);
   std::optional<Entry> table(const std::string& key,
                              const std::string& what);  // nothing if it is no table
   bool is_table(const std::string& key);
   bool is_array(const std::string& key);
+  bool is_array_of_arrays(const std::string& key);
   std::optional<std::string> choice(const std::string& key,
                                     const std::vector<std::string>& allowed);
   void required(const std::string& key, const std::string& fix);  // complains if it is absent

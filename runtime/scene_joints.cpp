@@ -24,15 +24,22 @@ std::string number_named(std::size_t count) {
   return fmt::format("{} {}", count, count == 1 ? "is" : "are");
 }
 
-const JointType* read_type(Entry& joint) {
+const JointType* read_type(Entry& joint, Dimension dimension) {
   joint.required("type", "type = \"revolute\"");
   const std::optional<std::string> name = joint.text("type");
   if (!name) return nullptr;
-  const JointType* type = find_joint_type(*name);
+  const JointType* type = find_joint_type(dimension, *name);
   if (type) return type;
   std::vector<std::string> known;
-  for (const JointType& other : joint_types()) known.emplace_back(other.name);
-  joint.error(joint.where("type"), fmt::format("no joint is called \"{}\"", *name),
+  for (const JointType& other : joint_types(dimension)) known.emplace_back(other.name);
+  const bool in_space = dimension == Dimension::spatial;
+  const bool elsewhere =
+      find_joint_type(in_space ? Dimension::planar : Dimension::spatial, *name) != nullptr;
+  joint.error(joint.where("type"),
+              elsewhere ? fmt::format("\"{}\" is a joint {}, and this scene is {}", *name,
+                                      in_space ? "of the plane" : "in space",
+                                      in_space ? "in space" : "planar")
+                        : fmt::format("no joint is called \"{}\"", *name),
               did_you_mean(*name, known));
   return nullptr;
 }
@@ -58,41 +65,60 @@ std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType&
   return bodies;
 }
 
+// [[x, y, z], [x, y, z]]: the x axis of a triad, and where its y axis roughly points.
+std::optional<std::vector<double>> read_two_axes(Entry& joint, const std::string& key) {
+  const auto numbers = joint.rows(key, 2);
+  if (!numbers) return {};
+  const std::vector<double>& n = *numbers;
+  const double x = n[1] * n[5] - n[2] * n[4], y = n[2] * n[3] - n[0] * n[5],
+               z = n[0] * n[4] - n[1] * n[3];
+  if (std::hypot(x, y, z) == 0)
+    joint.error(joint.where(key), fmt::format("the two axes of `{}` are parallel", key),
+                "[[1, 0, 0], [0, 1, 0]]");
+  return numbers;
+}
+
 // The numbers of one parameter in the frame of its body; nothing if it is left to its default, or
 // wrong.
 std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter,
-                                                  int body, std::optional<Vec2> at,
+                                                  int body, std::optional<Vec3> at,
                                                   const BodyNames& names) {
   const std::string key(parameter.name);
   if (parameter.kind == ParameterKind::scalar) {
     const std::optional<double> value = joint.number(key, {Sign::any, parameter.unit == "rad"});
     return value ? std::optional(std::vector<double>{*value}) : std::nullopt;
   }
-  std::optional<Vec2> vector;
+  const bool in_space = names.dimension() == Dimension::spatial;
+  if (in_space && parameter.kind == ParameterKind::frame && joint.is_array_of_arrays(key))
+    return read_two_axes(joint, key);
+  std::optional<Vec3> vector;
   if (parameter.kind == ParameterKind::point) {
     vector = read_point(joint, key, body, names);
     if (!joint.has(key) && at) vector = names.to_body(body, *at);
   } else {
     vector = read_direction(joint, key, body, names);
     const bool direction = parameter.kind != ParameterKind::vector;
-    if (direction && vector && std::hypot((*vector)[0], (*vector)[1]) == 0) {
-      joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key),
-                  "any other length will do: [1, 0]");
+    if (direction && vector && std::hypot((*vector)[0], (*vector)[1], (*vector)[2]) == 0) {
+      joint.error(
+          joint.where(key), fmt::format("the direction `{}` has length 0", key),
+          in_space ? "any other length will do: [1, 0, 0]" : "any other length will do: [1, 0]");
     }
   }
   if (!vector) return {};
-  return std::vector<double>{(*vector)[0], (*vector)[1]};
+  return std::vector<double>(vector->begin(), vector->begin() + (in_space ? 3 : 2));
 }
 
 void read_parameters(Entry& joint, const JointType& type, const BodyNames& names,
                      JointDefinition& definition) {
-  const std::optional<Vec2> at = joint.vec2("at");
+  const std::optional<Vec3> at = read_vector(joint, "at", names.dimension());
+  const bool in_space = names.dimension() == Dimension::spatial;
   bool has_point = false;
   for (const ParameterInfo& parameter : type.parameters) {
     const bool on_body = parameter.body >= 0;
     const int body =
         on_body ? definition.bodies[static_cast<std::size_t>(parameter.body)] : world_body;
     const bool point = parameter.kind == ParameterKind::point;
+    const bool scalar = parameter.kind == ParameterKind::scalar;
     const bool given = joint.has(std::string(parameter.name)) || (point && joint.has("at"));
     has_point = has_point || point;
     if (const auto numbers = read_parameter(joint, parameter, body, at, names)) {
@@ -101,10 +127,11 @@ void read_parameters(Entry& joint, const JointType& type, const BodyNames& names
       joint.error(
           joint.header(),
           fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
-          point ? fmt::format("{0} = [x, y] in the frame of its body, {0} = {{ world = [x, y] }}, "
-                              "or at = [x, y]",
-                              parameter.name)
-                : fmt::format("{} = 1", parameter.name));
+          point    ? fmt::format("{0} = [{1}] in the frame of its body, {0} = {{ world = [{1}] }}, "
+                                    "or at = [{1}]",
+                                 parameter.name, in_space ? "x, y, z" : "x, y")
+          : scalar ? fmt::format("{} = 1", parameter.name)
+                   : fmt::format("{} = [{}]", parameter.name, in_space ? "1, 0, 0" : "1, 0"));
     }
   }
   if (joint.has("at") && !has_point) {
@@ -217,7 +244,7 @@ void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
     joint.where = entry.header();
     const std::string unnamed = fmt::format("joint{}", scene.joints.size() + 1);
     joint.name = read_name(entry, used, unnamed).value_or("");
-    const JointType* type = read_type(entry);
+    const JointType* type = read_type(entry, scene.dimension);
     if (!type) continue;  // what else it may say depends on the type
     joint.definition.type = type->name;
     const std::optional<std::vector<int>> bodies = read_joint_bodies(entry, *type, names);
@@ -233,6 +260,7 @@ void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
 }
 
 void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
+  const bool in_space = scene.dimension == Dimension::spatial;
   std::map<std::string, Span> used;
   for (Entry& entry : top.list("spring")) {
     read_name(entry, used, "");
@@ -246,11 +274,13 @@ void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
     SpringDefinition spring;
     spring.body_a = two ? (*bodies)[0] : world_body;
     spring.body_b = two ? (*bodies)[1] : world_body;
-    const Vec2 pa = read_point(entry, "pa", spring.body_a, names).value_or(Vec2{});
-    const Vec2 pb = read_point(entry, "pb", spring.body_b, names).value_or(Vec2{});
-    spring.ax = pa[0], spring.ay = pa[1], spring.bx = pb[0], spring.by = pb[1];
-    const Vec2 from = names.to_world(spring.body_a, pa), to = names.to_world(spring.body_b, pb);
-    const double length = std::hypot(to[0] - from[0], to[1] - from[1]);
+    const Vec3 pa = read_point(entry, "pa", spring.body_a, names).value_or(Vec3{});
+    const Vec3 pb = read_point(entry, "pb", spring.body_b, names).value_or(Vec3{});
+    spring.ax = pa[0], spring.ay = pa[1], spring.az = pa[2];
+    spring.bx = pb[0], spring.by = pb[1], spring.bz = pb[2];
+    const Vec3 from = names.to_world(spring.body_a, pa), to = names.to_world(spring.body_b, pb);
+    const double length = in_space ? std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2])
+                                   : std::hypot(to[0] - from[0], to[1] - from[1]);
     spring.rest_length = entry.number("rest", {Sign::not_negative}).value_or(length);
     spring.stiffness = entry.number("stiffness", {Sign::not_negative}).value_or(0);
     spring.damping = entry.number("damping", {Sign::not_negative}).value_or(0);

@@ -29,16 +29,21 @@ std::string syntax_error(std::string_view description) {
   return "this is no TOML: " + text;
 }
 
-Vec2 turned(Vec2 v, double angle) {
+Vec3 turned(Vec3 v, double angle) {
   const double c = std::cos(angle), s = std::sin(angle);
-  return {c * v[0] - s * v[1], s * v[0] + c * v[1]};
+  return {c * v[0] - s * v[1], s * v[0] + c * v[1], 0};
+}
+
+spatial::Pose<double> pose_of(const SceneBody& body) {
+  using Space = Spatial<double>;
+  return Space::placed(Space::place_of(body.spatial));
 }
 
 void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
   Entry top(table, {}, "the scene", mistakes);
   read_settings(top, scene);
   read_bodies(top, scene);
-  const BodyNames names(scene.bodies);
+  const BodyNames names(scene);
   read_joints(top, names, scene);
   read_springs(top, names, scene);
   top.close();
@@ -46,7 +51,8 @@ void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
 
 }  // namespace
 
-BodyNames::BodyNames(const std::vector<SceneBody>& bodies) : bodies_(&bodies) {
+BodyNames::BodyNames(const Scene& scene) : scene_(&scene) {
+  const std::vector<SceneBody>& bodies = scene.bodies;
   index_["world"] = world_body;
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     if (!bodies[k].name.empty()) index_.emplace(bodies[k].name, static_cast<int>(k));
@@ -75,37 +81,60 @@ std::optional<std::vector<int>> BodyNames::find(Entry& entry, const std::string&
 
 const std::string& BodyNames::name(int body) const {
   static const std::string world = "world";
-  return body == world_body ? world : (*bodies_)[static_cast<std::size_t>(body)].name;
+  return body == world_body ? world : scene_->bodies[static_cast<std::size_t>(body)].name;
 }
 
-Vec2 BodyNames::to_body(int body, Vec2 position) const {
+Vec3 BodyNames::centre(int body) const {
+  const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
+  if (dimension() == Dimension::planar) return {source.definition.x, source.definition.y, 0};
+  return {source.spatial.x, source.spatial.y, source.spatial.z};
+}
+
+Vec3 BodyNames::to_body(int body, Vec3 position) const {
   if (body == world_body) return position;
-  const BodyDefinition& pose = (*bodies_)[static_cast<std::size_t>(body)].definition;
-  return turned({position[0] - pose.x, position[1] - pose.y}, -pose.angle);
+  const Vec3 c = centre(body);
+  return turned_to_body(body, {position[0] - c[0], position[1] - c[1], position[2] - c[2]});
 }
 
-Vec2 BodyNames::turned_to_body(int body, Vec2 direction) const {
+Vec3 BodyNames::turned_to_body(int body, Vec3 direction) const {
   if (body == world_body) return direction;
-  return turned(direction, -(*bodies_)[static_cast<std::size_t>(body)].definition.angle);
+  const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
+  if (dimension() == Dimension::planar) return turned(direction, -source.definition.angle);
+  const auto v = spatial::to_body(pose_of(source), {direction[0], direction[1], direction[2]});
+  return {v.x, v.y, v.z};
 }
 
-Vec2 BodyNames::to_world(int body, Vec2 position) const {
+Vec3 BodyNames::to_world(int body, Vec3 position) const {
   if (body == world_body) return position;
-  const BodyDefinition& pose = (*bodies_)[static_cast<std::size_t>(body)].definition;
-  const Vec2 arm = turned(position, pose.angle);
-  return {pose.x + arm[0], pose.y + arm[1]};
+  const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
+  const Vec3 c = centre(body);
+  if (dimension() == Dimension::planar) {
+    const Vec3 arm = turned(position, source.definition.angle);
+    return {c[0] + arm[0], c[1] + arm[1], 0};
+  }
+  const auto arm = spatial::to_world(pose_of(source), {position[0], position[1], position[2]});
+  return {c[0] + arm.x, c[1] + arm.y, c[2] + arm.z};
+}
+
+std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension dimension) {
+  const std::size_t size = dimension == Dimension::planar ? 2 : 3;
+  const std::optional<std::vector<double>> values = entry.numbers(key, size);
+  if (!values) return {};
+  return Vec3{(*values)[0], (*values)[1], size == 3 ? (*values)[2] : 0};
 }
 
 namespace {
 
 // [x, y] as it stands, or { world = [x, y] } through `from_world`.
 template <class FromWorld>
-std::optional<Vec2> in_body_or_world(Entry& entry, const std::string& key, FromWorld from_world) {
+std::optional<Vec3> in_body_or_world(Entry& entry, const std::string& key, Dimension dimension,
+                                     FromWorld from_world) {
   std::optional<Entry> table = entry.table(key, fmt::format("`{}` of {}", key, entry.what()));
-  if (!table) return entry.vec2(key);
-  const std::optional<Vec2> world = table->vec2("world");
+  if (!table) return read_vector(entry, key, dimension);
+  const std::optional<Vec3> world = read_vector(*table, "world", dimension);
   if (!table->has("world"))
-    table->error(table->header(), fmt::format("`{}` has no `world`", key), "{ world = [x, y] }");
+    table->error(table->header(), fmt::format("`{}` has no `world`", key),
+                 dimension == Dimension::planar ? "{ world = [x, y] }" : "{ world = [x, y, z] }");
   table->close();
   if (!world) return {};
   return from_world(*world);
@@ -113,15 +142,16 @@ std::optional<Vec2> in_body_or_world(Entry& entry, const std::string& key, FromW
 
 }  // namespace
 
-std::optional<Vec2> read_point(Entry& entry, const std::string& key, int body,
+std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body,
                                const BodyNames& names) {
-  return in_body_or_world(entry, key, [&](Vec2 position) { return names.to_body(body, position); });
+  return in_body_or_world(entry, key, names.dimension(),
+                          [&](Vec3 position) { return names.to_body(body, position); });
 }
 
-std::optional<Vec2> read_direction(Entry& entry, const std::string& key, int body,
+std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body,
                                    const BodyNames& names) {
-  return in_body_or_world(entry, key,
-                          [&](Vec2 direction) { return names.turned_to_body(body, direction); });
+  return in_body_or_world(entry, key, names.dimension(),
+                          [&](Vec3 direction) { return names.turned_to_body(body, direction); });
 }
 
 std::optional<Softness> read_softness(Entry& entry) {

@@ -16,26 +16,31 @@ namespace cdot {
 // are no mistakes.
 class BodyNames {
  public:
-  explicit BodyNames(const std::vector<SceneBody>& bodies);
+  explicit BodyNames(const Scene& scene);
   // The index of each name in `key`; nothing, and a complaint, if one is unknown. "world" is
   // world_body.
   std::optional<std::vector<int>> find(Entry& entry, const std::string& key) const;
   const std::string& name(int body) const;
   // A world position or direction in the frame of a body at its initial pose.
-  Vec2 to_body(int body, Vec2 world_position) const;
-  Vec2 turned_to_body(int body, Vec2 world_direction) const;
-  Vec2 to_world(int body, Vec2 body_position) const;
+  Vec3 to_body(int body, Vec3 world_position) const;
+  Vec3 turned_to_body(int body, Vec3 world_direction) const;
+  Vec3 to_world(int body, Vec3 body_position) const;
+  Dimension dimension() const { return scene_->dimension; }
 
  private:
-  const std::vector<SceneBody>* bodies_;
+  Vec3 centre(int body) const;
+  const Scene* scene_;
   std::map<std::string, int> index_;
   std::vector<std::string> known_;
 };
 
+// [x, y], in space [x, y, z].
+std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension dimension);
+
 // A point of a body: [x, y] in its frame, or { world = [x, y] } where it is at the start.
-std::optional<Vec2> read_point(Entry& entry, const std::string& key, int body,
+std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body,
                                const BodyNames& names);
-std::optional<Vec2> read_direction(Entry& entry, const std::string& key, int body,
+std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body,
                                    const BodyNames& names);
 
 // { frequency, damping_ratio } or { stiffness, damping }; the entry stays open for more keys.
@@ -48,6 +53,7 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
 
 void read_settings(Entry& top, Scene& scene);                         // scene_settings.cpp
 void read_bodies(Entry& top, Scene& scene);                           // scene_bodies.cpp
+void read_spatial_body(Entry& entry, SceneBody& body);                // scene_bodies_spatial.cpp
 void read_joints(Entry& top, const BodyNames& names, Scene& scene);   // scene_joints.cpp
 void read_springs(Entry& top, const BodyNames& names, Scene& scene);  // scene_joints.cpp
 

@@ -40,12 +40,16 @@ void read_method(Entry& top, Settings& settings) {
 
 void read_settings(Entry& top, Scene& scene) {
   scene.title = top.text("title").value_or("");
-  if (top.whole("dimension", 2).value_or(2) != 2) {
-    top.error(top.where("dimension"), "only planar scenes can be run", "dimension = 2");
-  }
-  const Vec2 gravity = top.vec2("gravity").value_or(Vec2{0, -9.81});
+  const int dimension = top.whole("dimension", 2).value_or(2);
+  if (dimension > 3)
+    top.error(top.where("dimension"), "a scene is planar or in space", "dimension = 2 or 3");
+  scene.dimension = dimension == 3 ? Dimension::spatial : Dimension::planar;
+  const bool in_space = scene.dimension == Dimension::spatial;
+  const Vec3 gravity = read_vector(top, "gravity", scene.dimension)
+                           .value_or(in_space ? Vec3{0, 0, -9.81} : Vec3{0, -9.81, 0});
   scene.settings.gravity_x = gravity[0];
   scene.settings.gravity_y = gravity[1];
+  scene.settings.gravity_z = gravity[2];
   read_time(top, scene);
   read_method(top, scene.settings);
   scene.settings.sleep_after = top.number("sleep_after", {Sign::not_negative}).value_or(0);

@@ -61,13 +61,16 @@ struct Inertia {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
 
+// Why no body has this tensor; nullptr if one may, or if it is 0.
+const char* wrong_with(const Inertia& inertia);
+
 struct SpatialBodyDefinition {
   double x = 0, y = 0, z = 0;                    // centre of mass [m]
   double e0 = 1, e1 = 0, e2 = 0, e3 = 0;         // orientation as a quaternion of any length but 0
   double vx = 0, vy = 0, vz = 0;                 // [m/s]
   double wx = 0, wy = 0, wz = 0;                 // in world axes [rad/s]
   double mass = 0;                               // [kg]; must be > 0 unless is_static
-  Inertia inertia = {};                        // all 0: a point mass, which does not turn
+  Inertia inertia = {};                          // all 0: a point mass, which does not turn
   bool is_static = false;                        // immovable
   bool fixed_rotation = false;                   // inverse inertia exactly 0
   double force_x = 0, force_y = 0, force_z = 0;  // constant, at the centre of mass [N]

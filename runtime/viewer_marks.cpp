@@ -96,7 +96,7 @@ Anchor Painter::anchor(int body, double x, double y) const {
 }
 
 bool Painter::is_still(int body) const {
-  return body == world_body || scene_.bodies[static_cast<std::size_t>(body)].definition.is_static;
+  return body == world_body || scene_.bodies[static_cast<std::size_t>(body)].is_static;
 }
 
 std::vector<JointPoint> Painter::points(int joint) const {
@@ -257,6 +257,7 @@ std::string Painter::body_svg(std::size_t body) const {
                          -length / 2, -width / 2, length, width);
     case Shape::disc:
       return fmt::format(R"(<circle r="{0:.2f}"/><line x2="{0:.2f}"/>)", std::max(length / 2, 3.0));
+    case Shape::ball:
     case Shape::none:
       break;
   }
@@ -272,8 +273,7 @@ std::string Painter::body_svg(std::size_t body) const {
 void Painter::bodies() {
   for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
     const SceneBody& body = scene_.bodies[k];
-    const std::string kind =
-        body.definition.is_static ? "still" : fmt::format("c{}", colours_.of(body.name));
+    const std::string kind = body.is_static ? "still" : fmt::format("c{}", colours_.of(body.name));
     drawing_.bodies.push_back(
         {static_cast<int>(k), fmt::format(R"(<g class="body {}"><title>{}</title>{}</g>)", kind,
                                           escaped(body.name), body_svg(k))});
@@ -288,10 +288,10 @@ void Painter::trace(std::size_t body, const Vec2& point) {
 // What the scene asks for; else the centre of the last body that can move.
 void Painter::traces() {
   for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
-    for (const Vec2& point : scene_.bodies[k].traces) trace(k, point);
+    for (const Vec3& point : scene_.bodies[k].traces) trace(k, {point[0], point[1]});
   }
   for (std::size_t k = scene_.bodies.size(); k-- > 0 && drawing_.traces.empty();) {
-    if (!scene_.bodies[k].definition.is_static) trace(k, {});
+    if (!scene_.bodies[k].is_static) trace(k, {});
   }
 }
 

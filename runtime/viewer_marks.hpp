@@ -10,6 +10,8 @@
 
 namespace cdot {
 
+using Vec2 = std::array<double, 2>;
+
 // World to picture: X = scale (x - left), Y = scale (top - y); angles turn the other way and are in
 // degrees.
 struct View {

@@ -68,7 +68,7 @@ void add_frames(const Scene& scene, const Drawing& drawing, const std::vector<Fr
   Json moving = Json::array(), times = Json::array(), poses = Json::array(), energy = Json::array(),
        error = Json::array();
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
-    if (!scene.bodies[k].definition.is_static) moving.push_back(k);
+    if (!scene.bodies[k].is_static) moving.push_back(k);
   }
   for (const Frame& frame : film) {
     times.push_back(frame.time);

@@ -36,7 +36,7 @@ Box box_of(const Scene& scene, const Frame& frame) {
 // The points of joints and springs that are fixed in the world.
 void add_world_points(const Scene& scene, Box& box) {
   for (const SceneJoint& joint : scene.joints) {
-    const JointType* type = find_joint_type(joint.definition.type);
+    const JointType* type = find_joint_type(Dimension::planar, joint.definition.type);
     for (const NamedValue& value : joint.definition.parameters) {
       for (const ParameterInfo& info : type->parameters) {
         const bool in_world =

@@ -47,25 +47,6 @@ void check(const BodyDefinition& d) {
   require(d.inertia >= 0, "mass and inertia must not be negative");
 }
 
-// A tensor that some mass distribution has: positive, and no principal moment larger than the sum
-// of the other two.
-void check(const Inertia& I) {
-  for (double number : {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz})
-    require(std::isfinite(number), "every number of a body must be finite");
-  if (I.xx == 0 && I.yy == 0 && I.zz == 0 && I.xy == 0 && I.xz == 0 && I.yz == 0) return;
-  const double minor = I.xx * I.yy - I.xy * I.xy;
-  const double determinant =
-      minor * I.zz - I.xx * I.yz * I.yz - I.yy * I.xz * I.xz + 2 * I.xy * I.xz * I.yz;
-  require(I.xx > 0 && minor > 0 && determinant > 0,
-          "an inertia tensor must be positive definite, or 0 for a point mass");
-  // With half = trace / 2 that is: half E - I, the tensor of second moments, is positive.
-  const double half = (I.xx + I.yy + I.zz) / 2, slack = -1e-9 * half;
-  const double x = half - I.xx, y = half - I.yy, z = half - I.zz;
-  require(x >= slack && y >= slack && z >= slack && x * y - I.xy * I.xy >= slack * half &&
-              x * z - I.xz * I.xz >= slack * half && y * z - I.yz * I.yz >= slack * half,
-          "no body has this inertia tensor: a principal moment is at most the sum of the others");
-}
-
 void check(const SpatialBodyDefinition& d) {
   const bool moves = d.vx != 0 || d.vy != 0 || d.vz != 0 || d.wx != 0 || d.wy != 0 || d.wz != 0;
   check_common(d, moves,
@@ -91,7 +72,10 @@ void check(const SpatialBodyDefinition& d) {
                 d.torque_z,
                 d.linear_damping,
                 d.angular_damping});
-  check(d.inertia);
+  for (double number :
+       {d.inertia.xx, d.inertia.yy, d.inertia.zz, d.inertia.xy, d.inertia.xz, d.inertia.yz})
+    require(std::isfinite(number), "every number of a body must be finite");
+  if (const char* wrong = wrong_with(d.inertia)) throw Error(wrong);
   require(d.e0 * d.e0 + d.e1 * d.e1 + d.e2 * d.e2 + d.e3 * d.e3 > 1e-100,
           "an orientation must not be the zero quaternion");
 }
