@@ -14,7 +14,10 @@ struct Gyroscope {
   Symmetric<T> inertia, inverse;  // in the body's frame
   Symmetric<T> world;             // inertia in world axes, at the pose of the last turn()
   Vector<T> torque;               // constant, in world axes
-  Vector<T> spin;                 // of the body, while mean_spin() stands in for it
+  // L = I w for this w. Kept from step to step, so that round-off of I^-1 I does not add up: what
+  // impulses change w by is added to it.
+  Vector<T> momentum, spin;
+  Vector<T> lent;  // w, while the mean spin of a step stands in for it
 };
 
 // The solution d of (I - b x) d = I r: never singular, since its determinant is det I + b . I b.

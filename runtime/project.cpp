@@ -60,7 +60,7 @@ void move_poses(WorldState<S>& world, Island<S>& island) {
   // The velocities are those of the scene: a start that is moved keeps them.
   if constexpr (S::has_gyroscopes)
     for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
-      S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i]);
+      S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
       all.effective_mass[i] = all.inverse_mass[i];
     });
 }

@@ -87,19 +87,25 @@ struct Spatial {
     const auto cast = [](const spatial::Symmetric<double>& S) {
       return Symmetric{T(S.xx), T(S.yy), T(S.zz), T(S.xy), T(S.xz), T(S.yz)};
     };
-    const Symmetric inertia = cast(I);
-    return {body, inertia, cast(inverse), spatial::turned(placed(place_of(d)), inertia), {}, {}};
+    Gyroscope g{body, cast(I), cast(inverse), {}, {}, {}, {}, {}};
+    InverseMass m{};
+    set_inertia(g, placed(place_of(d)), m, velocity_of(d));
+    return g;
   }
-  // The tensors at the present pose.
-  static void set_inertia(Gyroscope& g, const Pose& q, InverseMass& m) {
+  // The tensors at a pose that was set; w stays.
+  static void set_inertia(Gyroscope& g, const Pose& q, InverseMass& m, const Velocity& v) {
     g.world = spatial::turned(q, g.inertia);
     m = inverse_mass(m.m, spatial::turned(q, g.inverse));
+    g.spin = angular(v);
+    g.momentum = g.world * g.spin;
   }
-  // The same, w with them: L = I w stays.
+  // The tensors at a pose that the body moved to; L = I w stays.
   static void turn(Gyroscope& g, const Pose& q, InverseMass& m, Velocity& v) {
-    const Vector momentum = g.world * angular(v);
-    set_inertia(g, q, m);
-    set_angular(v, inverse_inertia(m) * momentum);
+    g.momentum = g.momentum + g.world * (angular(v) - g.spin);
+    g.world = spatial::turned(q, g.inertia);
+    m = inverse_mass(m.m, spatial::turned(q, g.inverse));
+    g.spin = inverse_inertia(m) * g.momentum;
+    set_angular(v, g.spin);
   }
   static void set_torque(Gyroscope& g, const Velocity& f) { g.torque = angular(f); }
   // The part of the acceleration that turns with the tensor.
@@ -108,10 +114,10 @@ struct Spatial {
   }
   // Puts the mean spin of the step in place of w, and back.
   static void lend_mean_spin(Gyroscope& g, const Pose& q, Velocity& v, T h) {
-    g.spin = angular(v);
-    set_angular(v, spatial::mean_spin(g, q, g.spin, h));
+    g.lent = angular(v);
+    set_angular(v, spatial::mean_spin(g, q, g.lent, h));
   }
-  static void restore_spin(const Gyroscope& g, Velocity& v) { set_angular(v, g.spin); }
+  static void restore_spin(const Gyroscope& g, Velocity& v) { set_angular(v, g.lent); }
 
   // --- vectors of all six numbers ---
 

@@ -238,7 +238,7 @@ void BasicWorld<S>::set_pose(int body, const Place& place) {
   if constexpr (S::has_gyroscopes)
     for (auto& gyroscope : state_->gyroscopes)
       if (gyroscope.body == body) {
-        S::set_inertia(gyroscope, all.pose[body], all.inverse_mass[body]);
+        S::set_inertia(gyroscope, all.pose[body], all.inverse_mass[body], all.velocity[body]);
         all.effective_mass[body] = all.inverse_mass[body];
         set_acceleration(*state_, body);
       }
