@@ -64,7 +64,8 @@ class Undefined {
           "two rows hold a vector at zero: write `" + vanishing_vector(u, subject_.joint) + "`");
     }
     add(Level::note, name_ + ": where " + name + " is zero it has no direction: the kernel takes " +
-                         "(1, 0) for unit(" + name + ") and 0 for 1/norm(" + name + ")");
+                         (subject_.joint.dimension == 2 ? "(1, 0)" : "(1, 0, 0)") + " for unit(" +
+                         name + ") and 0 for 1/norm(" + name + ")");
   }
 
   void function(Expr e) {
@@ -99,7 +100,7 @@ class Undefined {
                          Numbers numbers(world_values(subject_.joint, sample));
                          if (!e->vector) return std::fabs(numbers.scalar(e)) < vanishing;
                          const Triple<double> u = numbers.vector(e);
-                         return std::hypot(u[0], u[1]) < vanishing;
+                         return std::hypot(u[0], u[1], u[2]) < vanishing;
                        });
   }
 

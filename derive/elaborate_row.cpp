@@ -82,6 +82,7 @@ void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
     for (const int offset : {1, 2}) {
       const int other = (axis.index + offset) % 3;
       Row row = whole;
+      row.kept = term.e;
       row.C = dot((*axis.triad)[static_cast<std::size_t>(other)], m);
       if (!row.name.empty()) row.name += std::string("_") + "xyz"[other];
       add_row(source, s, std::move(row));

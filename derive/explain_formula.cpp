@@ -7,15 +7,20 @@
 namespace cdot::derive {
 namespace {
 
-Formula of_form(Form kind, std::vector<Formula> args) {
+Formula of_form(Shape kind, std::vector<Formula> args) {
   Formula f;
-  f.form = kind;
+  f.shape = kind;
   f.args = std::move(args);
   return f;
 }
 
 bool is_negative(const Formula& f) {
-  return f.form == Form::sum && f.args.size() == 1 && f.minus[0];
+  return f.shape == Shape::sum && f.args.size() == 1 && f.minus[0];
+}
+
+// A frame by its name, from its x axis.
+Formula frame_of(Expr x_axis) {
+  return leaf(x_axis, x_axis->symbol.substr(0, x_axis->symbol.size() - 2));
 }
 
 std::vector<Formula> of_all(const Notation& notation, Expr e) {
@@ -24,11 +29,20 @@ std::vector<Formula> of_all(const Notation& notation, Expr e) {
   return args;
 }
 
+// Signs come out of products: u × (-v) is written -(u × v).
+Formula pair(Shape shape, Formula u, Formula v) {
+  const bool minus = is_negative(u) != is_negative(v);
+  if (is_negative(u)) u = Formula(u.args[0]);
+  if (is_negative(v)) v = Formula(v.args[0]);
+  Formula f = of_form(shape, {std::move(u), std::move(v)});
+  return minus ? negative(std::move(f)) : f;
+}
+
 }  // namespace
 
 Formula leaf(Expr e, std::string name) {
   Formula f;
-  f.form = Form::leaf;
+  f.shape = Shape::leaf;
   f.leaf = e;
   f.name = !name.empty() ? std::move(name) : e->kind == Kind::symbol ? e->symbol : e->name;
   return f;
@@ -44,10 +58,10 @@ Formula sum(std::vector<SignedFormula> terms) {
   if (terms.empty()) return number(0);
   if (terms.size() == 1 && !terms[0].minus) return std::move(terms[0].formula);
   Formula f;
-  f.form = Form::sum;
+  f.shape = Shape::sum;
   for (SignedFormula& term : terms) {
     // a + (b + c) is written a + b + c; a - (b + c) stays.
-    const bool opens = term.formula.form == Form::sum && (!term.minus || is_negative(term.formula));
+    const bool opens = term.formula.shape == Shape::sum && (!term.minus || is_negative(term.formula));
     for (SignedFormula& t : opens ? terms_of(term.formula) : std::vector{term}) {
       f.minus.push_back(t.minus != (opens && term.minus));
       f.args.push_back(std::move(t.formula));
@@ -68,21 +82,21 @@ Formula product(std::vector<Formula> factors) {
       f = Formula(f.args[0]);
     }
     if (is_one(f)) continue;
-    if (f.form == Form::product)
+    if (f.shape == Shape::product)
       kept.insert(kept.end(), f.args.begin(), f.args.end());
     else
       kept.push_back(std::move(f));
   }
   Formula result = kept.empty()       ? number(1)
                    : kept.size() == 1 ? std::move(kept[0])
-                                      : of_form(Form::product, std::move(kept));
+                                      : of_form(Shape::product, std::move(kept));
   return minus ? negative(std::move(result)) : result;
 }
 
 Formula quotient(Formula above, Formula below) {
   if (is_one(below)) return above;
   if (is_negative(above)) return negative(quotient(above.args[0], std::move(below)));
-  return of_form(Form::quotient, {std::move(above), std::move(below)});
+  return of_form(Shape::quotient, {std::move(above), std::move(below)});
 }
 
 Formula power(Formula base, int exponent) {
@@ -91,28 +105,28 @@ Formula power(Formula base, int exponent) {
     Formula positive = power(base.args[0], exponent);
     return exponent % 2 == 0 ? positive : negative(std::move(positive));
   }
-  Formula f = of_form(Form::power, {std::move(base)});
+  Formula f = of_form(Shape::power, {std::move(base)});
   f.exponent = exponent;
   return f;
 }
 
-Formula dot(Formula u, Formula v) { return of_form(Form::dot, {std::move(u), std::move(v)}); }
-Formula cross(Formula u, Formula v) { return of_form(Form::cross, {std::move(u), std::move(v)}); }
+Formula dot(Formula u, Formula v) { return pair(Shape::dot, std::move(u), std::move(v)); }
+Formula cross(Formula u, Formula v) { return pair(Shape::cross, std::move(u), std::move(v)); }
 
-Formula form(Form kind, Formula arg) {
-  const bool odd = kind == Form::perp || kind == Form::transpose || kind == Form::skew;
+Formula shaped(Shape kind, Formula arg) {
+  const bool odd = kind == Shape::perp || kind == Shape::transpose || kind == Shape::skew;
   if (odd && is_negative(arg)) return negative(of_form(kind, {arg.args[0]}));
   return of_form(kind, {std::move(arg)});
 }
 
 Formula times(Rational magnitude, Formula f) {
   if (magnitude.num() == 1) return quotient(std::move(f), number(magnitude.den()));
-  if (f.form == Form::quotient) return quotient(times(magnitude, f.args[0]), f.args[1]);
+  if (f.shape == Shape::quotient) return quotient(times(magnitude, f.args[0]), f.args[1]);
   return product({number(magnitude), std::move(f)});
 }
 
 Formula component(Formula u, std::string axis) {
-  Formula f = of_form(Form::component, {std::move(u)});
+  Formula f = of_form(Shape::component, {std::move(u)});
   f.name = std::move(axis);
   return f;
 }
@@ -131,18 +145,18 @@ bool same_terms(const Formula& f, const Formula& g) {
                              });
 }
 
-Formula identity() { return of_form(Form::identity, {}); }
+Formula identity() { return of_form(Shape::identity, {}); }
 
 Formula matrix(int columns, std::vector<Formula> entries) {
-  Formula f = of_form(Form::matrix, std::move(entries));
+  Formula f = of_form(Shape::matrix, std::move(entries));
   f.columns = columns;
   return f;
 }
 
-bool is_one(const Formula& f) { return f.form == Form::number && f.number == Rational(1); }
+bool is_one(const Formula& f) { return f.shape == Shape::number && f.number == Rational(1); }
 
 std::vector<SignedFormula> terms_of(const Formula& f) {
-  if (f.form != Form::sum) return {{false, f}};
+  if (f.shape != Shape::sum) return {{false, f}};
   std::vector<SignedFormula> terms;
   for (std::size_t i = 0; i < f.args.size(); ++i) terms.push_back({f.minus[i], f.args[i]});
   return terms;
@@ -197,27 +211,27 @@ Formula Notation::written(Expr e) const {
     case Kind::cross:
       return cross_of(e);
     case Kind::perp:
-      return form(Form::perp, of(e->args[0]));
+      return shaped(Shape::perp, of(e->args[0]));
     case Kind::tensor:
       return product({of(e->args[0]), of(e->args[1])});
     case Kind::twist: {
-      Formula f = of_form(Form::call, {leaf(e->args[0]), leaf(e->args[3])});
+      Formula f = of_form(Shape::call, {frame_of(e->args[0]), frame_of(e->args[3])});
       f.name = "twist";
       return f;
     }
     case Kind::norm:
-      return form(Form::norm, of(e->args[0]));
+      return shaped(Shape::norm, of(e->args[0]));
     case Kind::unit:
-      return form(Form::unit, of(e->args[0]));
+      return shaped(Shape::unit, of(e->args[0]));
     case Kind::function:
       break;
   }
   if (const auto angle = angle_between(e)) {
-    Formula f = of_form(Form::call, {of(angle->from), of(angle->to)});
+    Formula f = of_form(Shape::call, {of(angle->from), of(angle->to)});
     f.name = "angle";
     return f;
   }
-  Formula f = of_form(Form::call, of_all(*this, e));
+  Formula f = of_form(Shape::call, of_all(*this, e));
   f.name = name_of(e->fn);
   return f;
 }
@@ -270,8 +284,12 @@ Formula Notation::dot_of(Expr e) const {
   const Expr u = e->args[0], v = e->args[1];
   if (const std::string axis = world_axis(u); !axis.empty()) return component(of(v), axis);
   if (const std::string axis = world_axis(v); !axis.empty()) return component(of(u), axis);
+  for (const auto& [other, tensor] : {std::pair{u, v}, std::pair{v, u}}) {
+    if (tensor->kind != Kind::tensor || Notation::has_name(tensor)) continue;
+    return product({shaped(Shape::transpose, of(other)), of(tensor->args[0]), of(tensor->args[1])});
+  }
   const Formula left = of(u);
-  if (u == v && left.form != Form::leaf) return power(form(Form::norm, left), 2);
+  if (u == v && left.shape != Shape::leaf) return power(shaped(Shape::norm, left), 2);
   return v->unit_length && !u->unit_length ? dot(of(v), left) : dot(left, of(v));
 }
 
@@ -293,48 +311,48 @@ Formula Notation::scale_of(Expr e) const {
 Expr value_of(const Formula& f, Pool& pool) {
   std::vector<Expr> args;
   for (const Formula& arg : f.args) args.push_back(value_of(arg, pool));
-  switch (f.form) {
-    case Form::leaf:
+  switch (f.shape) {
+    case Shape::leaf:
       return f.leaf;
-    case Form::number:
+    case Shape::number:
       return pool.number(f.number);
-    case Form::sum: {
+    case Shape::sum: {
       Expr total = f.minus[0] ? -args[0] : args[0];
       for (std::size_t i = 1; i < args.size(); ++i) {
         total = f.minus[i] ? total - args[i] : total + args[i];
       }
       return total;
     }
-    case Form::product: {
+    case Shape::product: {
       Expr total = args[0];
       for (std::size_t i = 1; i < args.size(); ++i) total = total * args[i];
       return total;
     }
-    case Form::quotient:
+    case Shape::quotient:
       return args[0] / args[1];
-    case Form::power:
+    case Shape::power:
       return pow(args[0], f.exponent);
-    case Form::dot:
+    case Shape::dot:
       return dot(args[0], args[1]);
-    case Form::cross:
+    case Shape::cross:
       return cross(args[0], args[1]);
-    case Form::perp:
+    case Shape::perp:
       return perp(args[0]);
-    case Form::norm:
+    case Shape::norm:
       return norm(args[0]);
-    case Form::unit:
+    case Shape::unit:
       return unit(args[0]);
-    case Form::component:
+    case Shape::component:
       return dot(world_axes(pool)[static_cast<std::size_t>(f.name[0] - 'x')], args[0]);
     default:
       break;
   }
-  if (f.form == Form::call && f.name == "angle") {
+  if (f.shape == Shape::call && f.name == "angle") {
     return call(Fn::atan2, std::vector{cross(args[0], args[1]), dot(args[0], args[1])});
   }
   for (const Fn fn :
        {Fn::sqrt, Fn::sin, Fn::cos, Fn::tan, Fn::exp, Fn::log, Fn::abs, Fn::sign, Fn::atan2}) {
-    if (f.form == Form::call && f.name == name_of(fn)) return call(fn, args);
+    if (f.shape == Shape::call && f.name == name_of(fn)) return call(fn, args);
   }
   throw std::logic_error("a matrix has no scalar or vector value");
 }

@@ -11,7 +11,7 @@
 
 namespace cdot::derive {
 
-enum class Form {
+enum class Shape {
   leaf,  // a symbol or a named expression
   number,
   sum,        // args, each with its sign
@@ -32,7 +32,7 @@ enum class Form {
 };
 
 struct Formula {
-  Form form = Form::number;
+  Shape shape = Shape::number;
   Expr leaf;
   std::string name;
   Rational number;
@@ -58,7 +58,7 @@ Formula quotient(Formula above, Formula below);
 Formula power(Formula base, int exponent);
 Formula dot(Formula u, Formula v);
 Formula cross(Formula u, Formula v);
-Formula form(Form kind, Formula arg);  // perp, norm, unit, transpose, skew
+Formula shaped(Shape kind, Formula arg);  // perp, norm, unit, transpose, skew
 Formula component(Formula u, std::string axis);
 Formula identity();
 Formula matrix(int columns, std::vector<Formula> entries);

@@ -84,9 +84,9 @@ class MathML : public FormulaWriter {
   std::string sign(bool minus, bool first) const override {
     return minus ? sign_of("−") : first ? "" : sign_of("+");
   }
-  std::string between(Form form) const override {
-    if (form == Form::product) return "<mspace width=\"0.17em\" />";
-    return sign_of(form == Form::dot ? "·" : "×");
+  std::string between(Shape shape) const override {
+    if (shape == Shape::product) return "<mspace width=\"0.17em\" />";
+    return sign_of(shape == Shape::dot ? "·" : "×");
   }
   std::string fraction(const std::string& above, const std::string& below) const override {
     return "<mfrac>" + row(above) + row(below) + "</mfrac>";

@@ -2,15 +2,18 @@
 // component names.
 //
 // {
-//   "format": 1, "joint": "line", "title", "source", "dimension": 2, "bodies": ["a", "b"],
-//   "columns": ["v_a_x", "v_a_y", "w_a", "v_b_x", ...],   of every J
-//   "symbols": { "r_pa_x": { "kind", "meaning", "unit", "frame", "body", "from", "unit_length" } },
-//       kind: position, velocity, mass (inverse), parameter, derived, time, constant
-//       frame: "world" or the body whose axes the component is along; body: whose it is; or null
-//       from: of derived ones, how they follow from the pose and the parameters; else null
-//       unit_length: true for components of a vector of length 1, which K relies on
-//   "intermediates": [ { "name", "definition" } ],   each uses only what stands before it
-//   "guards": [ { "where": "u_len = 0", "kernel" } ],   where an entry is undefined
+//   "format": 1, "joint": "line", "title", "source", "dimension": 2 or 3, "bodies": ["a", "b"],
+//   "columns": ["v_a_x", "v_a_y", "w_a", "v_b_x", ...],   of every J; in space v_a_z, w_a_x, ...
+//   too "symbols": { "r_pa_x": { "kind", "meaning", "unit", "frame", "body", "from", "unit_length"
+//   } },
+//       kind: position, orientation (Euler parameters, in space), velocity, mass (inverse),
+//       parameter, derived, time, constant frame: "world" or the body whose axes the component is
+//       along; body: whose it is; or null from: of derived ones, how they follow from the pose and
+//       the parameters; else null unit_length: true for components of a vector of length 1, which K
+//       relies on
+//   "frames": [ { "name", "axes": [ [ names of components ] three times ] } ],   right-handed
+//   triads, in space "intermediates": [ { "name", "definition" } ],   each uses only what stands
+//   before it "guards": [ { "where": "u_len = 0", "kernel" } ],   where an entry is undefined
 //   "rows": [ { "name", "kind": equality | inequality | velocity, "text", "unit" } ],
 //   "C", "Cdot", "C_t", "gamma": [ one a row ],   C_t = dC/dt with the bodies at rest
 //   "J": [ [ one a column ] a row ], "K": [ [ ] ] square,
@@ -40,6 +43,7 @@ class Infix {
   const Json& intermediates() const { return intermediates_; }
   const Json& guards() const { return guards_; }
   Json symbols() const { return symbols_.json(); }
+  Json frames() const { return symbols_.frames(); }
 
  private:
   enum class Level { sum, product, power };
@@ -139,25 +143,32 @@ std::string kind_name(RowKind kind) {
                                        : "velocity";
 }
 
-Json J_of(Infix& infix, const Joint& joint, const ScalarRow& row) {
-  const Expr ex = world_x(*joint.pool);
+Json J_of(Infix& infix, const ScalarRow& row) {
   Json entries = Json::array();
-  for (const JacobianEntry& entry : row.J) {
-    entries.push_back(infix.of(dot(ex, entry.v)));
-    entries.push_back(infix.of(dot(perp(ex), entry.v)));
-    entries.push_back(infix.of(entry.w));
-  }
+  for (const Expr entry : columns_of(row.J)) entries.push_back(infix.of(entry));
   return entries;
 }
 
-void add_block(Json& out, Infix& infix, const Joint& joint, const Block& block) {
+std::vector<std::string> columns(const Joint& joint) {
+  std::vector<std::string> names;
+  const std::string letters = joint.dimension == 2 ? "xy" : "xyz";
+  for (const std::string& b : joint.bodies) {
+    for (const char c : letters) names.push_back("v_" + b + "_" + c);
+    if (joint.dimension == 2) names.push_back("w_" + b);
+    if (joint.dimension == 2) continue;
+    for (const char c : letters) names.push_back("w_" + b + "_" + c);
+  }
+  return names;
+}
+
+void add_block(Json& out, Infix& infix, const Block& block) {
   for (const char* key : {"C", "Cdot", "C_t", "J", "K", "gamma"}) out[key] = Json::array();
   for (std::size_t i = 0; i < block.rows.size(); ++i) {
     const ScalarRow& row = block.rows[i];
     out["C"].push_back(infix.of(row.C));
     out["Cdot"].push_back(infix.of(row.Cdot));
     out["C_t"].push_back(infix.of(row.C_t));
-    out["J"].push_back(J_of(infix, joint, row));
+    out["J"].push_back(J_of(infix, row));
     out["gamma"].push_back(infix.of(row.gamma));
     Json entries = Json::array();
     for (std::size_t j = 0; j < block.rows.size(); ++j) {
@@ -179,21 +190,21 @@ nlohmann::ordered_json explanation_json(const Joint& joint) {
                             {"text", row.row->text},
                             {"unit", text(row.row->unit)}});
   }
-  add_block(rows, infix, joint, block);
+  add_block(rows, infix, block);
   for (const Coordinate& c : joint.coordinates) {
     Json out{{"name", c.name}, {"text", c.text}, {"unit", text(c.unit)}};
-    add_block(out, infix, joint, derive_coordinate(joint, c));
+    add_block(out, infix, derive_coordinate(joint, c));
     coordinates.push_back(std::move(out));
   }
-  Json columns = Json::array();
-  for (const std::string& b : joint.bodies) {
-    for (const std::string& name : {"v_" + b + "_x", "v_" + b + "_y", "w_" + b})
-      columns.push_back(name);
-  }
-  Json all{{"format", 1},          {"joint", joint.name},
-           {"title", joint.title}, {"source", joint.source},
-           {"dimension", 2},       {"bodies", joint.bodies},
-           {"columns", columns},   {"symbols", infix.symbols()}};
+  Json all{{"format", 1},
+           {"joint", joint.name},
+           {"title", joint.title},
+           {"source", joint.source},
+           {"dimension", joint.dimension},
+           {"bodies", joint.bodies},
+           {"columns", columns(joint)},
+           {"symbols", infix.symbols()},
+           {"frames", infix.frames()}};
   all["intermediates"] = infix.intermediates();
   all["guards"] = infix.guards();
   all.update(rows);

@@ -85,8 +85,8 @@ class Latex : public FormulaWriter {
   std::string sign(bool minus, bool first) const override {
     return first ? (minus ? "-" : "") : (minus ? " - " : " + ");
   }
-  std::string between(Form form) const override {
-    return form == Form::dot ? " \\cdot " : form == Form::cross ? " \\times " : "\\, ";
+  std::string between(Shape shape) const override {
+    return shape == Shape::dot ? " \\cdot " : shape == Shape::cross ? " \\times " : "\\, ";
   }
   std::string fraction(const std::string& above, const std::string& below) const override {
     return "\\frac{" + above + "}{" + below + "}";

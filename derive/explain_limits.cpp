@@ -26,11 +26,13 @@ class Limits {
  private:
   void of_direction(Expr e) {
     const Formula u = notation_.of(e->args[0]), n = notation_.of(e);
-    const std::string rest = " has no direction where {} = 0; the kernel takes (1, 0) there.";
-    if (n.form == Form::leaf)
-      limits.list("{}" + rest, {n, form(Form::norm, u)});
+    const bool plane = e->pool->dimension() == 2;
+    const std::string rest = std::string(" has no direction where {} = 0; the kernel takes ") +
+                             (plane ? "(1, 0) there." : "(1, 0, 0) there.");
+    if (n.shape == Shape::leaf)
+      limits.list("{}" + rest, {n, shaped(Shape::norm, u)});
     else
-      limits.list("{}" + rest, {u, form(Form::norm, u)});
+      limits.list("{}" + rest, {u, shaped(Shape::norm, u)});
   }
 
   void of_product(Expr e) {
@@ -78,8 +80,12 @@ void find_all(const Part& part, Limits& limits) {
 
 void assume(const Joint& joint, Step& step) {
   for (const Parameter& p : joint.parameters) {
-    const bool has_length = p.kind == ParameterKind::unit || p.kind == ParameterKind::frame;
-    if (has_length) step.list("{} has length 1.", {leaf(p.symbol)});
+    if (!p.axes.empty()) {
+      step.list("{}, {} and {} have length 1 and stand on each other, a right-handed triad.",
+                {leaf(p.axes[0]), leaf(p.axes[1]), leaf(p.axes[2])});
+    } else if (p.kind == ParameterKind::unit || p.kind == ParameterKind::frame) {
+      step.list("{} has length 1.", {leaf(p.symbol)});
+    }
   }
   for (const Row& row : joint.rows) {
     if (row.kind == RowKind::inequality) {

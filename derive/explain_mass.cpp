@@ -32,17 +32,31 @@ void add_scalar_product(const Notation& notation, Expr inverse_mass, Expr vi, Ex
   terms.push_back({f.coef.sign() < 0, product({number(abs(f.coef)), leaf(inverse_mass), written})});
 }
 
-// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t) · inv_I_a (ra
-// × t).
+// A number: the scalars that stand before e, which is what is left of it.
+struct Scaled {
+  Formula scalars;
+  Expr e;
+};
+Scaled without_scalars(const Notation& notation, Expr e) {
+  const bool scaled = e->kind == Kind::scale && !Notation::has_name(e);
+  return scaled ? Scaled{notation.of(e->args[0]), e->args[1]} : Scaled{number(1), e};
+}
+
+// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t)' inv_I_a (ra × t).
 void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj,
                  std::vector<SignedFormula>& terms) {
   if (is_zero(wi) || is_zero(wj)) return;
   const Factors f = factors(wi, wj);
-  const Formula a = notation.of(f.i), b = notation.of(f.j);
   std::vector<Formula> parts{number(abs(f.coef))};
   if (wi->vector) {
-    parts.push_back(dot(a, product({leaf(inverse), b})));
+    const Scaled i = without_scalars(notation, f.i), j = without_scalars(notation, f.j);
+    if (i.scalars == j.scalars)
+      parts.push_back(power(i.scalars, 2));
+    else
+      parts.insert(parts.end(), {i.scalars, j.scalars});
+    parts.insert(parts.end(), {shaped(Shape::transpose, notation.of(i.e)), leaf(inverse), notation.of(j.e)});
   } else {
+    const Formula a = notation.of(f.i), b = notation.of(f.j);
     parts.push_back(leaf(inverse));
     parts.push_back(wi == wj ? power(a, 2) : product({a, b}));
   }
@@ -80,13 +94,14 @@ class MassProduct {
 
   // (A B)' = B' A', term by term.
   static Formula transposed(const Formula& f) {
-    if (f.form == Form::transpose) return f.args[0];
-    if (f.form == Form::sum) {
+    if (f.shape == Shape::transpose) return f.args[0];
+    if (f.shape == Shape::sum) {
       std::vector<SignedFormula> terms = terms_of(f);
       for (SignedFormula& term : terms) term.formula = transposed(term.formula);
       return sum(std::move(terms));
     }
-    if (f.form == Form::product) {
+    if (f.shape == Shape::quotient) return quotient(transposed(f.args[0]), f.args[1]);
+    if (f.shape == Shape::product) {
       std::vector<Formula> factors;
       for (auto factor = f.args.rbegin(); factor != f.args.rend(); ++factor) {
         const Formula t = transposed(*factor);
@@ -94,14 +109,14 @@ class MassProduct {
       }
       return product(std::move(factors));
     }
-    const bool symmetric = f.form == Form::identity || is_scalar(f);
-    return symmetric ? f : form(Form::transpose, f);
+    const bool symmetric = f.shape == Shape::identity || is_scalar(f);
+    return symmetric ? f : shaped(Shape::transpose, f);
   }
 
   static bool is_scalar(const Formula& f) {
-    const bool leaf_or_call = f.form == Form::leaf || f.form == Form::call;
-    return f.form == Form::number || f.form == Form::dot || f.form == Form::power ||
-           f.form == Form::norm || f.form == Form::quotient || f.form == Form::component ||
+    const bool leaf_or_call = f.shape == Shape::leaf || f.shape == Shape::call;
+    return f.shape == Shape::number || f.shape == Shape::dot || f.shape == Shape::power ||
+           f.shape == Shape::norm || f.shape == Shape::component ||
            (leaf_or_call && (!f.leaf || !f.leaf->vector));
   }
 
@@ -122,10 +137,10 @@ class MassProduct {
   }
 
   static bool is_identity(const Formula& f) {
-    return f.form == Form::identity || f == negative(identity());
+    return f.shape == Shape::identity || f == negative(identity());
   }
   static Formula unsigned_one(const Formula& f) {
-    return f.form == Form::identity ? number(1) : negative(number(1));
+    return f.shape == Shape::identity ? number(1) : negative(number(1));
   }
 
   const Lecture& lecture_;
@@ -176,9 +191,10 @@ Formula simplified(const Lecture& lecture, const Part& part, const Statement& s,
 }
 
 Formula J_M_J(const Formula& J) {
-  return product({J, power(leaf({}, "M"), -1), form(Form::transpose, J)});
+  return product({J, power(leaf({}, "M"), -1), shaped(Shape::transpose, J)});
 }
 
+// In space the blocks say more than nine numbers with six components of each tensor.
 bool stays_in_blocks(const Lecture& lecture, const Statement& s, const Statement& t) {
   return lecture.joint.dimension == 3 && (s.vector() || t.vector());
 }
@@ -205,14 +221,15 @@ void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
     for (const Statement& t : part.statements) {
       const bool above = &t >= &s;
       const Formula name = name_of_K(part, above ? s.name : t.name, above ? t.name : s.name);
-      blocks.push_back(above ? name : form(Form::transpose, name));
+      blocks.push_back(above ? name : shaped(Shape::transpose, name));
       if (!above) continue;
       const Formula full = mass_product.of(s, t), result = simplified(lecture, part, s, t);
+      const bool as_it_stands = stays_in_blocks(lecture, s, t) || same_terms(result, full) ||
+                                same_terms(result, mass_product.of(t, s));
       Chain chain{name, {}};
       if (part.statements.size() == 1) chain.links.push_back({J_M_J(label("J", s)), ""});
       chain.links.push_back({full, "body by body"});
-      // In space the blocks say more than nine numbers with six components of each tensor.
-      if (!stays_in_blocks(lecture, s, t) && !same_terms(result, full))
+      if (!as_it_stands)
         chain.links.push_back({result, identities_used(lecture, part, s, t)});
       step.show(std::move(chain));
     }

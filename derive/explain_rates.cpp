@@ -99,7 +99,7 @@ std::optional<Formula> Rates::rule(Expr e) {
       return scale_rule(e);
     case Kind::perp: {
       used("a quarter turn of the rate");
-      return form(Form::perp, *rate(e->args[0], false));
+      return shaped(Shape::perp, *rate(e->args[0], false));
     }
     case Kind::norm: {
       used("derivative of a length: |u|_dot = unit(u) · u_dot");
@@ -192,6 +192,7 @@ std::optional<Formula> Rates::pair_rule(Expr e) {
     return along_v.empty() ? component(*rate(v, false), along_u)
                            : component(*rate(u, false), along_v);
   }
+  if (v->kind == Kind::symbol && v->role == Role::spin) return negative(turned_again(v, u));
   used("product rule");
   // Written as the product itself is written: a direction first in n · u.
   if (scalar_product && v->unit_length && !u->unit_length) std::swap(u, v);
@@ -204,13 +205,17 @@ std::optional<Formula> Rates::pair_rule(Expr e) {
   return total(std::move(terms));
 }
 
+// (w × r)_dot = w × r_dot, w itself held fixed.
+Formula Rates::turned_again(Expr w, Expr r) {
+  used("s_dot = w × s again");
+  const bool fixed = r->kind == Kind::symbol && r->role == Role::body_vector;
+  return cross(leaf(w), fixed ? turned(r) : *rate(r, false));
+}
+
 std::optional<Formula> Rates::scale_rule(Expr e) {
   const Expr s = e->args[0], u = e->args[1];
   if (s->role == Role::spin && s->kind == Kind::symbol && u->kind == Kind::perp) {
-    const Expr r = u->args[0];
-    used("s_dot = w × s again");
-    const bool fixed = r->kind == Kind::symbol && r->role == Role::body_vector;
-    return cross(leaf(s), fixed ? turned(r) : *rate(r, false));
+    return turned_again(s, u->args[0]);
   }
   used("product rule");
   std::vector<SignedFormula> terms;
@@ -220,10 +225,16 @@ std::optional<Formula> Rates::scale_rule(Expr e) {
 }
 
 std::optional<Formula> Rates::unit_rule(Expr e) {
-  used("derivative of a direction n of u: n_dot = (n × u_dot)/|u| perp(n)");
   const Formula n = notation_.of(e);
+  if (joint_.dimension == 3) {
+    used("derivative of a direction n of u: n_dot = (u_dot - (n · u_dot) n)/|u|");
+    const Formula u_dot = *rate(e->args[0], false);
+    return quotient(sum({{false, u_dot}, {true, product({dot(n, u_dot), n})}}),
+                    notation_.of(norm(e->args[0])));
+  }
+  used("derivative of a direction n of u: n_dot = (n × u_dot)/|u| perp(n)");
   const Formula speed = cross(n, *rate(e->args[0], false));
-  return product({quotient(speed, notation_.of(norm(e->args[0]))), form(Form::perp, n)});
+  return product({quotient(speed, notation_.of(norm(e->args[0]))), shaped(Shape::perp, n)});
 }
 
 std::optional<Formula> Rates::function_rule(Expr e) {

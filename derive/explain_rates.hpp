@@ -36,6 +36,7 @@ class Rates {
 
   Formula by_name(Expr e, const std::string& name);
   Formula turned(Expr s) const;  // w × s
+  Formula turned_again(Expr w, Expr r);
   Chain chain(Expr e, Formula left);
   std::size_t place_of(std::string name) const;  // among the author's lets
   void used(const std::string& rule);

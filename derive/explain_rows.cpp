@@ -25,7 +25,7 @@ void collect(Lecture& lecture, const std::vector<VelocityTerm>& terms, Expr coef
   const Formula velocity = leaf(spin ? symbols.w : symbols.v);
   const Formula merged = lecture.notation.of(coefficient);
   const Formula listed = sum(positive_first(std::move(parts)));
-  if (merged.form == Form::sum && merged.args.size() >= listed.args.size()) return;
+  if (merged.shape == Shape::sum && merged.args.size() >= listed.args.size()) return;
   std::string rule = "like terms of " + velocity.name + " collected";
   if (merged == number(0)) rule = velocity.name + " cancels";
   step.show({listed, {{merged, std::move(rule)}}});
@@ -73,8 +73,8 @@ void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step
 
 // E v is written v.
 Formula without_identity(Formula f) {
-  if (f.form == Form::identity) return number(1);
-  if (f.form == Form::product && f.args.back().form == Form::identity) {
+  if (f.shape == Shape::identity) return number(1);
+  if (f.shape == Shape::product && f.args.back().shape == Shape::identity) {
     f.args.pop_back();
     return product(std::move(f.args));
   }
@@ -133,7 +133,7 @@ Expr expanded(Expr e) {
 
 // Whether w × (w × r) stands in it.
 bool turns_twice(const Formula& f) {
-  if (f.form == Form::cross && f.args[1].form == Form::cross) return true;
+  if (f.shape == Shape::cross && f.args[1].shape == Shape::cross) return true;
   return std::any_of(f.args.begin(), f.args.end(), turns_twice);
 }
 
@@ -149,6 +149,30 @@ void list_columns(const Lecture& lecture, const Part& part, const Statement& s, 
 const char* kept_together(int dimension) {
   return dimension == 2 ? ". Two rows, x and y, kept together as a vector:"
                         : ". Three rows, x, y and z, kept together as a vector:";
+}
+
+// Which rows of n × m = 0 are kept, n an axis of a frame: the components along the other two axes.
+void explain_kept(const Lecture& lecture, Expr product, Step& step) {
+  const Pool& pool = *lecture.joint.pool;
+  const bool first = pool.axis_of(product->args[0]).triad && product->args[0]->body >= 0;
+  const Expr n = product->args[first ? 0 : 1], m = product->args[first ? 1 : 0];
+  const Pool::Axis axis = pool.axis_of(n);
+  const auto other = [&](int offset) {
+    return (*axis.triad)[static_cast<std::size_t>((axis.index + offset) % 3)];
+  };
+  const Expr y = other(1), z = other(2);
+  const Notation& notation = lecture.notation;
+  const Formula all = cross(leaf(n), notation.of(m));
+  step.say("`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 "
+           "always. Kept are the components along the other two axes of the frame:",
+           {all, leaf(n), all});
+  const std::string rule = "a · (b × c) = (a × b) · c";
+  step.show({dot(leaf(z), all), {{dot(leaf(y), notation.of(m)), rule}}});
+  step.show({dot(leaf(y), all), {{negative(dot(leaf(z), notation.of(m))), rule}}});
+  step.say("While both vanish {} lies along {}, and {} and {} are as long as {} and stand on each other: "
+           "these two rows stay independent wherever the row holds.",
+           {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)),
+            cross(leaf(z), notation.of(m)), notation.of(m)});
 }
 
 }  // namespace
@@ -180,6 +204,8 @@ void state_constraint(Lecture& lecture, const Part& part) {
     } else {
       step.show({label("C", s, s.C), {{C, ""}}});
     }
+    const bool last = &s == &part.statements.back() || (&s)[1].row->kept != s.row->kept;
+    if (s.row->kept && last) explain_kept(lecture, s.row->kept, step);
     if (s.kind == RowKind::inequality) {
       step.say("An inequality: {} ≥ 0 must hold, and its impulse may only push C up (lambda ≥ 0).",
                {label("C", s, s.C)});

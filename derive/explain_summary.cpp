@@ -24,7 +24,7 @@ std::string note_of(RowKind kind) {
 }
 
 bool has_skew(const Formula& f) {
-  return f.form == Form::skew || std::any_of(f.args.begin(), f.args.end(), has_skew);
+  return f.shape == Shape::skew || std::any_of(f.args.begin(), f.args.end(), has_skew);
 }
 
 std::string columns(const Joint& joint) {

@@ -17,8 +17,8 @@ class TextFormula : public FormulaWriter {
   std::string sign(bool minus, bool first) const override {
     return first ? (minus ? "-" : "") : (minus ? " - " : " + ");
   }
-  std::string between(Form form) const override {
-    return form == Form::dot ? " · " : form == Form::cross ? " × " : " ";
+  std::string between(Shape shape) const override {
+    return shape == Shape::dot ? " · " : shape == Shape::cross ? " × " : " ";
   }
   std::string fraction(const std::string& above, const std::string& below) const override {
     return above + "/" + below;
@@ -99,7 +99,7 @@ class ChainText {
 
  private:
   void write_formula(const Formula& f) {
-    if (f.form == Form::matrix) return write_matrix(f);
+    if (f.shape == Shape::matrix) return write_matrix(f);
     for (const std::string& piece : formula_.pieces(f)) {
       if (width(line_) + width(piece) > page_width_ && width(line_) > indent_ + 3) {
         finish_line();

@@ -12,21 +12,21 @@ class Distribution {
  public:
   std::vector<SignedFormula> of(const Formula& f) const {
     if (!moves(f)) return {{false, f}};
-    switch (f.form) {
-      case Form::sum: {
+    switch (f.shape) {
+      case Shape::sum: {
         std::vector<SignedFormula> all;
         for (std::size_t i = 0; i < f.args.size(); ++i) append(all, of(f.args[i]), f.minus[i]);
         return all;
       }
-      case Form::product:
+      case Shape::product:
         return through(f, [](std::vector<Formula> args) { return product(std::move(args)); });
-      case Form::quotient:
+      case Shape::quotient:
         return through(f, [](std::vector<Formula> args) { return quotient(args[0], args[1]); });
       // A velocity w × r is a unit of its own: only sums inside it are taken apart.
-      case Form::dot:
-      case Form::cross:
-      case Form::perp:
-      case Form::component:
+      case Shape::dot:
+      case Shape::cross:
+      case Shape::perp:
+      case Shape::component:
         return through(f, [&f](std::vector<Formula> args) {
           Formula g = f;
           g.args = std::move(args);
@@ -38,7 +38,7 @@ class Distribution {
   }
 
   bool moves(const Formula& f) const {
-    if (f.form == Form::leaf) return depends_on_velocity(f.leaf);
+    if (f.shape == Shape::leaf) return depends_on_velocity(f.leaf);
     for (const Formula& arg : f.args) {
       if (moves(arg)) return true;
     }
@@ -72,12 +72,12 @@ class Distribution {
 };
 
 bool is_turning(const Formula& f) {  // w × r
-  return f.form == Form::cross && f.args[0].form == Form::leaf &&
+  return f.shape == Shape::cross && f.args[0].shape == Shape::leaf &&
          f.args[0].leaf->role == Role::spin;
 }
 
 bool moves_in_space(const Formula& f) {
-  if (f.form == Form::leaf) return f.leaf && f.leaf->pool->dimension() == 3;
+  if (f.shape == Shape::leaf) return f.leaf && f.leaf->pool->dimension() == 3;
   return std::any_of(f.args.begin(), f.args.end(), moves_in_space);
 }
 
@@ -85,27 +85,27 @@ bool moves_in_space(const Formula& f) {
 // velocity".
 std::string identity_in(const Formula& f, const Distribution& distribution) {
   for (const Formula& arg : f.args) {
-    if (is_turning(f) || !distribution.moves(arg) || arg.form == Form::leaf) continue;
+    if (is_turning(f) || !distribution.moves(arg) || arg.shape == Shape::leaf) continue;
     if (std::string inner = identity_in(arg, distribution); !inner.empty()) return inner;
   }
   const bool in_space = moves_in_space(f);
-  if (f.form == Form::dot) {
+  if (f.shape == Shape::dot) {
     if (is_turning(f.args[0]))
       return in_space ? "(w × s) · u = (s × u) · w" : "(w × s) · u = (s × u) w";
     if (is_turning(f.args[1]))
       return in_space ? "n · (w × r) = (r × n) · w" : "n · (w × r) = (r × n) w";
     for (const Formula& arg : f.args) {
-      if (in_space && arg.form == Form::cross && distribution.moves(arg))
+      if (in_space && arg.shape == Shape::cross && distribution.moves(arg))
         return "a · (b × c) = b · (c × a) = c · (a × b)";
     }
   }
   if (in_space) return "";
-  if (f.form == Form::cross && !is_turning(f)) {
+  if (f.shape == Shape::cross && !is_turning(f)) {
     if (is_turning(f.args[0])) return "(w × s) × u = -(s · u) w";
     if (is_turning(f.args[1])) return "u × (w × r) = (u · r) w";
     return distribution.moves(f.args[1]) ? "u × v = perp(u) · v" : "v × u = -perp(u) · v";
   }
-  if (f.form == Form::component) {
+  if (f.shape == Shape::component) {
     if (is_turning(f.args[0])) return f.name == "x" ? "(w × r).x = -r.y w" : "(w × r).y = r.x w";
   }
   return "";
@@ -163,9 +163,9 @@ class VectorIsolation {
         break;
       case Kind::cross:  // u × v = S(u) v = -S(v) u
         if (!depends_on_velocity(e->args[0]))
-          return walk(e->args[1], left.with_matrix(form(Form::skew, notation_.of(e->args[0]))));
+          return walk(e->args[1], left.with_matrix(shaped(Shape::skew, notation_.of(e->args[0]))));
         return walk(e->args[0],
-                    left.times(-1).with_matrix(form(Form::skew, notation_.of(e->args[1]))));
+                    left.times(-1).with_matrix(shaped(Shape::skew, notation_.of(e->args[1]))));
       default:
         break;
     }
@@ -195,14 +195,14 @@ class VectorIsolation {
       }
       const Term c = split_coefficient(J[b].w);
       Left column = left.times(c.coef).with_matrix(
-          u->kind == Kind::perp ? form(Form::skew, notation_.of(u->args[0])) : notation_.of(u));
+          u->kind == Kind::perp ? shaped(Shape::skew, notation_.of(u->args[0])) : notation_.of(u));
       add(w_, body, is_one(c.e) ? column : column.with_scalar(notation_.of(c.e)));
     }
   }
 
   void add_row(std::vector<Terms>& terms, int body, const Left& left, Expr row) {
     const Term n = split_coefficient(row);
-    add(terms, body, left.times(n.coef).with_matrix(form(Form::transpose, notation_.of(n.e))));
+    add(terms, body, left.times(n.coef).with_matrix(shaped(Shape::transpose, notation_.of(n.e))));
   }
 
   static void add(std::vector<Terms>& terms, int body, const Left& left) {

@@ -34,7 +34,7 @@ SpelledName spell(const std::string& name, const std::vector<std::string>& bodie
 }
 
 std::vector<std::string> FormulaWriter::pieces(const Formula& f) const {
-  if (f.form != Form::sum) return {write(f)};
+  if (f.shape != Shape::sum) return {write(f)};
   std::vector<std::string> out;
   for (std::size_t i = 0; i < f.args.size(); ++i) {
     out.push_back(sign(f.minus[i], i == 0) + write(f.args[i], !f.minus[i] ? Place::term
@@ -45,24 +45,24 @@ std::vector<std::string> FormulaWriter::pieces(const Formula& f) const {
 }
 
 bool FormulaWriter::needs_parentheses(const Formula& f, Place place) const {
-  switch (f.form) {
-    case Form::sum:
+  switch (f.shape) {
+    case Shape::sum:
       return place != Place::whole;
     // -(ra × t), but v_b - w_b × rb; a dot product needs it only if a sum opens it.
-    case Form::cross:
-    case Form::dot: {
-      const bool opened_by_sum = f.args[0].form == Form::sum;
+    case Shape::cross:
+    case Shape::dot: {
+      const bool opened_by_sum = f.args[0].shape == Shape::sum;
       return place >= Place::factor || (place >= Place::negated && opened_by_sum) ||
-             (place == Place::opening_minus && f.form == Form::cross);
+             (place == Place::opening_minus && f.shape == Shape::cross);
     }
-    case Form::product:
+    case Shape::product:
       return place >= Place::operand;
-    case Form::quotient:
+    case Shape::quotient:
       return fraction_encloses() ? place == Place::base : place >= Place::factor;
-    case Form::power:
-    case Form::transpose:
-    case Form::number:
-      return place == Place::base && (f.form != Form::number || !f.number.is_integer());
+    case Shape::power:
+    case Shape::transpose:
+    case Shape::number:
+      return place == Place::base && (f.shape != Shape::number || !f.number.is_integer());
     default:
       return false;
   }
@@ -75,7 +75,7 @@ std::string FormulaWriter::write(const Formula& f, Place place) const {
 std::string FormulaWriter::joined(const Formula& f, Place inner) const {
   std::string out;
   for (std::size_t i = 0; i < f.args.size(); ++i) {
-    out += (i == 0 ? "" : between(f.form)) + write(f.args[i], inner);
+    out += (i == 0 ? "" : between(f.shape)) + write(f.args[i], inner);
   }
   return out;
 }
@@ -85,49 +85,49 @@ std::string FormulaWriter::fraction_of(const Formula& f) const {
   const Formula& below = f.args[1];
   return fraction(write(f.args[0], enclosed ? Place::whole : Place::factor),
                   write(below, enclosed                    ? Place::whole
-                               : below.form == Form::power ? Place::factor
+                               : below.shape == Shape::power ? Place::factor
                                                            : Place::base));
 }
 
 std::string FormulaWriter::bare(const Formula& f) const {
   std::vector<std::string> args;
-  switch (f.form) {
-    case Form::leaf:
+  switch (f.shape) {
+    case Shape::leaf:
       return name(f);
-    case Form::number:
+    case Shape::number:
       return number(f.number);
-    case Form::sum: {
+    case Shape::sum: {
       std::string out;
       for (const std::string& piece : pieces(f)) out += piece;
       return out;
     }
-    case Form::product:
+    case Shape::product:
       return joined(f, Place::factor);
-    case Form::dot:
-    case Form::cross:
+    case Shape::dot:
+    case Shape::cross:
       return joined(f, Place::operand);
-    case Form::quotient:
+    case Shape::quotient:
       return fraction_of(f);
-    case Form::power:
+    case Shape::power:
       return power(write(f.args[0], Place::base), f.exponent);
-    case Form::norm:
+    case Shape::norm:
       return norm(write(f.args[0]));
-    case Form::component:
+    case Shape::component:
       return component(write(f.args[0], Place::base), f.name);
-    case Form::transpose:
+    case Shape::transpose:
       return transpose(write(f.args[0], Place::base));
-    case Form::identity:
+    case Shape::identity:
       return identity();
-    case Form::perp:
+    case Shape::perp:
       return call("perp", {write(f.args[0])});
-    case Form::unit:
+    case Shape::unit:
       return call("unit", {write(f.args[0])});
-    case Form::skew:
+    case Shape::skew:
       return call("S", {write(f.args[0])});
-    case Form::call:
+    case Shape::call:
       for (const Formula& arg : f.args) args.push_back(write(arg));
       return call(f.name, args);
-    case Form::matrix:
+    case Shape::matrix:
       for (const Formula& arg : f.args) args.push_back(write(arg));
       return matrix(f.columns, args);
   }

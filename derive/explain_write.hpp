@@ -27,7 +27,7 @@ class FormulaWriter {
   virtual std::string name(const Formula& leaf) const = 0;
   virtual std::string number(Rational value) const = 0;
   virtual std::string sign(bool minus, bool first) const = 0;
-  virtual std::string between(Form form) const = 0;  // what joins factors, dot and cross
+  virtual std::string between(Shape shape) const = 0;  // what joins factors, dot and cross
   virtual std::string fraction(const std::string& above, const std::string& below) const = 0;
   virtual bool fraction_encloses() const { return true; }  // its parts need no parentheses
   virtual std::string power(const std::string& base, int exponent) const = 0;

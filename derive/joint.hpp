@@ -46,6 +46,7 @@ struct Row {
   Span where;
   std::string text;  // as written, for people
   std::string from;  // the included joint that it came from; empty if written here
+  Expr kept;         // with `keep`: the cross product that it is a component of
 };
 
 struct Coordinate {

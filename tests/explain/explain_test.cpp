@@ -36,6 +36,12 @@ void check_chain(const std::string& heading, const Chain& chain, const Values& v
   }
 }
 
+std::vector<double> components(Expr e, const Values& values) {
+  if (!e->vector) return {evaluate(e, values)};
+  const Triple<double> v = Numbers(values).vector(e);
+  return {v.begin(), v.begin() + e->pool->dimension()};
+}
+
 // J, block by block, times the velocities.
 std::vector<double> J_times_v(const Formula& J, const Joint& joint, const Values& values) {
   std::vector<double> result;
@@ -45,9 +51,7 @@ std::vector<double> J_times_v(const Formula& J, const Joint& joint, const Values
     for (std::size_t k = 0; k < columns; ++k) {
       const BodySymbols body = body_symbols(joint, static_cast<int>(k / 2));
       const Array block = value_of_formula(J.args[row * columns + k], values);
-      const Triple<double> v = Numbers(values).vector(body.v);
-      const std::vector<double> velocity =
-          k % 2 == 1 ? std::vector{evaluate(body.w, values)} : std::vector{v[0], v[1]};
+      const std::vector<double> velocity = components(k % 2 == 1 ? body.w : body.v, values);
       if (block.entries == std::vector{0.0}) continue;
       if (block.columns != velocity.size())
         throw std::logic_error("a block of J is too wide or too narrow");
@@ -150,7 +154,7 @@ TEST(Explain, AFlippedSignIsFound) {
       if (item.kind != Item::Kind::chain || item.chain.left.name.starts_with("J_")) continue;
       Explanation wrong = right;
       Formula& f = wrong.steps[s].items[i].chain.links.back().formula;
-      f = f.form == Form::matrix
+      f = f.shape == Shape::matrix
               ? matrix(f.columns, {negative(f.args[0]), f.args[1], f.args[2], f.args[3]})
               : negative(f);
       ++flipped;

@@ -96,7 +96,7 @@ TEST(ExplainHtml, IsWellFormedAndNeedsNothingFromElsewhere) {
     EXPECT_EQ(page.find("@import"), std::string::npos) << name;
     EXPECT_EQ(page.find("url("), std::string::npos) << name;
     EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos) << name;
-    write(pages / (name + ".html"), page);
+    write(pages / (flat(name) + ".html"), page);
   }
   const Ran parsed = run(python +
                          " -c \"import sys, glob, xml.etree.ElementTree as E\n"
@@ -117,10 +117,10 @@ TEST(ExplainLatex, BalancesAndCompilesWhereATexIsInstalled) {
     for (const char c : latex)
       ASSERT_LT(static_cast<unsigned char>(c), 128) << name << ": not ASCII";
     if (!has_tex) continue;
-    write(papers / (name + ".tex"), latex);
+    write(papers / (flat(name) + ".tex"), latex);
     const Ran compiled =
         run("cd " + quoted(papers) + " && pdflatex -interaction=nonstopmode -halt-on-error " +
-            name + ".tex");
+            flat(name) + ".tex");
     EXPECT_EQ(compiled.status, 0) << compiled.output;
   }
   std::cout << (has_tex ? "compiled by pdflatex\n" : "no pdflatex here: balance checked only\n");
@@ -137,7 +137,7 @@ TEST(ExplainLatex, TheBalanceCheckCanFail) {
 TEST(ExplainJson, IsTrueForTheCatalogueWhenSympyEvaluatesIt) {
   const fs::path files = folder("json");
   for (const std::string& name : spec_names()) {
-    write(files / (name + ".json"), explanation_json(read_spec(name)).dump(1));
+    write(files / (flat(name) + ".json"), explanation_json(read_spec(name)).dump(1));
   }
   const Ran ran = check_json(files);
   EXPECT_EQ(ran.status, 0) << ran.output;

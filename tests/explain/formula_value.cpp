@@ -9,7 +9,13 @@ using namespace cdot::derive;
 namespace {
 
 Array scalar(double x) { return {1, 1, {x}}; }
-Array column(double x, double y) { return {2, 1, {x, y}}; }
+Array column(const Triple<double>& v, std::size_t dimension) {
+  return {dimension, 1, std::vector<double>(v.begin(), v.begin() + static_cast<long>(dimension))};
+}
+
+Triple<double> triple(const Array& a) {
+  return {a.entries[0], a.entries[1], a.entries.size() > 2 ? a.entries[2] : 0};
+}
 
 Array times(double s, Array a) {
   for (double& x : a.entries) x *= s;
@@ -46,9 +52,17 @@ Array transposed(const Array& a) {
 }
 
 Array cross_product(const Array& u, const Array& v) {
+  if (u.entries.size() == 3) return column(cdot::derive::cross_product(triple(u), triple(v)), 3);
   if (u.entries.size() == 1)
-    return column(-u.entries[0] * v.entries[1], u.entries[0] * v.entries[0]);
+    return column({-u.entries[0] * v.entries[1], u.entries[0] * v.entries[0], 0}, 2);
   return scalar(u.entries[0] * v.entries[1] - u.entries[1] * v.entries[0]);
+}
+
+// S(r): in the plane the column with S(r) w = w × r, in space the matrix with S(r) u = r × u.
+Array skew(const Array& r) {
+  if (r.entries.size() == 2) return column({-r.entries[1], r.entries[0], 0}, 2);
+  const auto [x, y, z] = triple(r);
+  return {3, 3, {0, -z, y, z, 0, -x, -y, x, 0}};
 }
 
 // Blocks side by side and one under the other; a 0 fills whatever its place asks for.
@@ -83,6 +97,7 @@ double called(const std::string& name, const std::vector<Array>& args) {
   if (name == "abs") return std::fabs(x);
   if (name == "sign") return x > 0 ? 1 : x < 0 ? -1 : 0;
   if (name == "atan2") return std::atan2(x, args[1].entries[0]);
+  if (name == "twist") throw NoValue(name);  // its frames are more than their x axes
   if (name == "angle") {
     return std::atan2(cross_product(args[0], args[1]).entries[0],
                       multiplied(transposed(args[0]), args[1]).entries[0]);
@@ -90,11 +105,21 @@ double called(const std::string& name, const std::vector<Array>& args) {
   throw std::logic_error("unknown function " + name);
 }
 
+Array tensor(Expr leaf, const Values& values) {
+  Array a{3, 3, {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j)
+      a.entries.push_back(evaluate(tensor_component(leaf, i, j), values));
+  }
+  return a;
+}
+
 Array leaf_value(const Formula& f, const Values& values) {
   if (!f.leaf) throw NoValue(f.name);
+  if (is_tensor(f.leaf)) return tensor(f.leaf, values);
   if (!f.leaf->vector) return scalar(evaluate(f.leaf, values));
-  const Triple<double> v = Numbers(values).vector(f.leaf);
-  return column(v[0], v[1]);
+  const std::size_t dimension = static_cast<std::size_t>(f.leaf->pool->dimension());
+  return column(Numbers(values).vector(f.leaf), dimension);
 }
 
 }  // namespace
@@ -102,47 +127,51 @@ Array leaf_value(const Formula& f, const Values& values) {
 Array value_of_formula(const Formula& f, const Values& values) {
   std::vector<Array> args;
   for (const Formula& arg : f.args) args.push_back(value_of_formula(arg, values));
-  const auto length = [&] { return std::hypot(args[0].entries[0], args[0].entries[1]); };
-  switch (f.form) {
-    case Form::leaf:
+  const auto length = [&] {
+    const auto [x, y, z] = triple(args[0]);
+    return std::hypot(x, y, z);
+  };
+  switch (f.shape) {
+    case Shape::leaf:
       return leaf_value(f, values);
-    case Form::number:
+    case Shape::number:
       return scalar(f.number.value());
-    case Form::sum: {
+    case Shape::sum: {
       Array total = scalar(0);
       for (std::size_t i = 0; i < args.size(); ++i)
         total = added(total, args[i], f.minus[i] ? -1 : 1);
       return total;
     }
-    case Form::product: {
+    case Shape::product: {
       Array total = scalar(1);
       for (const Array& arg : args) total = multiplied(total, arg);
       return total;
     }
-    case Form::quotient:
+    case Shape::quotient:
       return times(1 / args[1].entries[0], args[0]);
-    case Form::power:
+    case Shape::power:
       return scalar(std::pow(args[0].entries[0], f.exponent));
-    case Form::dot:
+    case Shape::dot:
       return multiplied(transposed(args[0]), args[1]);
-    case Form::cross:
+    case Shape::cross:
       return cross_product(args[0], args[1]);
-    case Form::perp:
-    case Form::skew:
-      return column(-args[0].entries[1], args[0].entries[0]);
-    case Form::norm:
+    case Shape::perp:
+    case Shape::skew:
+      return skew(args[0]);
+    case Shape::norm:
       return scalar(length());
-    case Form::unit:
+    case Shape::unit:
       return times(1 / length(), args[0]);
-    case Form::component:
-      return scalar(args[0].entries[f.name == "x" ? 0 : 1]);
-    case Form::call:
+    case Shape::component:
+      return scalar(args[0].entries[static_cast<std::size_t>(f.name[0] - 'x')]);
+    case Shape::call:
       return scalar(called(f.name, args));
-    case Form::transpose:
+    case Shape::transpose:
       return transposed(args[0]);
-    case Form::identity:
-      return {2, 2, {1, 0, 0, 1}};
-    case Form::matrix:
+    case Shape::identity:
+      return values.contains("v_a_z") ? Array{3, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1}}
+                                      : Array{2, 2, {1, 0, 0, 1}};
+    case Shape::matrix:
       return assembled(f, args);
   }
   throw std::logic_error("unknown form");

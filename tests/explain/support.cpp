@@ -31,7 +31,26 @@ std::vector<std::pair<std::string, std::string>> unusual_specs() {
       {"direction_row",
        "joint direction_row planar\n  \"A vector row that no number multiplies: K in "
        "components.\"\n"
-       "  point pa on a\n  point pb on b\n  unit t on b\n  unit(pa - pb) = t\n"}};
+       "  point pa on a\n  point pb on b\n  unit t on b\n  unit(pa - pb) = t\n"},
+      {"hinge",
+       "joint hinge spatial\n  \"A ball joint and parallel axes.\"\n"
+       "  point pa on a\n  point pb on b = pa\n  frame fa on a\n  frame fb on b = fa\n"
+       "  pin: pa = pb\n  parallel: cross(fa.x, fb.x) = 0 keep 2\n"
+       "  coordinate angle = twist(fa, fb)\n  coordinate tilt = swing(fa, fb)\n"
+       "  coordinate bend = angle(fa.z, fb.y, fa.x)\n"},
+      {"turned",
+       "joint turned spatial\n  \"The same orientation.\"\n"
+       "  frame fa on a\n  frame fb on b\n  rotation(fa, fb) = 0\n"},
+      {"guided",
+       "joint guided spatial\n  \"A rod, a guide and a ratio.\"\n"
+       "  point pa on a\n  point pb on b\n  frame f on a\n  unit n on b\n  scalar l [m]\n"
+       "  scalar ratio [1]\n  let d = pb - pa\n  norm(d) <= l\n  ratio * dot(d, f.x) = l\n"
+       "  dot(unit(d), n) = 0\n  velocity dot(v(pa) - v(pb), cross(n, f.y)) = 0\n"
+       "  coordinate height = local(d, f).z\n"},
+      {"outer",
+       "joint outer spatial\n  \"A vector row with numbers that move.\"\n"
+       "  point pa on a\n  point pb on b\n  unit n on a\n  let d = pb - pa\n"
+       "  d = dot(n, d) * n\n"}};
 }
 
 Joint read_text(const std::string& name, const std::string& text) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -10,12 +11,19 @@
 #include "derive/explain.hpp"
 #include "derive/specs_folder.hpp"
 
+// "planar/line", ...
 inline std::vector<std::string> spec_names() {
   std::vector<std::string> names;
   for (const std::filesystem::path& path : cdot::derive::SpecsFolder(CDOT_SPECS).all()) {
-    names.push_back(path.stem().string());
+    names.push_back(path.parent_path().stem().string() + "/" + path.stem().string());
   }
   return names;
+}
+
+// A name for a file beside those of the others: "planar_line".
+inline std::string flat(std::string name) {
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
 }
 
 inline cdot::derive::Joint read_spec(const std::string& name) {
