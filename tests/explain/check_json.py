@@ -26,6 +26,7 @@ class Program:
 
     def __init__(self, data):
         self.data = data
+        self.spatial = data["dimension"] == 3
         self.symbols = data["symbols"]
         self.known = list(self.symbols)
         self.derived = [(n, self.compiled(s["from"])) for n, s in self.symbols.items() if s["from"]]
@@ -57,13 +58,63 @@ class Program:
                 state[name] = mp.pi
             elif symbol["kind"] in ("mass", "parameter", "time"):
                 state[name] = mpf(rng.uniform(0.5, 2))
-            elif symbol["kind"] in ("position", "velocity"):
+            elif symbol["kind"] in ("position", "velocity", "orientation"):
                 state[name] = mpf(rng.uniform(-2, 2))
+        for body in self.data["bodies"] if self.spatial else []:
+            normalise(state, [f"e_{body}_{k}" for k in range(4)])
+        letters = "xyz" if self.spatial else "xy"
         for name, symbol in self.symbols.items():
             if symbol["unit_length"] and name in state and name.endswith("_x"):
-                angle = mpf(rng.uniform(-3, 3))
-                state[name], state[name[:-1] + "y"] = mp.cos(angle), mp.sin(angle)
+                normalise(state, [name[:-1] + c for c in letters], rng)
+        for frame in self.data["frames"]:
+            columns = zip(*rotation([mpf(rng.uniform(-1, 1)) for _ in range(4)]))
+            for names, axis in zip(frame["axes"], columns):
+                state.update(zip(names, axis))
         return state
+
+    def directions(self, state):
+        """Of each column of J: what changes, and how fast."""
+        result = []
+        for column in self.data["columns"]:
+            if column.startswith("v_"):
+                result.append({"x_" + column[2:]: mpf(1)})
+            elif self.spatial:
+                result.append(self.turn(state, column[2:-2], "xyz".index(column[-1])))
+            else:
+                result.append({"theta_" + column[2:]: mpf(1)})
+        return result
+
+    def turn(self, state, body, axis):
+        """de/dt = 1/2 G^T w, of a turn about a world axis at unit rate."""
+        names = [f"e_{body}_{k}" for k in range(4)]
+        e = [state[name] for name in names]
+        G = [[-e[1], e[0], -e[3], e[2]], [-e[2], e[3], e[0], -e[1]], [-e[3], -e[2], e[1], e[0]]]
+        return dict(zip(names, [g / 2 for g in G[axis]]))
+
+    def inverse_mass(self, state, j, k):
+        a, b = self.data["columns"][j], self.data["columns"][k]
+        if a[0] == "v":
+            return state["inv_m_" + a[2:-2]] if j == k else 0
+        if not self.spatial:
+            return state["inv_I_" + a[2:]] if j == k else 0
+        if b[0] == "v" or a[:-1] != b[:-1]:
+            return 0
+        return state["inv_I_" + a[2:-1] + min(a[-1], b[-1]) + max(a[-1], b[-1])]
+
+
+def normalise(state, names, rng=None):
+    if rng is not None:
+        state.update({name: mpf(rng.uniform(-1, 1)) for name in names})
+    length = mp.sqrt(sum(state[name] ** 2 for name in names))
+    state.update({name: state[name] / length for name in names})
+
+
+def rotation(e):
+    length = mp.sqrt(sum(x * x for x in e))
+    a, b, c, d = (x / length for x in e)
+    return [[a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],
+            [2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b)],
+            [2 * (b * d - a * c), 2 * (c * d + a * b), a * a - b * b - c * c + d * d]]
 
 
 def close(a, b):
@@ -79,11 +130,6 @@ class Checks:
         self.C, self.Cdot, self.C_t = (vector(block[key]) for key in ("C", "Cdot", "C_t"))
         self.J, self.K, self.gamma = matrix(block["J"]), matrix(block["K"]), vector(block["gamma"])
         self.text = block
-        columns = program.data["columns"]
-        spins = [c.startswith("w_") for c in columns]  # the others are v_a_x, v_a_y
-        self.coordinates = [("theta_" if w else "x_") + c[2:] for w, c in zip(spins, columns)]
-        masses = zip(spins, columns)
-        self.inverse_masses = ["inv_I_" + c[2:] if w else "inv_m_" + c[2:-2] for w, c in masses]
 
     def expect(self, name, a, b):
         self.done += 1
@@ -101,14 +147,18 @@ class Checks:
     def at(self, state):
         columns = self.program.data["columns"]
         values = self.program.values(state)
-        motion = {q: state[v] for q, v in zip(self.coordinates, columns)}
+        directions = self.program.directions(state)
+        motion = {}
+        for direction, column in zip(directions, columns):
+            for name, rate in direction.items():
+                motion[name] = motion.get(name, 0) + rate * state[column]
         if "time" in state:
             motion["time"] = mpf(1)
         J = [[f(values) for f in row] for row in self.J]
         for i, kind in enumerate(self.kinds):
             if kind != "velocity":
-                for j, q in enumerate(self.coordinates):
-                    rate = self.difference(self.C[i], state, {q: mpf(1)})
+                for j, direction in enumerate(directions):
+                    rate = self.difference(self.C[i], state, direction)
                     self.expect(f"J[{i}][{j}]", J[i][j], rate)
                 in_time = {"time": mpf(1)} if "time" in state else {}
                 C_t = self.difference(self.C[i], state, in_time)
@@ -121,7 +171,8 @@ class Checks:
             self.expect(f"gamma[{i}]", self.gamma[i](values), -rate)
             assert len(self.K) == len(self.K[i]) == len(self.kinds), "K is not square"
             for k in range(len(self.kinds)):
-                K = sum(J[i][j] * state[m] * J[k][j] for j, m in enumerate(self.inverse_masses))
+                K = sum(J[i][j] * self.program.inverse_mass(state, j, l) * J[k][l]
+                        for j in range(len(columns)) for l in range(len(columns)))
                 self.expect(f"K[{i}][{k}]", self.K[i][k](values), K)
         return J
 
