@@ -56,10 +56,18 @@ struct NotLinear : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// What moves; by default everything.
+struct Moving {
+  int immovable = -1;  // this body stands still
+  Expr only = {};      // nothing moves but this leaf: one term of the product rule
+  // Nothing moves, but the Euler parameters e of this body grow by themselves, de/dt = e, and so leave their unit
+  // sphere: what is fixed in the body and turned by A(e) grows too. In space; a twist has no part in it.
+  int stretched = -1;
+};
+
 // d e/dt along the motion: dx/dt = v, ds/dt = w x s for what is fixed in a body, dtheta/dt = w. Velocities themselves
 // count as constant, so that applied twice it gives C's second derivative without the accelerations.
-// With `immovable` >= 0 that body stands still; with `only` nothing moves but that leaf: one term of the product rule.
-Expr time_derivative(Expr e, const Joint& joint, int immovable = -1, Expr only = {});
+Expr time_derivative(Expr e, const Joint& joint, const Moving& motion = {});
 
 // Terms r x t + s x t as (r + s) x t, and likewise for dot: shorter, and how people write.
 Expr collected(Expr e);

@@ -114,7 +114,7 @@ std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::s
   for (const Expr leaf : leaves_of(std::span(&row.C, 1))) {
     if (leaf->body < 0) continue;
     ScalarRow only;
-    only.Cdot = time_derivative(row.C, joint_, immovable_, leaf);
+    only.Cdot = time_derivative(row.C, joint_, {immovable_, leaf});
     only.J = isolate_velocities(only.Cdot, joint_);
     sources.push_back({leaf, sign * (entry == whole_row ? only.Cdot : columns_of(only.J)[entry])});
   }

@@ -151,6 +151,8 @@ std::vector<Term> terms_of(Expr e);
 // Builders. Scalars and vectors must fit (asserted); the reader has checked the author's types before.
 Expr sum(Pool& pool, std::span<const Term> terms, bool vector);
 Expr product(Pool& pool, std::span<const Expr> factors, std::span<const int> exponents);
+// A product with its i-th factor taken out once; also where it has a name, which plain division does not look into.
+Expr without_factor(Expr product, std::size_t i);
 Expr zero_vector(Pool& pool);
 Expr operator+(Expr a, Expr b);
 Expr operator-(Expr a, Expr b);

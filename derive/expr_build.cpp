@@ -139,6 +139,12 @@ Expr product(Pool& pool, std::span<const Expr> factors, std::span<const int> exp
   return coef * (plain ? n.args[0] : pool.intern(std::move(n)));
 }
 
+Expr without_factor(Expr e, std::size_t i) {
+  std::vector<int> exponents = e->exponents;
+  --exponents[i];
+  return product(*e->pool, e->args, exponents);
+}
+
 Expr operator*(Expr a, Expr b) {
   Pool& pool = *a->pool;
   if (a->vector) std::swap(a, b);

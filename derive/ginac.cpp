@@ -50,10 +50,8 @@ std::vector<ex> Algebra::coordinates(int body) {
 
 namespace {
 
-// de/dt = 1/2 G^T w, G = [-e1 e0 -e3 e2; -e2 e3 e0 -e1; -e3 -e2 e1 e0]
-std::array<ex, 4> rates_of(const EulerParameters<ex>& e, const ex& w_x, const ex& w_y, const ex& w_z) {
-  return {(-e[1] * w_x - e[2] * w_y - e[3] * w_z) / 2, (e[0] * w_x + e[3] * w_y - e[2] * w_z) / 2,
-          (-e[3] * w_x + e[0] * w_y + e[1] * w_z) / 2, (e[2] * w_x - e[1] * w_y + e[0] * w_z) / 2};
+EulerParameters<ex> rates_of(const EulerParameters<ex>& e, const ex& w_x, const ex& w_y, const ex& w_z) {
+  return product(EulerParameters<ex>{0, w_x / 2, w_y / 2, w_z / 2}, e);
 }
 
 ex derivative(const ex& e, const ex& symbol) {
@@ -73,7 +71,7 @@ EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {
                     1 - e[1] * e[1] - e[2] * e[2] - e[3] * e[3]});
   if (!moves(body)) return e;
   const std::vector<ex> v = velocities(body);
-  const std::array<ex, 4> rates = rates_of(e, v[3], v[4], v[5]);
+  const EulerParameters<ex> rates = rates_of(e, v[3], v[4], v[5]);
   for (std::size_t k = 0; k < 4; ++k) leaves_.at(name + std::to_string(k)).rate = rates[k];
   return e;
 }
@@ -83,7 +81,7 @@ ex Algebra::slope(const ex& e, int body, std::size_t k) {
   const std::vector<ex> q = coordinates(body);
   if (joint_.dimension == 2 || k < 3) return derivative(e, q[k]);
   const auto unit = [&](std::size_t axis) { return ex(k == axis ? 1 : 0); };
-  const std::array<ex, 4> rates = rates_of({q[3], q[4], q[5], q[6]}, unit(3), unit(4), unit(5));
+  const EulerParameters<ex> rates = rates_of({q[3], q[4], q[5], q[6]}, unit(3), unit(4), unit(5));
   ex total = 0;
   for (std::size_t m = 0; m < 4; ++m) total += derivative(e, q[3 + m]) * rates[m];
   return total;

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "derive/canonical.hpp"
+#include "derive/forms.hpp"
 #include "derive/kernel_factor.hpp"
 #include "derive/matrix.hpp"
 #include "derive/symbols.hpp"
@@ -261,48 +262,26 @@ class BlockPlanner {
     add("inverse_mass_jacobian", "(M^-1 J^T)^T, laid out like dense", outputs);
   }
 
-  // The other two velocity forms in space: J_b = J diag(E, A) for w = A w', J_c = J diag(E, 2 G)
-  // for w = 2 G de/dt.
+  // The other two velocity forms in space.
   void add_other_forms() {
-    std::vector<NamedExpr> local, euler;
+    add_form("local_jacobian", "form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A)",
+             Form::local);
+    add_form("euler_jacobian", "form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G)",
+             Form::euler);
+  }
+
+  void add_form(const std::string& name, const std::string& summary, Form form) {
+    std::vector<NamedExpr> J;
     for (std::size_t i = 0; i < rows(); ++i) {
-      for (std::size_t b = 0; b < bodies(); ++b) {
-        for (std::size_t k = 0; k < 3; ++k) {
-          local.push_back({element(element("D", i), 6 * b + k), stored(i, 6 * b + k)});
-          euler.push_back({element(element("D", i), 7 * b + k), stored(i, 6 * b + k)});
-        }
-        const auto A = rotation_matrix(joint_, static_cast<int>(b));
-        for (std::size_t k = 0; k < 3; ++k) {
-          local.push_back({element(element("D", i), 6 * b + 3 + k),
-                           times_column(i, b, {A[0][k], A[1][k], A[2][k]})});
-        }
-        const std::array<std::array<Expr, 3>, 4> G = euler_columns(b);
-        for (std::size_t k = 0; k < 4; ++k) {
-          euler.push_back(
-              {element(element("D", i), 7 * b + 3 + k), Rational(2) * times_column(i, b, G[k])});
+      for (std::size_t b = 0, c = 0; b < bodies(); ++b) {
+        std::vector<Expr> global;
+        for (std::size_t k = 0; k < 6; ++k) global.push_back(stored(i, 6 * b + k));
+        for (const Expr e : columns_in(form, global, joint_, static_cast<int>(b))) {
+          J.push_back({element(element("D", i), c++), e});
         }
       }
     }
-    add("local_jacobian",
-        "form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A)", local);
-    add("euler_jacobian", "form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G)",
-        euler);
-  }
-
-  Expr times_column(std::size_t row, std::size_t body, const std::array<Expr, 3>& column) const {
-    Expr sum = pool_.number(0);
-    for (std::size_t l = 0; l < 3; ++l) sum = sum + stored(row, 6 * body + 3 + l) * column[l];
-    return sum;
-  }
-
-  // G = [-e1 e0 -e3 e2; -e2 e3 e0 -e1; -e3 -e2 e1 e0], by columns.
-  std::array<std::array<Expr, 3>, 4> euler_columns(std::size_t body) const {
-    std::array<Expr, 4> e;
-    for (std::size_t k = 0; k < 4; ++k) {
-      e[k] = pool_.symbol(joint_.bodies[body] + ".e" + std::to_string(k), Role::given,
-                          static_cast<int>(body));
-    }
-    return {{{-e[1], -e[2], -e[3]}, {e[0], e[3], -e[2]}, {-e[3], e[0], e[1]}, {e[2], -e[1], e[0]}}};
+    add(name, summary, J);
   }
 
   void add_from_pose() {

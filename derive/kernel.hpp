@@ -68,8 +68,6 @@ DefaultValue plan_default(const Joint& joint, int index);
 // The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space
 // "f_x_x" to "f_z_z".
 std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter);
-// The rotation matrix of a body's pose, as a kernel reads it: [c -s; s c], or [xx xy xz; ...].
-std::vector<std::vector<Expr>> rotation_matrix(const Joint& joint, int body);
 // How a kernel reads a parameter's numbers: symbols, in the same order.
 std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter);
 

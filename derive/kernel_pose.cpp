@@ -1,6 +1,7 @@
 // From poses and parameters to what formulas are made of: arms and directions turned into the
 // world, and back for defaults.
 #include "derive/canonical.hpp"
+#include "derive/forms.hpp"
 #include "derive/kernel.hpp"
 #include "derive/symbols.hpp"
 
@@ -24,19 +25,6 @@ std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter) 
     symbols.push_back(joint.pool->symbol("p." + field, Role::parameter));
   }
   return symbols;
-}
-
-std::vector<std::vector<Expr>> rotation_matrix(const Joint& joint, int body) {
-  const auto member = [&](const std::string& name) {
-    return joint.pool->symbol(joint.bodies[static_cast<std::size_t>(body)] + "." + name,
-                              Role::given, body);
-  };
-  if (joint.dimension == 2) return {{member("c"), -member("s")}, {member("s"), member("c")}};
-  std::vector<std::vector<Expr>> A(3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) A[i].push_back(member(std::string{"xyz"[i], "xyz"[j]}));
-  }
-  return A;
 }
 
 PoseInputs::PoseInputs(const Joint& joint) {

@@ -98,13 +98,6 @@ Triple<double> turned(const EulerParameters<double>& e, const Triple<double>& u)
   return sum;
 }
 
-EulerParameters<double> product(const EulerParameters<double>& p, const EulerParameters<double>& q) {
-  return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-          p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-          p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
-          p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1]};
-}
-
 EulerParameters<double> random_orientation(Random& random) {
   EulerParameters<double> e;
   double square = 0;

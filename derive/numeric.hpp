@@ -33,6 +33,15 @@ Triple<T> cross_product(const Triple<T>& u, const Triple<T>& v) {
 template <class T>
 using EulerParameters = std::array<T, 4>;
 
+// The product of quaternions; w in world axes turns e at de/dt = 1/2 (0, w) e, w' in the body's at 1/2 e (0, w').
+template <class T>
+EulerParameters<T> product(const EulerParameters<T>& p, const EulerParameters<T>& q) {
+  return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+          p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+          p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
+          p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1]};
+}
+
 // The axes of what is turned by e, as columns of the rotation matrix
 // A(e) = (e0^2 - e'e') E + 2 e' e'^T + 2 e0 ~e', e' = (e1, e2, e3); exact where e . e = 1.
 template <class T>

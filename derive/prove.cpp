@@ -86,6 +86,8 @@ class Prover {
         return gamma();
       case LawId::stiffness:
         return stiffness();
+      case LawId::forms:
+        return forms();
       case LawId::momentum:
         law_ = conserves_momentum(joint_, block_, names_);
         return;
@@ -236,6 +238,50 @@ class Prover {
     return force;
   }
 
+  // Along body axes, de/dt = 1/2 e (0, w'), and along the Euler parameters themselves, by GiNaC from C in raw
+  // coordinates: a route that knows nothing of w. With dC/de = J_c + (dC/de . e) e^T.
+  void forms() {
+    law_.verdict = Verdict::does_not_apply;
+    if (joint_.dimension == 2) return;
+    for (const ScalarRow& row : block_.rows) {
+      if (row.kind == RowKind::velocity) continue;
+      if (law_.verdict == Verdict::does_not_apply) law_.verdict = Verdict::holds;
+      for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+        if (movable(b)) forms_of(row, static_cast<int>(b));
+      }
+    }
+  }
+
+  void forms_of(const ScalarRow& row, int b) {
+    const auto J = entries(raw_, row.J[static_cast<std::size_t>(b)]);
+    const std::vector<ex> q = raw_.coordinates(b);
+    const EulerParameters<ex> e = {q[3], q[4], q[5], q[6]}, conjugate = {e[0], -e[1], -e[2], -e[3]};
+    const auto A = axes_of(e);
+    const Triple<ex> J_w = {J[3], J[4], J[5]};
+    std::array<ex, 4> slope;
+    for (std::size_t k = 0; k < 4; ++k) slope[k] = derivative(raw_.of(row.C), e[k]);
+    const ex half = GiNaC::numeric(1, 2), along = raw_.of(time_derivative(row.C, joint_, {.stretched = b}));
+    for (std::size_t k = 0; k < 3; ++k) {
+      EulerParameters<ex> turn = {0, 0, 0, 0};
+      turn[k + 1] = half;
+      const EulerParameters<ex> rate = cdot::derive::product(e, turn);
+      ex expected = 0;
+      for (std::size_t m = 0; m < 4; ++m) expected += slope[m] * rate[m];
+      require_zero(raw_, inner_product(J_w, A[k]) - expected, row,
+                   ", column w'_" + joint_.bodies[static_cast<std::size_t>(b)] + "." + "xyz"[k] +
+                       ": J diag(E, A) is not the derivative of C along the body's axes");
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      // Column k of 2 G: the w that de_k/dt = 1 alone would be.
+      EulerParameters<ex> unit = {0, 0, 0, 0};
+      unit[k] = 2;
+      const EulerParameters<ex> w = cdot::derive::product(unit, conjugate);
+      require_zero(raw_, inner_product(J_w, Triple<ex>{w[1], w[2], w[3]}) - (slope[k] - along * e[k]), row,
+                   ", column e" + std::to_string(k) + " of " + joint_.bodies[static_cast<std::size_t>(b)] +
+                       ": J diag(E, 2 G) is not dC/de - (dC/de . e) e^T");
+    }
+  }
+
   void rank() {
     if (block_.immovable >= 0) {  // a row may well speak of that body alone
       law_.verdict = Verdict::does_not_apply;
@@ -306,6 +352,8 @@ std::string_view name_of(LawId id) {
       return "gamma = -Jdot v - d/dt dC/dt";
     case LawId::stiffness:
       return "the geometric stiffness is the Hessian of lambda . C";
+    case LawId::forms:
+      return "J_b = J diag(E, A) and J_c = J diag(E, 2 G) are derivatives of C";
     case LawId::momentum:
       return "momentum is conserved";
     case LawId::rank:

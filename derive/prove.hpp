@@ -24,10 +24,11 @@ enum class LawId {
   mass,       // K is symmetric and J M^-1 J^T
   gamma,      // gamma = -Jdot v - d/dt dC/dt
   stiffness,  // the geometric stiffness is the Hessian of lambda . C in raw coordinates
+  forms,      // in space: J by body-local spins and by Euler parameters is the derivative of C along them
   momentum,   // a joint without the world is not felt by a common motion of all bodies
   rank        // as many independent rows as are written
 };
-inline constexpr int number_of_laws = 9;
+inline constexpr int number_of_laws = 10;
 
 struct Law {
   LawId id = LawId::rate;
