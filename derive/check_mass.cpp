@@ -140,7 +140,7 @@ class MassCheck {
     for (auto& [monomial, coefficient] : by_monomial) {
       const auto& at = coefficient.seen;
       const double largest = *std::max_element(at.begin(), at.end());
-      const bool zero = largest < 1e-18 && names_.is_zero(coefficient.value) == Algebra::Zero::yes;
+      const bool zero = largest < 1e-18 && names_.vanishes(coefficient.value);
       if (!zero) coefficients_.push_back(std::move(coefficient));
     }
     return true;
@@ -218,7 +218,7 @@ class MassCheck {
       const std::optional<ex> factor = factor_of(c, s.seen);
       if (!factor) continue;
       const ex root = names_.of(s.e);
-      if (names_.is_zero(c.value - *factor * root * root) != Algebra::Zero::yes) continue;
+      if (!names_.vanishes(c.value - *factor * root * root)) continue;
       c.factors = factors_of(s.e);
       return true;
     }
@@ -233,7 +233,7 @@ class MassCheck {
         const std::optional<ex> factor = factor_of(c, product);
         if (!factor) continue;
         const ex root = names_.of(candidates_[i].e) * names_.of(candidates_[k].e);
-        if (names_.is_zero(c.value - *factor * root * root) != Algebra::Zero::yes) continue;
+        if (!names_.vanishes(c.value - *factor * root * root)) continue;
         c.factors = {said(candidates_[k].e, joint_), said(candidates_[i].e, joint_)};
         return true;
       }

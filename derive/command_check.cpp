@@ -65,16 +65,18 @@ std::string counted(const CheckReport& report, Level level) {
 
 void print(const SourceFile& file, const CheckReport& report) {
   for (const Finding& f : report.findings) fmt::print("{}", render(file, f));
-  std::size_t proved = 0, laws = 0;
+  std::size_t proved = 0, shown = 0, laws = 0;
   for (const CheckReport::Proved& p : report.proofs) {
     for (const Law& law : p.proof.laws) {
       if (law.verdict == Verdict::does_not_apply) continue;
       ++laws;
       if (law.verdict == Verdict::holds) ++proved;
+      if (law.verdict == Verdict::shown) ++shown;
     }
   }
   fmt::print("{}: {}", file.path, status(report));
   if (report.readable) fmt::print(", {} of {} laws proved", proved, laws);
+  if (shown > 0) fmt::print(", {} shown at {} random points", shown, exact_points);
   fmt::print("{}{}{}\n", counted(report, Level::error), counted(report, Level::warning),
              counted(report, Level::note));
 }

@@ -48,6 +48,10 @@ std::vector<Joint> read_and_prove(const std::vector<fs::path>& paths, const Spec
     }
     const Proof proof = prove(*read.joint, derive_rows(*read.joint));
     for (const Law& law : proof.laws) {
+      if (law.verdict == Verdict::shown) {
+        fmt::print("{}: shown at {} random points, too much to prove: {}\n", read.joint->name, exact_points,
+                   name_of(law.id));
+      }
       if (law.verdict != Verdict::fails && law.verdict != Verdict::undecided) continue;
       failed = true;
       Diagnostics said;

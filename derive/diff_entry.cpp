@@ -147,7 +147,7 @@ bool EntryJudge::proved(Expr difference) const {
   if (topological(std::span(&difference, 1)).size() > few_nodes) return true;
   for (const Algebra::Route route : {Algebra::Route::names, Algebra::Route::raw}) {
     Algebra algebra(joint_, route, immovable_);
-    if (algebra.is_zero(algebra.of(difference)) == Algebra::Zero::yes) return true;
+    if (algebra.vanishes(algebra.of(difference))) return true;
   }
   return false;
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "derive/modular_point.hpp"
 #include "derive/numeric.hpp"
 
 namespace cdot::derive {
@@ -11,50 +12,20 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-// A root of no square, a division by zero: another pose has to be tried.
-struct NotHere {};
-
-struct Rotation {
-  Modular c{1}, s{0};
-};
-Rotation operator*(Rotation a, Rotation b) {
-  return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s};
-}
-Rotation pow(Rotation r, std::int64_t exponent) {
-  if (exponent < 0) return pow(Rotation{r.c, Modular(0) - r.s}, -exponent);
-  Rotation result;
-  for (; exponent > 0; exponent /= 2, r = r * r) {
-    if (exponent % 2 == 1) result = result * r;
-  }
-  return result;
-}
-// (1 - t^2, 2 t) / (1 + t^2); the divisor is never zero since -1 is no square.
-Rotation rotation_of(Modular t) {
-  const Modular inv = inverse(Modular(1) + t * t);
-  return {(Modular(1) - t * t) * inv, (t + t) * inv};
-}
-
 // A generic pose. Angles and scalars are small whole numbers, so that sums of them can be
-// recognised in the argument of a sine, which then obeys the addition theorems; other arguments get
-// a random value each.
+// recognised in the argument of a sine.
 class Pose final : public Arithmetic<Modular> {
  public:
-  explicit Pose(std::uint64_t seed) : random_(seed), salt_(random_.bits()) {
-    unit_turn_ = rotation_of(any());
-    base_ = any();
-    // A turn by pi/4: of order 8 in the group of rotations, which has 2^61 elements.
-    eighth_turn_ = rotation_of(any());
-    for (int i = 0; i < 58; ++i) eighth_turn_ = eighth_turn_ * eighth_turn_;
-  }
+  explicit Pose(std::uint64_t seed) : point_(seed) {}
 
   Modular number(Rational value) override {
-    return Modular(value.num()) * inverse(Modular(value.den()));
+    return Modular(value.num()) * point_.inverse(Modular(value.den()));
   }
 
   Modular scalar_leaf(const Node& symbol) override {
     if (symbol.role == Role::angle) return Modular(angle_of(symbol.body));
-    if (symbol.role == Role::constant) return pi_ = remembered(symbol.symbol, any());
-    return remembered(symbol.symbol, Modular(small()));
+    if (symbol.role == Role::constant) return point_.pi();
+    return scalars_.try_emplace(symbol.symbol, Modular(point_.small())).first->second;
   }
 
   Triple<Modular> vector_leaf(const Node& symbol) override {
@@ -63,56 +34,15 @@ class Pose final : public Arithmetic<Modular> {
     if (symbol.role == Role::body_vector && symbol.symbol.starts_with("axis_")) {
       return turned({}, symbol.body);
     }
-    if (symbol.unit_length) return turned(rotation_of(any()), symbol.body);
-    return {any(), any()};
+    if (symbol.unit_length) return turned(point_.any_rotation(), symbol.body);
+    return {point_.any(), point_.any()};
   }
 
-  Modular inverse(const Modular& x) override {
-    if (x.is_zero()) throw NotHere{};
-    return derive::inverse(x);
-  }
-
-  Modular call(Fn fn, std::span<const Modular> args) override {
-    const Modular x = args[0];
-    switch (fn) {
-      case Fn::sqrt:
-        return root(x);
-      case Fn::sign:
-        return sign(x);
-      case Fn::abs:
-        return sign(x) * x;
-      case Fn::sin:
-        return turn(x).s;
-      case Fn::cos:
-        return turn(x).c;
-      case Fn::tan:
-        return turn(x).s * inverse(turn(x).c);
-      case Fn::exp:
-        return exponential(x);
-      case Fn::inverse:
-      case Fn::pivot:
-        return inverse(x);
-      case Fn::select:
-        return sign(x) == Modular(1) ? args[1] : args[2];
-      case Fn::log:
-        return any_for(1, x, x);
-      case Fn::atan2:
-        return any_for(2, x, args[1]);
-    }
-    return x;
-  }
+  Modular inverse(const Modular& x) override { return point_.inverse(x); }
+  Modular call(Fn fn, std::span<const Modular> args) override { return point_.call(fn, args); }
 
  private:
-  static constexpr std::int64_t step = 720720;  // divisible by 1..16, so that halves stay whole
-  static constexpr std::int64_t small_bound = std::int64_t{1} << 56;
-
-  Modular any() { return Modular::of_bits(random_.bits()); }
-  std::int64_t small() { return step * static_cast<std::int64_t>(random_.bits() >> 36); }
-
-  Modular remembered(const std::string& name, Modular fresh) {
-    return scalars_.emplace(name, fresh).first->second;
-  }
-  std::int64_t angle_of(int body) { return angles_.emplace(body, small()).first->second; }
+  std::int64_t angle_of(int body) { return angles_.try_emplace(body, point_.small()).first->second; }
 
   // Whatever turns with a body points anywhere; a triad is turned anywhere as a whole.
   Triple<Modular> vector_in_space(const Node& symbol) {
@@ -124,11 +54,11 @@ class Pose final : public Arithmetic<Modular> {
     const Pool::Axis axis = symbol.pool->axis_of(Expr(&symbol));
     if (axis.triad) return triads_.try_emplace(axis.triad, any_triad()).first->second[static_cast<std::size_t>(axis.index)];
     if (symbol.unit_length) return any_triad()[0];
-    return {any(), any(), any()};
+    return {point_.any(), point_.any(), point_.any()};
   }
 
   std::array<Triple<Modular>, 3> any_triad() {
-    const EulerParameters<Modular> e{any(), any(), any(), any()};
+    const EulerParameters<Modular> e{point_.any(), point_.any(), point_.any(), point_.any()};
     const Modular square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3];
     auto axes = axes_of(e);
     for (auto& axis : axes) {
@@ -138,46 +68,11 @@ class Pose final : public Arithmetic<Modular> {
   }
 
   Triple<Modular> turned(Rotation r, int body) {
-    if (body >= 0) r = r * pow(unit_turn_, angle_of(body));
+    if (body >= 0) r = r * point_.turn_by(angle_of(body));
     return {r.c, r.s};
   }
 
-  static Modular sign(Modular x) {
-    if (x.is_zero()) throw NotHere{};
-    return Modular(x.is_square() ? 1 : -1);
-  }
-
-  static Modular root(Modular x) {
-    if (!x.is_square()) throw NotHere{};
-    return pow(x, std::uint64_t{1} << 59);  // x^((p+1)/4), a square itself
-  }
-
-  Modular any_for(int kind, Modular x, Modular y) {
-    Random random(salt_ ^ (x.value() * 3 + y.value() * 5 + static_cast<std::uint64_t>(kind)));
-    return Modular::of_bits(random.bits());
-  }
-
-  Rotation turn(Modular x) {
-    for (int eighths = -16; eighths <= 16; ++eighths) {
-      const Modular rest = x - Modular(eighths) * pi_ * derive::inverse(Modular(4));
-      if (std::abs(rest.centred()) < small_bound) {
-        return pow(unit_turn_, rest.centred()) * pow(eighth_turn_, eighths);
-      }
-    }
-    return rotation_of(any_for(3, x, x));
-  }
-
-  Modular exponential(Modular x) {
-    const std::int64_t whole = x.centred();
-    if (std::abs(whole) >= small_bound) return any_for(4, x, x);
-    const Modular power = pow(base_, static_cast<std::uint64_t>(std::abs(whole)));
-    return whole < 0 ? inverse(power) : power;
-  }
-
-  Random random_;
-  std::uint64_t salt_;
-  Rotation unit_turn_, eighth_turn_;
-  Modular base_, pi_;
+  ModularPoint point_;
   std::map<int, std::int64_t> angles_;
   std::map<const Triad*, std::array<Triple<Modular>, 3>> triads_;
   std::map<std::string, Modular> scalars_;
@@ -195,7 +90,7 @@ std::optional<Rows> jacobian_at(std::span<const ScalarRow> rows, std::uint64_t s
       for (const Expr entry : columns_of(row.J)) entries.push_back(values.scalar(entry));
       J.push_back(std::move(entries));
     }
-  } catch (const NotHere&) {
+  } catch (const UndefinedHere&) {
     return std::nullopt;
   }
   return J;
@@ -297,15 +192,14 @@ Modular pow(Modular base, std::uint64_t exponent) {
 Modular inverse(Modular x) { return pow(x, Modular::prime - 2); }
 
 std::optional<bool> vanishes_modulo_prime(Expr scalar) {
-  constexpr int wanted_poses = 4;
   constexpr std::uint64_t most_attempts = 400;
   int poses = 0;
-  for (std::uint64_t seed = 1; seed <= most_attempts && poses < wanted_poses; ++seed) {
+  for (std::uint64_t seed = 1; seed <= most_attempts && poses < exact_points; ++seed) {
     try {
       Pose pose(seed);
       if (!Evaluation<Modular>(pose).scalar(scalar).is_zero()) return false;
       ++poses;
-    } catch (const NotHere&) {
+    } catch (const UndefinedHere&) {
       // Some root has no value at this pose.
     }
   }

@@ -39,6 +39,9 @@ class Modular {
 Modular pow(Modular base, std::uint64_t exponent);
 Modular inverse(Modular x);  // x must not be zero
 
+// At so many random points a formula has to vanish that counts as zero without a proof.
+inline constexpr int exact_points = 8;
+
 // Whether an expression vanishes at every one of several random poses modulo the prime: exact arithmetic, so that a
 // nonzero formula passes with a probability of about its degree over 2^61 at each. Empty if no pose was found at which
 // everything is defined.

@@ -15,7 +15,7 @@ Algebra::Algebra(const Joint& joint, Route route, int immovable)
 ex Algebra::leaf(const std::string& name, const ex& rate) {
   const auto found = leaves_.find(name);
   if (found != leaves_.end()) return found->second.symbol;
-  return leaves_.emplace(name, Leaf{GiNaC::realsymbol(name), rate}).first->second.symbol;
+  return leaves_.emplace(name, Leaf{fresh_symbol(name), rate}).first->second.symbol;
 }
 
 std::vector<ex> Algebra::velocities(int body) {

@@ -5,9 +5,11 @@
 #include <ginac/ginac.h>
 
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "derive/derivation.hpp"
+#include "derive/ginac_point.hpp"
 #include "derive/numeric.hpp"
 
 namespace cdot::derive {
@@ -37,15 +39,21 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   GiNaC::ex rate(const GiNaC::ex& e);
   // Decides whether e vanishes wherever it is defined, given that unit vectors have length 1 and so
   // on.
-  enum class Zero { yes, no, undecided };
+  enum class Zero {
+    yes,    // by algebra
+    shown,  // too much for algebra, but zero at `exact_points` random points modulo a prime
+    no,
+    undecided
+  };
   Zero is_zero(const GiNaC::ex& e);
+  bool vanishes(const GiNaC::ex& e) { return is_zero(e) <= Zero::shown; }
   // After Zero::no: a pose at which it shows, in the joint's names, and how much it is there.
   const std::string& witness() const { return witness_; }
   // Reduced by the same relations: a numerator as a polynomial, zero where e is; the second one
   // without what cancels.
   std::optional<GiNaC::ex> numerator(const GiNaC::ex& e);
   std::optional<GiNaC::ex> reduced_numerator(const GiNaC::ex& e);
-  GiNaC::ex other_coordinates(const GiNaC::ex& polynomial) const;
+  GiNaC::ex other_coordinates(const GiNaC::ex& polynomial);
   // The factors of such a numerator, in the joint's names: "u_x", "ratio".
   std::vector<std::string> factors_of(const GiNaC::ex& polynomial) const;
   std::vector<GiNaC::ex> symbols_in(const GiNaC::ex& e) const;
@@ -85,9 +93,31 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   GiNaC::ex root_of(const GiNaC::ex& base);
   GiNaC::ex turned(bool cosine, const GiNaC::ex& angle);
   GiNaC::ex symbol_for(const GiNaC::ex& compound);
-  GiNaC::ex reduced(const GiNaC::ex& polynomial) const;
-  GiNaC::ex without_inverses(const GiNaC::ex& polynomial) const;
   bool differs_at_random(const GiNaC::ex& e, std::uint64_t seed);
+  bool vanishes_at_points(const GiNaC::ex& e) const;
+
+  // What one test, and all tests together, may take, in factors of terms that are multiplied. Every
+  // test that is given up halves what the next may take: it is likely to be as long.
+  static constexpr std::int64_t most_work = 500000, least_work = most_work / 32;
+  static constexpr std::int64_t most_work_in_all = 80 * most_work;
+  struct TooLong : std::runtime_error {
+    TooLong() : std::runtime_error("too much to multiply out") {}
+  };
+  void spend(std::size_t work);  // throws TooLong
+  GiNaC::exvector ordered(const GiNaC::ex& e);
+  Modular fingerprint(const GiNaC::ex& e);
+  GiNaC::realsymbol fresh_symbol(const std::string& name = "");
+  GiNaC::ex multiplied(const GiNaC::ex& a, const GiNaC::ex& b);
+  GiNaC::ex raised(const GiNaC::ex& polynomial, int exponent);
+  GiNaC::ex expanded(const GiNaC::ex& e);
+  GiNaC::ex square_reduced(const GiNaC::ex& polynomial, const GiNaC::symbol& symbol,
+                           const GiNaC::ex& square);
+  GiNaC::ex inverse_removed(const GiNaC::ex& polynomial, const GiNaC::symbol& symbol,
+                            const GiNaC::ex& operand);
+  GiNaC::ex inverse_cancelled(const GiNaC::ex& polynomial, const GiNaC::symbol& symbol,
+                              const GiNaC::ex& operand);
+  GiNaC::ex reduced(const GiNaC::ex& polynomial);
+  GiNaC::ex without_inverses(const GiNaC::ex& polynomial);
 
   const Joint& joint_;
   Route route_;
@@ -96,11 +126,14 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   std::vector<Atom> atoms_;
   std::vector<std::vector<GiNaC::ex>> units_;  // symbols whose squares sum to 1
   GiNaC::exmap known_;             // compounds that have been replaced, as GiNaC wrote them
-  GiNaC::exmap inverses_, roots_;  // by their operand in normal form
+  GiNaC::exmap inverses_;          // by their operand in normal form
+  std::vector<std::pair<GiNaC::ex, GiNaC::ex>> roots_;  // operand -> symbol
   std::vector<std::pair<GiNaC::ex, std::array<GiNaC::ex, 2>>> turns_;  // angle -> (cos, sin)
   GiNaC::exmap change_;  // of variables, before an expression is tested
   std::vector<std::pair<GiNaC::ex, GiNaC::ex>>
       meanings_;  // of symbols without a name, as they came up
+  std::int64_t allowance_ = most_work, left_for_test_ = most_work, left_in_all_ = most_work_in_all;
+  PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
   std::string witness_;
   Evaluation<GiNaC::ex> evaluation_;
 };

@@ -37,41 +37,6 @@ std::vector<ex> random_direction(Random& random, std::size_t dimension) {
   return point;
 }
 
-// Powers of `symbol` from two on are replaced by means of symbol^2 = square. The polynomial must be
-// expanded.
-ex square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square) {
-  const int degree = polynomial.degree(symbol);
-  if (degree < 2) return polynomial;
-  ex out = 0;
-  for (int k = 0; k <= degree; ++k) {
-    out += polynomial.coeff(symbol, k) * pow(square, k / 2) * pow(symbol, k % 2);
-  }
-  return out.expand();
-}
-
-// The numerator over the power of `operand` that symbol = 1/operand needs.
-ex inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
-  const int degree = polynomial.degree(symbol);
-  if (degree < 1) return polynomial;
-  ex out = 0;
-  for (int k = 0; k <= degree; ++k) {
-    out += polynomial.coeff(symbol, k) * pow(operand, degree - k);
-  }
-  return out.expand();
-}
-
-// Where the terms with symbol = 1/operand are multiples of the operand, both go.
-ex inverse_cancelled(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
-  ex out = polynomial;
-  for (int k = polynomial.degree(symbol); k > 0; --k) {
-    ex quotient;
-    const ex factor = out.coeff(symbol, k);
-    if (factor.is_zero() || !divide(factor, operand, quotient)) continue;
-    out = (out - factor * pow(symbol, k) + quotient * pow(symbol, k - 1)).expand();
-  }
-  return out;
-}
-
 ex numeric_factor(const ex& term) {
   if (is_a<numeric>(term)) return term;
   if (!is_a<GiNaC::mul>(term)) return 1;
@@ -87,7 +52,7 @@ ex numeric_factor(const ex& term) {
 ex Algebra::symbol_for(const ex& compound) {
   const auto found = known_.find(compound);
   if (found != known_.end()) return found->second;
-  const ex symbol = GiNaC::realsymbol();
+  const ex symbol = fresh_symbol();
   meanings_.emplace_back(symbol, compound);
   known_.emplace(compound, symbol);
   return symbol;
@@ -100,10 +65,10 @@ ex Algebra::atomised(const ex& e) {
   ex result;
   if (is_a<GiNaC::add>(e)) {
     result = 0;
-    for (const ex& term : e) result += atomised(term);
+    for (const ex& term : ordered(e)) result += atomised(term);
   } else if (is_a<GiNaC::mul>(e)) {
     result = 1;
-    for (const ex& factor : e) result *= atomised(factor);
+    for (const ex& factor : ordered(e)) result *= atomised(factor);
   } else if (is_a<GiNaC::power>(e)) {
     result = atomised_power(e.op(0), e.op(1));
   } else {
@@ -137,6 +102,7 @@ ex Algebra::inverse_of(const ex& base) {
   const ex operand = reduced(base);
   if (operand.is_zero()) throw std::domain_error("division by zero");
   if (is_a<numeric>(operand)) return 1 / operand;
+  if (fingerprint(operand).centred() < 0) return -inverse_of(-operand);
   const auto found = inverses_.find(operand);
   if (found != inverses_.end()) return found->second;
   for (const Atom& atom : atoms_) {
@@ -146,11 +112,11 @@ ex Algebra::inverse_of(const ex& base) {
   }
   if (is_a<GiNaC::mul>(operand)) {
     ex result = 1;
-    for (const ex& factor : operand) result *= inverse_of(factor);
+    for (const ex& factor : ordered(operand)) result *= inverse_of(factor);
     return result;
   }
   if (is_a<GiNaC::power>(operand)) return pow(inverse_of(operand.op(0)), operand.op(1));
-  const GiNaC::realsymbol symbol;
+  const GiNaC::realsymbol symbol = fresh_symbol();
   atoms_.push_back({Atom::Kind::inverse, symbol, operand});
   inverses_.emplace(operand, symbol);
   return symbol;
@@ -162,34 +128,34 @@ ex Algebra::root_of(const ex& base) {
     const ex root = GiNaC::sqrt(operand);
     if (root.info(GiNaC::info_flags::rational)) return root;
   }
-  const auto found = roots_.find(operand);
-  if (found != roots_.end()) return found->second;
+  for (const auto& [other, symbol] : roots_) {
+    if (other.is_equal(operand)) return symbol;
+  }
   for (const auto& [other, symbol] : roots_) {
     if (without_inverses(operand - other).is_zero()) return symbol;
   }
-  const GiNaC::realsymbol symbol;
+  const GiNaC::realsymbol symbol = fresh_symbol();
   atoms_.push_back({Atom::Kind::square, symbol, operand});
   meanings_.emplace_back(symbol, GiNaC::sqrt(operand));
-  roots_.emplace(operand, symbol);
+  roots_.emplace_back(operand, symbol);
   return symbol;
 }
 
 // cos or sin of an angle, of a sum of angles by the addition theorems; c^2 + s^2 = 1 for the angle
 // of each term.
 ex Algebra::turned(bool cosine, const ex& angle) {
-  const ex expanded = reduced(angle);
+  const ex angle_sum = reduced(angle);
   ex c = 1, s = 0;
   const auto turn_by = [&](const ex& c_by, const ex& s_by) {
     const ex c_before = c;
     c = c * c_by - s * s_by;
     s = c_before * s_by + s * c_by;
   };
-  const bool split = is_a<GiNaC::add>(expanded) &&
-                     std::all_of(expanded.begin(), expanded.end(), [](const ex& term) {
+  const bool split = is_a<GiNaC::add>(angle_sum) &&
+                     std::all_of(angle_sum.begin(), angle_sum.end(), [](const ex& term) {
                        return is_a<GiNaC::symbol>(term / numeric_factor(term));
                      });
-  const GiNaC::exvector terms =
-      split ? GiNaC::exvector(expanded.begin(), expanded.end()) : GiNaC::exvector{expanded};
+  const GiNaC::exvector terms = split ? ordered(angle_sum) : GiNaC::exvector{angle_sum};
   for (const ex& term : terms) {
     if (term.is_zero()) continue;
     const numeric factor = ex_to<numeric>(numeric_factor(term));
@@ -200,7 +166,7 @@ ex Algebra::turned(bool cosine, const ex& angle) {
     auto known = turns_.begin();
     while (known != turns_.end() && !known->first.is_equal(base)) ++known;
     if (known == turns_.end()) {
-      const GiNaC::realsymbol c_base, s_base;
+      const GiNaC::realsymbol c_base = fresh_symbol(), s_base = fresh_symbol();
       atoms_.push_back({Atom::Kind::square, c_base, 1 - s_base * s_base});
       meanings_.emplace_back(c_base, cos(base));
       meanings_.emplace_back(s_base, sin(base));
@@ -213,15 +179,8 @@ ex Algebra::turned(bool cosine, const ex& angle) {
   return reduced(cosine ? c : s);
 }
 
-ex Algebra::reduced(const ex& polynomial) const {
-  ex p = polynomial.expand();
-  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    if (atom->kind == Atom::Kind::square) p = square_reduced(p, atom->symbol, atom->operand);
-  }
-  return p;
-}
-
 std::optional<ex> Algebra::reduced_numerator(const ex& e) try {
+  left_for_test_ = std::min(allowance_, left_in_all_);
   ex p = reduced(atomised(e.subs(change_, GiNaC::subs_options::no_pattern)));
   for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
     if (atom->kind == Atom::Kind::inverse) p = inverse_cancelled(p, atom->symbol, atom->operand);
@@ -229,29 +188,6 @@ std::optional<ex> Algebra::reduced_numerator(const ex& e) try {
   return without_inverses(p);
 } catch (const std::exception&) {
   return std::nullopt;
-}
-
-// The same polynomial by the other of two coordinates on a circle: t^2 = 1 - s^2 where s^2 = 1 -
-// t^2 was used.
-ex Algebra::other_coordinates(const ex& polynomial) const {
-  ex p = polynomial;
-  for (const Atom& atom : atoms_) {
-    if (atom.kind != Atom::Kind::square) continue;
-    for (const ex& t : symbols_in(atom.operand)) {
-      if (!(atom.operand - 1 + t * t).expand().is_zero()) continue;
-      p = square_reduced(p, ex_to<GiNaC::symbol>(t), 1 - atom.symbol * atom.symbol);
-    }
-  }
-  return p;
-}
-
-ex Algebra::without_inverses(const ex& polynomial) const {
-  ex p = polynomial.expand();
-  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    p = atom->kind == Atom::Kind::square ? square_reduced(p, atom->symbol, atom->operand)
-                                         : inverse_removed(p, atom->symbol, atom->operand);
-  }
-  return p;
 }
 
 // A change of variables that keeps polynomials short: where the joint speaks of u = x_a + ra - x_b
@@ -281,7 +217,7 @@ bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) 
   const ex now = compound.subs(change_, GiNaC::subs_options::no_pattern).expand();
   const ex slope = now.coeff(x);
   if (!is_a<numeric>(slope) || slope.is_zero()) return false;
-  const ex symbol = name.empty() ? GiNaC::realsymbol() : GiNaC::realsymbol(name);
+  const ex symbol = fresh_symbol(name);
   if (name.empty()) meanings_.emplace_back(symbol, compound);
   const ex value = (symbol - now) / slope + x;
   for (auto& [symbol, earlier] : change_) {
@@ -292,8 +228,9 @@ bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) 
 }
 
 std::optional<ex> Algebra::numerator(const ex& e) try {
+  left_for_test_ = std::min(allowance_, left_in_all_);
   return without_inverses(atomised(e.subs(change_, GiNaC::subs_options::no_pattern)));
-} catch (const std::exception&) {  // GiNaC's own complaints, say of a pole: no answer
+} catch (const std::exception&) {  // too long; or GiNaC's own complaints, say of a pole
   return std::nullopt;
 }
 
@@ -321,10 +258,28 @@ bool Algebra::differs_at_random(const ex& e, std::uint64_t seed) try {
   return false;
 }
 
+// With n roots, one point in 2^n serves.
+bool Algebra::vanishes_at_points(const ex& e) const {
+  constexpr std::uint64_t attempts = 16384;
+  int points = 0;
+  for (std::uint64_t seed = 1; seed <= attempts && points < exact_points; ++seed) {
+    try {
+      PointValues values(seed, PointValues::Roots::of_squares);
+      for (const auto& [name, leaf] : leaves_) values.put(leaf.symbol);
+      for (const std::vector<ex>& u : units_) values.put_direction(u);
+      if (!values.of(e).is_zero()) return false;
+      ++points;
+    } catch (const UndefinedHere&) {
+    }
+  }
+  return points == exact_points;
+}
+
 Algebra::Zero Algebra::is_zero(const ex& e) {
   if (e.is_zero()) return Zero::yes;
   const std::optional<ex> p = numerator(e);
   if (p && p->is_zero()) return Zero::yes;
+  if (vanishes_at_points(e)) return Zero::shown;
   const long before = GiNaC::Digits;
   GiNaC::Digits = digits;
   bool differs = false;

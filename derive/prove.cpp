@@ -102,6 +102,10 @@ class Prover {
     if (law_.verdict == Verdict::fails) return;
     const Algebra::Zero zero = algebra.is_zero(difference);
     if (zero == Algebra::Zero::yes) return;
+    if (zero == Algebra::Zero::shown) {
+      if (law_.verdict == Verdict::holds) law_.verdict = Verdict::shown;
+      return;
+    }
     law_.row = row.row;
     const bool differs = zero == Algebra::Zero::no;
     law_.verdict = differs ? Verdict::fails : Verdict::undecided;
@@ -366,6 +370,8 @@ std::string_view name_of(Verdict v) {
   switch (v) {
     case Verdict::holds:
       return "holds";
+    case Verdict::shown:
+      return "shown at random points";
     case Verdict::fails:
       return "fails";
     case Verdict::undecided:

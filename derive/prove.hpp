@@ -6,11 +6,13 @@
 #include <vector>
 
 #include "derive/derivation.hpp"
+#include "derive/finite_field.hpp"
 
 namespace cdot::derive {
 
 enum class Verdict {
   holds,
+  shown,          // too much for algebra; true at `exact_points` random points modulo a prime
   fails,
   undecided,      // algebra does not decide; numbers agree to 60 digits at several poses
   does_not_apply  // no C at velocity level, a joint with the world, ...
