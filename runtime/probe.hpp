@@ -68,6 +68,9 @@ class Probe {
     return std::abs(forth - back) < T(0.01) * T(2) * wanted;
   }
 
+  // J and (M^-1 J^T)^T, [rows][freedom * bodies].
+  void dense(double* J, double* weighted) const { ops_->dense(batch_, 0, bodies_, J, weighted); }
+
   // J^T lambda on the body at this position of the joint.
   typename S::Velocity impulse_on(int position, const std::vector<T>& lambda) const {
     std::vector<typename S::Velocity> impulses(static_cast<size_t>(ops_->bodies));

@@ -44,9 +44,11 @@ std::string body_name(const ParameterInfo& parameter) {
 
 }  // namespace
 
-std::string list_text() {
+namespace {
+
+std::string list_text(Dimension dimension) {
   std::string text;
-  for (const JointType& type : joint_types(Dimension::planar)) {
+  for (const JointType& type : joint_types(dimension)) {
     text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies,
                         type.bodies == 1 ? "body" : "bodies", type.row_kinds.size(),
                         type.row_kinds.size() == 1 ? "" : "s");
@@ -64,10 +66,11 @@ std::string list_text() {
   return text;
 }
 
-std::string list_json() {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
-  for (const JointType& type : joint_types(Dimension::planar)) {
-    nlohmann::ordered_json joint = {{"type", type.name}, {"bodies", type.bodies}};
+void add_to(nlohmann::ordered_json& list, Dimension dimension) {
+  for (const JointType& type : joint_types(dimension)) {
+    nlohmann::ordered_json joint = {{"type", type.name},
+                                    {"dimension", dimension == Dimension::planar ? 2 : 3},
+                                    {"bodies", type.bodies}};
     for (const RowKind kind : type.row_kinds) joint["rows"].push_back(kind_name(kind));
     joint["parameters"] = nlohmann::ordered_json::array();
     for (const ParameterInfo& parameter : type.parameters) {
@@ -83,6 +86,19 @@ std::string list_json() {
     }
     list.push_back(joint);
   }
+}
+
+}  // namespace
+
+std::string list_text() {
+  return "In the plane (dimension = 2)\n\n" + list_text(Dimension::planar) +
+         "\nIn space (dimension = 3)\n\n" + list_text(Dimension::spatial);
+}
+
+std::string list_json() {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  add_to(list, Dimension::planar);
+  add_to(list, Dimension::spatial);
   return list.dump(2) + "\n";
 }
 

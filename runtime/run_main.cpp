@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "runtime/run_jacobian.hpp"
 #include "runtime/run_list.hpp"
 #include "runtime/run_output.hpp"
 #include "runtime/run_simulate.hpp"
@@ -28,6 +29,7 @@ Examples
   cdot-run simulate specs/scenes/four_bar.toml
   cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html then open the page
   cdot-run simulate specs/scenes/four_bar.toml --step 0.0001 --every 0.1 -o four_bar.csv
+  cdot-run jacobian specs/scenes/four_bar.toml --svg four_bar.svg   the system in blocks and numbers
   cdot-run list                                                     the joints that a scene may name
 
 Exit status
@@ -80,6 +82,17 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
   simulate->add_flag("--progress", arguments.progress,
                      "show progress even where stderr is no terminal");
   simulate->footer(footer);
+}
+
+CLI::App* add_jacobian(CLI::App& app, Arguments& arguments) {
+  CLI::App* jacobian =
+      app.add_subcommand("jacobian", "Show the whole system's D with D v = 0 at a scene's start");
+  jacobian->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
+  jacobian->add_option("--svg", arguments.svg,
+                       "write a picture: the sparsity of K, and which joints share a body");
+  jacobian->add_flag("--json", arguments.json, "as JSON, with all numbers of D and K");
+  jacobian->footer(footer);
+  return jacobian;
 }
 
 void override_scene(const Arguments& arguments, cdot::Scene& scene) {
@@ -136,6 +149,15 @@ int simulate(const Arguments& arguments) {
   return cdot::failure(scene, result).empty() ? well : answer_is_no;
 }
 
+int jacobian(const Arguments& arguments) {
+  const cdot::Scene scene = cdot::read_scene(arguments.scene);
+  const cdot::SystemMatrix system = cdot::system_matrix(scene);
+  if (!arguments.svg.empty()) cdot::write_file(arguments.svg, cdot::jacobian_svg(scene, system));
+  fmt::print("{}", arguments.json ? cdot::jacobian_json(scene, system)
+                                  : cdot::jacobian_text(scene, system));
+  return well;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -147,11 +169,13 @@ int main(int argc, char** argv) {
   app.footer(footer);
   Arguments arguments;
   add_simulate(app, arguments);
+  const CLI::App* shown = add_jacobian(app, arguments);
   CLI::App* list =
       app.add_subcommand("list", "Show the joints that a scene may name, with their parameters");
   list->add_flag("--json", arguments.json, "as JSON");
   try {
     app.parse(argc, argv);
+    if (shown->parsed()) return jacobian(arguments);
     if (!list->parsed()) return simulate(arguments);
     fmt::print("{}", arguments.json ? cdot::list_json() : cdot::list_text());
     return well;

@@ -7,6 +7,7 @@
 
 #include "runtime/run_frame.hpp"
 #include "runtime/scene.hpp"
+#include "runtime/viewer_text.hpp"
 
 namespace cdot {
 
@@ -60,8 +61,5 @@ Drawing draw(const Scene& scene, const std::vector<Frame>& film);
 Vec2 position(const Anchor& anchor, const std::vector<Place>& places);  // in the picture
 std::string link_transform(const Link& link, const std::vector<Place>& places);
 std::vector<Place> places_of(const View& view, const Frame& frame);
-
-// Text in an attribute or element.
-std::string escaped(std::string_view text);
 
 }  // namespace cdot
