@@ -51,6 +51,10 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
     grow(batch.upper, ops->rows, std::numeric_limits<T>::infinity());
     for (double constant : constants) batch.constants.push_back(T(constant));
   }
+  if (ops->start_counting) {
+    grow(batch.counters, ops->counters);
+    ops->start_counting(batch, batch.count() - 1, world.bodies, T(world.time));
+  }
   world.prepared = false;
 }
 

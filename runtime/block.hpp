@@ -23,8 +23,11 @@ struct BlockOps {
 
   int bodies, rows;
   int parameter_size, jacobian_size;  // in numbers of type T
+  int counters;                       // of whole turns, per slot
   bool explicit_time;
 
+  // Starts to count the turns of one slot at the present poses. Null: no counters.
+  void (*start_counting)(Slots, int slot, const Bodies<S>&, T time);
   // C and J, and the rows' drift dC/dt where C depends on the time.
   void (*evaluate)(Slots, int begin, int end, const Bodies<S>&, T time);
   // C alone, at the present poses.
@@ -87,6 +90,7 @@ struct Batch {
   std::vector<T> lambda;        // impulse of the velocity solve, kept for the next step
   std::vector<T> correction;    // impulse of the drift correction
   std::vector<T> scratch;
+  std::vector<T> counters;  // [slot][ops->counters]
   // Only under a law:
   std::vector<T> softness, lower, upper;  // [slot][rows]
   std::vector<T> constants;               // [slot][law->constants]
@@ -97,7 +101,7 @@ struct Batch {
   void for_each_array(F f) {
     f(joint), f(body);
     for (auto* array : {&parameters, &jacobian, &factor, &C, &bias, &lambda, &correction, &scratch,
-                        &softness, &lower, &upper, &constants})
+                        &counters, &softness, &lower, &upper, &constants})
       f(*array);
   }
   int triangle() const { return ops->rows * (ops->rows + 1) / 2; }

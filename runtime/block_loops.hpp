@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "runtime/block.hpp"
+#include "runtime/turns.hpp"
 
 namespace cdot {
 
@@ -22,6 +23,7 @@ struct BlockLoops {
   static constexpr int rows = Block::rows;
   static constexpr int width = S::freedom * bodies;
   static constexpr int triangle = rows * (rows + 1) / 2;
+  using Turns = TurnCounters<S, Joint, Block>;
 
   // An empty struct (all entries of J known) has size 1 but holds nothing.
   template <class Struct>
@@ -50,13 +52,31 @@ struct BlockLoops {
     for (int k = 0; k < bodies; ++k) to[k] = from[static_cast<size_t>(body[k])];
   }
 
+  static void count_parameters(Batch<S>& batch, int slot, const Pose (&q)[bodies], T time) {
+    if constexpr (Turns::of_parameters() > 0)
+      Turns::count_parameters(q, batch.parameters.data() + slot * numbers<Parameters>(), time,
+                              batch.counters.data() + slot * Turns::count);
+  }
+  static void count_angle(Batch<S>& batch, int slot, T (&C)[rows]) {
+    if constexpr (Turns::is_angle())
+      Turns::count_angle(C[0], batch.counters.data() + slot * Turns::count);
+  }
+  static void start_counting(Batch<S>& batch, int slot, const Bodies<S>& all, T time) {
+    Pose q[bodies];
+    gather(all.pose, bodies_of(batch, slot), q);
+    Turns::start(q, batch.parameters.data() + slot * numbers<Parameters>(), time,
+                 batch.counters.data() + slot * Turns::count);
+  }
+
   static void evaluate(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
     for (int slot = begin; slot < end; ++slot) {
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
+      count_parameters(batch, slot, q, time);
       const Parameters& p = as<Parameters>(batch.parameters.data(), slot);
       T C[rows];
       Block::jacobian(q, p, time, C, as<Jacobian>(batch.jacobian.data(), slot));
+      count_angle(batch, slot, C);
       for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
       T drift[rows] = {};
       if constexpr (Block::explicit_time) Block::time_derivative(q, p, time, drift);
@@ -68,8 +88,10 @@ struct BlockLoops {
     for (int slot = begin; slot < end; ++slot) {
       Pose q[bodies];
       gather(all.pose, bodies_of(batch, slot), q);
+      count_parameters(batch, slot, q, time);
       T C[rows];
       Block::position(q, as<Parameters>(batch.parameters.data(), slot), time, C);
+      count_angle(batch, slot, C);
       for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
     }
   }
@@ -243,12 +265,21 @@ struct BlockLoops {
     }
   }
 
+  static constexpr auto starter() -> decltype(BlockOps<S>::start_counting) {
+    if constexpr (Turns::count > 0)
+      return start_counting;
+    else
+      return nullptr;
+  }
+
   static constexpr BlockOps<S> ops() {
     return {bodies,
             rows,
             numbers<Parameters>(),
             numbers<Jacobian>(),
+            Turns::count,
             Block::explicit_time,
+            starter(),
             evaluate,
             position,
             effective_mass,

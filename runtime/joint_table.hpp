@@ -3,6 +3,7 @@
 // by number.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -26,6 +27,10 @@ struct BlockVariants {
     for (const auto& [index, ops] : immovable)
       if (bodies.immovable(body[static_cast<size_t>(index)])) return ops;
     return general;
+  }
+  bool has(const BlockOps<S>* ops) const {
+    return ops == general || std::any_of(immovable.begin(), immovable.end(),
+                                         [&](const auto& one) { return one.second == ops; });
   }
 };
 

@@ -19,7 +19,8 @@ class Probe {
   // The rows of a joint, or the row of one of its coordinates, with no body taken as immovable.
   void look_at(const JointRecord& joint, int coordinate = -1) {
     const JointEntry<S>& entry = joint_entries<S>()[joint.type];
-    ops_ = coordinate < 0 ? entry.rows.general : entry.coordinates[coordinate].general;
+    const BlockVariants<S>& variants = coordinate < 0 ? entry.rows : entry.coordinates[coordinate];
+    ops_ = variants.general;
     batch_.ops = ops_;
     batch_.parameters.assign(joint.parameters.begin(), joint.parameters.end());
     batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
@@ -37,6 +38,7 @@ class Probe {
       bodies_.velocity[k] = world_.bodies.velocity[i];
       bodies_.effective_mass[k] = world_.bodies.inverse_mass[i];
     }
+    if (ops_->start_counting) count_on(joint, variants);
     ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
   }
 
@@ -79,6 +81,18 @@ class Probe {
   }
 
  private:
+  // Whole turns as the World has counted them, if it has; else from none.
+  void count_on(const JointRecord& joint, const BlockVariants<S>& variants) {
+    batch_.counters.assign(static_cast<size_t>(ops_->counters), T(0));
+    ops_->start_counting(batch_, 0, bodies_, T(world_.time));
+    for (const Place& place : joint.places) {
+      const Batch<S>& kept = *world_.batches[place.batch];
+      if (!variants.has(kept.ops)) continue;
+      const auto from = kept.counters.begin() + place.slot * kept.ops->counters;
+      std::copy_n(from, kept.ops->counters, batch_.counters.begin());
+    }
+  }
+
   T C_after(T scale, int row) {
     const auto poses = bodies_.pose;
     for (size_t k = 0; k < poses.size(); ++k)

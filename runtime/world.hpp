@@ -107,7 +107,9 @@ class BasicWorld {
   std::vector<double> impulse(int joint) const;         // lambda of the last (sub)step [N s, N m s]
   // What a joint exerted on a body in the last step.
   Wrench reaction(int joint, int body) const;
-  double coordinate(int joint, std::string_view name) const;  // value of a free coordinate [m, rad]
+  // Value of a free coordinate [m, rad]. An angle in space lies within (-pi, pi], unless an effect
+  // acts on it: then whole turns count.
+  double coordinate(int joint, std::string_view name) const;
   double coordinate_rate(int joint, std::string_view name) const;  // and its rate
 
   // Over all joints that are neither soft nor broken; an inequality counts where C < 0.

@@ -10,10 +10,6 @@
 namespace cdot::test {
 namespace {
 
-Scene scene_named(const std::string& name) {
-  return read_scene((scenes_dir() / (name + ".toml")).string());
-}
-
 TEST(Jacobian, SizeRankAndFreedomOfTheMechanisms) {
   struct Case {
     const char* scene;

@@ -11,6 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "runtime/rotation.hpp"
+
 namespace cdot::test {
 
 namespace fs = std::filesystem;
@@ -68,10 +70,41 @@ Reference read_reference(const std::string& problem, double until) {
     if (sample["t"].get<double>() > until) continue;
     ReferenceSample& added = reference.samples.emplace_back(ReferenceSample{sample["t"], {}});
     for (const auto& [name, v] : sample["bodies"].items())
-      added.bodies[name] = {v[0], v[1], v[2], v[3], v[4], v[5]};
+      added.bodies[name] = v.size() == 6
+                               ? BodyState{v[0], v[1], v[2], v[3], v[4], v[5]}
+                               : BodyState{v[0], v[1], 0,    v[7], v[8],  0,     v[2], v[9],
+                                           v[3], v[4], v[5], v[6], v[10], v[11], v[12]};
   }
   return reference;
 }
+
+Scene scene_named(const std::string& name) {
+  return read_scene((scenes_dir() / (name + ".toml")).string());
+}
+
+std::vector<Frame> run_of(Scene scene, double until, double every_seconds) {
+  std::vector<Frame> frames;
+  scene.duration = until;
+  RunOptions options;
+  options.row_times = every(every_seconds, until);
+  options.row = [&](const Frame& frame) { frames.push_back(frame); };
+  std::string warnings;
+  EXPECT_TRUE(simulate(scene, options, warnings).finite);
+  EXPECT_EQ(warnings, "");
+  return frames;
+}
+
+namespace {
+
+// The angle between two orientations; q and -q are the same.
+double turn_between(const BodyState& a, const BodyState& b) {
+  const auto pose = [](const BodyState& s) {
+    return spatial::oriented(0.0, 0.0, 0.0, s.e0, s.e1, s.e2, s.e3);
+  };
+  return spatial::norm(spatial::turn_between(pose(a), pose(b)));
+}
+
+}  // namespace
 
 Distance distance_to(const Reference& reference, const Scene& scene) {
   Distance worst;
@@ -82,10 +115,13 @@ Distance distance_to(const Reference& reference, const Scene& scene) {
     const ReferenceSample& sample = reference.samples[next++];
     for (std::size_t k = 0; k < frame.bodies.size(); ++k) {
       const BodyState &is = frame.bodies[k], &was = sample.bodies.at(scene.bodies[k].name);
-      worst.position = std::max(worst.position, std::hypot(is.x - was.x, is.y - was.y));
-      worst.angle = std::max(worst.angle, std::abs(is.angle - was.angle));
-      worst.velocity = std::max(worst.velocity, std::hypot(is.vx - was.vx, is.vy - was.vy));
-      worst.spin = std::max(worst.spin, std::abs(is.w - was.w));
+      worst.position =
+          std::max(worst.position, std::hypot(is.x - was.x, is.y - was.y, is.z - was.z));
+      worst.angle = std::max({worst.angle, std::abs(is.angle - was.angle), turn_between(is, was)});
+      worst.velocity =
+          std::max(worst.velocity, std::hypot(is.vx - was.vx, is.vy - was.vy, is.vz - was.vz));
+      worst.spin = std::max({worst.spin, std::abs(is.w - was.w),
+                             std::hypot(is.wx - was.wx, is.wy - was.wy, is.wz - was.wz)});
     }
   };
   Scene run = scene;

@@ -15,6 +15,11 @@ namespace cdot::test {
 std::filesystem::path source_dir();
 std::filesystem::path scenes_dir();
 std::string read_text(const std::filesystem::path& path);
+// A scene of specs/scenes by its path there without .toml.
+Scene scene_named(const std::string& name);
+// Its states every so many seconds.
+std::vector<Frame> run_of(Scene scene, double until, double every_seconds);
+
 // All files with this ending in a folder, by name.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
                                             const std::string& ending);
