@@ -40,7 +40,7 @@ const JointType* read_type(Entry& joint, Dimension dimension) {
                                       in_space ? "of the plane" : "in space",
                                       in_space ? "in space" : "planar")
                         : fmt::format("no joint is called \"{}\"", *name),
-              did_you_mean(*name, known));
+              elsewhere ? "`cdot-run list` shows the joints of both" : did_you_mean(*name, known));
   return nullptr;
 }
 

@@ -1,85 +1,4 @@
-// Plays the film in #run: moves the groups that the page came with. No drawing is decided here.
-'use strict';
-const run = JSON.parse(document.getElementById('run').textContent);
-const root = document.documentElement;
-const by = id => document.getElementById(id);
-const stage = by('stage');
-const last = run.times.length - 1, duration = run.times[last] || 1e-9;
-const speeds = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4];
-let time = 0, playing = false, speed = run.speed, clockBefore = 0;
-
-// --- places ------------------------------------------------------------------------------------
-
-const world = [0, 0, 0];
-const places = run.start.map(place => place.slice());
-const groups = places.map((_, body) => [...stage.querySelectorAll(`[data-body="${body}"]`)]);
-const links = [...stage.querySelectorAll('[data-link]')];
-
-// The frame at or before a time, and how far the time is towards the next.
-function frameAt(t) {
-  let low = 0, high = last;
-  while (low < high) {
-    const middle = (low + high + 1) >> 1;
-    if (run.times[middle] <= t)
-      low = middle;
-    else
-      high = middle - 1;
-  }
-  const span = low < last ? run.times[low + 1] - run.times[low] : 1;
-  return [low, low < last ? Math.min(1, Math.max(0, (t - run.times[low]) / span)) : 0];
-}
-
-function setPlaces(frame, share) {
-  const stride = 3 * run.moving.length, here = frame * stride,
-        next = Math.min(frame + 1, last) * stride;
-  run.moving.forEach((body, k) => {
-    for (let c = 0; c < 3; ++c) {
-      const a = run.poses[here + 3 * k + c], b = run.poses[next + 3 * k + c];
-      places[body][c] = a + share * (b - a);
-    }
-  });
-}
-
-function pointOf([body, x, y], at) {
-  const [px, py, degrees] = body < 0 ? world : at[body];
-  const angle = degrees * Math.PI / 180, c = Math.cos(angle), s = Math.sin(angle);
-  return [px + c * x - s * y, py + s * x + c * y];
-}
-
-const transform = (x, y, degrees) =>
-    `translate(${x.toFixed(2)} ${y.toFixed(2)}) rotate(${degrees.toFixed(2)})`;
-
-function linkTransform([from, to]) {
-  const [x, y] = pointOf(from, places), [u, v] = pointOf(to, places);
-  const degrees = Math.atan2(v - y, u - x) * 180 / Math.PI;
-  return `${transform(x, y, degrees)} scale(${Math.hypot(u - x, v - y).toFixed(3)} 1)`;
-}
-
-// --- traces ------------------------------------------------------------------------------------
-
-const paths = run.traces.map(() => []);
-run.times.forEach((_, frame) => {
-  const at = {};
-  run.moving.forEach((body, k) => {
-    const first = 3 * (frame * run.moving.length + k);
-    at[body] = [run.poses[first], run.poses[first + 1], run.poses[first + 2]];
-  });
-  run.traces.forEach(
-      (trace, k) => paths[k].push(pointOf(trace.point, at).map(v => v.toFixed(1)).join(',')));
-});
-
-function addPolyline(parent, kind, points) {
-  const line = document.createElementNS('http://www.w3.org/2000/svg', 'polyline');
-  line.setAttribute('class', kind);
-  line.setAttribute('points', points);
-  return parent.appendChild(line);
-}
-
-const pasts = paths.map((path, k) => {
-  const colour = `c${run.traces[k].colour}`;
-  addPolyline(by('paths'), `trace path ${colour}`, path.join(' '));
-  return addPolyline(by('paths'), `trace past ${colour}`, '');
-});
+// Plays the film: plots, time, controls. What a frame looks like is `drawing`.
 
 // --- plots -------------------------------------------------------------------------------------
 
@@ -126,15 +45,7 @@ const plots = [plot('energy', run.energy, 'J', false), plot('error', run.error, 
 function show(t) {
   time = Math.min(duration, Math.max(0, t));
   const [frame, share] = frameAt(time);
-  setPlaces(frame, share);
-  groups.forEach(
-      (list, body) =>
-          list.forEach(group => group.setAttribute('transform', transform(...places[body]))));
-  links.forEach(
-      group => group.setAttribute('transform', linkTransform(run.links[+group.dataset.link])));
-  pasts.forEach(
-      (line, k) => line.setAttribute(
-          'points', paths[k].slice(Math.max(0, frame - run.tail), frame + 1).join(' ')));
+  drawing.show(frame, share);
   plots.forEach(update => update(frame));
   by('scrub').value = duration > 0 ? time / duration : 0;
   by('clock').textContent = `${time.toFixed(run.decimals)} / ${duration.toFixed(run.decimals)} s`;
@@ -178,31 +89,7 @@ function changeSpeed(direction) {
   setSpeed(speeds[Math.min(speeds.length - 1, Math.max(0, here + direction))]);
 }
 
-// --- view --------------------------------------------------------------------------------------
-
-const whole = stage.getAttribute('viewBox').split(' ').map(Number);
-let view = whole.slice();
-const setView = box => {
-  view = box;
-  stage.setAttribute('viewBox', view.join(' '));
-};
-
-stage.addEventListener('wheel', event => {
-  event.preventDefault();
-  const factor = Math.exp(0.0015 * event.deltaY),
-        at = new DOMPoint(event.clientX, event.clientY)
-                 .matrixTransform(stage.getScreenCTM().inverse());
-  setView([
-    at.x + factor * (view[0] - at.x), at.y + factor * (view[1] - at.y), factor * view[2],
-    factor * view[3]
-  ]);
-}, {passive: false});
-
-stage.addEventListener('pointermove', event => {
-  if (!event.buttons) return;
-  const scale = stage.getScreenCTM().a;
-  setView([view[0] - event.movementX / scale, view[1] - event.movementY / scale, view[2], view[3]]);
-});
+// --- looks -------------------------------------------------------------------------------------
 
 function setDark(dark) {
   root.classList.toggle('dark', dark);
@@ -242,7 +129,7 @@ const keys = {
   '-': () => changeSpeed(-1),
   t: toggleTraces,
   d: () => setDark(!root.classList.contains('dark')),
-  0: () => setView(whole.slice()),
+  0: () => drawing.fit(),
 };
 document.addEventListener('keydown', event => {
   if (!keys[event.key] || event.ctrlKey || event.metaKey || event.altKey) return;

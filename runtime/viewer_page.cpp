@@ -9,6 +9,7 @@
 #include "runtime/viewer.hpp"
 #include "runtime/viewer_assets.hpp"
 #include "runtime/viewer_marks.hpp"
+#include "runtime/viewer_space.hpp"
 
 namespace cdot {
 namespace {
@@ -63,7 +64,9 @@ double playing_speed(double duration) {
   return best;
 }
 
-void add_frames(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film,
+// The poses of the bodies that move, frame by frame, and what the page plots.
+template <class NumbersOf>
+void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf numbers_of,
                 Json& run) {
   Json moving = Json::array(), times = Json::array(), poses = Json::array(), energy = Json::array(),
        error = Json::array();
@@ -75,10 +78,8 @@ void add_frames(const Scene& scene, const Drawing& drawing, const std::vector<Fr
     energy.push_back(frame.energy);
     error.push_back(frame.worst.value);
     for (const Json& body : moving) {
-      for (const Json& number :
-           place_json(place_of(drawing.view, frame.bodies[body.get<std::size_t>()]))) {
+      for (const Json& number : numbers_of(frame.bodies[body.get<std::size_t>()]))
         poses.push_back(number);
-      }
     }
   }
   run.update({{"moving", moving},
@@ -88,12 +89,16 @@ void add_frames(const Scene& scene, const Drawing& drawing, const std::vector<Fr
               {"error", error}});
 }
 
-std::string run_json(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film) {
+Json film_json(const std::vector<Frame>& film) {
   const double duration = film.back().time;
-  Json run = {{"view", {drawing.view.left, drawing.view.top, drawing.view.scale}},
-              {"speed", playing_speed(duration)},
-              {"decimals", duration < 2 ? 4 : 2},
-              {"tail", std::max<std::size_t>(film.size() / 8, 1)}};
+  return {{"speed", playing_speed(duration)},
+          {"decimals", duration < 2 ? 4 : 2},
+          {"tail", std::max<std::size_t>(film.size() / 8, 1)}};
+}
+
+Json planar_run(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film) {
+  Json run = film_json(film);
+  run["view"] = {drawing.view.left, drawing.view.top, drawing.view.scale};
   run["start"] = run["links"] = run["traces"] = Json::array();
   for (const Place& place : places_of(drawing.view, film.front()))
     run["start"].push_back(place_json(place));
@@ -102,9 +107,29 @@ std::string run_json(const Scene& scene, const Drawing& drawing, const std::vect
   for (const Trace& trace : drawing.traces) {
     run["traces"].push_back({{"point", anchor_json(trace.point)}, {"colour", trace.colour}});
   }
-  add_frames(scene, drawing, film, run);
-  std::string text = run.dump();
-  // "</script>" in a name must not end the element.
+  add_frames(
+      scene, film, [&](const BodyState& body) { return place_json(place_of(drawing.view, body)); },
+      run);
+  return run;
+}
+
+Json spatial_run(const Scene& scene, const std::vector<Frame>& film) {
+  Json run = film_json(film);
+  run["space"] = space_marks(scene, film);
+  const double steps = 1e4 / run["space"]["radius"].get<double>();
+  const auto numbers_of = [&](const BodyState& b) {
+    return Json{rounded(b.x, steps), rounded(b.y, steps), rounded(b.z, steps), rounded(b.e0, 1e5),
+                rounded(b.e1, 1e5),  rounded(b.e2, 1e5),  rounded(b.e3, 1e5)};
+  };
+  run["start"] = Json::array();
+  for (const BodyState& body : film.front().bodies) run["start"].push_back(numbers_of(body));
+  add_frames(scene, film, numbers_of, run);
+  return run;
+}
+
+// "</script>" in a name must not end the element.
+std::string in_a_script(const Json& json) {
+  std::string text = json.dump();
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;)
     text.replace(at, 1, "\\u003c");
   return text;
@@ -145,9 +170,21 @@ std::vector<double> film_times(const Scene& scene) {
 }
 
 std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
-  const Drawing drawing = draw(scene, film);
-  const std::string stage = svg_head(drawing.view, "id=\"stage\"") + "<g id=\"paths\"></g>\n" +
-                            placed(drawing, places_of(drawing.view, film.front())) + "</svg>";
+  std::string stage, script(viewer_film_js);
+  Json run;
+  if (scene.dimension == Dimension::planar) {
+    const Drawing drawing = draw(scene, film);
+    stage = svg_head(drawing.view, "id=\"stage\"") + "<g id=\"paths\"></g>\n" +
+            placed(drawing, places_of(drawing.view, film.front())) + "</svg>";
+    run = planar_run(scene, drawing, film);
+    script += viewer_plane_js;
+  } else {
+    const View view{0, 0, 1, 1000, 760};
+    stage = svg_head(view, "id=\"stage\"") +
+            "<path id=\"floor\" class=\"floor\"/><g id=\"space\"></g><g id=\"paths\"></g>\n</svg>";
+    run = spatial_run(scene, film);
+    script += viewer_space_js;
+  }
   const std::string title = escaped(scene.title.empty() ? scene.file : scene.title);
   const std::string facts = fmt::format("{} bodies, {} joints, step {:.4g} s", scene.bodies.size(),
                                         scene.joints.size(), scene.step);
@@ -155,11 +192,13 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
                               {"style", std::string(viewer_marks_css) + std::string(viewer_css)},
                               {"facts", facts},
                               {"stage", stage},
-                              {"run", run_json(scene, drawing, film)},
-                              {"script", std::string(viewer_js)}});
+                              {"run", in_a_script(run)},
+                              {"script", script + std::string(viewer_js)}});
 }
 
 std::string svg_still(const Scene& scene, const std::vector<Frame>& film) {
+  if (scene.dimension != Dimension::planar)
+    throw Error("a still is drawn of planar scenes; --html shows this one, from all sides");
   const Drawing drawing = draw(scene, film);
   std::string svg =
       svg_head(drawing.view, fmt::format("width=\"{:.0f}\"", 0.8 * drawing.view.width).c_str());
