@@ -158,6 +158,16 @@ void write(const Files& wanted, const fs::path& root) {
   fmt::print("{}: {} files, {} written, {} removed\n", root.string(), wanted.size(), written, removed);
 }
 
+// What writes what `options` ask to check.
+std::string command_line(const Options& options) {
+  const Options usual;
+  std::string command = "cdot derive";
+  for (const std::string& spec : options.specs) command += " " + spec;
+  if (options.specs_folder != usual.specs_folder) command += " --specs " + options.specs_folder;
+  if (options.output != usual.output) command += " -o " + options.output;
+  return command;
+}
+
 int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
   std::vector<fs::path> paths;
@@ -169,7 +179,7 @@ int run(const Options& options) {
     return 2;
   }
   const Files wanted = generate(joints, hand_costs(paths, folder));
-  if (options.check) return compare(wanted, options.output, "cdot derive");
+  if (options.check) return compare(wanted, options.output, command_line(options));
   write(wanted, options.output);
   return 0;
 }

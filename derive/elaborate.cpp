@@ -65,6 +65,11 @@ void Elaborator::run(Source& spec) {
   joint_.file = spec.file;
   spec.including = {spec.ast.name.text};
   statements(spec);
+  if (is_word_of_cpp(joint_.name))
+    spec.diagnostics.error(
+        spec.ast.name.where,
+        quote(joint_.name) + " is a word of C++, in which kernels are written",
+        "choose another name");
   if (!spec.ast.name.text.empty() && !valid_name_of_file(*spec.file, spec.ast.name.text))
     spec.diagnostics.warning(spec.ast.name.where,
                              "the file is not named after its joint " + quote(spec.ast.name.text),

@@ -166,6 +166,10 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
   const DeclaredAst& d = s.declared;
   const std::string full = source.prefix + d.name.text;
   if (d.broken || !d.value) return;
+  if (is_word_of_cpp(full) || is_member_of_kernels(full) || full == joint_.name)
+    return error(source, d.name.where,
+                 quote(full) + " is the name of something else in the kernel that is generated",
+                 "choose another name");
   const Value v = evaluate(source, *d.value);
   if (v.type == Type::poison) return;
   if (v.type != Type::scalar)

@@ -111,7 +111,7 @@ FunctionWriter::FunctionWriter(const Joint& joint)
   for (const auto& [name, declaration] : declarations()) printing_.reserved.insert(name);
   for (const char* name :
        {"C",       "D",      "H",      "Jv",     "g",    "C_t",   "T",    "abs",
-        "sign",    "select", "sqrt",   "sin",    "cos",  "tan",   "exp",  "log",
+        "sign",    "select", "smallest", "sqrt",   "sin",    "cos",  "tan",   "exp",  "log",
         "atan2",   "pivot",  "rows",   "bodies", "int",  "float", "auto", "double",
         "inverse", "const",  "static", "struct", "name", "title", "and",  "or",
         "not",     "new",    "this",   "for",    "if",   "do",    "else", "long"}) {

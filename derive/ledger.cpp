@@ -40,7 +40,12 @@ void add_quantities(const Joint& joint, const Block& block, const std::string& n
 Count cost_from_poses(const Joint& joint, const std::vector<Expr>& scalars) {
   PoseInputs pose(joint);
   std::vector<NamedExpr> outputs;
-  for (const Expr e : scalars) outputs.push_back({"", pose.of(e)});
+  for (const Expr scalar : scalars) {
+    // An entry and its negative cost the same: whoever uses it adds or subtracts.
+    const Expr e = pose.of(scalar);
+    const bool negative = e->kind == Kind::sum && !e->coefs.empty() && e->coefs[0].sign() < 0;
+    outputs.push_back({"", negative ? -e : e});
+  }
   return count(simplify(assemble(outputs)));
 }
 

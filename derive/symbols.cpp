@@ -76,6 +76,17 @@ bool is_word_of_cpp(std::string_view name) {
   return std::find(words.begin(), words.end(), name) != words.end();
 }
 
+bool is_member_of_kernels(std::string_view name) {
+  static constexpr auto members = std::to_array<std::string_view>(
+      {"Coordinates", "Immovable",      "Jacobian",   "Parameters",    "apply",
+       "bodies",      "body_names",     "dense",      "default_value", "effective_mass",
+       "factor",      "explicit_time",  "gamma",      "jacobian",      "inverse_mass_jacobian",
+       "name",        "immovable_body", "parameters", "position",      "row_kinds",
+       "row_names",   "rows",           "solve",      "stiffness",     "time_derivative",
+       "title",       "unit",           "velocity"});
+  return std::find(members.begin(), members.end(), name) != members.end();
+}
+
 std::string arm_name(std::string_view prefix, std::string_view point) {
   const bool short_form = point.size() > 1 && point[0] == 'p';
   return std::string(prefix) +

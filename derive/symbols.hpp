@@ -27,6 +27,8 @@ Expr pi_symbol(Pool& pool);
 bool is_symbol_of_tool(std::string_view name);
 // Words of C++, in which kernels are written with the author's names.
 bool is_word_of_cpp(std::string_view name);
+// What every kernel calls something of its own, so that no coordinate may.
+bool is_member_of_kernels(std::string_view name);
 // The arm of a point: `ra` of `pa`, `r_q` of `q`; a prefix from an include stays in front.
 std::string arm_name(std::string_view prefix, std::string_view point);
 

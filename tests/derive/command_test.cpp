@@ -1,0 +1,202 @@
+// `cdot derive` as a person meets it: what it writes, what --check says, and that nothing is written
+// from a broken spec.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <thread>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream all;
+  all << in.rdbuf();
+  return all.str();
+}
+
+struct Result {
+  int status;
+  std::string said;
+};
+
+class Derive : public testing::Test {
+ protected:
+  void SetUp() override {
+    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
+    place_ = fs::temp_directory_path() / ("cdot_" + std::to_string(getpid()) + test.name());
+    fs::create_directories(place_ / "specs/planar");
+    for (const char* joint : {"line", "angle"}) {
+      const std::string name = joint + std::string(".joint");
+      fs::copy(fs::path(CDOT_SPECS) / "planar" / name, place_ / "specs/planar" / name);
+    }
+  }
+  void TearDown() override { fs::remove_all(place_); }
+
+  Result run(const std::string& command) const {
+    const std::string whole = "cd '" + place_.string() + "' && " + command + " 2>&1";
+    FILE* pipe = popen(whole.c_str(), "r");
+    Result result{-1, ""};
+    char buffer[4096];
+    while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) result.said.append(buffer, n);
+    result.status = WEXITSTATUS(pclose(pipe));
+    return result;
+  }
+  Result cdot(const std::string& arguments) const { return run(CDOT " " + arguments); }
+
+  void write(const std::string& name, const std::string& text) const {
+    fs::create_directories((place_ / name).parent_path());
+    std::ofstream(place_ / name, std::ios::binary) << text;
+  }
+  std::string read(const std::string& name) const { return content_of(place_ / name); }
+
+  std::map<std::string, std::string> files(const std::string& folder) const {
+    std::map<std::string, std::string> found;
+    if (!fs::exists(place_ / folder)) return found;
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(place_ / folder)) {
+      if (entry.is_regular_file()) {
+        found[fs::relative(entry.path(), place_ / folder).string()] = content_of(entry.path());
+      }
+    }
+    return found;
+  }
+
+  fs::path place_;
+};
+
+const char* const broken = "joint broken planar\n  \"x\"\n  point pa on a\n  norm(pb) = 0\n";
+// Angles of bodies that do not cancel: readable, but it has no proof.
+const char* const wrong = "joint wrong planar\n  \"x\"\n  angle(a) + angle(b) = 0\n";
+const char* const pin =
+    "joint pin_on_line planar\n  \"A line with a second row.\"\n  include line\n"
+    "  angle(a) - angle(b) = 0\n";
+
+}  // namespace
+
+TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
+  const Result derived = cdot("derive");
+  EXPECT_EQ(derived.status, 0) << derived.said;
+  std::string names;
+  for (const auto& [name, content] : files("generated")) names += name + "\n";
+  EXPECT_EQ(names,
+            "ledger.csv\nplanar/angle.hpp\nplanar/line.hpp\nplanar/registry.hpp\n"
+            "spatial/registry.hpp\n");
+  EXPECT_EQ(read("generated/planar/line.hpp"),
+            content_of(fs::path(CDOT_GENERATED) / "planar/line.hpp"))
+      << "what is generated for a joint does not depend on the others";
+}
+
+TEST_F(Derive, WritesElsewhereIfAsked) {
+  EXPECT_EQ(cdot("derive -o build/own").status, 0);
+  EXPECT_TRUE(files("generated").empty());
+  EXPECT_EQ(files("build/own").size(), 5u);
+}
+
+TEST_F(Derive, TouchesNothingThatIsRight) {
+  ASSERT_EQ(cdot("derive").status, 0);
+  const auto time = fs::last_write_time(place_ / "generated/planar/line.hpp");
+  EXPECT_NE(cdot("derive").said.find("0 written, 0 removed"), std::string::npos);
+  EXPECT_EQ(fs::last_write_time(place_ / "generated/planar/line.hpp"), time);
+}
+
+TEST_F(Derive, CheckNamesTheOneCommandThatMends) {
+  for (const std::string options : {"", " -o own", " --specs specs line -o just_one"}) {
+    ASSERT_EQ(cdot("derive" + options).status, 0);
+    EXPECT_EQ(cdot("derive --check" + options).status, 0);
+    const std::string folder = options.empty() ? "generated" : options.substr(options.rfind(' ') + 1);
+    const auto right = files(folder);
+    write(folder + "/planar/line.hpp", "changed by hand\n");
+    write(folder + "/planar/stale.hpp", "no spec makes it\n");
+    fs::remove(place_ / folder / "ledger.csv");
+    const Result check = cdot("derive --check" + options);
+    EXPECT_EQ(check.status, 1);
+    for (const char* words : {"line.hpp: differs", "- changed by hand", "stale.hpp: no spec makes it",
+                              "ledger.csv: missing", "To mend it: cdot derive"}) {
+      EXPECT_NE(check.said.find(words), std::string::npos) << words << "\n" << check.said;
+    }
+    const std::string mend = check.said.substr(check.said.rfind("To mend it: cdot ") + 17);
+    EXPECT_EQ(cdot(mend.substr(0, mend.find('\n'))).status, 0) << mend;
+    EXPECT_EQ(files(folder), right);
+    EXPECT_EQ(cdot("derive --check" + options).status, 0);
+  }
+}
+
+TEST_F(Derive, WritesNothingFromABrokenSpec) {
+  ASSERT_EQ(cdot("derive").status, 0);
+  const auto before = files("generated");
+  for (const char* const text : {broken, wrong}) {
+    write("specs/planar/bad.joint", text);
+    write("specs/planar/line.joint", pin);  // would change something
+    for (const char* const command : {"derive", "derive --check"}) {
+      const Result result = cdot(command);
+      EXPECT_EQ(result.status, 2) << result.said;
+      EXPECT_NE(result.said.find("bad.joint:"), std::string::npos) << result.said;
+      EXPECT_EQ(files("generated"), before);
+    }
+  }
+}
+
+TEST_F(Derive, SaysWhichSpecIsMissing) {
+  const Result result = cdot("derive lin");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.said.find("did you mean `line`"), std::string::npos) << result.said;
+  EXPECT_TRUE(files("generated").empty());
+  EXPECT_EQ(run("mkdir away && cd away && " CDOT " derive").status, 2);
+  EXPECT_EQ(cdot("derive --such").status, 2);
+}
+
+TEST_F(Derive, TakesUpANewJointThatIncludesAnother) {
+  ASSERT_EQ(cdot("derive").status, 0);
+  write("specs/planar/pin_on_line.joint", pin);
+  EXPECT_EQ(cdot("derive --check").status, 1);
+  const Result derived = cdot("derive");
+  EXPECT_EQ(derived.status, 0) << derived.said;
+  EXPECT_NE(read("generated/planar/registry.hpp").find("pin_on_line"), std::string::npos);
+  EXPECT_NE(read("generated/planar/pin_on_line.hpp").find("struct pin_on_line"), std::string::npos);
+  fs::remove(place_ / "specs/planar/pin_on_line.joint");
+  EXPECT_EQ(cdot("derive").status, 0);
+  EXPECT_FALSE(files("generated").contains("planar/pin_on_line.hpp"));
+}
+
+// A reader in the middle of a write sees the old file or the new one.
+TEST_F(Derive, NeverShowsHalfAFile) {
+  const std::string one = content_of(fs::path(CDOT_SPECS) / "planar/line.joint");
+  const std::string other = one + "  second: angle(a) = angle(b)\n";
+  std::string kernels[2];
+  for (int i = 0; i < 2; ++i) {
+    write("specs/planar/line.joint", i == 0 ? one : other);
+    ASSERT_EQ(cdot("derive line").status, 0);
+    kernels[i] = read("generated/planar/line.hpp");
+  }
+  std::atomic<bool> done = false;
+  std::jthread writer([&] {
+    for (int i = 0; i < 12; ++i) {
+      write("specs/planar/line.joint", i % 2 == 0 ? one : other);
+      cdot("derive line");
+    }
+    done = true;
+  });
+  int seen[2] = {0, 0}, halves = 0;
+  while (!done) {
+    const std::string now = read("generated/planar/line.hpp");
+    if (now == kernels[0]) {
+      ++seen[0];
+    } else if (now == kernels[1]) {
+      ++seen[1];
+    } else {
+      ++halves;
+    }
+  }
+  std::printf("read %d times the one, %d times the other, %d times half of one\n", seen[0], seen[1],
+              halves);
+  EXPECT_EQ(halves, 0);
+  EXPECT_GT(std::min(seen[0], seen[1]), 0);
+}

@@ -1,0 +1,152 @@
+// Programs: what the passes rewrite keeps its value and never costs more; known kernels cost what a
+// person's would.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "derive/canonical.hpp"
+#include "derive/kernel.hpp"
+#include "derive/specs_folder.hpp"
+#include "tests/derive/random_expressions.hpp"
+
+using namespace cdot::derive;
+
+namespace {
+
+void expect_same_outputs(const Program& a, const Program& b, const Values& inputs) {
+  const std::vector<double> x = run(a, inputs), y = run(b, inputs);
+  ASSERT_EQ(x.size(), y.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_EQ(a.outputs[i].name, b.outputs[i].name);
+    EXPECT_NEAR(x[i], y[i], 1e-8 * (1 + std::abs(x[i]))) << a.outputs[i].name;
+  }
+}
+
+Program assembled(const std::vector<KnownScalar>& scalars, std::size_t from, std::size_t count) {
+  Components components;
+  std::vector<NamedExpr> outputs;
+  for (std::size_t i = from; i < std::min(scalars.size(), from + count); ++i) {
+    outputs.push_back({"C[" + std::to_string(i - from) + "]", components.of(scalars[i].e)});
+  }
+  return assemble(outputs);
+}
+
+Kernel kernel_of(const Joint& joint) { return plan_kernel(joint); }
+
+Joint joint_of(const std::string& name) {
+  const SpecsFolder folder(CDOT_SPECS);
+  const ReadResult read = folder.read(folder.find(name));
+  if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
+  return *read.joint;
+}
+
+Count cost(const KernelBlock& block, const std::string& function) {
+  for (const KernelFunction& f : block.functions) {
+    if (f.name == function) return count(f.program);
+  }
+  throw std::runtime_error("no function " + function);
+}
+
+}  // namespace
+
+class Programs : public testing::TestWithParam<int> {};  // in the plane, in space
+
+TEST_P(Programs, compute_the_expressions_that_they_are_assembled_from) {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Pool pool(GetParam());
+    RandomExpressions random(pool, seed);
+    random.grow(60);
+    const Program program = assembled(random.scalars(), 0, random.scalars().size());
+    const std::vector<double> values = run(program, random.leaves());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const KnownScalar& known = random.scalars()[i];
+      EXPECT_NEAR(values[i], known.value, 1e-8 * (1 + std::abs(known.value)))
+          << text_unnamed(known.e);
+    }
+  }
+}
+
+TEST_P(Programs, keep_their_values_through_the_passes_and_never_cost_more) {
+  int cheaper = 0;
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Pool pool(GetParam());
+    RandomExpressions random(pool, seed);
+    random.grow(50);
+    for (std::size_t from = 0; from < random.scalars().size(); from += 6) {
+      const Program before = assembled(random.scalars(), from, 6), after = simplify(before);
+      expect_same_outputs(before, after, random.leaves());
+      EXPECT_LE(count(after).total(), count(before).total())
+          << "seed " << seed << ", from " << from;
+      cheaper += count(after).total() < count(before).total();
+    }
+  }
+  EXPECT_GT(cheaper, 30) << "the passes find something to do";
+}
+
+TEST_P(Programs, cost_no_less_when_simplified_again) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Pool pool(GetParam());
+    RandomExpressions random(pool, seed);
+    random.grow(40);
+    const Program once = simplify(assembled(random.scalars(), 7, 6));
+    EXPECT_LE(count(simplify(once)).total(), count(once).total());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(in, Programs, testing::Values(2, 3), testing::PrintToStringParamName());
+
+TEST(Simplify, takes_common_factors_out) {
+  Pool pool;
+  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given),
+             c = pool.symbol("c", Role::given);
+  const Program program = simplify(assemble({{"C[0]", a * b + a * c}}));
+  EXPECT_EQ(count(program), (Count{1, 1, 0, 0, 0, 0})) << text(count(program));
+}
+
+TEST(Simplify, shares_sums_and_products) {
+  Pool pool;
+  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given),
+             c = pool.symbol("c", Role::given);
+  const Program sums = simplify(assemble({{"C[0]", a + b}, {"C[1]", a + b + c}}));
+  EXPECT_EQ(count(sums), (Count{2, 0, 0, 0, 0, 0})) << text(count(sums));
+  const Program products = simplify(assemble({{"C[0]", a * b}, {"C[1]", a * b * c}}));
+  EXPECT_EQ(count(products), (Count{0, 2, 0, 0, 0, 0})) << text(count(products));
+}
+
+TEST(Simplify, subtracts_positions_first) {
+  // (x_a + ra) - (x_b + rb): far from the origin x_a + ra would round ra away.
+  const Joint joint = joint_of("revolute");
+  const Kernel kernel = kernel_of(joint);
+  const Program& C = kernel.rows.functions.front().program;
+  for (const Operation& op : C.ops) {
+    if (op.kind != OpKind::sum) continue;
+    int positions = 0;
+    for (const int arg : op.args) positions += C.ops[static_cast<std::size_t>(arg)].is_position;
+    EXPECT_NE(positions, 1) << "a position alone in a sum";
+  }
+}
+
+TEST(Cost, of_the_point_joint_is_that_of_a_careful_person) {
+  const Joint joint = joint_of("revolute");
+  const Kernel kernel = kernel_of(joint);
+  // Per body: I ra_y ra_y, I ra_x ra_x, and one product shared by K21 = -I ra_x ra_y.
+  EXPECT_EQ(cost(kernel.rows, "effective_mass").multiply, 2 * 5);
+  EXPECT_EQ(cost(kernel.rows, "velocity").multiply, 2 * 2);
+  EXPECT_EQ(cost(kernel.rows, "jacobian").multiply, 2 * 4) << "two rotated arms, nothing else";
+  for (const KernelBlock& variant : kernel.rows.variants) {
+    EXPECT_EQ(cost(variant, "effective_mass").multiply, 5) << variant.name;
+  }
+}
+
+TEST(Cost, counts_powers_negations_and_guards) {
+  Pool pool;
+  const Expr a = pool.symbol("a", Role::given);
+  const auto cost_of = [&](Expr e) { return count(assemble({{"C[0]", e}})); };
+  EXPECT_EQ(cost_of(pow(a, 4)), (Count{0, 3, 0, 0, 0, 0}));
+  EXPECT_EQ(cost_of(-a), (Count{1, 0, 0, 0, 0, 0}));
+  EXPECT_EQ(cost_of(Rational(2) * a), (Count{0, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(cost_of(call(Fn::inverse, a)), (Count{0, 0, 1, 0, 1, 0}));
+  EXPECT_EQ(cost_of(call(Fn::sin, a)), (Count{0, 0, 0, 0, 0, 1}));
+  EXPECT_EQ(cost_of(call(Fn::sqrt, a)), (Count{0, 0, 0, 1, 0, 0}));
+  EXPECT_EQ(cost_of(a), Count{});
+}

@@ -1,0 +1,55 @@
+// Random expressions beside their values: each built twice, by the builders under test and in plain
+// numbers.
+#pragma once
+
+#include <vector>
+
+#include "derive/numeric.hpp"
+#include "derive/program.hpp"
+
+namespace cdot::derive {
+
+struct KnownScalar {
+  Expr e;
+  double value;
+};
+struct KnownVector {
+  Expr e;
+  Triple<double> value;
+};
+
+// Grows from leaves by builders chosen at random, in the plane or in space as the pool; keeps what
+// is neither huge nor too close to a place where it is undefined.
+class RandomExpressions {
+ public:
+  RandomExpressions(Pool& pool, std::uint64_t seed);
+  void grow(int steps);
+
+  const std::vector<KnownScalar>& scalars() const { return scalars_; }
+  const std::vector<KnownVector>& vectors() const { return vectors_; }
+  const Values& leaves() const { return leaves_; }
+
+ private:
+  const KnownScalar& scalar() { return scalars_[pick(scalars_.size())]; }
+  const KnownVector& vector() { return vectors_[pick(vectors_.size())]; }
+  std::size_t pick(std::size_t size) { return static_cast<std::size_t>(random_.bits() % size); }
+  void keep(KnownScalar s);
+  void keep(KnownVector v);
+  void grow_scalar();
+  void add_leaf(const char* name, Role role, int body, bool of_unit_length);
+  void grow_vector();
+  void grow_turned(const KnownVector& u, const KnownVector& v);
+  void grow_function();
+
+  Pool& pool_;
+  Random random_;
+  Values leaves_;
+  std::vector<KnownScalar> scalars_;
+  std::vector<KnownVector> vectors_;
+};
+
+// The outputs of a program, operation by operation, without sharing anything with printers or
+// passes.
+std::vector<double> run(const Program& program, const Values& inputs);
+
+}  // namespace cdot::derive

@@ -1,0 +1,25 @@
+// Writes the kernels of the given specs without proving them: what the determinism test repeats
+// often. usage: regenerate SPECS_FOLDER OUTPUT SPEC...
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+#include "derive/generate.hpp"
+#include "derive/specs_folder.hpp"
+
+int main(int argc, char** argv) {
+  using namespace cdot::derive;
+  const SpecsFolder folder(argv[1]);
+  std::vector<Joint> joints;
+  for (int i = 3; i < argc; ++i) {
+    const ReadResult read = folder.read(argv[i]);
+    if (!read.joint) return 2;
+    joints.push_back(*read.joint);
+  }
+  for (const auto& [name, content] : generate(joints, {})) {
+    const std::filesystem::path path = std::filesystem::path(argv[2]) / name;
+    std::filesystem::create_directories(path.parent_path());
+    if (!(std::ofstream(path, std::ios::binary) << content).flush()) return 2;
+  }
+  return 0;
+}
