@@ -75,8 +75,10 @@ void Elaborator::run(Source& spec) {
                              "the file is not named after its joint " + quote(spec.ast.name.text),
                              "name it " + spec.ast.name.text + ".joint");
   check_bodies(spec);
-  if (joint_.rows.empty() && !spec.diagnostics.has_errors())
-    spec.diagnostics.error(spec.ast.name.where, "the joint has no row: it constrains nothing",
+  // Coordinates alone are enough: effects hold what a scene wants held.
+  if (joint_.rows.empty() && joint_.coordinates.empty() && !spec.diagnostics.has_errors())
+    spec.diagnostics.error(spec.ast.name.where,
+                           "the joint has neither a row nor a coordinate: it is of no use",
                            "write an equation, such as pa = pb");
   warn_unused(spec);
 }

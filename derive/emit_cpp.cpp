@@ -183,6 +183,7 @@ class KernelWriter {
     } else {
       line(fmt::format("static constexpr int immovable_body = {};", b.block.immovable), depth);
     }
+    if (rows == 0) return;
     const bool same_jacobian =
         base != nullptr && jacobian_struct(b, depth) == jacobian_struct(*base, depth);
     if (!same_jacobian) out_ += jacobian_struct(b, depth);

@@ -28,6 +28,7 @@ class BlockPlanner {
   }
 
   KernelBlock plan() {
+    if (rows() == 0) return std::move(out_);
     store_jacobian();
     add_position_and_jacobian();
     add_effective_mass();
@@ -322,6 +323,7 @@ bool some_row_vanishes(const Block& block) {
 template <class Derive>
 KernelBlock plan_block(const Joint& joint, std::string name, Derive derive) {
   KernelBlock out = BlockPlanner(joint, derive(-1), std::move(name)).plan();
+  if (out.block.rows.empty()) return out;  // a joint of coordinates only
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     Block variant = derive(static_cast<int>(b));
     if (some_row_vanishes(variant)) continue;

@@ -23,6 +23,7 @@ void add_functions(const Joint& joint, const KernelBlock& block, const std::stri
 
 void add_quantities(const Joint& joint, const Block& block, const std::string& name,
                     std::vector<LedgerRow>& rows) {
+  if (block.rows.empty()) return;
   const std::string space = name_of_space(joint.dimension);
   std::vector<Expr> C, J, K;
   for (std::size_t i = 0; i < block.rows.size(); ++i) {

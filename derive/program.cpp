@@ -3,20 +3,26 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
+
 #include "derive/program_builder.hpp"
 
 namespace cdot::derive {
 namespace {
 
+// Equal for equal operations and for no others: the numbers of one after the other, as bytes.
 std::string key_of(const Operation& op) {
-  std::string key = std::to_string(static_cast<int>(op.kind));
-  if (op.kind == OpKind::number) key += op.value.text();
+  std::string key;
+  const auto add = [&](std::int64_t n) { key.append(reinterpret_cast<const char*>(&n), sizeof n); };
+  const auto add_rational = [&](Rational r) { add(r.num()), add(r.den()); };
+  add(static_cast<int>(op.kind));
+  if (op.kind == OpKind::number) add_rational(op.value);
   if (op.kind == OpKind::input) key += op.input;
-  if (op.kind == OpKind::function) key += name_of(op.fn);
+  if (op.kind == OpKind::function) add(static_cast<int>(op.fn));
   for (std::size_t i = 0; i < op.args.size(); ++i) {
-    key += ',' + std::to_string(op.args[i]);
-    if (op.kind == OpKind::sum) key += '*' + op.coefs[i].text();
-    if (op.kind == OpKind::product) key += '^' + std::to_string(op.exponents[i]);
+    add(op.args[i]);
+    if (op.kind == OpKind::sum) add_rational(op.coefs[i]);
+    if (op.kind == OpKind::product) add(op.exponents[i]);
   }
   return key;
 }

@@ -1,7 +1,7 @@
 // Builds a Program operation by operation, each once: what the assembler and every pass end in.
 #pragma once
 
-#include <map>
+#include <unordered_map>
 
 #include "derive/program.hpp"
 
@@ -29,7 +29,7 @@ class ProgramBuilder {
   Rational pull_coefficient(int& arg) const;
 
   Program program_;
-  std::map<std::string, int> by_key_;
+  std::unordered_map<std::string, int> by_key_;
 };
 
 }  // namespace cdot::derive

@@ -296,7 +296,29 @@ struct BlockLoops {
   }
 };
 
+template <class... Arguments>
+void do_nothing(Arguments...) {}
+
+// The rows of a joint that has coordinates only.
+template <class S, class Joint>
+constexpr BlockOps<S> ops_without_rows() {
+  using Parameters = typename Joint::template Parameters<typename S::Scalar>;
+  constexpr int parameter_size = sizeof(Parameters) / sizeof(typename S::Scalar);
+  return {Joint::bodies, 0,          parameter_size, 0,          false,      do_nothing,
+          do_nothing,    do_nothing, do_nothing,     do_nothing, do_nothing, do_nothing,
+          do_nothing,    do_nothing, do_nothing,     do_nothing, do_nothing, do_nothing};
+}
+
 template <class S, class Joint, class Block>
-inline constexpr BlockOps<S> block_ops = BlockLoops<S, Joint, Block>::ops();
+constexpr BlockOps<S> make_block_ops() {
+  if constexpr (Block::rows == 0) {
+    return ops_without_rows<S, Joint>();
+  } else {
+    return BlockLoops<S, Joint, Block>::ops();
+  }
+}
+
+template <class S, class Joint, class Block>
+inline constexpr BlockOps<S> block_ops = make_block_ops<S, Joint, Block>();
 
 }  // namespace cdot
