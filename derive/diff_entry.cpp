@@ -81,9 +81,12 @@ Generated EntryJudge::generated_for(const std::vector<ScalarRow>& rows) const {
 std::vector<Expr> EntryJudge::assumed_equations() const {
   std::vector<Expr> equations;
   for (const HandAssumption& a : entry_.assumptions) {
-    if (!a.left || !a.right || a.left->entries.size() != a.right->entries.size()) continue;
-    for (std::size_t i = 0; i < a.left->entries.size(); ++i) {
-      const Expr equation = a.left->entries[i] - a.right->entries[i];
+    if (!a.left || !a.right) continue;
+    const std::vector<Expr>&left = a.left->entries, &right = a.right->entries;
+    const bool zero = right.size() == 1 && is_zero(right[0]);  // fits a vector, too
+    if (!zero && left.size() != right.size()) continue;
+    for (std::size_t i = 0; i < left.size(); ++i) {
+      const Expr equation = left[i] - right[zero ? 0 : i];
       if (!is_zero(equation)) equations.push_back(equation);
     }
   }
@@ -135,7 +138,7 @@ void EntryJudge::prepare_poses() {
 }
 
 const Poses& EntryJudge::poses_on_constraint() {
-  if (!on_constraint_) on_constraint_ = poses().where(constraints());
+  if (!on_constraint_) on_constraint_ = poses().aligned().where(constraints());
   return *on_constraint_;
 }
 

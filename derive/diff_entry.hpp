@@ -40,9 +40,10 @@ class EntryJudge {
 
   // diff_sign.cpp: which sign of C an entry means.
   struct Misfit {
-    int entries = 0;        // that differ
+    int blocks = 0;         // that differ
     std::size_t terms = 0;  // that differ in them
   };
+  int block_of(int column) const;  // v or w of a body
   Misfit misfit(const Part& part, const HandItem& item, std::size_t row, int sign) const;
   void find_signs(std::vector<Part>& parts);
   std::vector<int> signs_of_mass(const Part& part) const;

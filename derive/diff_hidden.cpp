@@ -13,12 +13,13 @@ class Search {
       : joint_(joint), pool_(*joint.pool), hand_(hand), generated_(generated), poses_(poses) {}
 
   // Equal there, and not just zero both, as a factor C of both sides would make them.
-  bool holds(const std::vector<Expr>& equations) const {
+  bool holds(const std::vector<Expr>& equations) const { return holds(equations, poses_); }
+  bool holds(const std::vector<Expr>& equations, const Poses& poses) const {
     const Expr zero = pool_.number(0);
-    const Poses few = poses_.first(2).where(equations);  // most candidates fail at the first poses
+    const Poses few = poses.first(2).where(equations);  // most candidates fail at the first poses
     const bool vanishes = few.equal(generated_, zero) && !poses_.equal(generated_, zero);
     if (!few.equal(hand_, generated_) || vanishes) return false;
-    return poses_.where(equations).equal(hand_, generated_);
+    return poses.where(equations).equal(hand_, generated_);
   }
 
   // A free symbol that stands for a quantity of the joint.
@@ -69,6 +70,15 @@ class Search {
     }
     for (std::size_t i = 0; i < vectors.size(); ++i) {
       for (std::size_t j = i + 1; j < vectors.size(); ++j) {
+        const Expr u = vectors[i].second, v = vectors[j].second;
+        const bool directions = u->unit_length && v->unit_length;
+        if (directions && holds(components_of(u - v), poses_.aligned())) {
+          return fmt::format("{} = {}", vectors[i].first, vectors[j].first);
+        }
+      }
+    }
+    for (std::size_t i = 0; i < vectors.size(); ++i) {
+      for (std::size_t j = i + 1; j < vectors.size(); ++j) {
         for (const Expr product : {cross(vectors[i].second, vectors[j].second),
                                    dot(vectors[i].second, vectors[j].second)}) {
           if (product->kind != Kind::number && !is_zero(product) && holds(components_of(product))) {
@@ -95,7 +105,7 @@ std::string hidden_assumption(const Joint& joint, const std::vector<Expr>& const
   // Where a symbol stands for anything, the two are equal only by chance or if it means something.
   const std::vector<Expr> free = free_symbols(hand);
   if (!free.empty()) return search.meaning_of_symbols(free);
-  if (!constraints.empty() && search.holds(constraints)) return "C = 0";
+  if (!constraints.empty() && search.holds(constraints, poses.aligned())) return "C = 0";
   std::string condition = search.of_scalars();
   if (condition.empty()) condition = search.of_orientations();
   if (condition.empty()) condition = search.of_vectors();

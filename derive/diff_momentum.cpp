@@ -13,6 +13,7 @@ void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
   const std::vector<Expr> axes = world_axes(pool_);
   const int width = static_cast<int>(columns_per_body(joint_.dimension)), linear = joint_.dimension;
   const Poses& there = poses_on_constraint();
+  if (there.empty()) return;
   const auto vanishes = [&](Expr e) {
     for (const Expr component : components_of(e)) {
       if (!there.equal(component, pool_.number(0))) return false;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <set>
 
 #include "derive/newton.hpp"
 
@@ -11,43 +13,68 @@ namespace {
 constexpr int number_of_poses = 12;
 constexpr double round_off = 1e-8;
 
-// Every number of a sample that an equation may move: poses, scalars, components of fixed vectors.
-std::vector<double*> variables_of(Sample& sample, std::size_t dimension) {
-  std::vector<double*> variables;
-  const auto take = [&](auto& numbers, std::size_t count) {
-    for (std::size_t k = 0; k < count; ++k) variables.push_back(&numbers[k]);
-  };
-  for (Sample::Body& body : sample.bodies) {
-    take(body.x, dimension);
-    if (dimension == 2)
-      variables.push_back(&body.theta);
-    else
-      take(body.e, 4);
-  }
-  for (auto& [name, value] : sample.scalars) variables.push_back(&value);
-  for (auto& [name, value] : sample.local) {
-    if (!name.starts_with("world.") && !name.starts_with("axis_")) take(value, dimension);
-  }
-  for (auto& [triad, e] : sample.triads) take(e, 4);
-  return variables;
-}
-
-template <class Numbers>
-void normalise(Numbers& numbers) {
-  double square = 0;
-  for (const double x : numbers) square += x * x;
-  for (double& x : numbers) x /= std::sqrt(square);
-}
-
-// Directions and Euler parameters keep the length 1 while they are moved.
-void restore_unit_lengths(Sample& sample) {
+// In the order of their names, and not of addresses.
+std::vector<const Triad*> triads_of(const Joint& joint, const Sample& sample) {
+  std::vector<const Triad*> triads;
   for (const Expr leaf : sample.leaves) {
-    const auto found = sample.local.find(leaf->symbol);
-    if (leaf->unit_length && found != sample.local.end()) normalise(found->second);
+    const Triad* triad = joint.pool->axis_of(leaf).triad;
+    const bool known = std::find(triads.begin(), triads.end(), triad) != triads.end();
+    if (sample.triads.contains(triad) && !known) triads.push_back(triad);
   }
-  for (Sample::Body& body : sample.bodies) normalise(body.e);
-  for (auto& [triad, e] : sample.triads) normalise(e);
+  return triads;
 }
+
+// All that an equation may move: bodies, scalars, vectors and triads that are fixed somewhere. Directions and
+// orientations are turned, so that they keep their length.
+class Variables {
+ public:
+  Variables(const Joint& joint, const Sample& sample) : dimension_(joint.dimension) {
+    std::set<std::string> directions;
+    for (const Expr leaf : sample.leaves) {
+      if (leaf->unit_length) directions.insert(leaf->symbol);
+    }
+    const std::size_t linear = static_cast<std::size_t>(dimension_), turns = dimension_ == 2 ? 1 : 3;
+    for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
+      for (std::size_t k = 0; k < linear + turns; ++k) {
+        add([=, this](Sample& s, double by) { s.bodies[b].move(dimension_, k, by); });
+      }
+    }
+    for (const auto& [name, value] : sample.scalars) {
+      add([name](Sample& s, double by) { s.scalars.at(name) += by; });
+    }
+    for (const auto& [name, value] : sample.local) {
+      if (name.starts_with("world.") || name.starts_with("axis_")) continue;
+      const bool direction = directions.contains(name);
+      for (std::size_t k = 0; k < (direction ? turns : linear); ++k) {
+        add([=, this](Sample& s, double by) {
+          Triple<double>& u = s.local.at(name);
+          direction ? turn(u, k, by) : void(u[k] += by);
+        });
+      }
+    }
+    for (const Triad* triad : triads_of(joint, sample)) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        add([=](Sample& s, double by) { s.triads.at(triad) = turned_about(k, by, s.triads.at(triad)); });
+      }
+    }
+  }
+
+  std::size_t size() const { return moves_.size(); }
+  void move(Sample& sample, std::size_t i, double by) const { moves_[i](sample, by); }
+
+ private:
+  void add(std::function<void(Sample&, double)> move) { moves_.push_back(std::move(move)); }
+
+  void turn(Triple<double>& u, std::size_t axis, double by) const {
+    const std::size_t i = dimension_ == 2 ? 0 : (axis + 1) % 3, j = dimension_ == 2 ? 1 : (axis + 2) % 3;
+    const double x = u[i], y = u[j], c = std::cos(by), s = std::sin(by);
+    u[i] = c * x - s * y;
+    u[j] = s * x + c * y;
+  }
+
+  int dimension_;
+  std::vector<std::function<void(Sample&, double)>> moves_;
+};
 
 // What is positive by its nature, and still is: masses, and symbols that an entry declares free.
 bool still_positive(const Sample& sample) {
@@ -64,16 +91,17 @@ double largest(const std::vector<double>& numbers) {
   return most;
 }
 
-Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations, Sample& sample) {
+Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations, const Variables& variables,
+                       const Sample& sample) {
   constexpr double step = 1e-6;
   Gradients G(equations.size());
-  for (double* x : variables_of(sample, static_cast<std::size_t>(joint.dimension))) {
-    const double kept = *x;
-    *x = kept + step;
-    const std::vector<double> above = values_at(joint, equations, sample);
-    *x = kept - step;
-    const std::vector<double> below = values_at(joint, equations, sample);
-    *x = kept;
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    Sample moved = sample;
+    variables.move(moved, v, step);
+    const std::vector<double> above = values_at(joint, equations, moved);
+    moved = sample;
+    variables.move(moved, v, -step);
+    const std::vector<double> below = values_at(joint, equations, moved);
     for (std::size_t i = 0; i < G.size(); ++i) G[i].push_back((above[i] - below[i]) / (2 * step));
   }
   return G;
@@ -104,27 +132,44 @@ Poses::Poses(const Joint& joint, std::vector<Expr> expressions) : joint_(&joint)
 // Gauss-Newton with the shortest step, halved while it does not help.
 bool Poses::satisfy(Sample& sample) const {
   constexpr double reached = 1e-12;
+  const Variables variables(*joint_, sample);
   double error = largest(values_at(*joint_, equations_, sample));
-  for (int iteration = 0; iteration < 40 && error > reached; ++iteration) {
+  for (int iteration = 0; iteration < 60 && error > reached; ++iteration) {
     const std::vector<double> residual = values_at(*joint_, equations_, sample);
     const std::vector<double> step =
-        shortest_step(gradients_of(*joint_, equations_, sample), residual);
+        shortest_step(gradients_of(*joint_, equations_, variables, sample), residual);
     double fraction = 1;
     for (; fraction > 1e-3; fraction /= 2) {
       Sample moved = sample;
-      const std::vector<double*> variables =
-          variables_of(moved, static_cast<std::size_t>(joint_->dimension));
-      for (std::size_t i = 0; i < variables.size(); ++i) *variables[i] += fraction * step[i];
-      restore_unit_lengths(moved);
+      for (std::size_t i = 0; i < step.size(); ++i) variables.move(moved, i, fraction * step[i]);
       const double moved_error = largest(values_at(*joint_, equations_, moved));
       if (!(moved_error < error)) continue;
       sample = std::move(moved);
       error = moved_error;
       break;
     }
-    if (fraction <= 1e-3) return false;
+    if (fraction <= 1e-3) break;
   }
-  return error <= reached && still_positive(sample);
+  constexpr double round_off_of_sums = 1e-11;  // of equations that depend on each other
+  return error <= round_off_of_sums && still_positive(sample);
+}
+
+// Rotations vanish also where one turns by pi; from almost the same orientations the next solution is that without.
+Poses Poses::aligned() const {
+  if (joint_->dimension == 2) return *this;
+  Poses poses = *this;
+  Random random(7);
+  const auto nearly = [&](EulerParameters<double> e) {
+    for (std::size_t k = 0; k < 3; ++k) e = turned_about(k, random.between(-0.3, 0.3), e);
+    return e;
+  };
+  for (Sample& sample : poses.samples_) {
+    const EulerParameters<double> first = sample.bodies[0].e;
+    for (Sample::Body& body : sample.bodies) body.e = nearly(first);
+    const std::vector<const Triad*> triads = triads_of(*joint_, sample);
+    for (const Triad* triad : triads) sample.triads.at(triad) = nearly(sample.triads.at(triads[0]));
+  }
+  return poses;
 }
 
 Poses Poses::where(const std::vector<Expr>& equations) const {

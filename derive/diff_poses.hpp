@@ -16,6 +16,8 @@ class Poses {
   // The same poses moved to where these equations are zero, too; no poses if that is not possible.
   Poses where(const std::vector<Expr>& equations) const;
 
+  // The same poses with all bodies in almost the same orientation: where to start from for C = 0.
+  Poses aligned() const;
   Poses first(std::size_t count) const;
   bool empty() const { return samples_.empty(); }
   const std::vector<Sample>& samples() const { return samples_; }

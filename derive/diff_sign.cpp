@@ -7,6 +7,11 @@
 
 namespace cdot::derive {
 
+int EntryJudge::block_of(int column) const {
+  const int width = static_cast<int>(columns_per_body(joint_.dimension));
+  return 2 * (column / width) + (column % width < joint_.dimension ? 0 : 1);
+}
+
 // How badly one row of an item fits if the row is counted with this sign.
 EntryJudge::Misfit EntryJudge::misfit(const Part& part, const HandItem& item, std::size_t row,
                                       int sign) const {
@@ -16,12 +21,14 @@ EntryJudge::Misfit EntryJudge::misfit(const Part& part, const HandItem& item, st
   const Matrix& mine = item.what == "C" ? g.C : item.what == "J" ? g.J : g.Cdot;
   if (item.value->rows != mine.rows || item.value->columns != mine.columns) return misfit;
   const Rational factor(item.what == "b" ? -sign : sign);
+  int block = -1;  // columns of v, or of w, of one body count as one
   for (int c = 0; c < mine.columns; ++c) {
     const Expr hand = item.value->at(static_cast<int>(row), c);
     const Expr generated = factor * mine.at(static_cast<int>(row), c);
     if (poses().equal(hand, generated)) continue;
     const Leftover left = leftover_terms(hand, generated, joint_, Opened::everything);
-    ++misfit.entries;
+    misfit.blocks += block_of(c) == block ? 0 : 1;
+    block = block_of(c);
     misfit.terms += left.hand.size() + left.generated.size();
   }
   return misfit;
@@ -34,7 +41,7 @@ void EntryJudge::find_signs(std::vector<Part>& parts) {
   };
   std::map<std::string, Evidence> evidence;  // by row: a row may occur in several parts
   const auto add = [](Misfit& total, const Misfit& more) {
-    total.entries += more.entries;
+    total.blocks += more.blocks;
     total.terms += more.terms;
   };
   for (const Part& part : parts) {
@@ -52,7 +59,7 @@ void EntryJudge::find_signs(std::vector<Part>& parts) {
     for (std::size_t row = 0; row < part.rows.size(); ++row) {
       const Evidence& e = evidence.at(part.rows[row].name);
       const bool turned =
-          std::pair(e.minus.entries, e.minus.terms) < std::pair(e.plus.entries, e.plus.terms);
+          std::pair(e.minus.blocks, e.minus.terms) < std::pair(e.plus.blocks, e.plus.terms);
       part.sign.push_back(turned ? -1 : 1);
       any = any || e.any;
     }

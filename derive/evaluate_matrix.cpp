@@ -53,6 +53,42 @@ Matrix scaled_by(const Matrix& m, Expr factor) {
   return r;
 }
 
+// In space, so that what a person writes in matrices stays as readable as what is derived in vectors.
+Value row_of(Expr n) {
+  Value v = wrapped(transposed(column_of(n)));
+  v.row = n;
+  return v;
+}
+
+// skew(r) u = r x u, n' skew(r) = (n x r)', n' u = n . u, and the like; nothing if the product is none of these.
+std::optional<Value> product_in_vectors(const Value& a, const Value& b) {
+  const bool vector_follows = b.type == Type::vector && !b.zero, plain = !a.inverted && !b.inverted;
+  if (!plain) return std::nullopt;
+  if (a.skew && vector_follows) return vector(cross(a.skew, b.e), {});
+  if (a.tensor && vector_follows) return vector(apply(a.tensor, b.e), {});
+  if (a.row && vector_follows) return scalar(dot(a.row, b.e), {});
+  if (a.row && b.skew) return row_of(cross(a.row, b.skew));
+  if (a.row && b.tensor) return row_of(apply(b.tensor, a.row));
+  if (a.type == Type::scalar && b.skew) return skew_of(a.e * b.skew);
+  if (a.type == Type::scalar && b.row) return row_of(a.e * b.row);
+  if (b.type == Type::scalar && a.skew) return skew_of(b.e * a.skew);
+  if (b.type == Type::scalar && a.row) return row_of(b.e * a.row);
+  return std::nullopt;
+}
+
+// The sum of skew matrices, or of rows.
+std::optional<Value> sum_in_vectors(const std::vector<Value>& terms, const std::string& signs) {
+  const bool skew = std::all_of(terms.begin(), terms.end(), [](const Value& v) { return bool(v.skew); });
+  const bool rows = std::all_of(terms.begin(), terms.end(), [](const Value& v) { return bool(v.row); });
+  if (!skew && !rows) return std::nullopt;
+  Expr sum;
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    const Expr u = skew ? terms[i].skew : terms[i].row, term = signs[i] == '-' ? -u : u;
+    sum = i == 0 ? term : sum + term;
+  }
+  return skew ? skew_of(sum) : row_of(sum);
+}
+
 // Adds blocks of equal height, side by side, below m.
 void append_rows(Matrix& m, const std::vector<Matrix>& blocks, int columns) {
   const int height = blocks.front().rows;
@@ -144,6 +180,10 @@ Value Evaluator::simplest(Matrix m, bool as_vector) {
 Value Evaluator::transpose(const Ast& ast) {
   const Value v = plain(ast.args[0], "has no transpose");
   if (v.type == Type::poison || v.type == Type::scalar) return v;
+  if (v.skew) return skew_of(-v.skew);
+  if (v.row) return vector(v.row, {});
+  if (v.tensor) return v;
+  if (v.type == Type::vector && pool_.dimension() == 3) return row_of(v.e);
   Value result = wrapped(transposed(as_matrix(v)));
   if (v.type == Type::matrix) return simplest(*result.matrix, true);
   return result;
@@ -151,6 +191,7 @@ Value Evaluator::transpose(const Ast& ast) {
 
 Value Evaluator::matrix_sum(const std::vector<Value>& terms, const std::string& signs,
                             const std::vector<Span>& parts) {
+  if (const std::optional<Value> sum = sum_in_vectors(terms, signs)) return *sum;
   const auto first =
       std::find_if(terms.begin(), terms.end(), [](const Value& v) { return !any_size(v); });
   Matrix total{0, 0, {pool_.number(0)}};
@@ -209,6 +250,10 @@ Value Evaluator::matrix_product(const std::vector<Value>& factors, const Ast& as
       next = scalar(pow(next.e, -1), {});
     }
     if (i == 0) continue;
+    if (const std::optional<Value> product_of_two = product_in_vectors(total, next)) {
+      total = *product_of_two;
+      continue;
+    }
     const bool as_vector =
         next.type == Type::vector || (total.type == Type::vector && next.type == Type::scalar);
     const auto product = multiply(total, next, {ast.where.begin, where.end});
@@ -220,7 +265,11 @@ Value Evaluator::matrix_product(const std::vector<Value>& factors, const Ast& as
 
 Value Evaluator::matrix_power(const Value& base, int exponent, const Ast& ast) {
   const Matrix& m = *base.matrix;
-  if (base.inverted && exponent == -1) return wrapped(m);
+  if (base.inverted && exponent == -1) {
+    Value plain = base;
+    plain.inverted = false;
+    return plain;
+  }
   if (m.any_size()) return wrapped({0, 0, {pow(m.entries[0], exponent)}});
   if (m.rows != m.columns || exponent == 0 || exponent < -1 || exponent > 8 || m.rows > 4)
     return error(ast.where, "this power of a matrix of " + size_in_words(m) + " is not supported",

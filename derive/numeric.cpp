@@ -154,15 +154,19 @@ std::vector<Expr> leaves_of(std::span<const Expr> expressions) {
   return leaves;
 }
 
+EulerParameters<double> turned_about(std::size_t axis, double amount, const EulerParameters<double>& e) {
+  EulerParameters<double> turn{std::cos(amount / 2), 0, 0, 0};
+  turn[axis + 1] = std::sin(amount / 2);
+  return product(turn, e);
+}
+
 void Sample::Body::move(int dimension, std::size_t k, double amount) {
   if (k < static_cast<std::size_t>(dimension)) {
     x[k] += amount;
   } else if (dimension == 2) {
     theta += amount;
   } else {
-    EulerParameters<double> turn{std::cos(amount / 2), 0, 0, 0};
-    turn[k - 2] = std::sin(amount / 2);
-    e = product(turn, e);
+    e = turned_about(k - 3, amount, e);
   }
 }
 

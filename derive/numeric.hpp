@@ -217,6 +217,9 @@ class Random {
   std::uint64_t state_;
 };
 
+// e, then a turn by an amount about a world axis.
+EulerParameters<double> turned_about(std::size_t axis, double amount, const EulerParameters<double>& e);
+
 // Bodies somewhere, and a value for everything else that some expressions contain.
 struct Sample {
   struct Body {

@@ -113,18 +113,21 @@ Value build_inertia(Pool& pool, Arguments a) {
   const Expr inverse_I = inverse_inertia(pool, a[0].body);
   if (pool.dimension() == 2) return scalar(pow(inverse_I, -1));
   Value v = matrix_of(tensor_matrix(inverse_I));
+  v.tensor = inverse_I;
   v.inverted = true;
   return v;
 }
 
 Value build_skew(Pool& pool, Arguments a) {
   if (pool.dimension() == 2) return vector(perp(a[0].e));
-  const Expr x = component(a[0].e, 0), y = component(a[0].e, 1), z = component(a[0].e, 2), o = pool.number(0);
-  return matrix_of({3, 3, {o, -z, y, z, o, -x, -y, x, o}});
+  return skew_of(a[0].e);
 }
 
 Value build_inverse(Pool&, Arguments a) {
-  return matrix_of(a[0].inverted ? *a[0].matrix : inverse(*a[0].matrix));
+  if (!a[0].inverted) return matrix_of(inverse(*a[0].matrix));
+  Value v = a[0];
+  v.inverted = false;
+  return v;
 }
 
 // Columns are the body's axes.

@@ -24,6 +24,15 @@ std::string_view in_words(Type type) {
   return "";
 }
 
+Value skew_of(Expr r) {
+  const Expr x = component(r, 0), y = component(r, 1), z = component(r, 2), o = r->pool->number(0);
+  Value v;
+  v.type = Type::matrix;
+  v.matrix = std::make_shared<const Matrix>(Matrix{3, 3, {o, -z, y, z, o, -x, -y, x, o}});
+  v.skew = r;
+  return v;
+}
+
 bool same_unit(const Value& a, const Value& b, bool radians_are_numbers) {
   if (!a.unit || !b.unit || *a.unit == *b.unit) return true;
   Unit x = *a.unit, y = *b.unit;

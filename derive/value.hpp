@@ -30,6 +30,8 @@ struct Value {
   bool anchored = false;  // point that is known to be fixed in `body`
   std::vector<Expr> along;  // vector whose components are those along a frame: that frame's axes
   std::shared_ptr<const Matrix> matrix;
+  // What a matrix in space means in vectors, if that is known: r of skew(r), n of the row n', the leaf of a tensor.
+  Expr skew, row, tensor;
   bool inverted = false;  // matrix: what is meant is its inverse (an inertia tensor, whose inverse has the leaves)
 };
 
@@ -46,6 +48,9 @@ inline Value vector(Expr e, std::optional<Unit> unit = Unit{}) {
   v.type = Type::vector;
   return v;
 }
+
+// In space: the matrix with skew(r) u = r x u.
+Value skew_of(Expr r);
 
 std::string_view in_words(Type type);  // "a number", "a vector", ...
 
