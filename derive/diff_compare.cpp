@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <regex>
 
 #include "derive/diff_entry.hpp"
+#include "derive/diff_merge.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -79,7 +81,24 @@ Place EntryJudge::place_of(const Part& part, const HandItem& item, int row, int 
   return place;
 }
 
-void EntryJudge::add(const HandItem& item, Difference difference, Expr hand, Expr generated) {
+// The axis that the spec calls f.x is a leaf f_x.
+std::string EntryJudge::in_names_of_spec(std::string text) const {
+  if (joint_.dimension == 2) return text;
+  std::vector<std::string> frames;
+  for (const Parameter& p : joint_.parameters) {
+    if (p.kind == ParameterKind::frame) frames.push_back(p.name);
+  }
+  for (const std::string& body : joint_.bodies) frames.push_back("axis_" + body);
+  for (const std::string& frame : frames) {
+    const std::string name = frame.starts_with("axis_") ? frame.substr(5) : frame;
+    text = std::regex_replace(text, std::regex("\\b" + frame + "_([xyz])\\b"), name + ".$1");
+  }
+  return text;
+}
+
+// With the condition that may have been meant.
+Difference EntryJudge::finished(const HandItem& item, Difference difference, Expr hand,
+                                Expr generated) const {
   if (difference.kind != "sign" && difference.kind != "wrong body") {
     const std::string hidden = hidden_assumption(joint_, constraints(), hand, generated, poses());
     if (!hidden.empty()) difference.sentence += fmt::format("; equal only where {}", hidden);
@@ -88,7 +107,11 @@ void EntryJudge::add(const HandItem& item, Difference difference, Expr hand, Exp
   }
   difference.what = item.kind == HandItem::Kind::update ? "update" : item.what;
   difference.where = item.where;
-  out_.differences.push_back(std::move(difference));
+  for (std::string Difference::*text :
+       {&Difference::generated, &Difference::hand, &Difference::difference, &Difference::sentence}) {
+    difference.*text = in_names_of_spec(difference.*text);
+  }
+  return difference;
 }
 
 void EntryJudge::add_plain(const HandItem& item, const Place& place, std::string kind,
@@ -121,9 +144,9 @@ std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::s
   return sources;
 }
 
-void EntryJudge::compare_entry(const Part& part, const HandItem& item, int row, int column,
-                               Expr hand, Expr generated) {
-  if (equal(hand, generated)) return;
+std::optional<Difference> EntryJudge::compare_entry(const Part& part, const HandItem& item, int row,
+                                                    int column, Expr hand, Expr generated) {
+  if (equal(hand, generated)) return std::nullopt;
   Place place = place_of(part, item, row, column);
   const std::size_t r = static_cast<std::size_t>(row);
   if (item.kind != HandItem::Kind::claim && item.what == "J") {
@@ -140,7 +163,7 @@ void EntryJudge::compare_entry(const Part& part, const HandItem& item, int row, 
   }
   Difference d = describe_difference(place, hand, generated, poses());
   d.confirmed = confirmation(part, item, row, column, hand, generated);
-  add(item, std::move(d), hand, generated);
+  return finished(item, std::move(d), hand, generated);
 }
 
 std::string EntryJudge::confirmation(const Part& part, const HandItem& item, int row, int column,
@@ -162,16 +185,71 @@ void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& h
   if (hand.rows != generated.rows || hand.columns != generated.columns) {
     return compare_sizes(part, item, hand, generated);
   }
-  for (int r = 0; r < hand.rows; ++r) {
+  Matrix expected = generated;
+  for (int r = 0; r < hand.rows && !claim; ++r) {
     for (int c = 0; c < hand.columns; ++c) {
-      Rational sign(1);
-      if (!claim) sign = part.sign[static_cast<std::size_t>(r)];
-      if (!claim && item.what == "K")
-        sign = sign * Rational(part.sign[static_cast<std::size_t>(c)]);
-      if (item.what == "b" && !claim) sign = -sign;
-      compare_entry(part, item, r, c, hand.at(r, c), sign * generated.at(r, c));
+      int sign = part.sign[static_cast<std::size_t>(r)];
+      if (item.what == "K") sign *= part.sign[static_cast<std::size_t>(c)];
+      Expr& entry = expected.entries[static_cast<std::size_t>(r * hand.columns + c)];
+      entry = Rational(item.what == "b" ? -sign : sign) * entry;
     }
   }
+  for (const Group& rows : groups_of_rows(part, item, hand.rows)) {
+    for (const Group& columns : groups_of_columns(part, item, hand.columns)) {
+      std::vector<Difference> found;
+      for (int r = rows.first; r < rows.first + rows.count; ++r) {
+        for (int c = columns.first; c < columns.first + columns.count; ++c) {
+          auto difference = compare_entry(part, item, r, c, hand.at(r, c), expected.at(r, c));
+          if (difference) found.push_back(std::move(*difference));
+        }
+      }
+      const auto text_of_block = [&](const Matrix& m) {
+        return in_names_of_spec(
+            text_of(part_of(m, rows.first, rows.count, columns.first, columns.count)));
+      };
+      for (Difference& d : merged(std::move(found), {rows.name, columns.name, text_of_block(expected),
+                                                     text_of_block(hand)})) {
+        out_.differences.push_back(std::move(d));
+      }
+    }
+  }
+}
+
+// In space the rows of one vector equation go together.
+std::vector<EntryJudge::Group> EntryJudge::groups_of_rows(const Part& part, const HandItem& item,
+                                                          int rows) const {
+  std::vector<Group> groups;
+  const bool claim = item.kind == HandItem::Kind::claim, named = !part.hand->rows.empty();
+  for (int r = 0; r < rows;) {
+    int count = joint_.dimension == 3 && claim && rows == 3 ? 3 : 1;
+    if (joint_.dimension == 3 && !claim) {
+      const Row* row = part.rows[static_cast<std::size_t>(r)].row;
+      while (row && r + count < rows && part.rows[static_cast<std::size_t>(r + count)].row == row) ++count;
+    }
+    std::string name = place_of(part, item, r, 0).row;
+    if (count > 1 && named && !claim) name = part.rows[static_cast<std::size_t>(r)].row->name;
+    else if (count > 1) name = fmt::format("{}-{}", r + 1, r + count);
+    groups.push_back({r, count, name});
+    r += count;
+  }
+  return groups;
+}
+
+// In space the columns of one velocity go together.
+std::vector<EntryJudge::Group> EntryJudge::groups_of_columns(const Part& part, const HandItem& item,
+                                                             int columns) const {
+  const bool claim = item.kind == HandItem::Kind::claim;
+  if (item.what == "K" && !claim) return groups_of_rows(part, item, columns);
+  std::vector<Group> groups;
+  const bool blocks = item.what == "J" && !claim && joint_.dimension == 3;
+  for (int c = 0; c < columns;) {
+    int count = 1;
+    while (blocks && c + count < columns && block_of(c + count) == block_of(c)) ++count;
+    const std::string name = place_of(part, item, 0, c).column;
+    groups.push_back({c, count, count == 1 ? name : name.substr(0, name.find('.'))});
+    c += count;
+  }
+  return groups;
 }
 
 // Matrices of different sizes: turned, or with rows too many or too few.

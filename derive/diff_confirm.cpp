@@ -207,6 +207,28 @@ std::string Confirm::reading(const std::string& words, const ScalarRow& row, dou
       small(off), poses_.samples().size());
 }
 
+std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const {
+  double off = 0;
+  for (const Sample& sample : poses.samples()) {
+    const auto rows_of = [&](const Matrix& m) {
+      const std::vector<double> all = values_at(joint_, m.entries, sample);
+      Gradients rows;
+      for (int r = 0; r < m.rows; ++r) {
+        rows.emplace_back(all.begin() + r * m.columns, all.begin() + (r + 1) * m.columns);
+      }
+      return rows;
+    };
+    const Gradients basis = rows_of(larger);
+    for (const Motion& row : rows_of(smaller)) {
+      std::vector<double> along;
+      for (const Motion& of : basis) along.push_back(inner(of, row));
+      for (const double rest : sum_of(row, shortest_step(basis, along))) off = std::max(off, std::abs(rest));
+    }
+  }
+  return fmt::format("; where the constraint holds, the rows of the smaller are combinations of those of the larger, "
+                     "off by {} at {} poses", small(off), poses.samples().size());
+}
+
 std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows,
                                       const Change& change) const {
   const auto left = [&](const std::vector<Expr>& columns) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "derive/diff_poses.hpp"
+#include "derive/matrix.hpp"
 
 namespace cdot::derive {
 
@@ -35,6 +36,9 @@ class Confirm {
   std::string claim(Expr left, Expr right) const;
   // Shows that some other reading of a formula without a value is right.
   std::string reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const;
+
+  // How far the rows of one matrix are from being combinations of those of another.
+  std::string row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const;
 
   // What a source changes, one expression per column of J; `generated` beside it.
   struct Change {

@@ -50,8 +50,15 @@ class EntryJudge {
 
   // diff_compare.cpp: entry by entry.
   void compare(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
-  void compare_entry(const Part& part, const HandItem& item, int row, int column, Expr hand,
-                     Expr generated);
+  // Rows, or columns, that one mistake in vectors is about.
+  struct Group {
+    int first = 0, count = 1;
+    std::string name;
+  };
+  std::vector<Group> groups_of_rows(const Part& part, const HandItem& item, int rows) const;
+  std::vector<Group> groups_of_columns(const Part& part, const HandItem& item, int columns) const;
+  std::optional<Difference> compare_entry(const Part& part, const HandItem& item, int row,
+                                          int column, Expr hand, Expr generated);
   void compare_sizes(const Part& part, const HandItem& item, const Matrix& hand,
                      const Matrix& generated);
   void judge_problem(const Part& part, const HandItem& item);
@@ -62,7 +69,8 @@ class EntryJudge {
   std::string confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand,
                            Expr generated);
   Confirm confirm() const { return {joint_, immovable_, poses()}; }
-  void add(const HandItem& item, Difference difference, Expr hand, Expr generated);
+  std::string in_names_of_spec(std::string text) const;
+  Difference finished(const HandItem& item, Difference difference, Expr hand, Expr generated) const;
   void add_plain(const HandItem& item, const Place& place, std::string kind, std::string sentence,
                  std::string confirmed);
 
@@ -74,6 +82,7 @@ class EntryJudge {
   std::vector<Expr> impulse(const Part& part, UpdateLevel level) const;
   void compare_change(const Part& part, UpdateLevel level, Confirm::Change change,
                       const std::vector<const HandItem*>& said_by);
+  std::vector<Group> groups_of_changes(UpdateLevel level, std::size_t columns) const;
   void judge_bound(const Part& part, const HandItem& item);
 
   // diff_momentum.cpp

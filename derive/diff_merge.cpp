@@ -49,7 +49,7 @@ std::string text_of(const Matrix& m) {
   return s + "]";
 }
 
-Matrix block_of(const Matrix& m, int row, int rows, int column, int columns) {
+Matrix part_of(const Matrix& m, int row, int rows, int column, int columns) {
   Matrix block{rows, columns, {}};
   for (int r = row; r < row + rows; ++r) {
     for (int c = column; c < column + columns; ++c) block.entries.push_back(m.at(r, c));

@@ -22,6 +22,6 @@ std::vector<Difference> merged(std::vector<Difference> entries, const BlockPlace
 // "[a, b ; c, d]"; a single entry as it is.
 std::string text_of(const Matrix& m);
 // Some rows and columns of a matrix.
-Matrix block_of(const Matrix& m, int row, int rows, int column, int columns);
+Matrix part_of(const Matrix& m, int row, int rows, int column, int columns);
 
 }  // namespace cdot::derive

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "derive/diff_entry.hpp"
+#include "derive/diff_merge.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -139,8 +140,7 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
   }
   const bool only_size = level != UpdateLevel::any_impulse && same_direction(change, poses());
   std::string confirmed;
-  for (std::size_t c = 0; c < said_by.size(); ++c) {
-    if (equal(change.published[c], change.generated[c])) continue;
+  const auto difference_at = [&](std::size_t c) {
     if (confirmed.empty()) {
       confirmed = level == UpdateLevel::any_impulse ? confirm().work(part.rows, change)
                   : level == UpdateLevel::positions ? confirm().positions_after(part.rows, change)
@@ -151,8 +151,35 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
     Difference d = describe_difference(place, change.published[c], change.generated[c], poses());
     d.confirmed = confirmed;
     if (only_size && d.kind == "factor") d.sentence += "; the direction of the impulse is right, its size is not";
-    add(*said_by[c], std::move(d), change.published[c], change.generated[c]);
+    return finished(*said_by[c], std::move(d), change.published[c], change.generated[c]);
+  };
+  for (const Group& group : groups_of_changes(level, said_by.size())) {
+    std::vector<Difference> found;
+    Matrix generated{1, group.count, {}}, hand{1, group.count, {}};
+    for (int k = 0; k < group.count; ++k) {
+      const std::size_t c = static_cast<std::size_t>(group.first + k);
+      generated.entries.push_back(change.generated[c]);
+      hand.entries.push_back(change.published[c]);
+      if (!equal(change.published[c], change.generated[c])) found.push_back(difference_at(c));
+    }
+    const BlockPlace place{"", group.name, in_names_of_spec(text_of(generated)), in_names_of_spec(text_of(hand))};
+    for (Difference& d : merged(std::move(found), place)) out_.differences.push_back(std::move(d));
   }
+}
+
+// In space the components of one change go together.
+std::vector<EntryJudge::Group> EntryJudge::groups_of_changes(UpdateLevel level, std::size_t columns) const {
+  std::vector<Group> groups;
+  for (int c = 0; c < static_cast<int>(columns); ++c) {
+    const std::string name = column_name(joint_, static_cast<std::size_t>(c), level == UpdateLevel::positions);
+    if (joint_.dimension == 3 && c > 0 && block_of(c) == block_of(c - 1)) {
+      ++groups.back().count;
+      groups.back().name = name.substr(0, name.find('.'));
+    } else {
+      groups.push_back({c, 1, name});
+    }
+  }
+  return groups;
 }
 
 void EntryJudge::judge_bound(const Part& part, const HandItem& item) {
