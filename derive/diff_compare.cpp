@@ -107,10 +107,6 @@ Difference EntryJudge::finished(const HandItem& item, Difference difference, Exp
   }
   difference.what = item.kind == HandItem::Kind::update ? "update" : item.what;
   difference.where = item.where;
-  for (std::string Difference::*text :
-       {&Difference::generated, &Difference::hand, &Difference::difference, &Difference::sentence}) {
-    difference.*text = in_names_of_spec(difference.*text);
-  }
   return difference;
 }
 
@@ -203,15 +199,29 @@ void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& h
           if (difference) found.push_back(std::move(*difference));
         }
       }
-      const auto text_of_block = [&](const Matrix& m) {
-        return in_names_of_spec(
-            text_of(part_of(m, rows.first, rows.count, columns.first, columns.count)));
+      const auto block = [&](const Matrix& m) {
+        return part_of(m, rows.first, rows.count, columns.first, columns.count);
       };
-      for (Difference& d : merged(std::move(found), {rows.name, columns.name, text_of_block(expected),
-                                                     text_of_block(hand)})) {
-        out_.differences.push_back(std::move(d));
-      }
+      report(std::move(found), rows.name, columns.name, block(hand), block(expected));
     }
+  }
+}
+
+// One difference where the entries of a block have one in common; in the spec's own names.
+void EntryJudge::report(std::vector<Difference> found, const std::string& row,
+                        const std::string& column, const Matrix& hand, const Matrix& generated) {
+  BlockPlace place{row, column, "", "", ""};
+  if (found.size() > 1) {
+    place.generated = text_of(generated, joint_);
+    place.hand = text_of(hand, joint_);
+    place.difference = text_of(difference_of(hand, generated, joint_), joint_);
+  }
+  for (Difference& d : merged(std::move(found), place)) {
+    for (std::string Difference::*text : {&Difference::generated, &Difference::hand,
+                                          &Difference::difference, &Difference::sentence}) {
+      d.*text = in_names_of_spec(d.*text);
+    }
+    out_.differences.push_back(std::move(d));
   }
 }
 
@@ -224,11 +234,14 @@ std::vector<EntryJudge::Group> EntryJudge::groups_of_rows(const Part& part, cons
     int count = joint_.dimension == 3 && claim && rows == 3 ? 3 : 1;
     if (joint_.dimension == 3 && !claim) {
       const Row* row = part.rows[static_cast<std::size_t>(r)].row;
-      while (row && r + count < rows && part.rows[static_cast<std::size_t>(r + count)].row == row) ++count;
+      while (row && r + count < rows && part.rows[static_cast<std::size_t>(r + count)].row == row)
+        ++count;
     }
     std::string name = place_of(part, item, r, 0).row;
-    if (count > 1 && named && !claim) name = part.rows[static_cast<std::size_t>(r)].row->name;
-    else if (count > 1) name = fmt::format("{}-{}", r + 1, r + count);
+    if (count > 1 && named && !claim)
+      name = part.rows[static_cast<std::size_t>(r)].row->name;
+    else if (count > 1)
+      name = fmt::format("{}-{}", r + 1, r + count);
     groups.push_back({r, count, name});
     r += count;
   }
@@ -270,7 +283,13 @@ void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Mat
   }
   const bool more = hand.rows > generated.rows;
   const auto further = further_rows(more ? hand : generated, more ? generated : hand, poses());
-  if (!further) return add_plain(item, place, more ? "extra term" : "missing term", sizes, none);
+  if (!further) {
+    const Matrix &larger = more ? hand : generated, &smaller = more ? generated : hand;
+    const std::string combined = larger.columns == smaller.columns
+                                     ? confirm().row_space(poses_on_constraint(), larger, smaller)
+                                     : "";
+    return add_plain(item, place, more ? "extra term" : "missing term", sizes, none + combined);
+  }
   std::string which, what;
   for (const int row : *further) {
     which += fmt::format("{}{}", which.empty() ? "" : ", ", row + 1);

@@ -207,7 +207,8 @@ std::string Confirm::reading(const std::string& words, const ScalarRow& row, dou
       small(off), poses_.samples().size());
 }
 
-std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const {
+std::string Confirm::row_space(const Poses& poses, const Matrix& larger,
+                               const Matrix& smaller) const {
   double off = 0;
   for (const Sample& sample : poses.samples()) {
     const auto rows_of = [&](const Matrix& m) {
@@ -222,11 +223,15 @@ std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const M
     for (const Motion& row : rows_of(smaller)) {
       std::vector<double> along;
       for (const Motion& of : basis) along.push_back(inner(of, row));
-      for (const double rest : sum_of(row, shortest_step(basis, along))) off = std::max(off, std::abs(rest));
+      for (const double rest : sum_of(row, shortest_step(basis, along)))
+        off = std::max(off, std::abs(rest));
     }
   }
-  return fmt::format("; where the constraint holds, the rows of the smaller are combinations of those of the larger, "
-                     "off by {} at {} poses", small(off), poses.samples().size());
+  return fmt::format(
+      "; where the constraint holds, the rows of the smaller are combinations of those of the "
+      "larger, "
+      "off by {} at {} poses",
+      small(off), poses.samples().size());
 }
 
 std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows,

@@ -59,6 +59,8 @@ class EntryJudge {
   std::vector<Group> groups_of_columns(const Part& part, const HandItem& item, int columns) const;
   std::optional<Difference> compare_entry(const Part& part, const HandItem& item, int row,
                                           int column, Expr hand, Expr generated);
+  void report(std::vector<Difference> found, const std::string& row, const std::string& column,
+              const Matrix& hand, const Matrix& generated);
   void compare_sizes(const Part& part, const HandItem& item, const Matrix& hand,
                      const Matrix& generated);
   void judge_problem(const Part& part, const HandItem& item);
@@ -87,6 +89,8 @@ class EntryJudge {
 
   // diff_momentum.cpp
   void judge_momentum(const Part& part, const Matrix& J);
+  void note_momentum(const std::vector<std::string>& rows, const char* quantity,
+                     const char* motion);
 
   const Joint& joint_;
   Pool& pool_;

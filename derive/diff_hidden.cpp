@@ -17,7 +17,8 @@ class Search {
   bool holds(const std::vector<Expr>& equations, const Poses& poses) const {
     const Expr zero = pool_.number(0);
     const Poses few = poses.first(2).where(equations);  // most candidates fail at the first poses
-    const bool vanishes = few.equal(generated_, zero) && !poses_.equal(generated_, zero);
+    const bool vanishes = few.equal(generated_, zero) && !poses_.equal(generated_, zero) &&
+                          !poses_.equal(hand_, zero);
     if (!few.equal(hand_, generated_) || vanishes) return false;
     return poses.where(equations).equal(hand_, generated_);
   }

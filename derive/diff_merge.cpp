@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <regex>
 
+#include "derive/diff_terms.hpp"
+
 namespace cdot::derive {
 namespace {
 
@@ -32,19 +34,29 @@ std::string condition_of(const Difference& d) {
 
 void set_reason(Difference& d, const std::string& reason) {
   std::string place = d.sentence.substr(0, d.sentence.find(","));  // "J", "claim on C"
-  if (!d.row.empty()) place += (d.row.find_first_of("-,") == d.row.npos ? ", row " : ", rows ") + d.row;
-  if (!d.column.empty()) place += ", " + d.column;
+  if (!d.row.empty())
+    place += (d.row.find_first_of("-,") == d.row.npos ? ", row " : ", rows ") + d.row;
+  const bool numbers = d.column.find_first_not_of("0123456789-") == d.column.npos;
+  if (!d.column.empty()) place += (numbers ? ", columns " : ", ") + d.column;
   d.sentence = place + ": " + reason;
 }
 
 }  // namespace
 
-std::string text_of(const Matrix& m) {
-  if (m.entries.size() == 1) return text(m.at(0, 0));
+Matrix difference_of(const Matrix& hand, const Matrix& generated, const Joint& joint) {
+  Matrix difference = hand;
+  for (std::size_t i = 0; i < hand.entries.size(); ++i) {
+    difference.entries[i] = difference_of(hand.entries[i], generated.entries[i], joint);
+  }
+  return difference;
+}
+
+std::string text_of(const Matrix& m, const Joint& joint) {
+  if (m.entries.size() == 1) return brief_text(m.at(0, 0), joint);
   std::string s;
   for (int r = 0; r < m.rows; ++r) {
     s += r == 0 ? "[" : " ; ";
-    for (int c = 0; c < m.columns; ++c) s += (c == 0 ? "" : ", ") + text(m.at(r, c));
+    for (int c = 0; c < m.columns; ++c) s += (c == 0 ? "" : ", ") + brief_text(m.at(r, c), joint);
   }
   return s + "]";
 }
@@ -66,11 +78,16 @@ std::vector<Difference> merged(std::vector<Difference> entries, const BlockPlace
   const auto formula = [](const std::string Difference::*text) {
     return [text](const Difference& d, std::size_t i) { return without_component(d.*text, i); };
   };
-  const auto reason = [](const Difference& d, std::size_t i) { return without_component(reason_of(d), i); };
-  if (kinds && entries.size() == 3 && all_same(entries, reason) && all_same(entries, formula(&Difference::hand)) &&
-      all_same(entries, formula(&Difference::generated)) && all_same(entries, formula(&Difference::difference))) {
+  const auto reason = [](const Difference& d, std::size_t i) {
+    return without_component(reason_of(d), i);
+  };
+  if (kinds && entries.size() == 3 && all_same(entries, reason) &&
+      all_same(entries, formula(&Difference::hand)) &&
+      all_same(entries, formula(&Difference::generated)) &&
+      all_same(entries, formula(&Difference::difference))) {
     set_reason(one, reason(entries[0], 0));
-    for (std::string Difference::*text : {&Difference::hand, &Difference::generated, &Difference::difference}) {
+    for (std::string Difference::*text :
+         {&Difference::hand, &Difference::generated, &Difference::difference}) {
       one.*text = without_component(one.*text, 0);
     }
     return {one};
@@ -79,14 +96,15 @@ std::vector<Difference> merged(std::vector<Difference> entries, const BlockPlace
     set_reason(one, reason_of(entries[0]));
     one.generated = place.generated;
     one.hand = place.hand;
-    one.difference = fmt::format("{} - {}", place.hand, place.generated);
+    one.difference = place.difference;
     return {one};
   }
   const std::string condition = condition_of(entries[0]);
   const bool same_condition =
       all_same(entries, [](const Difference& d, std::size_t) { return condition_of(d); });
   if (!kinds || condition.empty() || !same_condition) return entries;
-  set_reason(one, fmt::format("{} entries of it are {} (the first is shown)", entries.size(), condition));
+  set_reason(
+      one, fmt::format("{} entries of it are {} (the first is shown)", entries.size(), condition));
   return {one};
 }
 

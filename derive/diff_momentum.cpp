@@ -20,6 +20,7 @@ void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
     }
     return true;
   };
+  std::vector<std::string> pushed, spun;  // rows that feel a common translation, rotation
   for (int r = 0; r < J.rows && r < static_cast<int>(part.rows.size()); ++r) {
     Expr moved = zero_vector(pool_), turned = zero_spin(pool_);
     for (int b = 0; b < static_cast<int>(joint_.bodies.size()); ++b) {
@@ -34,13 +35,24 @@ void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
       moved = moved + v;
       turned = turned + w + cross(body_symbols(joint_, b).x, v);
     }
-    const bool translation = !vanishes(moved);
-    if (!translation && vanishes(turned)) continue;
-    out_.remarks.push_back(fmt::format(
-        "row {} of this J breaks conservation of {}: a common {} of all bodies gives J v != 0",
-        name_of_row(part, r), translation ? "momentum" : "angular momentum",
-        translation ? "translation" : "rotation"));
+    if (!vanishes(moved))
+      pushed.push_back(name_of_row(part, r));
+    else if (!vanishes(turned))
+      spun.push_back(name_of_row(part, r));
   }
+  note_momentum(pushed, "momentum", "translation");
+  note_momentum(spun, "angular momentum", "rotation");
+}
+
+void EntryJudge::note_momentum(const std::vector<std::string>& rows, const char* quantity,
+                               const char* motion) {
+  if (rows.empty()) return;
+  std::string names;
+  for (const std::string& row : rows) names += (names.empty() ? "" : ", ") + row;
+  const bool one = rows.size() == 1;
+  out_.remarks.push_back(
+      fmt::format("{} {} of this J {} conservation of {}: a common {} of all bodies gives J v != 0",
+                  one ? "row" : "rows", names, one ? "breaks" : "break", quantity, motion));
 }
 
 }  // namespace cdot::derive

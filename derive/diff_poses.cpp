@@ -24,8 +24,8 @@ std::vector<const Triad*> triads_of(const Joint& joint, const Sample& sample) {
   return triads;
 }
 
-// All that an equation may move: bodies, scalars, vectors and triads that are fixed somewhere. Directions and
-// orientations are turned, so that they keep their length.
+// All that an equation may move: bodies, scalars, vectors and triads that are fixed somewhere.
+// Directions and orientations are turned, so that they keep their length.
 class Variables {
  public:
   Variables(const Joint& joint, const Sample& sample) : dimension_(joint.dimension) {
@@ -33,7 +33,8 @@ class Variables {
     for (const Expr leaf : sample.leaves) {
       if (leaf->unit_length) directions.insert(leaf->symbol);
     }
-    const std::size_t linear = static_cast<std::size_t>(dimension_), turns = dimension_ == 2 ? 1 : 3;
+    const std::size_t linear = static_cast<std::size_t>(dimension_),
+                      turns = dimension_ == 2 ? 1 : 3;
     for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
       for (std::size_t k = 0; k < linear + turns; ++k) {
         add([=, this](Sample& s, double by) { s.bodies[b].move(dimension_, k, by); });
@@ -54,7 +55,9 @@ class Variables {
     }
     for (const Triad* triad : triads_of(joint, sample)) {
       for (std::size_t k = 0; k < 3; ++k) {
-        add([=](Sample& s, double by) { s.triads.at(triad) = turned_about(k, by, s.triads.at(triad)); });
+        add([=](Sample& s, double by) {
+          s.triads.at(triad) = turned_about(k, by, s.triads.at(triad));
+        });
       }
     }
   }
@@ -66,7 +69,8 @@ class Variables {
   void add(std::function<void(Sample&, double)> move) { moves_.push_back(std::move(move)); }
 
   void turn(Triple<double>& u, std::size_t axis, double by) const {
-    const std::size_t i = dimension_ == 2 ? 0 : (axis + 1) % 3, j = dimension_ == 2 ? 1 : (axis + 2) % 3;
+    const std::size_t i = dimension_ == 2 ? 0 : (axis + 1) % 3,
+                      j = dimension_ == 2 ? 1 : (axis + 2) % 3;
     const double x = u[i], y = u[j], c = std::cos(by), s = std::sin(by);
     u[i] = c * x - s * y;
     u[j] = s * x + c * y;
@@ -91,8 +95,8 @@ double largest(const std::vector<double>& numbers) {
   return most;
 }
 
-Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations, const Variables& variables,
-                       const Sample& sample) {
+Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations,
+                       const Variables& variables, const Sample& sample) {
   constexpr double step = 1e-6;
   Gradients G(equations.size());
   for (std::size_t v = 0; v < variables.size(); ++v) {
@@ -154,7 +158,8 @@ bool Poses::satisfy(Sample& sample) const {
   return error <= round_off_of_sums && still_positive(sample);
 }
 
-// Rotations vanish also where one turns by pi; from almost the same orientations the next solution is that without.
+// Rotations vanish also where one turns by pi; from almost the same orientations the next solution
+// is that without.
 Poses Poses::aligned() const {
   if (joint_->dimension == 2) return *this;
   Poses poses = *this;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "derive/derivation.hpp"
+#include "derive/matrix.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -131,14 +132,41 @@ class Expansion {
     return products;
   }
 
-  Terms dot_terms(Expr u, Expr v) const {
+  Terms dot_terms(Expr u, Expr v) {
+    if (is_composed(u) && !is_composed(v)) std::swap(u, v);
+    const std::vector<Expr> axes = world_axes(pool_);
+    const auto axis = std::find(axes.begin(), axes.end(), u);
+    if (is_composed(v) && axis != axes.end()) {
+      const std::size_t k = static_cast<std::size_t>(axis - axes.begin());
+      const bool of_axis = v->kind == Kind::cross && (is_axis(v->args[0]) || is_axis(v->args[1]));
+      if (of_axis || opened_ == Opened::components) return of(component_of(v, k));
+    }
     if (opened_ < Opened::dots || is_axis(u) || is_axis(v)) return terms_of(dot(u, v));
+    if (is_composed(v) && opened_ < Opened::components) return terms_of(dot(u, v));
     Expr total = pool_.number(0);
-    for (const Expr axis : world_axes(pool_)) total = total + dot(axis, u) * dot(axis, v);
-    return terms_of(total);
+    for (const Expr e : axes) total = total + dot(e, u) * dot(e, v);
+    return is_composed(v) ? of(total) : terms_of(total);
   }
 
-  // In the plane; in space the products of its components with other vectors are opened.
+  // In space, what has components that are sums of products.
+  bool is_composed(Expr v) const {
+    return pool_.dimension() == 3 && (v->kind == Kind::cross || v->kind == Kind::tensor);
+  }
+
+  Expr component_of(Expr v, std::size_t k) const {
+    const std::vector<Expr> axes = world_axes(pool_);
+    if (v->kind == Kind::cross) {
+      const Expr i = axes[(k + 1) % 3], j = axes[(k + 2) % 3];
+      return dot(i, v->args[0]) * dot(j, v->args[1]) - dot(j, v->args[0]) * dot(i, v->args[1]);
+    }
+    Expr total = pool_.number(0);
+    for (std::size_t j = 0; j < 3; ++j) {
+      total = total + tensor_component(v->args[0], k, j) * dot(axes[j], v->args[1]);
+    }
+    return total;
+  }
+
+  // In the plane; in space dot_terms opens them.
   Terms cross_terms(Expr u, Expr v) const {
     if (opened_ < Opened::components || pool_.dimension() == 3) return terms_of(cross(u, v));
     const std::vector<Expr> axes = world_axes(pool_);
@@ -225,6 +253,14 @@ Expr difference_of(Expr hand, Expr generated, const Joint& joint) {
     if (text(difference).size() < text(shortest).size()) shortest = difference;
   }
   return shortest;
+}
+
+std::string brief_text(Expr e, const Joint& joint) {
+  const std::string plain = text(e);
+  if (joint.dimension == 2 || e->vector) return plain;
+  const std::string distributed =
+      text(sum_of(terms_of_expansion(e, joint, Opened::nothing), *e->pool));
+  return distributed.size() < plain.size() ? distributed : plain;
 }
 
 std::vector<Expr> free_symbols(Expr e) {

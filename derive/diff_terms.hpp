@@ -43,6 +43,9 @@ Factors leftover_factors(const Term& hand, const Term& generated);
 // hand - generated, in the spec's names and as short as opening and collecting makes it.
 Expr difference_of(Expr hand, Expr generated, const Joint& joint);
 
+// The shorter of what stands there and what that is in components, in space.
+std::string brief_text(Expr e, const Joint& joint);
+
 // Their value is unknown: symbols that an entry declares free.
 std::vector<Expr> free_symbols(Expr e);
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "derive/diff_entry.hpp"
-#include "derive/diff_merge.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -72,7 +71,8 @@ std::string column_name(const Joint& joint, std::size_t column, bool positions) 
 bool same_direction(const Confirm::Change& change, const Poses& poses) {
   for (std::size_t i = 0; i < change.generated.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (!poses.equal(change.published[i] * change.generated[j], change.published[j] * change.generated[i])) {
+      if (!poses.equal(change.published[i] * change.generated[j],
+                       change.published[j] * change.generated[i])) {
         return false;
       }
     }
@@ -150,7 +150,8 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
     const Place place{"update", "", column, {}, {}, &joint_};
     Difference d = describe_difference(place, change.published[c], change.generated[c], poses());
     d.confirmed = confirmed;
-    if (only_size && d.kind == "factor") d.sentence += "; the direction of the impulse is right, its size is not";
+    if (only_size && d.kind == "factor")
+      d.sentence += "; the direction of the impulse is right, its size is not";
     return finished(*said_by[c], std::move(d), change.published[c], change.generated[c]);
   };
   for (const Group& group : groups_of_changes(level, said_by.size())) {
@@ -162,16 +163,17 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
       hand.entries.push_back(change.published[c]);
       if (!equal(change.published[c], change.generated[c])) found.push_back(difference_at(c));
     }
-    const BlockPlace place{"", group.name, in_names_of_spec(text_of(generated)), in_names_of_spec(text_of(hand))};
-    for (Difference& d : merged(std::move(found), place)) out_.differences.push_back(std::move(d));
+    report(std::move(found), "", group.name, hand, generated);
   }
 }
 
 // In space the components of one change go together.
-std::vector<EntryJudge::Group> EntryJudge::groups_of_changes(UpdateLevel level, std::size_t columns) const {
+std::vector<EntryJudge::Group> EntryJudge::groups_of_changes(UpdateLevel level,
+                                                             std::size_t columns) const {
   std::vector<Group> groups;
   for (int c = 0; c < static_cast<int>(columns); ++c) {
-    const std::string name = column_name(joint_, static_cast<std::size_t>(c), level == UpdateLevel::positions);
+    const std::string name =
+        column_name(joint_, static_cast<std::size_t>(c), level == UpdateLevel::positions);
     if (joint_.dimension == 3 && c > 0 && block_of(c) == block_of(c - 1)) {
       ++groups.back().count;
       groups.back().name = name.substr(0, name.find('.'));

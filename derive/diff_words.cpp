@@ -233,8 +233,8 @@ Difference describe_difference(const Place& place, Expr hand, Expr generated, co
   d.row = place.row;
   d.column = place.column;
   d.kind = why.kind;
-  d.generated = text(generated);
-  d.hand = text(hand);
+  d.generated = brief_text(generated, *place.joint);
+  d.hand = brief_text(hand, *place.joint);
   d.difference = text(difference);
   d.sentence = fmt::format("{}: {}", name_of(place), why.sentence);
   return d;
