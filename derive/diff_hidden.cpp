@@ -10,17 +10,22 @@ namespace {
 class Search {
  public:
   Search(const Joint& joint, Expr hand, Expr generated, const Poses& poses)
-      : joint_(joint), pool_(*joint.pool), hand_(hand), generated_(generated), poses_(poses) {}
+      : joint_(joint),
+        pool_(*joint.pool),
+        hand_(hand),
+        generated_(generated),
+        zero_(joint.pool->number(0)),
+        poses_(poses) {}
 
   // Equal there, and not just zero both, as a factor C of both sides would make them.
   bool holds(const std::vector<Expr>& equations) const { return holds(equations, poses_); }
   bool holds(const std::vector<Expr>& equations, const Poses& poses) const {
-    const Expr zero = pool_.number(0);
-    const Poses few = poses.first(2).where(equations);  // most candidates fail at the first poses
-    const bool vanishes = few.equal(generated_, zero) && !poses_.equal(generated_, zero) &&
-                          !poses_.equal(hand_, zero);
-    if (!few.equal(hand_, generated_) || vanishes) return false;
-    return poses.where(equations).equal(hand_, generated_);
+    return holds_at_all(equations, poses) &&
+           (!poses.where(equations).equal(generated_, zero_) || poses_.equal(generated_, zero_));
+  }
+  // Nothing stands there, and nothing is needed where C = 0.
+  bool needless(const std::vector<Expr>& equations, const Poses& poses) const {
+    return poses_.equal(hand_, zero_) && holds_at_all(equations, poses);
   }
 
   // A free symbol that stands for a quantity of the joint.
@@ -92,9 +97,15 @@ class Search {
   }
 
  private:
+  // Most candidates fail at the first poses.
+  bool holds_at_all(const std::vector<Expr>& equations, const Poses& poses) const {
+    return poses.first(2).where(equations).equal(hand_, generated_) &&
+           poses.where(equations).equal(hand_, generated_);
+  }
+
   const Joint& joint_;
   Pool& pool_;
-  Expr hand_, generated_;
+  Expr hand_, generated_, zero_;
   const Poses& poses_;
 };
 
@@ -106,7 +117,11 @@ std::string hidden_assumption(const Joint& joint, const std::vector<Expr>& const
   // Where a symbol stands for anything, the two are equal only by chance or if it means something.
   const std::vector<Expr> free = free_symbols(hand);
   if (!free.empty()) return search.meaning_of_symbols(free);
-  if (!constraints.empty() && search.holds(constraints, poses.aligned())) return "C = 0";
+  const Poses aligned = poses.aligned();
+  if (!constraints.empty() &&
+      (search.holds(constraints, aligned) || search.needless(constraints, aligned))) {
+    return "C = 0";
+  }
   std::string condition = search.of_scalars();
   if (condition.empty()) condition = search.of_orientations();
   if (condition.empty()) condition = search.of_vectors();

@@ -80,8 +80,8 @@ class Variables {
   std::vector<std::function<void(Sample&, double)>> moves_;
 };
 
-// What is positive by its nature, and still is: masses, and symbols that an entry declares free.
-bool still_positive(const Sample& sample) {
+// Masses, and symbols that an entry declares free.
+bool is_positive(const Sample& sample) {
   return std::none_of(sample.leaves.begin(), sample.leaves.end(), [&](Expr leaf) {
     const bool positive = leaf->role == Role::given || leaf->role == Role::inverse_mass;
     const auto found = sample.scalars.find(leaf->symbol);
@@ -155,7 +155,7 @@ bool Poses::satisfy(Sample& sample) const {
     if (fraction <= 1e-3) break;
   }
   constexpr double round_off_of_sums = 1e-11;  // of equations that depend on each other
-  return error <= round_off_of_sums && still_positive(sample);
+  return error <= round_off_of_sums;
 }
 
 // Rotations vanish also where one turns by pi; from almost the same orientations the next solution
@@ -177,14 +177,23 @@ Poses Poses::aligned() const {
   return poses;
 }
 
+// A symbol that an entry declares free stays positive, unless what the entry assumes does not let
+// it.
 Poses Poses::where(const std::vector<Expr>& equations) const {
   Poses moved = *this;
   moved.samples_.clear();
   moved.equations_.insert(moved.equations_.end(), equations.begin(), equations.end());
+  std::vector<Sample> others;
   for (Sample sample : samples_) {
-    if (moved.satisfy(sample)) moved.samples_.push_back(std::move(sample));
+    const bool positive = is_positive(sample);
+    if (!moved.satisfy(sample)) continue;
+    (is_positive(sample) || !positive ? moved.samples_ : others).push_back(std::move(sample));
   }
-  if (moved.samples_.size() * 2 < samples_.size()) moved.samples_.clear();
+  const auto too_few = [&] { return moved.samples_.size() * 2 < samples_.size(); };
+  if (too_few() && equations_.empty()) {
+    moved.samples_.insert(moved.samples_.end(), others.begin(), others.end());
+  }
+  if (too_few()) moved.samples_.clear();
   return moved;
 }
 
