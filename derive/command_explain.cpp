@@ -15,7 +15,7 @@ namespace cdot::derive {
 namespace {
 
 struct Options {
-  std::string spec, format = "text", output, specs_folder = "specs";
+  std::string spec, format = "text", form = "global", output, specs_folder = "specs";
   bool json = false;
 };
 
@@ -26,7 +26,8 @@ constexpr const char* json_schema =
     "  columns        of every J: v_a_x, v_a_y, w_a, v_b_x, ...; in space v_a_z, w_a_x, ... too\n"
     "  symbols        name -> {kind, meaning, unit, frame, body, from, unit_length}; kind is "
     "position, orientation,\n"
-    "                 velocity, mass, parameter, derived, time or constant; `from` gives a derived one from the "
+    "                 velocity, mass, parameter, derived, time or constant; `from` gives a derived "
+    "one from the "
     "pose and\n"
     "                 the parameters: r_pa_x = cos(theta_a)*pa_local_x - sin(theta_a)*pa_local_y;\n"
     "                 unit_length: true for components of a vector of length 1\n"
@@ -41,9 +42,13 @@ constexpr const char* json_schema =
     "sympy and\n"
     "Python read them. A spec's name that Python reserves gets an underscore at its end.";
 
+Form form_named(const std::string& name) {
+  return name == "local" ? Form::local : name == "euler" ? Form::euler : Form::global;
+}
+
 std::string explanation(const Joint& joint, const Options& options) {
   if (options.json) return explanation_json(joint).dump(2) + "\n";
-  const Explanation steps = explain(joint);
+  const Explanation steps = explain(joint, form_named(options.form));
   if (options.format == "html") return explanation_html(steps);
   if (options.format == "latex") return explanation_latex(steps);
   return explanation_text(steps);
@@ -54,6 +59,12 @@ int run(const Options& options) {
   const ReadResult read = folder.read(folder.find(options.spec));
   std::cerr << render(*read.file, read.diagnostics);
   if (!read.joint) return 2;
+  if (read.joint->dimension == 2 && options.form != "global") {
+    fmt::print(stderr,
+               "cdot explain: --form is for spatial joints: in the plane w is one number, in every "
+               "form\n");
+    return 2;
+  }
   const std::string text = explanation(*read.joint, options);
   if (options.output.empty()) {
     std::cout << text;
@@ -79,10 +90,19 @@ void add_explain_command(CLI::App& app, Command& selected) {
                                          "text; html: a page of its own; latex: an article")
                             ->check(CLI::IsMember({"text", "html", "latex"}))
                             ->capture_default_str();
+  CLI::Option* form =
+      command
+          ->add_option(
+              "--form", options->form,
+              "Of velocity, in space: global: w in world axes; local: w' in the bodies' axes;\n"
+              "euler: the rates of the Euler parameters. J is shown in that form too")
+          ->check(CLI::IsMember({"global", "local", "euler"}))
+          ->capture_default_str();
   command
       ->add_flag("--json", options->json,
                  "Every entry as an expression for other programs (see below)")
-      ->excludes(format);
+      ->excludes(format)
+      ->excludes(form);
   command->add_option("-o,--output", options->output, "File to write instead of the terminal")
       ->type_name("FILE");
   command->add_option("--specs", options->specs_folder, "Folder of specs")

@@ -79,7 +79,7 @@ void introduce_bodies(const Joint& joint, Step& step) {
              leaf(a.inv_I)});
 }
 
-void explain_rows(Lecture& lecture, const Part& part) {
+void explain_rows(Lecture& lecture, const Part& part, Form form) {
   state_constraint(lecture, part);
   Step& derivative = lecture.section("The time derivative");
   derivative.say("Velocities follow from C by differentiating it along the motion.");
@@ -91,6 +91,7 @@ void explain_rows(Lecture& lecture, const Part& part) {
 
   Step& jacobian = lecture.section("The Jacobian by inspection");
   read_jacobian(lecture, part, jacobian);
+  explain_form(lecture, part, form);
 
   Step& mass = lecture.section("The effective mass");
   mass.say(
@@ -106,7 +107,8 @@ void explain_rows(Lecture& lecture, const Part& part) {
   differentiate_again(lecture, part, gamma);
 }
 
-void explain_coordinate(Lecture& lecture, const Part& part, const Coordinate& coordinate) {
+void explain_coordinate(Lecture& lecture, const Part& part, const Coordinate& coordinate,
+                        Form form) {
   Step& step = lecture.section("Coordinate " + coordinate.name);
   step.say("Left free by the joint [" + text(coordinate.unit) +
            "]; motors, limits, springs and friction act on it: `" + coordinate.text + "`");
@@ -115,6 +117,7 @@ void explain_coordinate(Lecture& lecture, const Part& part, const Coordinate& co
   differentiate(lecture, part, step);
   isolate_velocities(lecture, part, step);
   read_jacobian(lecture, part, step);
+  show_form(lecture, part, form, step);
   multiply_mass(lecture, part, step);
   differentiate_again(lecture, part, step);
 }
@@ -150,16 +153,16 @@ void introduce(Lecture& lecture) {
   }
 }
 
-Explanation explain(const Joint& joint) {
+Explanation explain(const Joint& joint, Form form) {
   Lecture lecture(joint);
   const Part rows = rows_part(joint, lecture.notation);
   std::vector<Part> coordinates;
   for (const Coordinate& c : joint.coordinates) coordinates.push_back(coordinate_part(joint, c));
   introduce(lecture);
-  explain_rows(lecture, rows);
+  explain_rows(lecture, rows, form);
   std::vector<const Part*> all{&rows};
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
-    explain_coordinate(lecture, coordinates[i], joint.coordinates[i]);
+    explain_coordinate(lecture, coordinates[i], joint.coordinates[i], form);
     all.push_back(&coordinates[i]);
   }
   state_limits(lecture, all);

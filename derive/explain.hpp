@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "derive/explain_formula.hpp"
+#include "derive/forms.hpp"
 
 namespace cdot::derive {
 
@@ -50,7 +51,8 @@ struct Explanation {
   std::vector<Step> steps;
 };
 
-Explanation explain(const Joint& joint);
+// In space J by w in world axes, and in another form of velocity besides if that is asked for.
+Explanation explain(const Joint& joint, Form form = Form::global);
 
 std::string explanation_text(const Explanation& explanation);
 std::string explanation_html(const Explanation& explanation);  // one file, no links to elsewhere

@@ -56,6 +56,9 @@ void state_constraint(Lecture& lecture, const Part& part);
 void differentiate(Lecture& lecture, const Part& part, Step& step);
 void isolate_velocities(Lecture& lecture, const Part& part, Step& step);
 void read_jacobian(Lecture& lecture, const Part& part, Step& step);
+// J in another form of velocity, in space; for the rows also whether form (c) is dC/de.
+void explain_form(Lecture& lecture, const Part& part, Form form);
+void show_form(const Lecture& lecture, const Part& part, Form form, Step& step);
 Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s);
 // K entry by entry: scalar rows simplified, vector rows in blocks.
 void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>& chains);

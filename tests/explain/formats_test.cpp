@@ -193,6 +193,16 @@ TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
   EXPECT_EQ(run(cdot + " explain line --format pdf" + specs).status, 2);
   EXPECT_EQ(run(cdot + " explain line --format html --json" + specs).status, 2);
   EXPECT_EQ(run(cdot + " explain line -o " + quoted(out / "none" / "x.txt") + specs).status, 2);
+  const Ran form = run(cdot + " explain line --form local" + specs);
+  EXPECT_EQ(form.status, 2);
+  EXPECT_NE(form.output.find("for spatial joints"), std::string::npos) << form.output;
+  write(out / "ball.joint",
+        "joint ball spatial\n  \"pin\"\n  point pa on a\n  point pb on b\n  pa = pb\n");
+  const Ran ball = run(cdot + " explain " + quoted(out / "ball.joint") + " --form euler" + specs);
+  EXPECT_EQ(ball.status, 0);
+  EXPECT_NE(ball.output.find("J_euler = [ E | -2 S(ra) G_a | -E | 2 S(rb) G_b ]"),
+            std::string::npos)
+      << ball.output;
   write(out / "bad.joint", "joint bad planar\n  point pa on\n");
   EXPECT_EQ(run(cdot + " explain " + quoted(out / "bad.joint") + specs).status, 2);
   fs::remove_all(out);

@@ -114,8 +114,28 @@ Array tensor(Expr leaf, const Values& values) {
   return a;
 }
 
+// A_a, G_a and e_a of a body, from its Euler parameters e_a_0 to e_a_3.
+Array of_orientation(const std::string& name, const Values& values) {
+  const bool known =
+      name.size() == 3 && name[1] == '_' && values.contains("e_" + name.substr(2) + "_0");
+  if (!known) throw NoValue(name);
+  EulerParameters<double> e;
+  for (std::size_t k = 0; k < 4; ++k)
+    e[k] = values.at("e_" + name.substr(2) + "_" + std::to_string(k));
+  if (name[0] == 'e') return {4, 1, {e.begin(), e.end()}};
+  if (name[0] == 'G')
+    return {3, 4, {-e[1], e[0], -e[3], e[2], -e[2], e[3], e[0], -e[1], -e[3], -e[2], e[1], e[0]}};
+  if (name[0] != 'A') throw NoValue(name);
+  const auto axes = axes_of(e);
+  Array A{3, 3, {}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) A.entries.push_back(axes[j][i]);
+  }
+  return A;
+}
+
 Array leaf_value(const Formula& f, const Values& values) {
-  if (!f.leaf) throw NoValue(f.name);
+  if (!f.leaf) return of_orientation(f.name, values);
   if (is_tensor(f.leaf)) return tensor(f.leaf, values);
   if (!f.leaf->vector) return scalar(evaluate(f.leaf, values));
   const std::size_t dimension = static_cast<std::size_t>(f.leaf->pool->dimension());
@@ -175,6 +195,43 @@ Array value_of_formula(const Formula& f, const Values& values) {
       return assembled(f, args);
   }
   throw std::logic_error("unknown form");
+}
+
+std::vector<double> blocks_times(const Formula& J,
+                                 const std::vector<std::vector<double>>& velocities,
+                                 const Values& values) {
+  std::vector<double> result;
+  const std::size_t columns = static_cast<std::size_t>(J.columns);
+  for (std::size_t row = 0; row * columns < J.args.size(); ++row) {
+    std::vector<double> sum(1, 0.0);
+    for (std::size_t k = 0; k < columns; ++k) {
+      const Array block = value_of_formula(J.args[row * columns + k], values);
+      if (block.entries == std::vector{0.0}) continue;
+      if (block.columns != velocities.at(k).size())
+        throw std::logic_error("a block of J is too wide or too narrow");
+      sum.resize(block.rows);
+      for (std::size_t i = 0; i < block.rows; ++i) {
+        for (std::size_t j = 0; j < block.columns; ++j) sum[i] += block.at(i, j) * velocities[k][j];
+      }
+    }
+    result.insert(result.end(), sum.begin(), sum.end());
+  }
+  return result;
+}
+
+std::vector<Expr> leaves_shown(const Joint& joint, const Explanation& explanation) {
+  std::vector<Expr> leaves;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    leaves.insert(leaves.end(), {body.v, body.w});
+  }
+  for (const Step& step : explanation.steps) {
+    for (const Item& item : step.items) {
+      collect_leaves(item.chain.left, leaves);
+      for (const Link& link : item.chain.links) collect_leaves(link.formula, leaves);
+    }
+  }
+  return leaves;
 }
 
 void collect_leaves(const Formula& f, std::vector<Expr>& leaves) {

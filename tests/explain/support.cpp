@@ -36,7 +36,11 @@ std::vector<std::pair<std::string, std::string>> unusual_specs() {
        "joint hinge spatial\n  \"A ball joint and parallel axes.\"\n"
        "  point pa on a\n  point pb on b = pa\n  frame fa on a\n  frame fb on b = fa\n"
        "  pin: pa = pb\n  parallel: cross(fa.x, fb.x) = 0 keep 2\n"
-       "  coordinate angle = twist(fa, fb)\n  coordinate tilt = swing(fa, fb)\n"
+       "  coordinate angle = twist(fa, fb)\n"},
+      {"angles",
+       "joint angles spatial\n  \"A ball joint and further angles.\"\n"
+       "  point pa on a\n  point pb on b = pa\n  frame fa on a\n  frame fb on b = fa\n"
+       "  pin: pa = pb\n  coordinate tilt = swing(fa, fb)\n"
        "  coordinate bend = angle(fa.z, fb.y, fa.x)\n"},
       {"turned",
        "joint turned spatial\n  \"The same orientation.\"\n"
