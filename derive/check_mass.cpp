@@ -7,8 +7,8 @@
 #include <optional>
 #include <set>
 
+#include "derive/check_minors.hpp"
 #include "derive/check_parts.hpp"
-#include "derive/ginac.hpp"
 #include "derive/prove_words.hpp"
 
 namespace cdot::derive {
@@ -16,7 +16,9 @@ namespace {
 
 using GiNaC::ex;
 
-constexpr int most_minors = 4000;
+// With more minors than the first, formulas become too long for algebra: then numbers at the random
+// poses decide.
+constexpr double most_minors_by_algebra = 250, most_minors = 20000;
 
 // Powers of the inverse masses: m of the first body, its I, m of the second, ...
 using Monomial = std::vector<int>;
@@ -26,7 +28,8 @@ struct Coefficient {
   ex value;                  // sum of the squares of the minors
   std::vector<double> seen;  // at the random poses
   bool never_zero = false;
-  std::vector<std::string> factors;  // it is zero where one of them is: "ratio", "cross(ra, n)"
+  // It is zero where one of them is: "ratio", "cross(ra, n)"; empty if no words were found.
+  std::vector<std::string> factors;
 };
 
 // Something that a person has a name for, and what it is at the random poses.
@@ -34,58 +37,6 @@ struct Candidate {
   Expr e;
   std::vector<double> seen;
 };
-
-ex determinant(const std::vector<std::vector<ex>>& J, const std::vector<std::size_t>& columns) {
-  GiNaC::matrix m(static_cast<unsigned>(J.size()), static_cast<unsigned>(J.size()));
-  for (unsigned i = 0; i < J.size(); ++i) {
-    for (unsigned k = 0; k < J.size(); ++k) m(i, k) = J[i][columns[k]];
-  }
-  return m.determinant(GiNaC::determinant_algo::laplace);
-}
-
-double determinant(const std::vector<std::vector<double>>& J,
-                   const std::vector<std::size_t>& columns) {
-  std::vector<std::vector<double>> m;
-  for (const auto& row : J) {
-    m.emplace_back();
-    for (const std::size_t c : columns) m.back().push_back(row[c]);
-  }
-  double product = 1;
-  for (std::size_t k = 0; k < m.size(); ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k; i < m.size(); ++i) {
-      if (std::fabs(m[i][k]) > std::fabs(m[pivot][k])) pivot = i;
-    }
-    if (m[pivot][k] == 0) return 0;
-    if (pivot != k) std::swap(m[pivot], m[k]), product = -product;
-    product *= m[k][k];
-    for (std::size_t i = k + 1; i < m.size(); ++i) {
-      const double factor = m[i][k] / m[k][k];
-      for (std::size_t j = k; j < m.size(); ++j) m[i][j] -= factor * m[k][j];
-    }
-  }
-  return product;
-}
-
-// All even powers with positive factors, and a constant: never zero. A number other than zero is
-// one.
-bool is_positive(const ex& expanded, const std::vector<ex>& symbols) {
-  const GiNaC::exvector terms = GiNaC::is_a<GiNaC::add>(expanded)
-                                    ? GiNaC::exvector(expanded.begin(), expanded.end())
-                                    : GiNaC::exvector{expanded};
-  bool constant = false;
-  for (const ex& term : terms) {
-    ex factor = term;
-    for (const ex& s : symbols) {
-      const int degree = factor.degree(s);
-      if (degree % 2 != 0) return false;
-      factor = factor.coeff(s, degree);
-    }
-    if (!factor.info(GiNaC::info_flags::positive)) return false;
-    constant = constant || GiNaC::is_a<GiNaC::numeric>(term);
-  }
-  return constant;
-}
 
 class MassCheck {
  public:
@@ -96,9 +47,13 @@ class MassCheck {
         names_(subject.joint, Algebra::Route::names) {}
 
   void run() {
-    if (!expand()) {
+    const double minors =
+        number_of_choices(width_ * joint_.bodies.size(), subject_.block.rows.size());
+    if (minors > most_minors) {
       return add("where K is singular was not looked into: too many minors of J");
     }
+    by_algebra_ = minors <= most_minors_by_algebra;
+    expand();
     find_candidates();
     for (Coefficient& c : coefficients_) describe(c);
     if (coefficients_.empty()) return;  // said by the law of the rank
@@ -110,49 +65,47 @@ class MassCheck {
 
  private:
   // Sums the squares of the minors by their product of inverse masses.
-  bool expand() {
+  void expand() {
     std::vector<std::vector<ex>> J;
     for (const ScalarRow& row : subject_.block.rows) {
       names_.shorten(row.kind == RowKind::velocity ? row.Cdot : row.C);
       J.emplace_back();
-      for (const Expr entry : columns_of(row.J)) J.back().push_back(names_.of(entry));
+      for (const Expr entry : columns_of(row.J)) {
+        J.back().push_back(by_algebra_ ? names_.of(entry) : ex(0));
+      }
     }
     std::vector<std::vector<std::vector<double>>> seen;
     for (const Sample& sample : subject_.anywhere) {
       seen.push_back(jacobian_at(joint_, subject_.block, sample));
     }
     std::map<Monomial, Coefficient> by_monomial;
-    int minors = 0;
     std::vector<std::size_t> columns;
-    const auto choose = [&](auto&& self, std::size_t from) -> bool {
-      if (columns.size() == J.size()) {
-        add_minor(J, seen, columns, by_monomial);
-        return ++minors <= most_minors;
-      }
+    const auto choose = [&](auto&& self, std::size_t from) -> void {
+      if (columns.size() == J.size()) return add_minor(J, seen, columns, by_monomial);
       for (std::size_t c = from; c < J[0].size(); ++c) {
         columns.push_back(c);
-        if (!self(self, c + 1)) return false;
+        self(self, c + 1);
         columns.pop_back();
       }
-      return true;
     };
-    if (!choose(choose, 0)) return false;
+    choose(choose, 0);
     for (auto& [monomial, coefficient] : by_monomial) {
       const auto& at = coefficient.seen;
       const double largest = *std::max_element(at.begin(), at.end());
-      const bool zero = largest < 1e-18 && names_.vanishes(coefficient.value);
+      const bool zero = largest < 1e-18 && (!by_algebra_ || names_.vanishes(coefficient.value));
       if (!zero) coefficients_.push_back(std::move(coefficient));
     }
-    return true;
   }
 
   void add_minor(const std::vector<std::vector<ex>>& J,
                  const std::vector<std::vector<std::vector<double>>>& seen,
                  const std::vector<std::size_t>& columns, std::map<Monomial, Coefficient>& sums) {
-    const ex minor = determinant(J, columns);
+    const ex minor = by_algebra_ ? determinant(J, columns) : ex(1);
     if (minor.is_zero()) return;
     Monomial monomial(2 * joint_.bodies.size());
-    for (const std::size_t c : columns) ++monomial[2 * (c / 3) + (c % 3 == 2 ? 1 : 0)];
+    for (const std::size_t c : columns) {
+      ++monomial[2 * (c / width_) + (c % width_ >= linear_ ? 1 : 0)];
+    }
     Coefficient& sum = sums[monomial];
     sum.monomial = monomial;
     sum.value += minor * minor;
@@ -163,7 +116,9 @@ class MassCheck {
     }
   }
 
+  // A vector stands for its length.
   void add_candidate(Expr e) {
+    if (e->vector) e = norm(e);
     if (e->kind == Kind::number) return;
     e = split_coefficient(e).e;
     for (const Candidate& c : candidates_) {
@@ -176,6 +131,23 @@ class MassCheck {
     candidates_.push_back(std::move(candidate));
   }
 
+  // A component along an axis of the world means nothing to a joint.
+  static bool of_world(Expr e) {
+    return is_world_axis(e) ||
+           (e->kind == Kind::cross && std::any_of(e->args.begin(), e->args.end(), is_world_axis));
+  }
+
+  // An axis brings the other axes of its frame: they are across one another.
+  void add_vector(Expr e, std::vector<Expr>& vectors) {
+    const Pool::Axis axis = joint_.pool->axis_of(e);
+    for (const Expr v : axis.triad ? std::vector<Expr>(axis.triad->begin(), axis.triad->end())
+                                   : std::vector<Expr>{e}) {
+      if (std::find(vectors.begin(), vectors.end(), v) != vectors.end()) continue;
+      vectors.push_back(v);
+      if (!v->unit_length) add_candidate(norm(v));
+    }
+  }
+
   // Parameters, entries of J, lengths, and products of the vectors that J is made of.
   void find_candidates() {
     std::vector<Expr> entries, vectors;
@@ -186,13 +158,12 @@ class MassCheck {
       if (e->role == Role::parameter && !e->vector) add_candidate(e);
     }
     for (const Expr e : entries) {
-      if (!e->vector) add_candidate(e);
+      if (!e->vector || joint_.dimension == 3) add_candidate(e);
     }
     for (const Expr e : topological(entries)) {
       if (!e->vector || e->role == Role::position || e->kind == Kind::perp) continue;
-      if (e->kind == Kind::scale || is_zero(e) || vectors.size() > 12) continue;
-      vectors.push_back(e);
-      if (!e->unit_length) add_candidate(norm(e));
+      if (e->kind == Kind::scale || is_zero(e) || vectors.size() > 12 || of_world(e)) continue;
+      add_vector(e, vectors);
     }
     for (std::size_t i = 0; i < vectors.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
@@ -200,6 +171,11 @@ class MassCheck {
         add_candidate(dot(vectors[k], vectors[i]));
       }
     }
+    // The shortest words for the same thing.
+    std::stable_sort(candidates_.begin(), candidates_.end(),
+                     [&](const Candidate& a, const Candidate& b) {
+                       return said(a.e, joint_).size() < said(b.e, joint_).size();
+                     });
   }
 
   // factor such that c = factor * s^2 at every pose that was looked at, if there is a simple one.
@@ -218,7 +194,7 @@ class MassCheck {
       const std::optional<ex> factor = factor_of(c, s.seen);
       if (!factor) continue;
       const ex root = names_.of(s.e);
-      if (!names_.vanishes(c.value - *factor * root * root)) continue;
+      if (!equal(c.value, *factor * root * root)) continue;
       c.factors = factors_of(s.e);
       return true;
     }
@@ -233,7 +209,7 @@ class MassCheck {
         const std::optional<ex> factor = factor_of(c, product);
         if (!factor) continue;
         const ex root = names_.of(candidates_[i].e) * names_.of(candidates_[k].e);
-        if (!names_.vanishes(c.value - *factor * root * root)) continue;
+        if (!equal(c.value, *factor * root * root)) continue;
         c.factors = {said(candidates_[k].e, joint_), said(candidates_[i].e, joint_)};
         return true;
       }
@@ -245,19 +221,32 @@ class MassCheck {
     std::vector<std::string> names;
     const bool product = e->kind == Kind::product && e->name.empty();
     for (const Expr factor : product ? e->args : std::vector<Expr>{e}) {
-      names.push_back(said(with_leading_sign(factor), joint_));
+      const Expr e = factor->kind == Kind::norm && factor->name.empty() ? factor->args[0] : factor;
+      names.push_back(said(e->vector ? e : with_leading_sign(e), joint_));
     }
     return names;
   }
 
+  // Where numbers decide, they have done so already.
+  bool equal(const ex& a, const ex& b) { return !by_algebra_ || names_.vanishes(a - b); }
+
+  static bool is_constant(const std::vector<double>& seen) {
+    return std::all_of(seen.begin(), seen.end(),
+                       [&](double x) { return std::fabs(x - seen[0]) <= 1e-9 * seen[0]; });
+  }
+
   void describe(Coefficient& c) {
+    if (!by_algebra_) {
+      c.never_zero = is_constant(c.seen);
+      if (!c.never_zero) recognise(c);
+      return;
+    }
     const std::optional<ex> numerator = names_.reduced_numerator(c.value);
     const auto positive = [&](const ex& p) { return is_positive(p, names_.symbols_in(p)); };
     if (numerator && (positive(*numerator) || positive(names_.other_coordinates(*numerator)))) {
       c.never_zero = true;
-    } else if (!recognise(c)) {
-      c.factors =
-          numerator ? names_.factors_of(*numerator) : std::vector<std::string>{"its minors"};
+    } else if (!recognise(c) && numerator) {
+      c.factors = names_.factors_of(*numerator);
     }
   }
 
@@ -282,8 +271,12 @@ class MassCheck {
   static std::string all_zero(const Choice& choice) {
     if (choice.empty()) return "at every pose";
     std::vector<std::set<std::string>> alternatives;
-    for (const Coefficient* c : choice)
-      alternatives.emplace_back(c->factors.begin(), c->factors.end());
+    std::size_t without_words = 0;
+    for (const Coefficient* c : choice) {
+      if (c->factors.empty()) ++without_words;
+      if (!c->factors.empty()) alternatives.emplace_back(c->factors.begin(), c->factors.end());
+    }
+    if (alternatives.empty()) return "at some poses, perhaps: no words were found for where";
     std::sort(alternatives.begin(), alternatives.end());
     alternatives.erase(std::unique(alternatives.begin(), alternatives.end()), alternatives.end());
     std::vector<std::string> conditions;
@@ -300,7 +293,7 @@ class MassCheck {
       conditions.push_back(zeros.size() > 1 && choice.size() > 1 ? "(" + condition + ")"
                                                                  : condition);
     }
-    return "where " + listed(conditions);
+    return (without_words > 0 ? "only where " : "where ") + listed(conditions);
   }
 
   // Who has to be able to move and to turn.
@@ -400,6 +393,11 @@ class MassCheck {
   const Joint& joint_;
   Findings& findings_;
   Algebra names_;
+  // Inertia counts as a number here also in space: a tensor that is positive definite changes no
+  // rank.
+  std::size_t linear_ = static_cast<std::size_t>(joint_.dimension);
+  std::size_t width_ = columns_per_body(joint_.dimension);
+  bool by_algebra_ = true;
   std::vector<Coefficient> coefficients_;
   std::vector<Candidate> candidates_;
 };

@@ -99,6 +99,9 @@ std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& bl
 Subject subject_of(const Joint& joint) {
   Subject subject{joint, derive_rows(joint), {}, {}, {}};
   std::vector<Expr> expressions = expressions_of(subject.block);
+  for (const Parameter& p : joint.parameters) {  // a frame as a whole
+    expressions.insert(expressions.end(), p.axes.begin(), p.axes.end());
+  }
   for (const Coordinate& c : joint.coordinates) {
     subject.coordinates.push_back(derive_coordinate(joint, c));
     const std::vector<Expr> more = expressions_of(subject.coordinates.back());
