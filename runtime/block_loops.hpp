@@ -303,10 +303,21 @@ void do_nothing(Arguments...) {}
 template <class S, class Joint>
 constexpr BlockOps<S> ops_without_rows() {
   using Parameters = typename Joint::template Parameters<typename S::Scalar>;
-  constexpr int parameter_size = sizeof(Parameters) / sizeof(typename S::Scalar);
-  return {Joint::bodies, 0,          parameter_size, 0,          false,      do_nothing,
-          do_nothing,    do_nothing, do_nothing,     do_nothing, do_nothing, do_nothing,
-          do_nothing,    do_nothing, do_nothing,     do_nothing, do_nothing, do_nothing};
+  BlockOps<S> ops{};
+  ops.bodies = Joint::bodies;
+  ops.parameter_size = sizeof(Parameters) / sizeof(typename S::Scalar);
+  ops.evaluate = ops.position = do_nothing;
+  ops.effective_mass = do_nothing;
+  ops.factorize = do_nothing;
+  ops.velocity = do_nothing;
+  ops.apply = do_nothing;
+  ops.iterate = do_nothing;
+  ops.iterate_bounded = do_nothing;
+  ops.correct = ops.correct_bounded = do_nothing;
+  ops.dense = do_nothing;
+  ops.transposed = do_nothing;
+  ops.add_stiffness = do_nothing;
+  return ops;
 }
 
 template <class S, class Joint, class Block>

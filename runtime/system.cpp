@@ -171,22 +171,52 @@ bool System<S>::revise_active_set(bool one_by_one) {
   return settled;
 }
 
+// The largest share of b by which a row within its bounds may miss it.
+constexpr double missed = 1e-9;
+// Of its own diagonal: what makes a row that depends on others one of its own.
+constexpr double slight_softness = 1e-8;
+
+// A motor and the limit that it runs into are one row twice: whichever elimination meets last is
+// dropped as dependent, whatever it asks for. Where that leaves a row with a bound unsatisfied,
+// such rows become slightly soft, so that the weaker of the two reaches its bound. True if there
+// were any.
 template <class S>
-int System<S>::solve_bounded() {
+bool System<S>::part_contradicting_rows() {
+  const auto bounded = [&](int r) { return std::isfinite(lower[r]) || std::isfinite(upper[r]); };
+  double scale = 0;
+  for (int r = 0; r < rows_; ++r) scale = std::max(scale, std::abs(b[r]));
+  bool any = false;
+  for (int r = 0; r < rows_; ++r)
+    any |= bounded(r) && !fixed[r] && !broken[r] &&
+           std::abs(product_[r] + softness[r] * lambda[r] - b[r]) > missed * scale;
+  for (int r = 0; any && r < rows_; ++r)
+    if (bounded(r)) softness[r] += slight_softness * ldlt_.values()[ldlt_.entry(r, r)];
+  return any;
+}
+
+template <class S>
+int System<S>::find_active_set() {
   // Exchanging all offenders at once is fast but may cycle; one at a time, always the last, does
   // not (Murty's rule).
   const int fast = 10, slow = std::min(2 * rows_, 200);
-  fixed = held_;  // the rows that were held back in the step before
-  for (int r = 0; r < rows_; ++r) {
-    if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
-    if (!std::isfinite(lambda[r])) fixed[r] = free;
-  }
   int dependent = 0;
   for (int round = 0; round < fast + slow; ++round) {
     dependent = factor();
     solve();
     if (revise_active_set(round >= fast)) break;
   }
+  return dependent;
+}
+
+template <class S>
+int System<S>::solve_bounded() {
+  fixed = held_;  // the rows that were held back in the step before
+  for (int r = 0; r < rows_; ++r) {
+    if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
+    if (!std::isfinite(lambda[r])) fixed[r] = free;
+  }
+  int dependent = find_active_set();
+  if (dependent > 0 && part_contradicting_rows()) dependent = find_active_set();
   held_ = fixed;
   for (int r = 0; r < rows_; ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
   return dependent;

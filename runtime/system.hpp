@@ -89,6 +89,8 @@ class System {
   };
   void list_products(const Bodies<S>& bodies);
   bool revise_active_set(bool one_by_one);
+  int find_active_set();
+  bool part_contradicting_rows();
 
   bool built_ = false, lawful_ = false;
   int rows_ = 0;

@@ -184,7 +184,7 @@ void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint
 void Painter::between_points(int joint, const std::vector<JointPoint>& all) {
   const JointType& type = world_.joint_type(joint);
   const bool soft = scene_.joints[static_cast<std::size_t>(joint)].definition.soft.has_value();
-  const bool loose = type.row_kinds[0] == RowKind::inequality;
+  const bool loose = !type.row_kinds.empty() && type.row_kinds[0] == RowKind::inequality;
   const char* svg = soft ? spring_link : loose ? rope_link : rigid_link;
   std::vector<JointPoint> fixed, riding;
   for (const JointPoint& point : all) (point.in_world_frame ? fixed : riding).push_back(point);

@@ -151,7 +151,7 @@ class SpacePainter {
       pins_.push_back(points.back().json());
     }
     joint_points_.insert(joint_points_.end(), points.begin(), points.end());
-    const bool rope = type.row_kinds[0] == RowKind::inequality;
+    const bool rope = !type.row_kinds.empty() && type.row_kinds[0] == RowKind::inequality;
     if (points.size() == 2)
       links_.push_back({points[0].json(), points[1].json(),
                         source.definition.soft ? "spring"
