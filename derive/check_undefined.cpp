@@ -84,6 +84,9 @@ class Undefined {
         return add(Level::note,
                    name_ + ": at the corner " + x + " = 0 of abs the kernel takes the slope 0");
       case Fn::atan2:
+        if (e->args[0]->kind == Kind::norm)
+          return add(Level::note,
+                     name_ + ": the angle " + words(e) + " in [0, pi] has a corner at both ends");
         return add(Level::note, name_ + ": the angle " + words(e) +
                                     " jumps by 2 pi at pi, and where both " +
                                     "arguments are 0 the kernel takes 0, also for its row of J");

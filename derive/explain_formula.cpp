@@ -61,7 +61,8 @@ Formula sum(std::vector<SignedFormula> terms) {
   f.shape = Shape::sum;
   for (SignedFormula& term : terms) {
     // a + (b + c) is written a + b + c; a - (b + c) stays.
-    const bool opens = term.formula.shape == Shape::sum && (!term.minus || is_negative(term.formula));
+    const bool opens =
+        term.formula.shape == Shape::sum && (!term.minus || is_negative(term.formula));
     for (SignedFormula& t : opens ? terms_of(term.formula) : std::vector{term}) {
       f.minus.push_back(t.minus != (opens && term.minus));
       f.args.push_back(std::move(t.formula));
@@ -172,7 +173,10 @@ std::string world_axis(Expr axis) {
 
 std::optional<AngleBetween> angle_between(Expr e) {
   if (e->kind != Kind::function || e->fn != Fn::atan2) return {};
-  const Term y = split_coefficient(e->args[0]), x = split_coefficient(e->args[1]);
+  const Expr sine = e->args[0];
+  const bool in_space = sine->kind == Kind::norm && sine->args[0]->kind == Kind::cross;
+  const Term y = in_space ? Term{1, sine->args[0]} : split_coefficient(sine);
+  const Term x = split_coefficient(e->args[1]);
   const bool fits = y.e->kind == Kind::cross && x.e->kind == Kind::dot && x.coef == Rational(1) &&
                     abs(y.coef) == Rational(1) && y.e->args == x.e->args;
   if (!fits) return {};
@@ -348,7 +352,8 @@ Expr value_of(const Formula& f, Pool& pool) {
       break;
   }
   if (f.shape == Shape::call && f.name == "angle") {
-    return call(Fn::atan2, std::vector{cross(args[0], args[1]), dot(args[0], args[1])});
+    const Expr sine = cross(args[0], args[1]);
+    return call(Fn::atan2, std::vector{sine->vector ? norm(sine) : sine, dot(args[0], args[1])});
   }
   for (const Fn fn :
        {Fn::sqrt, Fn::sin, Fn::cos, Fn::tan, Fn::exp, Fn::log, Fn::abs, Fn::sign, Fn::atan2}) {

@@ -82,7 +82,7 @@ Expr value_of(const Formula& f, Pool& pool);
 // vectors.
 std::string world_axis(Expr axis);
 
-// e as the angle from one vector to another, atan2(u × v, u · v), if it is one.
+// e as the angle from one vector to another, atan2(u × v, u · v), in space atan2(|u × v|, u · v), if it is one.
 struct AngleBetween {
   Expr from, to;
 };

@@ -57,6 +57,10 @@ class Limits {
       case Fn::abs:
         return limits.list("abs has a corner at {} = 0; its derivative is taken as 0 there.", args);
       case Fn::atan2:
+        if (e->args[0]->kind == Kind::norm) {
+          return limits.list("{} is an angle in [0, pi]: it has a corner at both ends.",
+                             {notation_.of(e)});
+        }
         return limits.list("{} is an angle in (-pi, pi]: it jumps where the turn is complete.",
                            {notation_.of(e)});
       default:

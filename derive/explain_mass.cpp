@@ -42,7 +42,8 @@ Scaled without_scalars(const Notation& notation, Expr e) {
   return scaled ? Scaled{notation.of(e->args[0]), e->args[1]} : Scaled{number(1), e};
 }
 
-// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t)' inv_I_a (ra × t).
+// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t)' inv_I_a (ra ×
+// t).
 void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj,
                  std::vector<SignedFormula>& terms) {
   if (is_zero(wi) || is_zero(wj)) return;
@@ -54,7 +55,8 @@ void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj,
       parts.push_back(power(i.scalars, 2));
     else
       parts.insert(parts.end(), {i.scalars, j.scalars});
-    parts.insert(parts.end(), {shaped(Shape::transpose, notation.of(i.e)), leaf(inverse), notation.of(j.e)});
+    parts.insert(parts.end(),
+                 {shaped(Shape::transpose, notation.of(i.e)), leaf(inverse), notation.of(j.e)});
   } else {
     const Formula a = notation.of(f.i), b = notation.of(f.j);
     parts.push_back(leaf(inverse));
@@ -229,8 +231,7 @@ void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
       Chain chain{name, {}};
       if (part.statements.size() == 1) chain.links.push_back({J_M_J(label("J", s)), ""});
       chain.links.push_back({full, "body by body"});
-      if (!as_it_stands)
-        chain.links.push_back({result, identities_used(lecture, part, s, t)});
+      if (!as_it_stands) chain.links.push_back({result, identities_used(lecture, part, s, t)});
       step.show(std::move(chain));
     }
   }

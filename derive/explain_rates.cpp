@@ -288,6 +288,7 @@ Formula Rates::function_rate(Expr e, Formula x_dot) {
 
 // The angle from u to v grows as v turns and falls as u turns.
 std::optional<Formula> Rates::angle_rule(const AngleBetween& angle) {
+  if (joint_.dimension == 3) return angle_rule_in_space(angle);
   used(
       "derivative of an angle between directions: how fast the second turns, less how fast the "
       "first does");
@@ -295,6 +296,18 @@ std::optional<Formula> Rates::angle_rule(const AngleBetween& angle) {
   append(terms, turning(angle.to));
   append(terms, turning(angle.from), true);
   return total(std::move(terms));
+}
+
+// In space it grows by what turns v against u about their common normal.
+std::optional<Formula> Rates::angle_rule_in_space(const AngleBetween& angle) {
+  used(
+      "derivative of an angle between directions: what turns the second against the first, about "
+      "their common normal");
+  std::vector<SignedFormula> terms;
+  append(terms, turning(angle.to));
+  append(terms, turning(angle.from), true);
+  const Formula normal = notation_.of(unit(cross(angle.from, angle.to)));
+  return dot(normal, sum(std::move(terms)));
 }
 
 // A vector turns at (u × u_dot)/(u · u); one that is fixed in a body turns with it.

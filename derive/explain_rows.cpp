@@ -163,16 +163,19 @@ void explain_kept(const Lecture& lecture, Expr product, Step& step) {
   const Expr y = other(1), z = other(2);
   const Notation& notation = lecture.notation;
   const Formula all = cross(leaf(n), notation.of(m));
-  step.say("`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 "
-           "always. Kept are the components along the other two axes of the frame:",
-           {all, leaf(n), all});
+  step.say(
+      "`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 "
+      "always. Kept are the components along the other two axes of the frame:",
+      {all, leaf(n), all});
   const std::string rule = "a · (b × c) = (a × b) · c";
   step.show({dot(leaf(z), all), {{dot(leaf(y), notation.of(m)), rule}}});
   step.show({dot(leaf(y), all), {{negative(dot(leaf(z), notation.of(m))), rule}}});
-  step.say("While both vanish {} lies along {}, and {} and {} are as long as {} and stand on each other: "
-           "these two rows stay independent wherever the row holds.",
-           {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)),
-            cross(leaf(z), notation.of(m)), notation.of(m)});
+  step.say(
+      "While both vanish {} lies along {}, and {} and {} are as long as {} and stand on each "
+      "other: "
+      "these two rows stay independent wherever the row holds.",
+      {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)), cross(leaf(z), notation.of(m)),
+       notation.of(m)});
 }
 
 }  // namespace

@@ -84,9 +84,9 @@ std::string FormulaWriter::fraction_of(const Formula& f) const {
   const bool enclosed = fraction_encloses();
   const Formula& below = f.args[1];
   return fraction(write(f.args[0], enclosed ? Place::whole : Place::factor),
-                  write(below, enclosed                    ? Place::whole
+                  write(below, enclosed                      ? Place::whole
                                : below.shape == Shape::power ? Place::factor
-                                                           : Place::base));
+                                                             : Place::base));
 }
 
 std::string FormulaWriter::bare(const Formula& f) const {

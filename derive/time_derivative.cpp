@@ -144,8 +144,20 @@ class TimeDerivative {
       const Expr u = cross_part.e->args[0], v = cross_part.e->args[1];
       return cross_part.coef * (turning(v) - turning(u));
     }
+    if (y->kind == Kind::norm && y->args[0]->kind == Kind::cross && dot_part.e->kind == Kind::dot &&
+        y->args[0]->args == dot_part.e->args && dot_part.coef == Rational(1)) {
+      // In space it grows by what turns v against u about their common normal.
+      const Expr u = y->args[0]->args[0], v = y->args[0]->args[1];
+      return dot(unit(y->args[0]), turning_in_space(v) - turning_in_space(u));
+    }
     // d atan2(y, x)/dt = (x ydot - y xdot)/(x^2 + y^2)
     return (x * of(y) - y * of(x)) / (pow(x, 2) + pow(y, 2));
+  }
+
+  // An angular velocity with which u turns; what is fixed in a body turns with it.
+  Expr turning_in_space(Expr u) {
+    const bool fixed = u->kind == Kind::symbol && u->role == Role::body_vector;
+    return fixed ? spin_of(u) : cross(u, of(u)) / dot(u, u);
   }
 
   Expr turning(Expr u) { return cross(u, of(u)) / dot(u, u); }

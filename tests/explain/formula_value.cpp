@@ -86,6 +86,11 @@ Array assembled(const Formula& f, const std::vector<Array>& blocks) {
   return a;
 }
 
+double length(const Array& u) {
+  const auto [x, y, z] = triple(u);
+  return std::hypot(x, y, z);
+}
+
 double called(const std::string& name, const std::vector<Array>& args) {
   const double x = args[0].entries[0];
   if (name == "sqrt") return std::sqrt(x);
@@ -99,7 +104,8 @@ double called(const std::string& name, const std::vector<Array>& args) {
   if (name == "atan2") return std::atan2(x, args[1].entries[0]);
   if (name == "twist") throw NoValue(name);  // its frames are more than their x axes
   if (name == "angle") {
-    return std::atan2(cross_product(args[0], args[1]).entries[0],
+    const Array sine = cross_product(args[0], args[1]);
+    return std::atan2(sine.entries.size() == 1 ? sine.entries[0] : length(sine),
                       multiplied(transposed(args[0]), args[1]).entries[0]);
   }
   throw std::logic_error("unknown function " + name);
@@ -147,10 +153,6 @@ Array leaf_value(const Formula& f, const Values& values) {
 Array value_of_formula(const Formula& f, const Values& values) {
   std::vector<Array> args;
   for (const Formula& arg : f.args) args.push_back(value_of_formula(arg, values));
-  const auto length = [&] {
-    const auto [x, y, z] = triple(args[0]);
-    return std::hypot(x, y, z);
-  };
   switch (f.shape) {
     case Shape::leaf:
       return leaf_value(f, values);
@@ -179,9 +181,9 @@ Array value_of_formula(const Formula& f, const Values& values) {
     case Shape::skew:
       return skew(args[0]);
     case Shape::norm:
-      return scalar(length());
+      return scalar(length(args[0]));
     case Shape::unit:
-      return times(1 / length(), args[0]);
+      return times(1 / length(args[0]), args[0]);
     case Shape::component:
       return scalar(args[0].entries[static_cast<std::size_t>(f.name[0] - 'x')]);
     case Shape::call:
