@@ -81,6 +81,7 @@ void introduce_bodies(const Joint& joint, Step& step) {
 
 void explain_rows(Lecture& lecture, const Part& part, Form form) {
   state_constraint(lecture, part);
+  if (part.statements.empty()) return;
   Step& derivative = lecture.section("The time derivative");
   derivative.say("Velocities follow from C by differentiating it along the motion.");
   differentiate(lecture, part, derivative);

@@ -183,6 +183,7 @@ void add_block(Json& out, Infix& infix, const Block& block) {
 nlohmann::ordered_json explanation_json(const Joint& joint) {
   Infix infix(joint);
   Json rows, coordinates = Json::array();
+  rows["rows"] = Json::array();
   const Block block = derive_rows(joint);
   for (const ScalarRow& row : block.rows) {
     rows["rows"].push_back({{"name", row.name},

@@ -192,6 +192,9 @@ Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s) {
 
 void state_constraint(Lecture& lecture, const Part& part) {
   Step& step = lecture.section("Position constraint");
+  if (part.statements.empty()) {
+    step.say("The joint has no row of its own: it only names coordinates, on which effects may act.");
+  }
   if (!lecture.joint.lets.empty()) step.say("Names:");
   for (const Let& let : lecture.joint.lets) {
     step.show({leaf(let.value, let.name), {{lecture.notation.definition(let.value), ""}}});
@@ -271,7 +274,8 @@ void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
     }
     for (Chain& chain : lecture.rates.differentiate(Cdot, negative(name))) {
       chain.links.resize(1);  // with its names, not with all of them inserted
-      if (chain.left != negative(name) && turns_twice(chain.links[0].formula)) {
+      const bool shorter = lecture.joint.dimension == 2 && turns_twice(chain.links[0].formula);
+      if (chain.left != negative(name) && shorter) {
         const Expr turned = value_of(chain.links[0].formula, *lecture.joint.pool);
         chain.links.push_back({lecture.notation.definition(turned), "w × (w × r) = -w^2 r"});
       }

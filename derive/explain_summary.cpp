@@ -51,6 +51,7 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
     const Formula row = row_of_J(lecture, part, s);
     J.insert(J.end(), row.args.begin(), row.args.end());
   }
+  if (part.statements.empty()) return summary;
   const int width = static_cast<int>(2 * lecture.joint.bodies.size());
   const bool single = part.statements.size() == 1;
   const Formula all = matrix(width, std::move(J));

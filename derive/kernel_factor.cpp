@@ -21,8 +21,6 @@ bool is_zero_in_factor(const Block& block, std::size_t i, std::size_t j) {
   return true;
 }
 
-Pool& pool_of(const Block& block) { return *block.K[0][0]->pool; }
-
 }  // namespace
 
 std::string element(const std::string& array, std::size_t i) {
@@ -34,8 +32,9 @@ std::string triangle_element(const std::string& array, std::size_t i, std::size_
 }
 
 std::vector<NamedExpr> factor_outputs(const Block& block) {
-  Pool& pool = pool_of(block);
   const std::size_t n = block.rows.size();
+  if (n == 0) return {};
+  Pool& pool = *block.K[0][0]->pool;
   std::vector<std::vector<Expr>> L(n, std::vector<Expr>(n));
   std::vector<Expr> D(n), D_inverse(n);
   std::vector<NamedExpr> factor;
@@ -59,8 +58,9 @@ std::vector<NamedExpr> factor_outputs(const Block& block) {
 }
 
 std::vector<NamedExpr> solve_outputs(const Block& block) {
-  Pool& pool = pool_of(block);
   const std::size_t n = block.rows.size();
+  if (n == 0) return {};
+  Pool& pool = *block.K[0][0]->pool;
   const auto L = [&](std::size_t i, std::size_t j) {
     return is_zero_in_factor(block, i, j) ? pool.number(0)
                                           : pool.symbol(triangle_element("F", i, j), Role::given);

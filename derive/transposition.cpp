@@ -107,6 +107,13 @@ struct PairTerm {
 
 PairTerm pair_term(const Term& term) {
   PairTerm out{term.coef, term.e, Kind::number, {}, {}};
+  if (term.e->vector) {  // in space, where u x v is a vector
+    const bool scaled = term.e->kind == Kind::scale && term.e->name.empty();
+    const Expr f = scaled ? term.e->args[1] : term.e;
+    if (f->kind != Kind::cross || f->named_by_let) return out;
+    const Expr rest = scaled ? term.e->args[0] : f->pool->number(1);
+    return {term.coef, rest, f->kind, f->args[0], f->args[1]};
+  }
   std::vector<Expr> factors{term.e};
   if (term.e->kind == Kind::product && term.e->name.empty()) factors = term.e->args;
   for (std::size_t i = 0; i < factors.size(); ++i) {
