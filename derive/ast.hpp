@@ -106,6 +106,7 @@ struct HandItemAst {
 
 struct HandEntryAst {
   std::string id, title, source, note, listed;
+  std::string form;                            // of the velocities: global, local or euler
   std::map<std::string, std::string> anchors;  // of parameters that the entry fixes elsewhere
   std::vector<std::string> immovable;
   std::vector<HandItemAst> items;

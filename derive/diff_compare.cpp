@@ -12,10 +12,17 @@ namespace {
 
 constexpr std::size_t whole_row = ~std::size_t{0};  // not an entry of J but all of Cdot
 
-std::string column_name(const Joint& joint, int column) {
+std::string column_name(const Joint& joint, Form form, int column) {
   static const char* const planar[] = {"v_{}.x", "v_{}.y", "w_{}"};
   static const char* const spatial[] = {"v_{}.x", "v_{}.y", "v_{}.z", "w_{}.x", "w_{}.y", "w_{}.z"};
-  const int width = static_cast<int>(columns_per_body(joint.dimension));
+  const bool space = joint.dimension == 3;
+  const int width = static_cast<int>(space ? columns_per_body(form) : columns_per_body(2));
+  if (space && form != Form::global && column % width >= 3) {
+    const std::string& body = joint.bodies[static_cast<std::size_t>(column / width)];
+    const int k = column % width - 3;
+    if (form == Form::euler) return fmt::format("edot_{}.{}", body, k);
+    return fmt::format("w'_{}.{}", body, "xyz"[k]);
+  }
   return fmt::format(fmt::runtime((width == 3 ? planar : spatial)[column % width]),
                      joint.bodies[static_cast<std::size_t>(column / width)]);
 }
@@ -77,7 +84,7 @@ Place EntryJudge::place_of(const Part& part, const HandItem& item, int row, int 
   }
   place.row = name_of_row(part, row);
   if (item.what == "K") place.column = name_of_row(part, column);
-  if (item.what == "J") place.column = column_name(joint_, column);
+  if (item.what == "J") place.column = column_name(joint_, form_, column);
   return place;
 }
 
@@ -135,7 +142,7 @@ std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::s
     ScalarRow only;
     only.Cdot = time_derivative(row.C, joint_, {immovable_, leaf});
     only.J = isolate_velocities(only.Cdot, joint_);
-    sources.push_back({leaf, sign * (entry == whole_row ? only.Cdot : columns_of(only.J)[entry])});
+    sources.push_back({leaf, sign * (entry == whole_row ? only.Cdot : columns_in_form(only.J)[entry])});
   }
   return sources;
 }
@@ -146,9 +153,8 @@ std::optional<Difference> EntryJudge::compare_entry(const Part& part, const Hand
   Place place = place_of(part, item, row, column);
   const std::size_t r = static_cast<std::size_t>(row);
   if (item.kind != HandItem::Kind::claim && item.what == "J") {
-    const std::vector<Expr> mine = columns_of(part.rows[r].J);
-    const int width = static_cast<int>(columns_per_body(joint_.dimension));
-    for (int c = column % width; c < static_cast<int>(mine.size()); c += width) {
+    const std::vector<Expr> mine = columns_in_form(part.rows[r].J);
+    for (int c = column % width(); c < static_cast<int>(mine.size()); c += width()) {
       if (c != column) place.elsewhere.push_back(mine[static_cast<std::size_t>(c)]);
     }
     place.sources =
@@ -257,7 +263,7 @@ std::vector<EntryJudge::Group> EntryJudge::groups_of_columns(const Part& part, c
   const bool blocks = item.what == "J" && !claim && joint_.dimension == 3;
   for (int c = 0; c < columns;) {
     int count = 1;
-    while (blocks && c + count < columns && block_of(c + count) == block_of(c)) ++count;
+    while (blocks && c + count < columns && block_of(c + count, width()) == block_of(c, width())) ++count;
     const std::string name = place_of(part, item, 0, c).column;
     groups.push_back({c, count, count == 1 ? name : name.substr(0, name.find('.'))});
     c += count;

@@ -88,6 +88,27 @@ Motion Confirm::gradient(const ScalarRow& row, const Sample& sample) const {
   return J;
 }
 
+// J diag(E, A) or J diag(E, 2 G), body by body.
+Motion Confirm::in_form(const Motion& gradient, const Sample& sample) const {
+  if (form_ == Form::global) return gradient;
+  Motion columns;
+  for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
+    const double* J = &gradient[6 * b];
+    const EulerParameters<double>& e = sample.bodies[b].e;
+    const Triple<double> w = {J[3], J[4], J[5]};
+    columns.insert(columns.end(), J, J + 3);
+    if (form_ == Form::local) {
+      for (const Triple<double>& axis : axes_of(e)) columns.push_back(inner_product(w, axis));
+    } else {
+      for (const Triple<double>& g : {Triple<double>{-e[1], -e[2], -e[3]}, {e[0], e[3], -e[2]},
+                                      {-e[3], e[0], e[1]}, {e[2], -e[1], e[0]}}) {
+        columns.push_back(2 * inner_product(w, g));
+      }
+    }
+  }
+  return columns;
+}
+
 Motion Confirm::velocity(const Sample& sample) const {
   Motion v;
   for (const Sample::Body& body : sample.bodies) {
@@ -149,7 +170,7 @@ std::string Confirm::against(const Measure& measured, Expr generated, Expr publi
 
 std::string Confirm::entry_of_J(const ScalarRow& row, double sign, std::size_t column,
                                 Expr generated, Expr published) const {
-  return against([&](const Sample& sample) { return sign * gradient(row, sample)[column]; },
+  return against([&](const Sample& sample) { return sign * in_form(gradient(row, sample), sample)[column]; },
                  generated, published);
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "derive/diff_poses.hpp"
+#include "derive/forms.hpp"
 #include "derive/matrix.hpp"
 
 namespace cdot::derive {
@@ -21,8 +22,9 @@ double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample
 
 class Confirm {
  public:
-  Confirm(const Joint& joint, int immovable, const Poses& poses)
-      : joint_(joint), immovable_(immovable), poses_(poses) {}
+  // `form`: of J's columns.
+  Confirm(const Joint& joint, int immovable, const Poses& poses, Form form)
+      : joint_(joint), immovable_(immovable), poses_(poses), form_(form) {}
 
   // Each says how far the generated and the published value are off; `sign` is that of the row.
   std::string entry_of_J(const ScalarRow& row, double sign, std::size_t column, Expr generated,
@@ -60,6 +62,7 @@ class Confirm {
                     const Measure& published_error) const;
   std::string against(const Measure& measured, Expr generated, Expr published) const;
   double value(Expr e, const Sample& sample) const { return values_at(joint_, {e}, sample)[0]; }
+  Motion in_form(const Motion& gradient, const Sample& sample) const;
   Motion gradient(const ScalarRow& row, const Sample& sample) const;
   Motion velocity(const Sample& sample) const;
   Motion times_inverse_mass(const Sample& sample, const Motion& impulse) const;
@@ -68,6 +71,7 @@ class Confirm {
   const Joint& joint_;
   int immovable_;
   const Poses& poses_;
+  Form form_;
 };
 
 }  // namespace cdot::derive

@@ -6,6 +6,7 @@
 
 #include "derive/finite_field.hpp"
 #include "derive/ginac.hpp"
+#include "derive/symbols.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -25,6 +26,7 @@ EntryJudge::EntryJudge(const HandEntryAst& ast, const HandFile& file, const Read
       immovable_ = static_cast<int>(b);
     }
   }
+  form_ = form_of(ast);
   block_ = derive_rows(joint_, immovable_);
   for (const Coordinate& c : joint_.coordinates) {
     coordinates_.push_back(derive_coordinate(joint_, c, immovable_));
@@ -54,15 +56,34 @@ std::vector<ScalarRow> EntryJudge::rows_named(const std::vector<std::string>& na
   return rows;
 }
 
+int EntryJudge::width() const {
+  return static_cast<int>(joint_.dimension == 2 ? columns_per_body(2) : columns_per_body(form_));
+}
+
+std::vector<Expr> EntryJudge::columns_in_form(const std::vector<JacobianEntry>& J) const {
+  std::vector<Expr> columns;
+  for (std::size_t b = 0; b < J.size(); ++b) {
+    const int body = static_cast<int>(b);
+    std::vector<Expr> own = columns_of(J[b]);
+    if (form_ == Form::euler) own = columns_in(form_, own, joint_, body);
+    if (form_ == Form::local) {  // w . v = w' . v', component by component
+      const std::vector<Expr> axes = body_axes(pool_, body);
+      for (std::size_t k = 0; k < 3; ++k) own[3 + k] = dot(axes[k], J[b].w);
+    }
+    columns.insert(columns.end(), own.begin(), own.end());
+  }
+  return columns;
+}
+
 Generated EntryJudge::generated_for(const std::vector<ScalarRow>& rows) const {
   const int n = static_cast<int>(rows.size());
   Generated g;
   std::vector<Expr> C, Cdot;
-  g.J = {n, static_cast<int>(columns_per_body(joint_.dimension) * joint_.bodies.size()), {}};
+  g.J = {n, width() * static_cast<int>(joint_.bodies.size()), {}};
   for (const ScalarRow& row : rows) {
     C.push_back(row.C);
     Cdot.push_back(row.Cdot);
-    for (const Expr e : columns_of(row.J)) g.J.entries.push_back(e);
+    for (const Expr e : columns_in_form(row.J)) g.J.entries.push_back(e);
   }
   g.C = column(std::move(C));
   g.Cdot = column(std::move(Cdot));
@@ -147,7 +168,12 @@ const Poses& EntryJudge::poses_on_constraint() {
 bool EntryJudge::proved(Expr difference) const {
   constexpr std::size_t few_nodes = 40;
   if (!vanishes_modulo_prime(difference).value_or(false)) return false;
-  if (topological(std::span(&difference, 1)).size() > few_nodes) return true;
+  const std::vector<Expr> nodes = topological(std::span(&difference, 1));
+  // Of Euler parameters the algebra does not know that their length is 1.
+  const bool euler = std::any_of(nodes.begin(), nodes.end(), [](Expr e) {
+    return e->kind == Kind::symbol && e->role == Role::given && e->body >= 0;
+  });
+  if (euler || nodes.size() > few_nodes) return true;
   for (const Algebra::Route route : {Algebra::Route::names, Algebra::Route::raw}) {
     Algebra algebra(joint_, route, immovable_);
     if (algebra.vanishes(algebra.of(difference))) return true;
@@ -186,6 +212,7 @@ void EntryJudge::judge_item(const Part& part, const HandItem& item) {
 
 void EntryJudge::add_cost(const Part& part, const HandItem& item) {
   if (item.what != "C" && item.what != "J" && item.what != "K") return;
+  if (item.what == "J" && form_ != Form::global) return;
   std::string block = "rows";
   if (!part.hand->rows.empty()) {
     const bool coordinate = part.rows.size() == 1 && part.rows[0].row == nullptr;

@@ -27,6 +27,9 @@ class EntryJudge {
   // diff_entry.cpp
   std::vector<ScalarRow> rows_named(const std::vector<std::string>& names) const;
   Generated generated_for(const std::vector<ScalarRow>& rows) const;
+  // J's columns are those of the entry's form.
+  std::vector<Expr> columns_in_form(const std::vector<JacobianEntry>& J) const;
+  int width() const;  // of a body
   std::vector<Expr> assumed_equations() const;
   void prepare_poses();
   const Poses& poses() const { return assumed_ ? *assumed_ : *anywhere_; }
@@ -43,7 +46,7 @@ class EntryJudge {
     int blocks = 0;         // that differ
     std::size_t terms = 0;  // that differ in them
   };
-  int block_of(int column) const;  // v or w of a body
+  int block_of(int column, int width) const;  // v or w of a body
   Misfit misfit(const Part& part, const HandItem& item, std::size_t row, int sign) const;
   void find_signs(std::vector<Part>& parts);
   std::vector<int> signs_of_mass(const Part& part) const;
@@ -70,7 +73,7 @@ class EntryJudge {
                                           Rational sign) const;
   std::string confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand,
                            Expr generated);
-  Confirm confirm() const { return {joint_, immovable_, poses()}; }
+  Confirm confirm() const { return {joint_, immovable_, poses(), form_}; }
   std::string in_names_of_spec(std::string text) const;
   Difference finished(const HandItem& item, Difference difference, Expr hand, Expr generated) const;
   void add_plain(const HandItem& item, const Place& place, std::string kind, std::string sentence,
@@ -88,6 +91,7 @@ class EntryJudge {
   void judge_bound(const Part& part, const HandItem& item);
 
   // diff_momentum.cpp
+  std::vector<Expr> turns_of_columns(int body) const;
   void judge_momentum(const Part& part, const Matrix& J);
   void note_momentum(const std::vector<std::string>& rows, const char* quantity,
                      const char* motion);
@@ -95,6 +99,7 @@ class EntryJudge {
   const Joint& joint_;
   Pool& pool_;
   int immovable_ = -1;
+  Form form_ = Form::global;
   Block block_;
   std::vector<Block> coordinates_;
   HandEntry entry_;

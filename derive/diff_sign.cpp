@@ -7,8 +7,7 @@
 
 namespace cdot::derive {
 
-int EntryJudge::block_of(int column) const {
-  const int width = static_cast<int>(columns_per_body(joint_.dimension));
+int EntryJudge::block_of(int column, int width) const {
   return 2 * (column / width) + (column % width < joint_.dimension ? 0 : 1);
 }
 
@@ -27,8 +26,8 @@ EntryJudge::Misfit EntryJudge::misfit(const Part& part, const HandItem& item, st
     const Expr generated = factor * mine.at(static_cast<int>(row), c);
     if (poses().equal(hand, generated)) continue;
     const Leftover left = leftover_terms(hand, generated, joint_, Opened::everything);
-    misfit.blocks += block_of(c) == block ? 0 : 1;
-    block = block_of(c);
+    misfit.blocks += block_of(c, width()) == block ? 0 : 1;
+    block = block_of(c, width());
     misfit.terms += left.hand.size() + left.generated.size();
   }
   return misfit;

@@ -171,10 +171,11 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
 std::vector<EntryJudge::Group> EntryJudge::groups_of_changes(UpdateLevel level,
                                                              std::size_t columns) const {
   std::vector<Group> groups;
+  const int width = static_cast<int>(columns_per_body(joint_.dimension));
   for (int c = 0; c < static_cast<int>(columns); ++c) {
     const std::string name =
         column_name(joint_, static_cast<std::size_t>(c), level == UpdateLevel::positions);
-    if (joint_.dimension == 3 && c > 0 && block_of(c) == block_of(c - 1)) {
+    if (joint_.dimension == 3 && c > 0 && block_of(c, width) == block_of(c - 1, width)) {
       ++groups.back().count;
       groups.back().name = name.substr(0, name.find('.'));
     } else {

@@ -37,10 +37,13 @@ class EntryElaborator final : public Scope {
     entry_.listed = ast.listed;
     entry_.anchors = ast.anchors;
     entry_.immovable = ast.immovable;
+    entry_.form = form_of(ast);
     entry_.where = ast.where;
   }
 
   HandEntry run() {
+    if (entry_.form != Form::global && joint_.dimension == 2)
+      diagnostics_.error(ast_.where, "the form " + quote(ast_.form) + " is one of spatial joints");
     begin_part({});
     for (const HandItemAst& item : ast_.items)
       if (!item.broken) elaborate(item);
@@ -77,7 +80,7 @@ class EntryElaborator final : public Scope {
   Value lambda();
   // Of v and w in a row of J.
   std::vector<int> widths_of_body() const {
-    return joint_.dimension == 2 ? std::vector{2, 1} : std::vector{3, 3};
+    return joint_.dimension == 2 ? std::vector{2, 1} : std::vector{3, entry_.form == Form::euler ? 4 : 3};
   }
   bool name_is_free(const Word& word);
   Value evaluate(const Ast& ast, bool rows_of_J = false);
@@ -403,6 +406,10 @@ void EntryElaborator::claim(const HandItemAst& item) {
 }
 
 }  // namespace
+
+Form form_of(const HandEntryAst& entry) {
+  return entry.form == "local" ? Form::local : entry.form == "euler" ? Form::euler : Form::global;
+}
 
 HandEntry elaborate_entry(const HandEntryAst& entry, const HandFile& file, const ReadResult& joint,
                           const GeneratedRows& generated, Diagnostics& diagnostics) {

@@ -25,6 +25,10 @@ class Pose final : public Arithmetic<Modular> {
   Modular scalar_leaf(const Node& symbol) override {
     if (symbol.role == Role::angle) return Modular(angle_of(symbol.body));
     if (symbol.role == Role::constant) return point_.pi();
+    const std::size_t euler = symbol.symbol.find(".e");
+    if (symbol.role == Role::given && symbol.body >= 0 && euler != std::string::npos) {
+      return orientation(symbol.body)[static_cast<std::size_t>(symbol.symbol.back() - '0')];
+    }
     return scalars_.try_emplace(symbol.symbol, Modular(point_.small())).first->second;
   }
 
@@ -52,9 +56,27 @@ class Pose final : public Arithmetic<Modular> {
       return axis;
     }
     const Pool::Axis axis = symbol.pool->axis_of(Expr(&symbol));
+    if (axis.triad && symbol.symbol.starts_with("axis_")) {
+      return axes_of(orientation(symbol.body))[static_cast<std::size_t>(axis.index)];
+    }
     if (axis.triad) return triads_.try_emplace(axis.triad, any_triad()).first->second[static_cast<std::size_t>(axis.index)];
     if (symbol.unit_length) return any_triad()[0];
     return {point_.any(), point_.any(), point_.any()};
+  }
+
+  // Euler parameters of length 1: half of all quadruples have a length.
+  const EulerParameters<Modular>& orientation(int body) {
+    const auto found = orientations_.find(body);
+    if (found != orientations_.end()) return found->second;
+    EulerParameters<Modular> e;
+    Modular square;
+    do {
+      e = {point_.any(), point_.any(), point_.any(), point_.any()};
+      square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3];
+    } while (square.is_zero() || !square.is_square());
+    const Modular scale = inverse(call(Fn::sqrt, std::span<const Modular>(&square, 1)));
+    for (Modular& component : e) component = component * scale;
+    return orientations_.emplace(body, e).first->second;
   }
 
   std::array<Triple<Modular>, 3> any_triad() {
@@ -74,6 +96,7 @@ class Pose final : public Arithmetic<Modular> {
 
   ModularPoint point_;
   std::map<int, std::int64_t> angles_;
+  std::map<int, EulerParameters<Modular>> orientations_;
   std::map<const Triad*, std::array<Triple<Modular>, 3>> triads_;
   std::map<std::string, Modular> scalars_;
 };

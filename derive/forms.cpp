@@ -3,6 +3,7 @@
 #include <string>
 
 #include "derive/finite_field.hpp"
+#include "derive/symbols.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -48,8 +49,8 @@ std::vector<std::vector<Expr>> rotation_matrix(const Joint& joint, int body) {
 }
 
 std::array<Expr, 4> euler_parameters(const Joint& joint, int body) {
-  return {member(joint, body, "e0"), member(joint, body, "e1"), member(joint, body, "e2"),
-          member(joint, body, "e3")};
+  const std::vector<Expr> e = body_euler_parameters(*joint.pool, body);
+  return {e[0], e[1], e[2], e[3]};
 }
 
 std::vector<Expr> columns_in(Form form, const std::vector<Expr>& global, const Joint& joint, int body) {

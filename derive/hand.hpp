@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "derive/ast.hpp"
+#include "derive/forms.hpp"
 #include "derive/matrix.hpp"
 #include "derive/read.hpp"
 
@@ -80,12 +81,16 @@ struct HandEntry {
   std::string listed;                          // the reason why nothing is judged; empty otherwise
   std::map<std::string, std::string> anchors;  // {"t", "a"}: `assume t on a`
   std::vector<std::string> immovable;          // bodies
+  Form form = Form::global;                    // of J's columns
   std::vector<HandAssumption> assumptions;     // all of them, for people too
   std::vector<std::string> free;               // symbols with Role::given, for any positive number
   std::vector<HandPart> parts;
   std::vector<Diagnostic> remarks;  // units that do not match and the like; not errors
   Span where;
 };
+
+// What `form local` says.
+Form form_of(const HandEntryAst& entry);
 
 // Formulas of an entry. What nobody could evaluate (unknown names) goes into `diagnostics`.
 HandEntry elaborate_entry(const HandEntryAst& entry, const HandFile& file, const ReadResult& joint,

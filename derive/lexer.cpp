@@ -282,7 +282,7 @@ const std::vector<std::string>& statement_words(bool hand) {
                                                  "let",    "velocity", "coordinate"};
   static const std::vector<std::string> entry = {"entry",  "source", "note",  "assume",
                                                  "let",    "free",   "rows",  "lambda",
-                                                 "update", "bound",  "claim", "listed"};
+                                                 "update", "bound",  "claim", "form", "listed"};
   return hand ? entry : joint;
 }
 

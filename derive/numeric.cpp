@@ -258,6 +258,7 @@ Values world_values(const Joint& joint, const Sample& sample) {
     put("v_" + joint.bodies[b], body.v);
     if (joint.dimension == 3) {
       put("w_" + joint.bodies[b], body.w);
+      for (std::size_t k = 0; k < 4; ++k) values[joint.bodies[b] + ".e" + std::to_string(k)] = body.e[k];
     } else {
       values["theta_" + joint.bodies[b]] = body.theta;
       values["w_" + joint.bodies[b]] = body.w[2];

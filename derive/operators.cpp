@@ -141,6 +141,31 @@ Value build_rotation(Pool& pool, Arguments a) {
   return matrix_of(std::move(R));
 }
 
+Value build_euler_parameters(Pool& pool, Arguments a) {
+  return matrix_of({4, 1, body_euler_parameters(pool, a[0].body)});
+}
+
+// w = 2 G de/dt.
+Matrix matrix_of_rates(Pool& pool, int body) {
+  const std::vector<Expr> e = body_euler_parameters(pool, body);
+  return {3, 4, {-e[1], e[0], -e[3], e[2], -e[2], e[3], e[0], -e[1], -e[3], -e[2], e[1], e[0]}};
+}
+
+Value build_matrix_of_rates(Pool& pool, Arguments a) { return matrix_of(matrix_of_rates(pool, a[0].body)); }
+
+// de/dt = 1/2 G^T w, since G G^T is the identity.
+Value build_euler_rates(Pool& pool, Arguments a) {
+  const Matrix G = matrix_of_rates(pool, a[0].body);
+  const Expr w = body_spin(pool, a[0].body);
+  Matrix rates{4, 1, {}};
+  for (int k = 0; k < 4; ++k) {
+    Expr sum = pool.number(0);
+    for (int i = 0; i < 3; ++i) sum = sum + G.at(i, k) * component(w, static_cast<std::size_t>(i));
+    rates.entries.push_back(Rational(1, 2) * sum);
+  }
+  return matrix_of(std::move(rates));
+}
+
 using enum Operator::Where;
 using Space = Operator::Space;
 using Gives = UnitGiven;
@@ -289,6 +314,30 @@ const std::vector<Operator> table = {
     {"S", "S(r)", {vector_}, kept, build_skew, "the same as skew(r)", hand},
     {"inverse", "inverse(M)", {matrix_}, to_number, build_inverse, "the inverse of a square matrix", hand},
     {"R", "R(a)", {body_}, to_number, build_rotation, "the rotation matrix of a body", hand},
+    {"e",
+     "e(a)",
+     {body_},
+     to_number,
+     build_euler_parameters,
+     "the Euler parameters of a body, a column of four",
+     hand,
+     Space::spatial},
+    {"edot",
+     "edot(a)",
+     {body_},
+     to_number,
+     build_euler_rates,
+     "their rates",
+     hand,
+     Space::spatial},
+    {"G",
+     "G(a)",
+     {body_},
+     to_number,
+     build_matrix_of_rates,
+     "the 3 x 4 matrix with w(a) = 2 G(a) edot(a)",
+     hand,
+     Space::spatial},
 };
 
 }  // namespace

@@ -49,6 +49,7 @@ class HandParser {
     if (p_.at_word("source")) return text(entry().source);
     if (p_.at_word("note")) return text(entry().note);
     if (p_.at_word("listed")) return text(entry().listed);
+    if (p_.at_word("form")) return form();
     HandItemAst item;
     const Token first = p_.peek();
     parse(item);
@@ -98,6 +99,15 @@ class HandParser {
     const Token keyword = p_.take();
     const std::string said = p_.string(keyword.text);
     target += (target.empty() ? "" : " ") + said;
+  }
+
+  // "form" ( "global" | "local" | "euler" )
+  void form() {
+    p_.take();
+    const Word word = p_.name("global, local or euler");
+    entry().form = word.text;
+    if (!p_.failed() && word.text != "global" && word.text != "local" && word.text != "euler")
+      p_.fail(word.where, "a form is global, local or euler, not " + quote(word.text));
   }
 
   void quantity(HandItemAst& item) {
@@ -199,7 +209,7 @@ class HandParser {
     const std::string near = t.kind == TokenKind::name ? nearest(t.text, words) : "";
     p_.fail(t.where, "no item of an entry starts with " + quote(t.text),
             near.empty() ? "items are C, Cdot, J, K, b, lambda = ...; let, free, rows, assume, "
-                           "update, bound, claim, note, source, listed"
+                           "update, bound, claim, form, note, source, listed"
                          : "did you mean " + quote(near) + "?");
   }
 

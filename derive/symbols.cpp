@@ -50,6 +50,13 @@ Expr inverse_mass(Pool& pool, int body) {
 Expr inverse_inertia(Pool& pool, int body) {
   return pool.symbol(named("inv_I_", body), Role::inverse_inertia, body);
 }
+std::vector<Expr> body_euler_parameters(Pool& pool, int body) {
+  std::vector<Expr> e;
+  for (const char* k : {"0", "1", "2", "3"}) {
+    e.push_back(pool.symbol(body_name(body) + ".e" + k, Role::given, body));
+  }
+  return e;
+}
 Expr time_symbol(Pool& pool) { return pool.symbol("time", Role::time); }
 Expr pi_symbol(Pool& pool) { return pool.symbol("pi", Role::constant); }
 

@@ -20,6 +20,8 @@ Expr body_spin(Pool& pool, int body);  // a vector in space
 std::vector<Expr> body_axes(Pool& pool, int body);  // two or three; the world's for -1
 Expr inverse_mass(Pool& pool, int body);
 Expr inverse_inertia(Pool& pool, int body);
+// The four Euler parameters of a body in space.
+std::vector<Expr> body_euler_parameters(Pool& pool, int body);
 Expr time_symbol(Pool& pool);
 Expr pi_symbol(Pool& pool);
 
