@@ -142,7 +142,8 @@ std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::s
     ScalarRow only;
     only.Cdot = time_derivative(row.C, joint_, {immovable_, leaf});
     only.J = isolate_velocities(only.Cdot, joint_);
-    sources.push_back({leaf, sign * (entry == whole_row ? only.Cdot : columns_in_form(only.J)[entry])});
+    sources.push_back(
+        {leaf, sign * (entry == whole_row ? only.Cdot : columns_in_form(only.J)[entry])});
   }
   return sources;
 }
@@ -263,7 +264,8 @@ std::vector<EntryJudge::Group> EntryJudge::groups_of_columns(const Part& part, c
   const bool blocks = item.what == "J" && !claim && joint_.dimension == 3;
   for (int c = 0; c < columns;) {
     int count = 1;
-    while (blocks && c + count < columns && block_of(c + count, width()) == block_of(c, width())) ++count;
+    while (blocks && c + count < columns && block_of(c + count, width()) == block_of(c, width()))
+      ++count;
     const std::string name = place_of(part, item, 0, c).column;
     groups.push_back({c, count, count == 1 ? name : name.substr(0, name.find('.'))});
     c += count;

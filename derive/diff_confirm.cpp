@@ -100,8 +100,10 @@ Motion Confirm::in_form(const Motion& gradient, const Sample& sample) const {
     if (form_ == Form::local) {
       for (const Triple<double>& axis : axes_of(e)) columns.push_back(inner_product(w, axis));
     } else {
-      for (const Triple<double>& g : {Triple<double>{-e[1], -e[2], -e[3]}, {e[0], e[3], -e[2]},
-                                      {-e[3], e[0], e[1]}, {e[2], -e[1], e[0]}}) {
+      for (const Triple<double>& g : {Triple<double>{-e[1], -e[2], -e[3]},
+                                      {e[0], e[3], -e[2]},
+                                      {-e[3], e[0], e[1]},
+                                      {e[2], -e[1], e[0]}}) {
         columns.push_back(2 * inner_product(w, g));
       }
     }
@@ -170,8 +172,9 @@ std::string Confirm::against(const Measure& measured, Expr generated, Expr publi
 
 std::string Confirm::entry_of_J(const ScalarRow& row, double sign, std::size_t column,
                                 Expr generated, Expr published) const {
-  return against([&](const Sample& sample) { return sign * in_form(gradient(row, sample), sample)[column]; },
-                 generated, published);
+  return against(
+      [&](const Sample& sample) { return sign * in_form(gradient(row, sample), sample)[column]; },
+      generated, published);
 }
 
 std::string Confirm::entry_of_K(const ScalarRow& row, const ScalarRow& other, double sign,

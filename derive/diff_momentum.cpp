@@ -7,8 +7,8 @@
 
 namespace cdot::derive {
 
-// What multiplies the column of each rate of turning in J_w: nothing in the plane, axes in space; J_w = 1/2 J_e G^T for
-// those of Euler parameters.
+// What multiplies the column of each rate of turning in J_w: nothing in the plane, axes in space;
+// J_w = 1/2 J_e G^T for those of Euler parameters.
 std::vector<Expr> EntryJudge::turns_of_columns(int body) const {
   if (joint_.dimension == 2) return {pool_.number(1)};
   if (form_ == Form::global) return world_axes(pool_);
@@ -22,8 +22,10 @@ std::vector<Expr> EntryJudge::turns_of_columns(int body) const {
     const std::vector<Expr> columns = columns_in(form_, row, joint_, body);
     for (std::size_t m = 0; m < 4; ++m) {
       const Expr turn = Rational(1, 4) * (columns[3 + m] * axes[i]);
-      if (i == 0) turns.push_back(turn);
-      else turns[m] = turns[m] + turn;
+      if (i == 0)
+        turns.push_back(turn);
+      else
+        turns[m] = turns[m] + turn;
     }
   }
   return turns;

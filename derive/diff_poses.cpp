@@ -83,7 +83,8 @@ class Variables {
 // Masses, and symbols that an entry declares free.
 bool is_positive(const Sample& sample) {
   return std::none_of(sample.leaves.begin(), sample.leaves.end(), [&](Expr leaf) {
-    const bool positive = (leaf->role == Role::given && leaf->body < 0) || leaf->role == Role::inverse_mass;
+    const bool positive =
+        (leaf->role == Role::given && leaf->body < 0) || leaf->role == Role::inverse_mass;
     const auto found = sample.scalars.find(leaf->symbol);
     return positive && found != sample.scalars.end() && found->second <= 0;
   });

@@ -266,7 +266,8 @@ std::string brief_text(Expr e, const Joint& joint) {
 std::vector<Expr> free_symbols(Expr e) {
   std::vector<Expr> free;
   for (const Expr node : topological(std::span(&e, 1))) {
-    if (node->kind == Kind::symbol && node->role == Role::given && node->body < 0) free.push_back(node);
+    if (node->kind == Kind::symbol && node->role == Role::given && node->body < 0)
+      free.push_back(node);
   }
   return free;
 }
