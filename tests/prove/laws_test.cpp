@@ -1,4 +1,5 @@
-// The laws hold for every spec of the catalogue, and each of them fails for a derivation that breaks it.
+// Each law fails for a derivation that breaks it; and J, in plain numbers, is the slope of C for every spec of the
+// catalogue. That the laws hold for all of it is in catalogue_test.cpp.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,25 +20,6 @@ Joint joint_of(const std::string& name) {
   const ReadResult read = folder.read(folder.find(name));
   EXPECT_TRUE(read.joint) << render(*read.file, read.diagnostics);
   return *read.joint;
-}
-
-TEST(Laws, HoldForEverySpecAndCoordinate) {
-  const SpecsFolder folder(specs);
-  int blocks = 0;
-  for (const std::filesystem::path& spec : folder.all()) {
-    const Joint joint = joint_of(spec.stem().string());
-    std::vector<Block> all = {derive_rows(joint)};
-    for (const Coordinate& c : joint.coordinates) all.push_back(derive_coordinate(joint, c));
-    for (const Block& block : all) {
-      ++blocks;
-      for (const Law& law : prove(joint, block).laws) {
-        EXPECT_TRUE(law.verdict == Verdict::holds || law.verdict == Verdict::does_not_apply)
-            << joint.name << " " << block.name << ": " << name_of(law.id) << ": " << law.text;
-      }
-    }
-  }
-  std::printf("%d row blocks obey %d laws each\n", blocks, number_of_laws);
-  EXPECT_GE(blocks, 23);
 }
 
 struct Broken {
@@ -97,7 +79,7 @@ void expect_finite_differences(const Joint& joint, const ScalarRow& row,
 TEST(Laws, JacobianEqualsFiniteDifferences) {
   const SpecsFolder folder(specs);
   for (const std::filesystem::path& spec : folder.all()) {
-    const Joint joint = joint_of(spec.stem().string());
+    const Joint joint = joint_of(spec.string());
     const int dimension = joint.pool->dimension();
     for (const ScalarRow& row : derive_rows(joint).rows) {
       std::vector<Expr> all = {row.C};
