@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 
+#include "derive/check_mass_words.hpp"
 #include "derive/check_minors.hpp"
 #include "derive/check_parts.hpp"
 #include "derive/prove_words.hpp"
@@ -266,41 +267,12 @@ class MassCheck {
                        [](const Coefficient* c) { return c->never_zero; });
   }
 
-  // "where ratio = 0 and cross(ra, n) = 0". What is zero where something else in the list is goes
-  // without saying.
   static std::string all_zero(const Choice& choice) {
-    if (choice.empty()) return "at every pose";
-    std::vector<std::set<std::string>> alternatives;
-    std::size_t without_words = 0;
-    for (const Coefficient* c : choice) {
-      if (c->factors.empty()) ++without_words;
-      if (!c->factors.empty()) alternatives.emplace_back(c->factors.begin(), c->factors.end());
-    }
-    if (alternatives.empty()) return "at some poses, perhaps: no words were found for where";
-    std::sort(alternatives.begin(), alternatives.end());
-    alternatives.erase(std::unique(alternatives.begin(), alternatives.end()), alternatives.end());
-    std::vector<std::string> conditions;
-    for (const auto& any : alternatives) {
-      const bool implied =
-          std::any_of(alternatives.begin(), alternatives.end(), [&](const auto& other) {
-            return other != any &&
-                   std::includes(any.begin(), any.end(), other.begin(), other.end());
-          });
-      if (implied) continue;
-      std::vector<std::string> zeros;
-      for (const std::string& factor : any) zeros.push_back(factor + " = 0");
-      const std::string condition = listed(zeros, " or ");
-      conditions.push_back(zeros.size() > 1 && choice.size() > 1 ? "(" + condition + ")"
-                                                                 : condition);
-    }
-    return (without_words > 0 ? "only where " : "where ") + listed(conditions);
+    std::vector<std::vector<std::string>> factors;
+    for (const Coefficient* c : choice) factors.push_back(c->factors);
+    return where_all_vanish(factors);
   }
 
-  // Who has to be able to move and to turn.
-  struct Way {
-    std::set<std::string> move, turn;
-    friend bool operator==(const Way&, const Way&) = default;
-  };
   Way way_of(const Monomial& monomial) const {
     Way way;
     for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
@@ -308,34 +280,6 @@ class MassCheck {
       if (monomial[2 * b + 1] > 0) way.turn.insert(joint_.bodies[b]);
     }
     return way;
-  }
-
-  static std::string who(const std::set<std::string>& bodies, std::string_view last) {
-    return listed(std::vector<std::string>(bodies.begin(), bodies.end()), last);
-  }
-
-  // "a or b can move, and a or b can turn", if the ways are just that; else one after the other.
-  static std::string in_words(const std::vector<Way>& ways) {
-    Way any;
-    bool single = true;
-    for (const Way& way : ways) {
-      single = single && way.move.size() <= 1 && way.turn.size() <= 1;
-      any.move.insert(way.move.begin(), way.move.end());
-      any.turn.insert(way.turn.begin(), way.turn.end());
-    }
-    const std::size_t all =
-        std::max<std::size_t>(1, any.move.size()) * std::max<std::size_t>(1, any.turn.size());
-    if (single && ways.size() == all) return abilities(any, " or ", ", and ");
-    std::vector<std::string> parts;
-    for (const Way& way : ways) parts.push_back(abilities(way, " and ", " and "));
-    return listed(parts, ", or ");
-  }
-  static std::string abilities(const Way& way, std::string_view last, std::string_view between) {
-    std::string s;
-    if (!way.move.empty()) s += who(way.move, last) + " can move";
-    if (!way.move.empty() && !way.turn.empty()) s += between;
-    if (!way.turn.empty()) s += who(way.turn, last) + " can turn";
-    return s;
   }
 
   static bool needs_no_more(const Monomial& a, const Monomial& b) {
