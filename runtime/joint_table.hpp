@@ -75,9 +75,9 @@ JointEntry<S> joint_entry() {
 }
 
 // In the order of joint_types(). Defined for a space by one file that includes the generated
-// registry.
+// registry; add_joints.hpp adds to it.
 template <class S>
-const std::vector<JointEntry<S>>& joint_entries();
+std::vector<JointEntry<S>>& joint_entries();
 
 template <class S, class... Joints>
 std::vector<JointEntry<S>> make_joint_entries(std::type_identity<std::tuple<Joints...>>) {

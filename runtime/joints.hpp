@@ -30,6 +30,9 @@ struct JointType {
 
 enum class Dimension { planar, spatial };
 
+// For add_joints.hpp, before any World is made. Throws std::logic_error if the name is taken.
+void add_joint_type(Dimension dimension, JointType type);
+
 // Every registered joint of a dimension, in the order of its registry.
 std::span<const JointType> joint_types(Dimension dimension);
 // nullptr if there is none of that name.

@@ -7,8 +7,8 @@
 namespace cdot {
 
 template <>
-const std::vector<JointEntry<Planar<double>>>& joint_entries<Planar<double>>() {
-  static const auto entries =
+std::vector<JointEntry<Planar<double>>>& joint_entries<Planar<double>>() {
+  static auto entries =
       make_joint_entries<Planar<double>>(std::type_identity<planar::Joints>{});
   return entries;
 }

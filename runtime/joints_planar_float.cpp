@@ -7,8 +7,8 @@
 namespace cdot {
 
 template <>
-const std::vector<JointEntry<Planar<float>>>& joint_entries<Planar<float>>() {
-  static const auto entries =
+std::vector<JointEntry<Planar<float>>>& joint_entries<Planar<float>>() {
+  static auto entries =
       make_joint_entries<Planar<float>>(std::type_identity<planar::Joints>{});
   return entries;
 }

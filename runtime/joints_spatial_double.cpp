@@ -7,8 +7,8 @@
 namespace cdot {
 
 template <>
-const std::vector<JointEntry<Spatial<double>>>& joint_entries<Spatial<double>>() {
-  static const auto entries =
+std::vector<JointEntry<Spatial<double>>>& joint_entries<Spatial<double>>() {
+  static auto entries =
       make_joint_entries<Spatial<double>>(std::type_identity<spatial::Joints>{});
   return entries;
 }

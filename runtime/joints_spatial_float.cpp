@@ -7,8 +7,8 @@
 namespace cdot {
 
 template <>
-const std::vector<JointEntry<Spatial<float>>>& joint_entries<Spatial<float>>() {
-  static const auto entries =
+std::vector<JointEntry<Spatial<float>>>& joint_entries<Spatial<float>>() {
+  static auto entries =
       make_joint_entries<Spatial<float>>(std::type_identity<spatial::Joints>{});
   return entries;
 }
