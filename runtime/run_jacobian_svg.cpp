@@ -102,8 +102,9 @@ text, .entry { fill: var(--ink); }
 )";
   svg += fmt::format("<text x=\"{:.0f}\" y=\"30\">K = D M^-1 D^T, {} x {}</text>\n", margin,
                      system.rows, system.rows);
-  svg += fmt::format("<text x=\"{:.0f}\" y=\"30\">joints that share a body, in {} groups that do not</text>\n",
-                     margin + picture + gap + margin, graph.colours);
+  svg += fmt::format(
+      "<text x=\"{:.0f}\" y=\"30\">joints that share a body, in {} groups without</text>\n",
+      margin + picture + gap + margin, graph.colours);
   svg += sparsity(scene, system, graph) + graph_svg(scene, system, graph);
   return svg + "</svg>\n";
 }

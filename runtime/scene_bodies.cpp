@@ -9,8 +9,8 @@
 namespace cdot {
 namespace {
 
-// { rod = length, width = … }, { box = [along, across] } or { disc = radius }; in space { box = [x,
-// y, z] }, { disc = radius, width = … } and { ball = radius } as well
+// { rod = length, width = … }, { box = [along, across] } or { disc = radius }; in space as well
+// { box = [x, y, z] }, { disc = radius, width = … } and { ball = radius }
 Shape read_shape(Entry& body, Dimension dimension) {
   const bool in_space = dimension == Dimension::spatial;
   Shape shape;

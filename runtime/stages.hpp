@@ -33,8 +33,8 @@ void solve_direct(WorldState<S>& world, Island<S>& island);
 template <class S>
 void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
 
-// The inertia tensors at the present poses, w = I^-1 L with them: for whoever moves poses, in a space
-// that has gyroscopes.
+// The inertia tensors at the present poses, w = I^-1 L with them: for whoever moves poses, in a
+// space that has gyroscopes.
 template <class S>
 void turn_inertias(WorldState<S>& world, Island<S>& island);
 template <class S, class F>

@@ -1,5 +1,5 @@
-// The viewer's files as text: viewer_assets.cpp is made of them by CMake. A page's script is the film,
-// then the drawing of the plane or of space, then the player.
+// The viewer's files as text: viewer_assets.cpp is made of them by CMake. A page's script is the
+// film, then the drawing of the plane or of space, then the player.
 #pragma once
 
 #include <string_view>

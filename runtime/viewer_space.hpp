@@ -1,5 +1,5 @@
-// What is drawn of a scene in space, as the data of its page: faces and lines on bodies, links between
-// points, pins, traces and a floor to see the depth by.
+// What is drawn of a scene in space, as the data of its page: faces and lines on bodies, links
+// between points, pins, traces and a floor to see the depth by.
 #pragma once
 
 #include <nlohmann/json.hpp>

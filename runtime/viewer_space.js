@@ -19,8 +19,9 @@ function placeOf([x, y, z, a, b, c, d]) {
   };
 }
 
-const turned = (A, [x, y, z]) =>
-    [A[0] * x + A[1] * y + A[2] * z, A[3] * x + A[4] * y + A[5] * z, A[6] * x + A[7] * y + A[8] * z];
+const turned = (A, [x, y, z]) => [
+  A[0] * x + A[1] * y + A[2] * z, A[3] * x + A[4] * y + A[5] * z, A[6] * x + A[7] * y + A[8] * z
+];
 const placed = (place, p) => turned(place.A, p).map((v, k) => v + place.x[k]);
 
 const numbersAt = (frame, k) => {
@@ -28,9 +29,9 @@ const numbersAt = (frame, k) => {
   return run.poses.slice(first, first + 7);
 };
 const places = run.start.map(placeOf);
-const placeAt = (frame, body) =>
-    body < 0 || !run.moving.includes(body) ? (body < 0 ? fixed : places[body]) :
-                                             placeOf(numbersAt(frame, run.moving.indexOf(body)));
+const placeAt = (frame, body) => run.moving.includes(body) ?
+    placeOf(numbersAt(frame, run.moving.indexOf(body))) :
+    places[body];
 
 // Between two frames the quaternion goes straight, the shorter way, and is normalised.
 function setPlaces(frame, share) {
@@ -73,7 +74,8 @@ function element(k) {
   return pool[k];
 }
 
-const circle = ([x, y], r) => `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${- 2 * r} 0Z`;
+const circle = ([x, y], r) =>
+    `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`;
 const mean = points => points.reduce((sum, p) => sum + p[2], 0) / points.length;
 
 // A face that shows its front: brighter where it looks at the eye.
@@ -122,8 +124,10 @@ function gather() {
 const tracePoints = marks.traces.map(({point: [body, ...p]}) =>
     run.times.map((_, frame) => placed(placeAt(frame, body), p)));
 const traceLines = marks.traces.map(
-    ({colour}) => ['path', 'past'].map(kind => addPolyline(by('paths'), `trace ${kind} ${colour}`, '')));
-const listed = points => points.map(p => project(p).slice(0, 2).map(v => v.toFixed(1)).join(',')).join(' ');
+    ({colour}) =>
+        ['path', 'past'].map(kind => addPolyline(by('paths'), `trace ${kind} ${colour}`, '')));
+const listed = points =>
+    points.map(p => project(p).slice(0, 2).map(v => v.toFixed(1)).join(',')).join(' ');
 
 const drawing = {
   frame: 0,
@@ -153,7 +157,8 @@ const drawing = {
       traceLines[k][1].setAttribute(
           'points', listed(points.slice(Math.max(0, this.frame - run.tail), this.frame + 1)));
     });
-    root.dataset.camera = `${camera.yaw.toFixed(3)} ${camera.pitch.toFixed(3)} ${camera.zoom.toFixed(3)}`;
+    root.dataset.camera =
+        [camera.yaw, camera.pitch, camera.zoom].map(value => value.toFixed(3)).join(' ');
   },
   fit() {
     camera = {...start};
