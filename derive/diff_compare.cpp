@@ -105,9 +105,10 @@ std::string EntryJudge::in_names_of_spec(std::string text) const {
 
 // With the condition that may have been meant.
 Difference EntryJudge::finished(const HandItem& item, Difference difference, Expr hand,
-                                Expr generated) const {
+                                Expr generated) {
   if (difference.kind != "sign" && difference.kind != "wrong body") {
-    const std::string hidden = hidden_assumption(joint_, constraints(), hand, generated, poses());
+    const std::string hidden =
+        hidden_assumption(joint_, poses_on_constraint(), hand, generated, poses());
     if (!hidden.empty()) difference.sentence += fmt::format("; equal only where {}", hidden);
     const bool unsaid = item.kind == HandItem::Kind::claim || hidden == "C = 0";
     if (!hidden.empty() && unsaid) difference.kind = "undeclared assumption";

@@ -159,7 +159,9 @@ void EntryJudge::prepare_poses() {
 }
 
 const Poses& EntryJudge::poses_on_constraint() {
-  if (!on_constraint_) on_constraint_ = poses().aligned().where(constraints());
+  if (on_constraint_) return *on_constraint_;
+  const std::vector<Expr> equations = constraints();
+  on_constraint_ = equations.empty() ? poses().first(0) : poses().aligned().where(equations);
   return *on_constraint_;
 }
 

@@ -75,7 +75,7 @@ class EntryJudge {
                            Expr generated);
   Confirm confirm() const { return {joint_, immovable_, poses(), form_}; }
   std::string in_names_of_spec(std::string text) const;
-  Difference finished(const HandItem& item, Difference difference, Expr hand, Expr generated) const;
+  Difference finished(const HandItem& item, Difference difference, Expr hand, Expr generated);
   void add_plain(const HandItem& item, const Place& place, std::string kind, std::string sentence,
                  std::string confirmed);
 

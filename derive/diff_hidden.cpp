@@ -20,12 +20,14 @@ class Search {
   // Equal there, and not just zero both, as a factor C of both sides would make them.
   bool holds(const std::vector<Expr>& equations) const { return holds(equations, poses_); }
   bool holds(const std::vector<Expr>& equations, const Poses& poses) const {
-    return holds_at_all(equations, poses) &&
-           (!poses.where(equations).equal(generated_, zero_) || poses_.equal(generated_, zero_));
+    // Most candidates fail at the first poses.
+    if (!poses.first(2).where(equations).equal(hand_, generated_)) return false;
+    return equal_and_needed(poses.where(equations));
   }
-  // Nothing stands there, and nothing is needed where C = 0.
-  bool needless(const std::vector<Expr>& equations, const Poses& poses) const {
-    return poses_.equal(hand_, zero_) && holds_at_all(equations, poses);
+  // Where C = 0; there nothing may stand, because nothing is needed.
+  bool holds_on_constraint(const Poses& there) const {
+    if (there.empty() || !there.equal(hand_, generated_)) return false;
+    return poses_.equal(hand_, zero_) || equal_and_needed(there);
   }
 
   // A free symbol that stands for a quantity of the joint.
@@ -97,10 +99,9 @@ class Search {
   }
 
  private:
-  // Most candidates fail at the first poses.
-  bool holds_at_all(const std::vector<Expr>& equations, const Poses& poses) const {
-    return poses.first(2).where(equations).equal(hand_, generated_) &&
-           poses.where(equations).equal(hand_, generated_);
+  bool equal_and_needed(const Poses& there) const {
+    return there.equal(hand_, generated_) &&
+           (!there.equal(generated_, zero_) || poses_.equal(generated_, zero_));
   }
 
   const Joint& joint_;
@@ -111,17 +112,13 @@ class Search {
 
 }  // namespace
 
-std::string hidden_assumption(const Joint& joint, const std::vector<Expr>& constraints, Expr hand,
+std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand,
                               Expr generated, const Poses& poses) {
   const Search search(joint, hand, generated, poses);
   // Where a symbol stands for anything, the two are equal only by chance or if it means something.
   const std::vector<Expr> free = free_symbols(hand);
   if (!free.empty()) return search.meaning_of_symbols(free);
-  const Poses aligned = poses.aligned();
-  if (!constraints.empty() &&
-      (search.holds(constraints, aligned) || search.needless(constraints, aligned))) {
-    return "C = 0";
-  }
+  if (search.holds_on_constraint(on_constraint)) return "C = 0";
   std::string condition = search.of_scalars();
   if (condition.empty()) condition = search.of_orientations();
   if (condition.empty()) condition = search.of_vectors();
