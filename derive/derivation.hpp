@@ -48,7 +48,8 @@ struct Block {
   std::vector<ScalarRow> rows;
   std::vector<std::vector<Expr>> K;  // lower triangle: K[i][j], j <= i
   std::vector<Expr> lambda;          // the multipliers that `stiffness` contains
-  std::vector<std::vector<Expr>> stiffness;  // d(J^T lambda)/dq: square, a row and a column per column of J
+  // d(J^T lambda)/dq: square, a row and a column per column of J; not of a block with an immovable body.
+  std::vector<std::vector<Expr>> stiffness;
 };
 
 // A velocity row that is not linear in the velocities.

@@ -53,7 +53,7 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
 
 Block finished(const Joint& joint, Block block) {
   block.K = effective_mass(joint, block.rows, block.immovable);
-  block.stiffness = geometric_stiffness(joint, block);
+  if (block.immovable < 0) block.stiffness = geometric_stiffness(joint, block);
   return block;
 }
 

@@ -187,7 +187,7 @@ class KernelWriter {
     const bool same_jacobian =
         base != nullptr && jacobian_struct(b, depth) == jacobian_struct(*base, depth);
     if (!same_jacobian) out_ += jacobian_struct(b, depth);
-    for (std::size_t i = 0; i < b.functions.size(); ++i) {
+    for (std::size_t i = 0; i < b.functions.size(); ++i) {  // base has these in the same order first
       const std::string text = function(b, b.functions[i], depth);
       const bool inherited = base != nullptr &&
                              text == function(*base, base->functions[i], depth) &&

@@ -99,7 +99,7 @@ class Algebra final : public Arithmetic<GiNaC::ex> {
   // What one test, and all tests together, may take, in factors of terms that are multiplied. Every
   // test that is given up halves what the next may take: it is likely to be as long.
   static constexpr std::int64_t most_work = 500000, least_work = most_work / 64;
-  static constexpr std::int64_t most_work_in_all = 12 * most_work;
+  static constexpr std::int64_t most_work_in_all = 6 * most_work;
   struct TooLong : std::runtime_error {
     TooLong() : std::runtime_error("too much to multiply out") {}
   };

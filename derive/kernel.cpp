@@ -46,7 +46,7 @@ class BlockPlanner {
       isotropic_ = false;
       add_other_forms();
     }
-    add_from_pose();
+    if (out_.block.immovable < 0) add_from_pose();  // a variant inherits these
     return std::move(out_);
   }
 

@@ -217,6 +217,7 @@ class Prover {
 
   // d(J^T lambda)/dq, J^T lambda being the gradient of lambda . C where there is a C.
   void stiffness() {
+    if (block_.stiffness.empty()) law_.verdict = Verdict::does_not_apply;
     const std::size_t width = columns_per_body(joint_.dimension);
     for (std::size_t row = 0; row < block_.stiffness.size(); ++row) {
       const ex force = generalised_force(row / width, row % width);

@@ -3,7 +3,8 @@
 // A kernel is a struct of static function templates, one struct per joint (`cdot::planar::line`), written by
 // `cdot derive`. A solver sees a *row block*: some rows of C(q, t) over some bodies. Three kinds of struct are row
 // blocks and have the same members: a joint, one of its coordinates (`line::slide`, always one row), and a joint or
-// coordinate with one body immovable (`line::a_immovable`: that body's terms are gone from J, K and the impulse).
+// coordinate with one body immovable (`line::a_immovable`: that body's terms are gone from J, K and the impulse; it has
+// gamma, dC/dt and the stiffness from the block with all bodies movable).
 //
 //   members of a row block B                                                                 shapes
 //   B::bodies, B::rows                                             number of bodies, of rows

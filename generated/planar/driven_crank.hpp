@@ -359,33 +359,6 @@ struct driven_crank::a_immovable : driven_crank {
     D[1][5] = -mb.I * J.rb_x;
     D[2][5] = mb.I;
   }
-
-  // -Jdot v - d/dt(dC/dt): 4 +, 7 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[3]) {
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T g1_1 = vb.w * vb.w;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    g[0] = -g1_1 * rb_x;
-    g[1] = -g1_1 * rb_y;
-    g[2] = T(0);
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 3 +, 6 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    H[5][5] = lambda[0] * rb_x + lambda[1] * rb_y;
-  }
 };
 
 // driven_crank with b immovable: its velocity and inverse mass are zero and gone.
@@ -474,33 +447,6 @@ struct driven_crank::b_immovable : driven_crank {
     D[1][1] = ma.m;
     D[1][2] = ma.I * J.ra_x;
     D[2][2] = -ma.I;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 2 +, 7 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[3]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const T g1_1 = va.w * va.w;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    g[0] = g1_1 * ra_x;
-    g[1] = g1_1 * ra_y;
-    g[2] = T(0);
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 4 +, 6 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    H[2][2] = -lambda[0] * ra_x - lambda[1] * ra_y;
   }
 };
 

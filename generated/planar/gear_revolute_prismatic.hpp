@@ -513,58 +513,6 @@ struct gear_revolute_prismatic::b_immovable : gear_revolute_prismatic {
     D[0][10] = -md_ratio * J.e_y;
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_e;
   }
-
-  // -Jdot v - d/dt(dC/dt): 21 +, 24 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& b = q[1];
-    const Pose<T>& d = q[3];
-    const Velocity<T>& vd = v[3];
-    const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
-    const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_dot_x = vd.w * rd_y - vd.x;
-    const T ub_dot_y = -vd.y - vd.w * rd_x;
-    const T e_x = d.c * p.e_x - d.s * p.e_y;
-    const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T ub_dot_x_e = ub_dot_x * e_y - ub_dot_y * e_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
-    const T qb = ub_x * e_x + ub_y * e_y;
-    const T dot_rd_e = e_x * rd_x + e_y * rd_y;
-    g[0] = -p.ratio * vd.w * (vd.w * (dot_rd_e - qb) - T(2) * ub_dot_x_e);
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 17 +, 18 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[4], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const Pose<T>& d = q[3];
-    const T H10_1 = lambda[0] * p.ratio;
-    const T e_x = d.c * p.e_x - d.s * p.e_y;
-    const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T H10_2 = H10_1 * e_y;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
-    const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
-    const T dot_rd_ub_e = rd_ub_x * e_x + rd_ub_y * e_y;
-    H[9][11] = H10_2;
-    H[10][11] = -H10_1 * e_x;
-    H[11][9] = H10_2;
-    H[11][10] = H[10][11];
-    H[11][11] = -H10_1 * dot_rd_ub_e;
-  }
 };
 
 // gear_revolute_prismatic with c immovable: its velocity and inverse mass are zero and gone.
@@ -649,37 +597,6 @@ struct gear_revolute_prismatic::c_immovable : gear_revolute_prismatic {
     D[0][9] = -D1_1 * J.e_x;
     D[0][10] = -D1_1 * J.e_y;
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_e;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 26 +, 32 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const Pose<T>& d = q[3];
-    const Velocity<T>& vd = v[3];
-    const T e_x = d.c * p.e_x - d.s * p.e_y;
-    const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T g1_1 = vb.w * vb.w;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T g1_2 = vd.w * vd.w;
-    const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
-    const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_dot_dot_x = g1_2 * rd_x;
-    const T ub_dot_dot_x_2 = ub_dot_dot_x - g1_1 * rb_x;
-    const T ub_dot_dot_y = g1_2 * rd_y;
-    const T ub_dot_dot_y_2 = ub_dot_dot_y - g1_1 * rb_y;
-    const T dot_ub_dot_dot_e = e_x * ub_dot_dot_x_2 + e_y * ub_dot_dot_y_2;
-    const T ub_dot_x = vb.x - vd.x - vb.w * rb_y + vd.w * rd_y;
-    const T ub_dot_y = vb.y - vd.y + vb.w * rb_x - vd.w * rd_x;
-    const T ub_dot_x_e = ub_dot_x * e_y - ub_dot_y * e_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
-    const T qb = ub_x * e_x + ub_y * e_y;
-    const T qb_dot_dot = dot_ub_dot_dot_e - vd.w * (T(2) * ub_dot_x_e + vd.w * qb);
-    g[0] = -p.ratio * qb_dot_dot;
   }
 };
 
@@ -783,38 +700,6 @@ struct gear_revolute_prismatic::d_immovable : gear_revolute_prismatic {
     D[0][4] = mb_ratio * J.e_y;
     D[0][5] = mb.I * J.ratio * J.rb_x_e;
     D[0][8] = -mc.I;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 5 +, 13 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const Pose<T>& d = q[3];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T e_x = d.c * p.e_x - d.s * p.e_y;
-    const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T dot_rb_e = rb_x * e_x + rb_y * e_y;
-    g[0] = vb.w * vb.w * p.ratio * dot_rb_e;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 6 +, 12 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[4], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const Pose<T>& d = q[3];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T e_x = d.c * p.e_x - d.s * p.e_y;
-    const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T dot_rb_e = rb_x * e_x + rb_y * e_y;
-    H[5][5] = -lambda[0] * p.ratio * dot_rb_e;
   }
 };
 

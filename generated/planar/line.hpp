@@ -570,57 +570,6 @@ struct line::a_immovable : line {
     D[0][4] = -mb.m * J.t_y;
     D[0][5] = -mb.I * J.rb_u_x_t;
   }
-
-  // -Jdot v - d/dt(dC/dt): 20 +, 23 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_x = vb.w * rb_y - vb.x;
-    const T u_dot_y = -vb.y - vb.w * rb_x;
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T u_dot_x_t = u_dot_x * t_y - u_dot_y * t_x;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T dot_u_t = u_x * t_x + u_y * t_y;
-    const T dot_rb_t = rb_x * t_x + rb_y * t_y;
-    g[0] = vb.w * (T(2) * u_dot_x_t + vb.w * (dot_u_t - dot_rb_t));
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 17 +, 17 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T H4_1 = lambda[0] * t_y;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
-    H[3][5] = H4_1;
-    H[4][5] = -lambda[0] * t_x;
-    H[5][3] = H4_1;
-    H[5][4] = H[4][5];
-    H[5][5] = -lambda[0] * dot_rb_u_t;
-  }
 };
 
 // line with b immovable: its velocity and inverse mass are zero and gone.
@@ -700,38 +649,6 @@ struct line::b_immovable : line {
     D[0][0] = ma.m * J.t_x;
     D[0][1] = ma.m * J.t_y;
     D[0][2] = ma.I * J.ra_x_t;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 5 +, 12 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T dot_ra_t = ra_x * t_x + ra_y * t_y;
-    g[0] = va.w * va.w * dot_ra_t;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 6 +, 11 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T dot_ra_t = ra_x * t_x + ra_y * t_y;
-    H[2][2] = -lambda[0] * dot_ra_t;
   }
 };
 
@@ -815,56 +732,6 @@ struct line::slide::a_immovable : line::slide {
     D[0][4] = mb.m * J.t_x;
     D[0][5] = mb.I * J.dot_rb_u_t;
   }
-
-  // -Jdot v - d/dt(dC/dt): 20 +, 23 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_x = vb.w * rb_y - vb.x;
-    const T u_dot_y = -vb.y - vb.w * rb_x;
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T dot_u_dot_t = u_dot_x * t_x + u_dot_y * t_y;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T u_x_t = u_x * t_y - u_y * t_x;
-    const T rb_x_t = rb_x * t_y - rb_y * t_x;
-    g[0] = vb.w * (vb.w * (u_x_t - rb_x_t) - T(2) * dot_u_dot_t);
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 18 +, 17 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
-    const T rb_u_x_t = rb_u_x * t_y - rb_u_y * t_x;
-    H[3][5] = -lambda[0] * t_x;
-    H[4][5] = -lambda[0] * t_y;
-    H[5][3] = H[3][5];
-    H[5][4] = H[4][5];
-    H[5][5] = -lambda[0] * rb_u_x_t;
-  }
 };
 
 // line::slide with b immovable: its velocity and inverse mass are zero and gone.
@@ -944,38 +811,6 @@ struct line::slide::b_immovable : line::slide {
     D[0][0] = ma.m * J.t_y;
     D[0][1] = -ma.m * J.t_x;
     D[0][2] = -ma.I * J.dot_ra_t;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 5 +, 12 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T ra_x_t = ra_x * t_y - ra_y * t_x;
-    g[0] = va.w * va.w * ra_x_t;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 6 +, 11 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T ra_x_t = ra_x * t_y - ra_y * t_x;
-    H[2][2] = -lambda[0] * ra_x_t;
   }
 };
 

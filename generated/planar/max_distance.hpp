@@ -377,68 +377,6 @@ struct max_distance::a_immovable : max_distance {
     D[0][4] = mb.m * J.n_y;
     D[0][5] = mb.I * J.rb_x_n;
   }
-
-  // -Jdot v - d/dt(dC/dt): 17 +, 22 *, 1 /, 1 sqrt, 3 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T u_len = sqrt(u_x * u_x + u_y * u_y);
-    const T inv_u_len = inverse(u_len);
-    const T n_x = select(u_len > smallest<T>(), u_x * inv_u_len, T(1));
-    const T n_y = select(u_len > smallest<T>(), u_y * inv_u_len, T(0));
-    const T dot_rb_n = rb_x * n_x + rb_y * n_y;
-    const T u_dot_x = vb.w * rb_y - vb.x;
-    const T u_dot_y = -vb.y - vb.w * rb_x;
-    const T u_dot_x_n = u_dot_x * n_y - u_dot_y * n_x;
-    g[0] = vb.w * vb.w * dot_rb_n + u_dot_x_n * u_dot_x_n * inv_u_len;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 17 +, 24 *, 1 /, 1 sqrt, 3 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T u_len = sqrt(u_x * u_x + u_y * u_y);
-    const T inv_u_len = inverse(u_len);
-    const T n_x = select(u_len > smallest<T>(), u_x * inv_u_len, T(1));
-    const T n_y = select(u_len > smallest<T>(), u_y * inv_u_len, T(0));
-    const T H4_1 = lambda[0] * inv_u_len;
-    const T H4_2 = n_y * H4_1;
-    const T H4_1_2 = H4_2 * n_x;
-    const T dot_rb_n = rb_x * n_x + rb_y * n_y;
-    const T H4_1_3 = H4_2 * dot_rb_n;
-    const T H5_1 = H4_1 * n_x;
-    H[3][3] = -H4_2 * n_y;
-    H[3][4] = H4_1_2;
-    H[3][5] = H4_1_3;
-    H[4][3] = H4_1_2;
-    H[4][4] = -H5_1 * n_x;
-    H[4][5] = -H5_1 * dot_rb_n;
-    H[5][3] = H4_1_3;
-    H[5][4] = H[4][5];
-    H[5][5] = dot_rb_n * (-lambda[0] - H4_1 * dot_rb_n);
-  }
 };
 
 // max_distance with b immovable: its velocity and inverse mass are zero and gone.
@@ -521,68 +459,6 @@ struct max_distance::b_immovable : max_distance {
     D[0][0] = -ma.m * J.n_x;
     D[0][1] = -ma.m * J.n_y;
     D[0][2] = -ma.I * J.ra_x_n;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 16 +, 22 *, 1 /, 1 sqrt, 3 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T u_len = sqrt(u_x * u_x + u_y * u_y);
-    const T inv_u_len = inverse(u_len);
-    const T n_x = select(u_len > smallest<T>(), u_x * inv_u_len, T(1));
-    const T n_y = select(u_len > smallest<T>(), u_y * inv_u_len, T(0));
-    const T dot_ra_n = ra_x * n_x + ra_y * n_y;
-    const T u_dot_x = va.x - va.w * ra_y;
-    const T u_dot_y = va.y + va.w * ra_x;
-    const T u_dot_x_n = u_dot_x * n_y - u_dot_y * n_x;
-    g[0] = u_dot_x_n * u_dot_x_n * inv_u_len - va.w * va.w * dot_ra_n;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 16 +, 24 *, 1 /, 1 sqrt, 3 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T u_len = sqrt(u_x * u_x + u_y * u_y);
-    const T inv_u_len = inverse(u_len);
-    const T n_x = select(u_len > smallest<T>(), u_x * inv_u_len, T(1));
-    const T n_y = select(u_len > smallest<T>(), u_y * inv_u_len, T(0));
-    const T H1_1 = lambda[0] * inv_u_len;
-    const T H1_2 = n_y * H1_1;
-    const T H1_1_2 = H1_2 * n_x;
-    const T dot_ra_n = ra_x * n_x + ra_y * n_y;
-    const T H1_1_3 = H1_2 * dot_ra_n;
-    const T H2_1 = H1_1 * n_x;
-    H[0][0] = -H1_2 * n_y;
-    H[0][1] = H1_1_2;
-    H[0][2] = H1_1_3;
-    H[1][0] = H1_1_2;
-    H[1][1] = -H2_1 * n_x;
-    H[1][2] = -H2_1 * dot_ra_n;
-    H[2][0] = H1_1_3;
-    H[2][1] = H[1][2];
-    H[2][2] = dot_ra_n * (lambda[0] - H1_1 * dot_ra_n);
   }
 };
 

@@ -412,64 +412,6 @@ struct pulley::a_immovable : pulley {
     D[0][4] = -mb_ratio * J.nb_y;
     D[0][5] = -mb.I * J.ratio * J.rb_x_nb;
   }
-
-  // -Jdot v - d/dt(dC/dt): 12 +, 19 *, 1 /, 1 sqrt, 3 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    using std::sqrt;
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T ub_x = b.x - p.gb_x + rb_x;
-    const T ub_y = b.y - p.gb_y + rb_y;
-    const T lb = sqrt(ub_x * ub_x + ub_y * ub_y);
-    const T inv_lb = inverse(lb);
-    const T nb_x = select(lb > smallest<T>(), ub_x * inv_lb, T(1));
-    const T nb_y = select(lb > smallest<T>(), ub_y * inv_lb, T(0));
-    const T dot_rb_nb = rb_x * nb_x + rb_y * nb_y;
-    const T ub_dot_x = vb.x - vb.w * rb_y;
-    const T ub_dot_y = vb.y + vb.w * rb_x;
-    const T ub_dot_x_nb = ub_dot_x * nb_y - ub_dot_y * nb_x;
-    const T lb_dot_dot = ub_dot_x_nb * ub_dot_x_nb * inv_lb - vb.w * vb.w * dot_rb_nb;
-    g[0] = p.ratio * lb_dot_dot;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 12 +, 21 *, 1 /, 1 sqrt, 3 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    using std::sqrt;
-    const Pose<T>& b = q[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T ub_x = b.x - p.gb_x + rb_x;
-    const T ub_y = b.y - p.gb_y + rb_y;
-    const T lb = sqrt(ub_x * ub_x + ub_y * ub_y);
-    const T inv_lb = inverse(lb);
-    const T nb_x = select(lb > smallest<T>(), ub_x * inv_lb, T(1));
-    const T nb_y = select(lb > smallest<T>(), ub_y * inv_lb, T(0));
-    const T H4_1 = lambda[0] * p.ratio;
-    const T H4_2 = inv_lb * H4_1;
-    const T H4_3 = nb_y * H4_2;
-    const T H4_1_2 = H4_3 * nb_x;
-    const T dot_rb_nb = rb_x * nb_x + rb_y * nb_y;
-    const T H4_1_3 = H4_3 * dot_rb_nb;
-    const T H5_1 = H4_2 * nb_x;
-    H[3][3] = -H4_3 * nb_y;
-    H[3][4] = H4_1_2;
-    H[3][5] = H4_1_3;
-    H[4][3] = H4_1_2;
-    H[4][4] = -H5_1 * nb_x;
-    H[4][5] = -H5_1 * dot_rb_nb;
-    H[5][3] = H4_1_3;
-    H[5][4] = H[4][5];
-    H[5][5] = dot_rb_nb * (H4_1 - H4_2 * dot_rb_nb);
-  }
 };
 
 // pulley with b immovable: its velocity and inverse mass are zero and gone.
@@ -555,62 +497,6 @@ struct pulley::b_immovable : pulley {
     D[0][0] = -ma.m * J.na_x;
     D[0][1] = -ma.m * J.na_y;
     D[0][2] = -ma.I * J.ra_x_na;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 12 +, 18 *, 1 /, 1 sqrt, 3 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T ua_x = a.x - p.ga_x + ra_x;
-    const T ua_y = a.y - p.ga_y + ra_y;
-    const T la = sqrt(ua_x * ua_x + ua_y * ua_y);
-    const T inv_la = inverse(la);
-    const T na_x = select(la > smallest<T>(), ua_x * inv_la, T(1));
-    const T na_y = select(la > smallest<T>(), ua_y * inv_la, T(0));
-    const T dot_ra_na = ra_x * na_x + ra_y * na_y;
-    const T ua_dot_x = va.x - va.w * ra_y;
-    const T ua_dot_y = va.y + va.w * ra_x;
-    const T ua_dot_x_na = ua_dot_x * na_y - ua_dot_y * na_x;
-    g[0] = ua_dot_x_na * ua_dot_x_na * inv_la - va.w * va.w * dot_ra_na;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 12 +, 20 *, 1 /, 1 sqrt, 3 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T ua_x = a.x - p.ga_x + ra_x;
-    const T ua_y = a.y - p.ga_y + ra_y;
-    const T la = sqrt(ua_x * ua_x + ua_y * ua_y);
-    const T inv_la = inverse(la);
-    const T na_x = select(la > smallest<T>(), ua_x * inv_la, T(1));
-    const T na_y = select(la > smallest<T>(), ua_y * inv_la, T(0));
-    const T H1_1 = lambda[0] * inv_la;
-    const T H1_2 = na_y * H1_1;
-    const T H1_1_2 = H1_2 * na_x;
-    const T dot_ra_na = ra_x * na_x + ra_y * na_y;
-    const T H1_1_3 = H1_2 * dot_ra_na;
-    const T H2_1 = H1_1 * na_x;
-    H[0][0] = -H1_2 * na_y;
-    H[0][1] = H1_1_2;
-    H[0][2] = H1_1_3;
-    H[1][0] = H1_1_2;
-    H[1][1] = -H2_1 * na_x;
-    H[1][2] = -H2_1 * dot_ra_na;
-    H[2][0] = H1_1_3;
-    H[2][1] = H[1][2];
-    H[2][2] = dot_ra_na * (lambda[0] - H1_1 * dot_ra_na);
   }
 };
 

@@ -506,22 +506,6 @@ struct rack_and_pinion::b_immovable : rack_and_pinion {
     const InverseMass<T>& ma = m[0];
     D[0][2] = -ma.I * J.radius;
   }
-
-  // -Jdot v - d/dt(dC/dt): nothing
-  template <class T>
-  static void gamma(const Pose<T> (&)[2], const Velocity<T> (&)[2], const Parameters<T>&, T,
-      T (&g)[1]) {
-    g[0] = T(0);
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: nothing
-  template <class T>
-  static void stiffness(const Pose<T> (&)[2], const Parameters<T>&, T, const T (&)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-  }
 };
 
 // rack_and_pinion::slide with a immovable: its velocity and inverse mass are zero and gone.

@@ -598,60 +598,6 @@ struct rolling::a_immovable : rolling {
     D[1][4] = -mb.m * J.e_y;
     D[1][5] = mb.I * J.wb_2;
   }
-
-  // -Jdot v - d/dt(dC/dt): 23 +, 28 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[2]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_x = vb.w * rb_y - vb.x;
-    const T u_dot_y = -vb.y - vb.w * rb_x;
-    const T n_x = b.c * p.n_x - b.s * p.n_y;
-    const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T u_dot_x_n = u_dot_x * n_y - u_dot_y * n_x;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
-    const T dot_u_n = u_x * n_x + u_y * n_y;
-    const T s_dot = u_dot_x_n + vb.w * dot_u_n;
-    const T dot_rb_n = n_x * rb_x + n_y * rb_y;
-    const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y;
-    const T s = u_x * n_y - u_y * n_x;
-    const T rb_x_n = n_y * rb_x - n_x * rb_y;
-    g[0] = vb.w * (s_dot + u_dot_x_n - vb.w * dot_rb_n);
-    g[1] = -vb.w * (T(2) * dot_u_dot_n + vb.w * (rb_x_n - s));
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 17 +, 18 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[2],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T n_x = b.c * p.n_x - b.s * p.n_y;
-    const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T H4_1 = lambda[0] * n_y - lambda[1] * n_x;
-    const T H5_1 = -lambda[0] * n_x - lambda[1] * n_y;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
-    const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
-    H[3][5] = H4_1;
-    H[4][5] = H5_1;
-    H[5][3] = H4_1;
-    H[5][4] = H5_1;
-    H[5][5] = -lambda[0] * dot_rb_u_n - lambda[1] * rb_u_x_n;
-  }
 };
 
 // rolling with b immovable: its velocity and inverse mass are zero and gone.
@@ -757,23 +703,6 @@ struct rolling::b_immovable : rolling {
     D[1][1] = -ma_n_x;
     D[1][2] = ma.I * J.radius;
   }
-
-  // -Jdot v - d/dt(dC/dt): nothing
-  template <class T>
-  static void gamma(const Pose<T> (&)[2], const Velocity<T> (&)[2], const Parameters<T>&, T,
-      T (&g)[2]) {
-    g[0] = T(0);
-    g[1] = T(0);
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: nothing
-  template <class T>
-  static void stiffness(const Pose<T> (&)[2], const Parameters<T>&, T, const T (&)[2],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-  }
 };
 
 // rolling::slide with a immovable: its velocity and inverse mass are zero and gone.
@@ -854,52 +783,6 @@ struct rolling::slide::a_immovable : rolling::slide {
     D[0][4] = -mb.m * J.e_y;
     D[0][5] = mb.I * J.dot_rb_u_n;
   }
-
-  // -Jdot v - d/dt(dC/dt): 17 +, 19 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_x = vb.w * rb_y - vb.x;
-    const T u_dot_y = -vb.y - vb.w * rb_x;
-    const T n_x = b.c * p.n_x - b.s * p.n_y;
-    const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
-    const T s = u_x * n_y - u_y * n_x;
-    const T rb_x_n = n_y * rb_x - n_x * rb_y;
-    g[0] = -vb.w * (T(2) * dot_u_dot_n + vb.w * (rb_x_n - s));
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 13 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T n_x = b.c * p.n_x - b.s * p.n_y;
-    const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
-    const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
-    H[3][5] = -lambda[0] * n_x;
-    H[4][5] = -lambda[0] * n_y;
-    H[5][3] = H[3][5];
-    H[5][4] = H[4][5];
-    H[5][5] = -lambda[0] * rb_u_x_n;
-  }
 };
 
 // rolling::slide with b immovable: its velocity and inverse mass are zero and gone.
@@ -973,22 +856,6 @@ struct rolling::slide::b_immovable : rolling::slide {
     const InverseMass<T>& ma = m[0];
     D[0][0] = ma.m * J.n_y;
     D[0][1] = -ma.m * J.n_x;
-  }
-
-  // -Jdot v - d/dt(dC/dt): nothing
-  template <class T>
-  static void gamma(const Pose<T> (&)[2], const Velocity<T> (&)[2], const Parameters<T>&, T,
-      T (&g)[1]) {
-    g[0] = T(0);
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: nothing
-  template <class T>
-  static void stiffness(const Pose<T> (&)[2], const Parameters<T>&, T, const T (&)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
   }
 };
 

@@ -642,90 +642,6 @@ struct sine_track::a_immovable : sine_track {
     D[0][4] = mb.m * J.vb_y;
     D[0][5] = mb.I * J.wb;
   }
-
-  // -Jdot v - d/dt(dC/dt): 28 +, 39 *, 2 call
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    using std::cos;
-    using std::sin;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_x = vb.w * rb_y - vb.x;
-    const T u_dot_y = -vb.y - vb.w * rb_x;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T dot_u_dot_f_x = u_dot_x * f_x_x + u_dot_y * f_x_y;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
-    const T s_x_dot = dot_u_dot_f_x - vb.w * u_x_f_x;
-    const T rb_x_f_x = f_x_y * rb_x - f_x_x * rb_y;
-    const T u_dot_x_f_x = u_dot_x * f_x_y - u_dot_y * f_x_x;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
-    const T dot_rb_f_x = f_x_x * rb_x + f_x_y * rb_y;
-    const T g1_1 = p.k * s_x;
-    g[0] = vb.w * (s_x_dot + dot_u_dot_f_x + vb.w * rb_x_f_x) + p.amplitude * p.k *
-        (vb.w * (vb.w * (dot_rb_f_x - s_x) - T(2) * u_dot_x_f_x) * cos(g1_1) - p.k * s_x_dot *
-        s_x_dot * sin(g1_1));
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 32 +, 51 *, 2 call
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    using std::cos;
-    using std::sin;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
-    const T H4_1 = p.k * s_x;
-    const T H4_2 = p.amplitude * p.k;
-    const T H4_3 = sin(H4_1) * p.k * H4_2;
-    const T H4_4 = lambda[0] * H4_3;
-    const T H4_5 = f_x_x * H4_4;
-    const T H4_1_2 = H4_5 * f_x_y;
-    const T H4_1_3 = H4_2 * cos(H4_1);
-    const T H4_2_2 = lambda[0] * H4_1_3;
-    const T H4_3_2 = H4_2_2 * f_x_y;
-    const T u_x_f_x = u_x * f_x_y - u_y * f_x_x;
-    const T rb_x_f_x = f_x_y * rb_x - f_x_x * rb_y;
-    const T H4_4_2 = T(1) + H4_3 * (u_x_f_x + rb_x_f_x);
-    const T H5_1 = H4_2_2 * f_x_x;
-    const T H6_1 = lambda[0] * H4_4_2;
-    const T H6_2 = H6_1 * f_x_x - H4_3_2;
-    const T H6_1_2 = H5_1 + H6_1 * f_x_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y;
-    H[3][3] = H4_5 * f_x_x;
-    H[3][4] = H4_1_2;
-    H[3][5] = lambda[0] * f_x_x * H4_4_2 - H4_3_2;
-    H[4][3] = H4_1_2;
-    H[4][4] = H4_4 * f_x_y * f_x_y;
-    H[4][5] = H5_1 + lambda[0] * f_x_y * H4_4_2;
-    H[5][3] = H6_2;
-    H[5][4] = H6_1_2;
-    H[5][5] = H6_1 * u_x_f_x + rb_x * H6_1_2 - rb_y * H6_2 + lambda[0] *
-        (H4_1_3 * dot_rb_u_f_x - (H4_1_3 * f_x_y - f_x_x) * rb_y - (f_x_y + H4_1_3 * f_x_x) *
-        rb_x + rb_x_f_x);
-  }
 };
 
 // sine_track with b immovable: its velocity and inverse mass are zero and gone.
@@ -814,77 +730,6 @@ struct sine_track::b_immovable : sine_track {
     D[0][1] = ma.m * J.va_y;
     D[0][2] = ma.I * J.wa;
   }
-
-  // -Jdot v - d/dt(dC/dt): 21 +, 32 *, 2 call
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    using std::cos;
-    using std::sin;
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T g1_1 = p.amplitude * p.k;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T u_dot_x = va.x - va.w * ra_y;
-    const T u_dot_y = va.y + va.w * ra_x;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T s_x_dot = u_dot_x * f_x_x + u_dot_y * f_x_y;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
-    const T g1_2 = p.k * s_x;
-    const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y;
-    const T ra_x_f_x = ra_x * f_x_y - ra_y * f_x_x;
-    g[0] = va.w * va.w * (-g1_1 * dot_ra_f_x * cos(g1_2) - ra_x_f_x) - g1_1 * p.k * s_x_dot *
-        s_x_dot * sin(g1_2);
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 18 +, 36 *, 2 call
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    using std::cos;
-    using std::sin;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
-    const T H1_1 = p.k * s_x;
-    const T H1_2 = p.amplitude * p.k;
-    const T H1_3 = sin(H1_1) * p.k * lambda[0] * H1_2;
-    const T H1_4 = f_x_x * H1_3;
-    const T H1_1_2 = H1_4 * f_x_y;
-    const T ra_x_f_x = ra_x * f_x_y - ra_y * f_x_x;
-    const T H1_1_3 = H1_4 * ra_x_f_x;
-    const T H2_1 = f_x_y * H1_3;
-    const T H2_1_2 = H2_1 * ra_x_f_x;
-    const T H3_1 = H1_2 * cos(H1_1);
-    H[0][0] = H1_4 * f_x_x;
-    H[0][1] = H1_1_2;
-    H[0][2] = H1_1_3;
-    H[1][0] = H1_1_2;
-    H[1][1] = H2_1 * f_x_y;
-    H[1][2] = H2_1_2;
-    H[2][0] = H1_1_3;
-    H[2][1] = H2_1_2;
-    H[2][2] = H1_3 * ra_x_f_x * ra_x_f_x - lambda[0] *
-        ((f_x_x - H3_1 * f_x_y) * ra_y - (f_x_y + H3_1 * f_x_x) * ra_x);
-  }
 };
 
 // sine_track::slide with a immovable: its velocity and inverse mass are zero and gone.
@@ -967,57 +812,6 @@ struct sine_track::slide::a_immovable : sine_track::slide {
     D[0][4] = -mb.m * J.f_x_y;
     D[0][5] = mb.I * J.wb;
   }
-
-  // -Jdot v - d/dt(dC/dt): 20 +, 23 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_x = vb.w * rb_y - vb.x;
-    const T u_dot_y = -vb.y - vb.w * rb_x;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T u_dot_x_f_x = u_dot_x * f_x_y - u_dot_y * f_x_x;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T s_x = u_x * f_x_x + u_y * f_x_y;
-    const T dot_rb_f_x = f_x_x * rb_x + f_x_y * rb_y;
-    g[0] = vb.w * (T(2) * u_dot_x_f_x + vb.w * (s_x - dot_rb_f_x));
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 17 +, 17 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T H4_1 = lambda[0] * f_x_y;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
-    const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y;
-    H[3][5] = H4_1;
-    H[4][5] = -lambda[0] * f_x_x;
-    H[5][3] = H4_1;
-    H[5][4] = H[4][5];
-    H[5][5] = -lambda[0] * dot_rb_u_f_x;
-  }
 };
 
 // sine_track::slide with b immovable: its velocity and inverse mass are zero and gone.
@@ -1097,38 +891,6 @@ struct sine_track::slide::b_immovable : sine_track::slide {
     D[0][0] = ma.m * J.f_x_x;
     D[0][1] = ma.m * J.f_x_y;
     D[0][2] = ma.I * J.ra_x_f_x;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 5 +, 12 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y;
-    g[0] = va.w * va.w * dot_ra_f_x;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 6 +, 11 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T f_x_x = b.c * p.f_x - b.s * p.f_y;
-    const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-    const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y;
-    H[2][2] = -lambda[0] * dot_ra_f_x;
   }
 };
 

@@ -679,38 +679,6 @@ struct wheel::a_immovable : wheel {
     D[0][4] = mb.m * J.ax_x;
     D[0][5] = mb.I * J.dot_rb_ax;
   }
-
-  // -Jdot v - d/dt(dC/dt): 6 +, 12 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
-    const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_x_ax = ax_y * rb_x - ax_x * rb_y;
-    g[0] = -vb.w * vb.w * rb_x_ax;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 5 +, 11 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
-    const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T rb_x_ax = ax_y * rb_x - ax_x * rb_y;
-    H[5][5] = lambda[0] * rb_x_ax;
-  }
 };
 
 // wheel with b immovable: its velocity and inverse mass are zero and gone.
@@ -793,58 +761,6 @@ struct wheel::b_immovable : wheel {
     D[0][1] = -ma.m * J.ax_x;
     D[0][2] = -ma.I * J.dot_ra_d_ax;
   }
-
-  // -Jdot v - d/dt(dC/dt): 20 +, 23 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T d_dot_x = va.w * ra_y - va.x;
-    const T d_dot_y = -va.y - va.w * ra_x;
-    const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
-    const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T dot_d_dot_ax = d_dot_x * ax_x + d_dot_y * ax_y;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T d_x_ax = d_x * ax_y - d_y * ax_x;
-    const T ra_x_ax = ax_y * ra_x - ax_x * ra_y;
-    g[0] = va.w * (T(2) * dot_d_dot_ax + va.w * (ra_x_ax - d_x_ax));
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 15 +, 17 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
-    const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T H1_1 = lambda[0] * ax_x;
-    const T H2_1 = lambda[0] * ax_y;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_x_ax = ra_d_x * ax_y - ra_d_y * ax_x;
-    H[0][2] = H1_1;
-    H[1][2] = H2_1;
-    H[2][0] = H1_1;
-    H[2][1] = H2_1;
-    H[2][2] = lambda[0] * ra_d_x_ax;
-  }
 };
 
 // wheel::slide with a immovable: its velocity and inverse mass are zero and gone.
@@ -924,38 +840,6 @@ struct wheel::slide::a_immovable : wheel::slide {
     D[0][3] = mb.m * J.ax_x;
     D[0][4] = mb.m * J.ax_y;
     D[0][5] = mb.I * J.rb_x_ax;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 5 +, 12 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
-    const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T dot_rb_ax = ax_x * rb_x + ax_y * rb_y;
-    g[0] = vb.w * vb.w * dot_rb_ax;
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 6 +, 11 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
-    const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T dot_rb_ax = ax_x * rb_x + ax_y * rb_y;
-    H[5][5] = -lambda[0] * dot_rb_ax;
   }
 };
 
@@ -1038,57 +922,6 @@ struct wheel::slide::b_immovable : wheel::slide {
     D[0][0] = -ma.m * J.ax_x;
     D[0][1] = -ma.m * J.ax_y;
     D[0][2] = -ma.I * J.ra_d_x_ax;
-  }
-
-  // -Jdot v - d/dt(dC/dt): 20 +, 23 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T d_dot_x = va.w * ra_y - va.x;
-    const T d_dot_y = -va.y - va.w * ra_x;
-    const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
-    const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T d_dot_x_ax = d_dot_x * ax_y - d_dot_y * ax_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T dot_d_ax = d_x * ax_x + d_y * ax_y;
-    const T dot_ra_ax = ax_x * ra_x + ax_y * ra_y;
-    g[0] = va.w * (T(2) * d_dot_x_ax + va.w * (dot_d_ax - dot_ra_ax));
-  }
-
-  // d(J^T lambda)/dq: x, y, angle of each body: 17 +, 17 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[6][6]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
-    const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T H1_1 = lambda[0] * ax_y;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y;
-    H[0][2] = H1_1;
-    H[1][2] = -lambda[0] * ax_x;
-    H[2][0] = H1_1;
-    H[2][1] = H[1][2];
-    H[2][2] = -lambda[0] * dot_ra_d_ax;
   }
 };
 

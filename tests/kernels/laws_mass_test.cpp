@@ -100,10 +100,6 @@ TEST(Laws, a_variant_is_the_general_block_with_a_body_at_rest_and_infinitely_hea
       }
     };
     hold_columns(dense, width);
-    hold_columns(stiffness, width);
-    std::fill_n(
-        general.of[stiffness].begin() + static_cast<std::ptrdiff_t>(held * width * width * n),
-        width * width * n, 0.0);
     hold_columns(local_jacobian, 6);
     hold_columns(euler_jacobian, 7);
     for (int f = 0; f < number_of_functions; ++f) {
