@@ -136,7 +136,10 @@ class BlockPlanner {
   void add_effective_mass() {
     Components components;
     std::map<const Node*, Expr> held;
-    for (const Field& f : out_.fields) held.emplace(&*f.value, f.symbol);
+    for (const Field& f : out_.fields) {
+      held.emplace(&*f.value, f.symbol);
+      held.emplace(&*(-f.value), -f.symbol);
+    }
     const auto K_of_rows =
         effective_mass(joint_, out_.block.rows, out_.block.immovable, isotropic_);
     std::vector<NamedExpr> simplified, plain;

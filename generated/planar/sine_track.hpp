@@ -112,13 +112,13 @@ struct sine_track {
     J.wb = va_x_1 * u_x_f_x - s_x - va_y_1 * rb_x - va_x_2 * rb_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 5 +, 10 *
+  // K = J M^-1 J^T, lower triangle, from J: 4 +, 7 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    K[0] = ma.m * (J.va_x * J.va_x + J.va_y * J.va_y) + mb.m *
-        (J.vb_x * J.vb_x + J.vb_y * J.vb_y) + ma.I * J.wa * J.wa + mb.I * J.wb * J.wb;
+    K[0] = ma.I * J.wa * J.wa + mb.I * J.wb * J.wb + (J.va_x * J.va_x + J.va_y * J.va_y) *
+        (ma.m + mb.m);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
