@@ -50,13 +50,6 @@ struct Ast {
   std::vector<int> row_lengths;
 };
 
-struct IncludeAst {
-  Word joint;
-  std::vector<Word> bodies;  // empty: the same as here
-  Word prefix;               // may be empty
-  Span where;
-};
-
 struct DeclaredAst {
   std::string kind;  // point vector unit frame scalar
   Word name;
@@ -65,6 +58,14 @@ struct DeclaredAst {
   std::optional<Ast> value;
   Span where;
   bool broken = false;
+};
+
+struct IncludeAst {
+  Word joint;
+  std::vector<Word> bodies;        // empty: the same as here
+  std::vector<DeclaredAst> given;  // name and value: what parameters of the joint are here
+  Word prefix;                     // may be empty
+  Span where;
 };
 
 // One statement of a spec. `include` and declarations hold one item each: the parser splits lists.

@@ -15,6 +15,13 @@
 
 namespace cdot::derive {
 
+// What a parameter of an included joint is in the joint that includes it.
+struct Given {
+  Value value;
+  std::string text;
+  bool taken = false;
+};
+
 // One file on its way into the joint: the spec itself, or what it includes.
 struct Source {
   std::shared_ptr<const SourceFile> file;
@@ -22,6 +29,7 @@ struct Source {
   JointAst ast;
   std::string prefix;                  // of the names that it brings in
   std::vector<int> bodies;             // what its a, b, ... are here; empty: the same
+  std::map<std::string, Given> given;  // its parameters that are none of the joint
   std::optional<Span> include;         // where the spec includes it; empty: it is the spec
   std::vector<std::string> including;  // the files on the way to it
   Diagnostics diagnostics;
@@ -52,6 +60,9 @@ class Elaborator {
   bool includable(Source& source, const IncludeAst& item);
   bool same_space(Source& source, const IncludeAst& item, const Source& inner);
   bool map_bodies(Source& source, const IncludeAst& item, Source& inner);
+  void give_parameters(Source& source, const IncludeAst& item, Source& inner);
+  void check_given(Source& source, const IncludeAst& item, const Source& inner);
+  bool take_given(Source& source, const DeclaredAst& d);
   void report_included(Source& source, const IncludeAst& item, const Source& inner);
   // elaborate_declare.cpp
   void declare(Source& source, const DeclaredAst& d);

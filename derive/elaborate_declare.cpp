@@ -31,6 +31,7 @@ bool same_default(Expr a, Expr b) { return !a || !b || a == b; }
 
 // point, vector, unit, frame or scalar
 void Elaborator::declare(Source& source, const DeclaredAst& d) {
+  if (take_given(source, d)) return;
   const std::string full = source.prefix + d.name.text;
   Parameter p;
   p.name = full;

@@ -22,7 +22,11 @@ void Elaborator::include(Source& source, const IncludeAst& item) {
   inner.prefix = source.prefix + (item.prefix.text.empty() ? "" : item.prefix.text + "_");
   parse_source(inner);
   if (!inner.diagnostics.has_errors() && !same_space(source, item, inner)) return;
-  if (!inner.diagnostics.has_errors() && map_bodies(source, item, inner)) statements(inner);
+  if (!inner.diagnostics.has_errors() && map_bodies(source, item, inner)) {
+    give_parameters(source, item, inner);
+    statements(inner);
+    check_given(source, item, inner);
+  }
   report_included(source, item, inner);
   if (!source.include) joint_.includes.push_back(item.joint.text);
 }
@@ -79,6 +83,68 @@ bool Elaborator::map_bodies(Source& source, const IncludeAst& item, Source& inne
     names.use_body(body, word.where);
     inner.bodies.push_back(body);
   }
+  return true;
+}
+
+void Elaborator::give_parameters(Source& source, const IncludeAst& item, Source& inner) {
+  for (const DeclaredAst& d : item.given) {
+    if (d.broken || !d.value) continue;
+    const Span where = d.value->where;
+    std::string text = source.file->text.substr(
+        static_cast<std::size_t>(where.begin), static_cast<std::size_t>(where.end - where.begin));
+    const bool one = d.value->kind == Ast::Kind::name || d.value->kind == Ast::Kind::call ||
+                     d.value->kind == Ast::Kind::member || d.value->kind == Ast::Kind::number;
+    if (!one) text = "(" + text + ")";
+    const bool is_new = inner.given.emplace(d.name.text, Given{evaluate(source, *d.value), text}).second;
+    if (!is_new)
+      source.diagnostics.error(d.name.where, quote(d.name.text) + " is given twice", "remove one");
+  }
+}
+
+void Elaborator::check_given(Source& source, const IncludeAst& item, const Source& inner) {
+  std::vector<std::string> parameters;
+  for (const StatementAst& s : inner.ast.statements)
+    if (s.kind == StatementAst::Kind::declare) parameters.push_back(s.declared.name.text);
+  for (const DeclaredAst& d : item.given) {
+    const auto given = inner.given.find(d.name.text);
+    if (given == inner.given.end() || given->second.taken) continue;
+    const std::string near = nearest(d.name.text, parameters);
+    source.diagnostics.error(
+        d.name.where, quote(item.joint.text) + " declares no parameter " + quote(d.name.text),
+        near.empty() ? "" : "did you mean " + quote(near) + "?");
+  }
+}
+
+// A parameter whose meaning is given where the joint is included: a name for that, and nothing that a scene sets.
+bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
+  const auto found = source.given.find(d.name.text);
+  if (found == source.given.end()) return false;
+  found->second.taken = true;
+  Value value = found->second.value;
+  if (value.type == Type::poison) {
+    enter(source, source.prefix + d.name.text, d.kind, value, d.name.where);
+    return true;
+  }
+  const Type wanted = d.kind == "point"    ? Type::point
+                      : d.kind == "scalar" ? Type::scalar
+                      : d.kind == "frame"  ? Type::frame
+                                           : Type::vector;
+  const bool arm = wanted == Type::point && value.anchored;
+  if (value.type != wanted || (wanted == Type::point && !arm) || !value.along.empty()) {
+    error(source, d.name.where,
+          "the " + d.kind + " " + quote(d.name.text) + " cannot be " + found->second.text,
+          wanted == Type::point ? "give a declared point" : "give " + std::string(in_words(wanted)));
+    return true;
+  }
+  if (d.unit && !same_unit(scalar(Expr(), d.unit->unit), value)) {
+    error(source, d.name.where,
+          quote(d.name.text) + " is in " + spoken(d.unit->unit) + ", what is given for it in " + spoken(*value.unit));
+    return true;
+  }
+  if (d.kind == "unit" && !value.e->unit_length) value.e = unit(value.e);
+  const std::string full = source.prefix + d.name.text;
+  if (arm) enter(source, arm_name(source.prefix, d.name.text), "arm", vector(value.arm, value.unit), d.name.where);
+  if (name_is_free(source, d.name, full)) enter(source, full, d.kind, value, d.name.where);
   return true;
 }
 

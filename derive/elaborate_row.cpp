@@ -215,7 +215,9 @@ std::string Elaborator::written(const Source& source, const StatementAst& s) con
     end = t.where.end;
     const std::string word(t.text);
     const int body = body_of_letter(word);
-    if (t.kind == TokenKind::name && names_.contains(source.prefix + word))
+    if (const auto given = source.given.find(word); given != source.given.end())
+      out += given->second.text;
+    else if (t.kind == TokenKind::name && names_.contains(source.prefix + word))
       out += source.prefix + word;
     else if (t.kind == TokenKind::name && body >= 0 &&
              body < static_cast<int>(source.bodies.size()))

@@ -98,16 +98,16 @@ class JointParser {
     target = text;
   }
 
-  // include NAME [ "(" BODY { "," BODY } ")" ] [ "as" NAME ] { "," ... }
+  // include NAME [ "(" argument { "," argument } ")" ] [ "as" NAME ] { "," ... }
   void includes() {
     p_.take();
     do {
       StatementAst s = begin(StatementAst::Kind::include);
       s.include.joint = p_.name("the name of a joint");
       if (p_.accept("(")) {
-        do s.include.bodies.push_back(p_.name("a body"));
+        do argument(s.include);
         while (p_.accept(","));
-        p_.expect(")", "after the bodies");
+        p_.expect(")", "after the bodies and parameters");
       }
       if (p_.at_word("as")) {
         p_.take();
@@ -115,6 +115,20 @@ class JointParser {
       }
       finish(s);
     } while (p_.accept(","));
+  }
+
+  // BODY, or NAME "=" expression
+  void argument(IncludeAst& include) {
+    if (!p_.at_symbol("=", 1)) {
+      const Word body = p_.name("a body");
+      if (!include.given.empty() && !p_.failed())
+        p_.fail(body.where, "a body after a parameter", "bodies stand first");
+      return include.bodies.push_back(body);
+    }
+    DeclaredAst given;
+    given.name = p_.name("a parameter");
+    default_value(given);
+    include.given.push_back(std::move(given));
   }
 
   // declared { "," declared }
