@@ -90,12 +90,13 @@ void Elaborator::give_parameters(Source& source, const IncludeAst& item, Source&
   for (const DeclaredAst& d : item.given) {
     if (d.broken || !d.value) continue;
     const Span where = d.value->where;
-    std::string text = source.file->text.substr(
-        static_cast<std::size_t>(where.begin), static_cast<std::size_t>(where.end - where.begin));
+    std::string text = source.file->text.substr(static_cast<std::size_t>(where.begin),
+                                                static_cast<std::size_t>(where.end - where.begin));
     const bool one = d.value->kind == Ast::Kind::name || d.value->kind == Ast::Kind::call ||
                      d.value->kind == Ast::Kind::member || d.value->kind == Ast::Kind::number;
     if (!one) text = "(" + text + ")";
-    const bool is_new = inner.given.emplace(d.name.text, Given{evaluate(source, *d.value), text}).second;
+    const bool is_new =
+        inner.given.emplace(d.name.text, Given{evaluate(source, *d.value), text}).second;
     if (!is_new)
       source.diagnostics.error(d.name.where, quote(d.name.text) + " is given twice", "remove one");
   }
@@ -115,7 +116,8 @@ void Elaborator::check_given(Source& source, const IncludeAst& item, const Sourc
   }
 }
 
-// A parameter whose meaning is given where the joint is included: a name for that, and nothing that a scene sets.
+// A parameter whose meaning is given where the joint is included: a name for that, and nothing that
+// a scene sets.
 bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
   const auto found = source.given.find(d.name.text);
   if (found == source.given.end()) return false;
@@ -131,19 +133,23 @@ bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
                                            : Type::vector;
   const bool arm = wanted == Type::point && value.anchored;
   if (value.type != wanted || (wanted == Type::point && !arm) || !value.along.empty()) {
-    error(source, d.name.where,
-          "the " + d.kind + " " + quote(d.name.text) + " cannot be " + found->second.text,
-          wanted == Type::point ? "give a declared point" : "give " + std::string(in_words(wanted)));
+    error(
+        source, d.name.where,
+        "the " + d.kind + " " + quote(d.name.text) + " cannot be " + found->second.text,
+        wanted == Type::point ? "give a declared point" : "give " + std::string(in_words(wanted)));
     return true;
   }
   if (d.unit && !same_unit(scalar(Expr(), d.unit->unit), value)) {
     error(source, d.name.where,
-          quote(d.name.text) + " is in " + spoken(d.unit->unit) + ", what is given for it in " + spoken(*value.unit));
+          quote(d.name.text) + " is in " + spoken(d.unit->unit) + ", what is given for it in " +
+              spoken(*value.unit));
     return true;
   }
   if (d.kind == "unit" && !value.e->unit_length) value.e = unit(value.e);
   const std::string full = source.prefix + d.name.text;
-  if (arm) enter(source, arm_name(source.prefix, d.name.text), "arm", vector(value.arm, value.unit), d.name.where);
+  if (arm)
+    enter(source, arm_name(source.prefix, d.name.text), "arm", vector(value.arm, value.unit),
+          d.name.where);
   if (name_is_free(source, d.name, full)) enter(source, full, d.kind, value, d.name.where);
   return true;
 }

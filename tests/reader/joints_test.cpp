@@ -77,6 +77,27 @@ TEST(Joints, CountTheSameDeclarationOnce) {
   EXPECT_EQ(r.joint->coordinates.size(), 2u);
 }
 
+TEST(Joints, SayWhatParametersOfAnIncludeAre) {
+  const ReadResult r = read(
+      " unit up on b\n point q on a\n include line(pa = q, t = up), line(b, a, t = unit(2 * up)) "
+      "as back\n");
+  std::vector<std::string> names;
+  for (const Parameter& p : r.joint->parameters) names.push_back(p.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"up", "q", "pb", "back_pa", "back_pb"}));
+  ASSERT_EQ(r.joint->rows.size(), 2u);
+  EXPECT_EQ(r.joint->rows[0].text, "dot(up, u) = 0");
+  EXPECT_EQ(r.joint->rows[0].C, dot(r.names.at("up").e, r.names.at("u").e));
+  EXPECT_EQ(r.joint->rows[1].text, "dot(unit(2 * up), back_u) = 0");
+  EXPECT_EQ(r.joint->rows[1].C, dot(r.names.at("up").e, r.names.at("back_u").e));
+}
+
+TEST(Joints, GiveAPointWithItsArm) {
+  const ReadResult r = read(" point q on a\n include with_arm(pa = q)\n");
+  EXPECT_EQ(text(r.joint->rows[0].C), "norm(r_q) - l");
+  const ReadResult sum = read(" include stretched(k = 1 + 2)\n");
+  EXPECT_EQ(sum.joint->rows[0].text, "(1 + 2) * norm(u) = 2 [m]");
+}
+
 TEST(Joints, CanBeAnchoredElsewhere) {
   const ReadResult r = read(" include line\n", {{{"t", "a"}}});
   EXPECT_EQ(r.joint->parameters[2].symbol->body, 0);
