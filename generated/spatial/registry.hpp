@@ -27,6 +27,7 @@
 #include "generated/spatial/rolling_disc.hpp"
 #include "generated/spatial/rolling_sphere.hpp"
 #include "generated/spatial/screw.hpp"
+#include "generated/spatial/six_dof.hpp"
 #include "generated/spatial/slider.hpp"
 #include "generated/spatial/spherical.hpp"
 #include "generated/spatial/spherical_spherical.hpp"
@@ -63,6 +64,7 @@ using Joints = std::tuple<
     rolling_disc,
     rolling_sphere,
     screw,
+    six_dof,
     slider,
     spherical,
     spherical_spherical,
