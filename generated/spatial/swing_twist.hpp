@@ -17,22 +17,10 @@
 // K_twist = (fa_x + fb_x)' inv_I_a (fa_x + fb_x)/(fa_x · fb_x + 1)^2
 //           + (fa_x + fb_x)' inv_I_b (fa_x + fb_x)/(fa_x · fb_x + 1)^2
 //
-// coordinate swing = atan2(|fa_x × fb_x|, fa_x · fb_x)
-// J_swing = [ 0
-//           | -((((fa_x · fb_x)/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) (fb_x × unit(fa_x × fb_x)) -
-//               (|fa_x × fb_x|/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) fb_x) × fa_x)'
-//           | 0
-//           | -((-((fa_x · fb_x)/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) (fa_x × unit(fa_x × fb_x)) -
-//               (|fa_x × fb_x|/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) fa_x) × fb_x)' ]
-//             (columns v_a | w_a | v_b | w_b)
-// K_swing = ((-((fa_x · fb_x)/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) (fa_x × unit(fa_x × fb_x)) -
-//     (|fa_x × fb_x|/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) fa_x) × fb_x)' inv_I_b ((-((fa_x ·
-//     fb_x)/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) (fa_x × unit(fa_x × fb_x)) - (|fa_x ×
-//     fb_x|/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) fa_x) × fb_x)
-//           + ((((fa_x · fb_x)/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) (fb_x × unit(fa_x × fb_x)) -
-//               (|fa_x × fb_x|/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) fb_x) × fa_x)' inv_I_a
-//               ((((fa_x · fb_x)/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) (fb_x × unit(fa_x × fb_x)) -
-//               (|fa_x × fb_x|/((fa_x · fb_x)^2 + |fa_x × fb_x|^2)) fb_x) × fa_x)
+// coordinate swing = angle(fa_x, fb_x)
+// J_swing = [ 0 | -unit(fa_x × fb_x)' | 0 | unit(fa_x × fb_x)' ]  (columns v_a | w_a | v_b | w_b)
+// K_swing = unit(fa_x × fb_x)' inv_I_a unit(fa_x × fb_x)
+//           + unit(fa_x × fb_x)' inv_I_b unit(fa_x × fb_x)
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -972,7 +960,7 @@ struct swing_twist {
 
     template <class T>
     struct Jacobian {
-      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+      T dir_fa_x_x_fb_x_x, dir_fa_x_x_fb_x_y, dir_fa_x_x_fb_x_z;
     };
 
     // C: 19 +, 30 *, 1 sqrt, 1 call
@@ -997,7 +985,7 @@ struct swing_twist {
       C[0] = atan2(fa_x_x_fb_x_len, dot_fa_x_fb_x);
     }
 
-    // C and J: 38 +, 73 *, 2 /, 1 sqrt, 5 <, 1 call
+    // C and J: 19 +, 33 *, 1 /, 1 sqrt, 4 <, 1 call
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1017,48 +1005,31 @@ struct swing_twist {
       const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y *
           fa_x_x_fb_x_y + fa_x_x_fb_x_x * fa_x_x_fb_x_x);
       const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-      const T wa_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
-      const T wa_x_2 = fa_x_x_fb_x_len * wa_x_1;
-      const T wa_x_3 = dot_fa_x_fb_x * wa_x_1;
       const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
-      const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
-          inv_fa_x_x_fb_x_len, T(1));
-      const T dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
-          inv_fa_x_x_fb_x_len, T(0));
-      const T fb_x_x_dir_fa_x_x_fb_x_z = fb_x_x * dir_fa_x_x_fb_x_y - fb_x_y * dir_fa_x_x_fb_x_x;
-      const T wa_x_4 = wa_x_3 * fb_x_x_dir_fa_x_x_fb_x_z - wa_x_2 * fb_x_z;
-      const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
-          inv_fa_x_x_fb_x_len, T(0));
-      const T fb_x_x_dir_fa_x_x_fb_x_x = fb_x_y * dir_fa_x_x_fb_x_z - fb_x_z * dir_fa_x_x_fb_x_y;
-      const T fb_x_x_dir_fa_x_x_fb_x_y = fb_x_z * dir_fa_x_x_fb_x_x - fb_x_x * dir_fa_x_x_fb_x_z;
-      const T wa_x_5 = wa_x_3 * fb_x_x_dir_fa_x_x_fb_x_y - wa_x_2 * fb_x_y;
-      const T wa_y_1 = wa_x_3 * fb_x_x_dir_fa_x_x_fb_x_x - wa_x_2 * fb_x_x;
-      const T fa_x_x_dir_fa_x_x_fb_x_z = fa_x_x * dir_fa_x_x_fb_x_y - fa_x_y * dir_fa_x_x_fb_x_x;
-      const T wb_x_1 = wa_x_2 * fa_x_z + wa_x_3 * fa_x_x_dir_fa_x_x_fb_x_z;
-      const T fa_x_x_dir_fa_x_x_fb_x_x = fa_x_y * dir_fa_x_x_fb_x_z - fa_x_z * dir_fa_x_x_fb_x_y;
-      const T fa_x_x_dir_fa_x_x_fb_x_y = fa_x_z * dir_fa_x_x_fb_x_x - fa_x_x * dir_fa_x_x_fb_x_z;
-      const T wb_x_2 = wa_x_2 * fa_x_y + wa_x_3 * fa_x_x_dir_fa_x_x_fb_x_y;
-      const T wb_y_1 = wa_x_2 * fa_x_x + wa_x_3 * fa_x_x_dir_fa_x_x_fb_x_x;
       C[0] = atan2(fa_x_x_fb_x_len, dot_fa_x_fb_x);
-      J.wa_x = fa_x_y * wa_x_4 - fa_x_z * wa_x_5;
-      J.wa_y = fa_x_z * wa_y_1 - fa_x_x * wa_x_4;
-      J.wa_z = fa_x_x * wa_x_5 - fa_x_y * wa_y_1;
-      J.wb_x = fb_x_z * wb_x_2 - fb_x_y * wb_x_1;
-      J.wb_y = fb_x_x * wb_x_1 - fb_x_z * wb_y_1;
-      J.wb_z = fb_x_y * wb_y_1 - fb_x_x * wb_x_2;
+      J.dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
+          inv_fa_x_x_fb_x_len, T(1));
+      J.dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
+          inv_fa_x_x_fb_x_len, T(0));
+      J.dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
+          inv_fa_x_x_fb_x_len, T(0));
     }
 
-    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    // K = J M^-1 J^T, lower triangle, from J: 14 +, 12 *
     template <class T>
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
-          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+      const T K11_1 = ma.Ixy + mb.Ixy;
+      const T K11_2 = ma.Ixz + mb.Ixz;
+      const T K11_3 = ma.Iyz + mb.Iyz;
+      K[0] = J.dir_fa_x_x_fb_x_x *
+          (J.dir_fa_x_x_fb_x_x * (ma.Ixx + mb.Ixx) + J.dir_fa_x_x_fb_x_y * K11_1 +
+          J.dir_fa_x_x_fb_x_z * K11_2) + J.dir_fa_x_x_fb_x_y *
+          (J.dir_fa_x_x_fb_x_x * K11_1 + J.dir_fa_x_x_fb_x_y * (ma.Iyy + mb.Iyy) +
+          J.dir_fa_x_x_fb_x_z * K11_3) + J.dir_fa_x_x_fb_x_z *
+          (J.dir_fa_x_x_fb_x_x * K11_2 + J.dir_fa_x_x_fb_x_y * K11_3 + J.dir_fa_x_x_fb_x_z *
+          (ma.Izz + mb.Izz));
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1073,16 +1044,16 @@ struct swing_twist {
       lambda[0] = F[0] * rhs[0];
     }
 
-    // J v: 5 +, 6 *
+    // J v: 5 +, 3 *
     template <class T>
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
-          J.wb_z * vb.wz;
+      Jv[0] = J.dir_fa_x_x_fb_x_x * (vb.wx - va.wx) + J.dir_fa_x_x_fb_x_y * (vb.wy - va.wy) +
+          J.dir_fa_x_x_fb_x_z * (vb.wz - va.wz);
     }
 
-    // v += M^-1 J^T lambda: 18 +, 24 *
+    // v += M^-1 J^T lambda: 18 +, 21 *
     template <class T>
     static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
         Velocity<T> (&v)[2]) {
@@ -1090,35 +1061,32 @@ struct swing_twist {
       const InverseMass<T>& ma = m[0];
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
-      const T v1_1 = J.wa_x * lambda[0];
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
-      const T v2_1 = lambda[0] * J.wb_x;
-      const T v2_2 = lambda[0] * J.wb_y;
-      const T v2_3 = lambda[0] * J.wb_z;
-      v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
-      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
-      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
-      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+      const T v1_1 = J.dir_fa_x_x_fb_x_x * lambda[0];
+      const T v1_2 = lambda[0] * J.dir_fa_x_x_fb_x_y;
+      const T v1_3 = lambda[0] * J.dir_fa_x_x_fb_x_z;
+      v[0].wx = va.wx - v1_1 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
+      v[1].wx = vb.wx + v1_1 * mb.Ixx + v1_2 * mb.Ixy + v1_3 * mb.Ixz;
+      v[1].wy = vb.wy + v1_1 * mb.Ixy + v1_2 * mb.Iyy + v1_3 * mb.Iyz;
+      v[1].wz = vb.wz + v1_1 * mb.Ixz + v1_2 * mb.Iyz + v1_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: nothing
+    // J with its zeros: v, w of each body: 3 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
         for (T& entry : row) entry = T(0);
       }
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
-      D[0][9] = J.wb_x;
-      D[0][10] = J.wb_y;
-      D[0][11] = J.wb_z;
+      D[0][3] = -J.dir_fa_x_x_fb_x_x;
+      D[0][4] = -J.dir_fa_x_x_fb_x_y;
+      D[0][5] = -J.dir_fa_x_x_fb_x_z;
+      D[0][9] = J.dir_fa_x_x_fb_x_x;
+      D[0][10] = J.dir_fa_x_x_fb_x_y;
+      D[0][11] = J.dir_fa_x_x_fb_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    // (M^-1 J^T)^T, laid out like dense: 15 +, 18 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1127,22 +1095,27 @@ struct swing_twist {
       }
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
-      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+      D[0][3] = -ma.Ixx * J.dir_fa_x_x_fb_x_x - ma.Ixy * J.dir_fa_x_x_fb_x_y - ma.Ixz *
+          J.dir_fa_x_x_fb_x_z;
+      D[0][4] = -ma.Ixy * J.dir_fa_x_x_fb_x_x - ma.Iyy * J.dir_fa_x_x_fb_x_y - ma.Iyz *
+          J.dir_fa_x_x_fb_x_z;
+      D[0][5] = -ma.Ixz * J.dir_fa_x_x_fb_x_x - ma.Iyz * J.dir_fa_x_x_fb_x_y - ma.Izz *
+          J.dir_fa_x_x_fb_x_z;
+      D[0][9] = mb.Ixx * J.dir_fa_x_x_fb_x_x + mb.Ixy * J.dir_fa_x_x_fb_x_y + mb.Ixz *
+          J.dir_fa_x_x_fb_x_z;
+      D[0][10] = mb.Ixy * J.dir_fa_x_x_fb_x_x + mb.Iyy * J.dir_fa_x_x_fb_x_y + mb.Iyz *
+          J.dir_fa_x_x_fb_x_z;
+      D[0][11] = mb.Ixz * J.dir_fa_x_x_fb_x_x + mb.Iyz * J.dir_fa_x_x_fb_x_y + mb.Izz *
+          J.dir_fa_x_x_fb_x_z;
     }
 
-    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 1 +
     template <class T>
-    static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+    static void effective_mass(const Jacobian<T>&, const IsotropicInverseMass<T> (&m)[2],
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+      K[0] = ma.I + mb.I;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -1155,15 +1128,15 @@ struct swing_twist {
       const IsotropicInverseMass<T>& mb = m[1];
       const T v1_1 = ma.I * lambda[0];
       const T v2_1 = lambda[0] * mb.I;
-      v[0].wx = va.wx + v1_1 * J.wa_x;
-      v[0].wy = va.wy + v1_1 * J.wa_y;
-      v[0].wz = va.wz + v1_1 * J.wa_z;
-      v[1].wx = vb.wx + v2_1 * J.wb_x;
-      v[1].wy = vb.wy + v2_1 * J.wb_y;
-      v[1].wz = vb.wz + v2_1 * J.wb_z;
+      v[0].wx = va.wx - v1_1 * J.dir_fa_x_x_fb_x_x;
+      v[0].wy = va.wy - v1_1 * J.dir_fa_x_x_fb_x_y;
+      v[0].wz = va.wz - v1_1 * J.dir_fa_x_x_fb_x_z;
+      v[1].wx = vb.wx + v2_1 * J.dir_fa_x_x_fb_x_x;
+      v[1].wy = vb.wy + v2_1 * J.dir_fa_x_x_fb_x_y;
+      v[1].wz = vb.wz + v2_1 * J.dir_fa_x_x_fb_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1172,15 +1145,15 @@ struct swing_twist {
       }
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
-      D[0][9] = mb.I * J.wb_x;
-      D[0][10] = mb.I * J.wb_y;
-      D[0][11] = mb.I * J.wb_z;
+      D[0][3] = -ma.I * J.dir_fa_x_x_fb_x_x;
+      D[0][4] = -ma.I * J.dir_fa_x_x_fb_x_y;
+      D[0][5] = -ma.I * J.dir_fa_x_x_fb_x_z;
+      D[0][9] = mb.I * J.dir_fa_x_x_fb_x_x;
+      D[0][10] = mb.I * J.dir_fa_x_x_fb_x_y;
+      D[0][11] = mb.I * J.dir_fa_x_x_fb_x_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1188,12 +1161,18 @@ struct swing_twist {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+      D[0][3] = -J.dir_fa_x_x_fb_x_x * a.xx - J.dir_fa_x_x_fb_x_y * a.yx - J.dir_fa_x_x_fb_x_z *
+          a.zx;
+      D[0][4] = -J.dir_fa_x_x_fb_x_x * a.xy - J.dir_fa_x_x_fb_x_y * a.yy - J.dir_fa_x_x_fb_x_z *
+          a.zy;
+      D[0][5] = -J.dir_fa_x_x_fb_x_x * a.xz - J.dir_fa_x_x_fb_x_y * a.yz - J.dir_fa_x_x_fb_x_z *
+          a.zz;
+      D[0][9] = J.dir_fa_x_x_fb_x_x * b.xx + J.dir_fa_x_x_fb_x_y * b.yx + J.dir_fa_x_x_fb_x_z *
+          b.zx;
+      D[0][10] = J.dir_fa_x_x_fb_x_x * b.xy + J.dir_fa_x_x_fb_x_y * b.yy + J.dir_fa_x_x_fb_x_z *
+          b.zy;
+      D[0][11] = J.dir_fa_x_x_fb_x_x * b.xz + J.dir_fa_x_x_fb_x_y * b.yz + J.dir_fa_x_x_fb_x_z *
+          b.zz;
     }
 
     // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
@@ -1204,17 +1183,25 @@ struct swing_twist {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+      D[0][3] = T(2) * (J.dir_fa_x_x_fb_x_x * a.e1 + J.dir_fa_x_x_fb_x_y * a.e2 +
+          J.dir_fa_x_x_fb_x_z * a.e3);
+      D[0][4] = T(2) * (J.dir_fa_x_x_fb_x_z * a.e2 - J.dir_fa_x_x_fb_x_x * a.e0 -
+          J.dir_fa_x_x_fb_x_y * a.e3);
+      D[0][5] = T(2) * (J.dir_fa_x_x_fb_x_x * a.e3 - J.dir_fa_x_x_fb_x_y * a.e0 -
+          J.dir_fa_x_x_fb_x_z * a.e1);
+      D[0][6] = T(2) * (J.dir_fa_x_x_fb_x_y * a.e1 - J.dir_fa_x_x_fb_x_x * a.e2 -
+          J.dir_fa_x_x_fb_x_z * a.e0);
+      D[0][10] = -T(2) * (J.dir_fa_x_x_fb_x_x * b.e1 + J.dir_fa_x_x_fb_x_y * b.e2 +
+          J.dir_fa_x_x_fb_x_z * b.e3);
+      D[0][11] = T(2) * (J.dir_fa_x_x_fb_x_x * b.e0 + J.dir_fa_x_x_fb_x_y * b.e3 -
+          J.dir_fa_x_x_fb_x_z * b.e2);
+      D[0][12] = T(2) * (J.dir_fa_x_x_fb_x_y * b.e0 - J.dir_fa_x_x_fb_x_x * b.e3 +
+          J.dir_fa_x_x_fb_x_z * b.e1);
+      D[0][13] = T(2) * (J.dir_fa_x_x_fb_x_x * b.e2 - J.dir_fa_x_x_fb_x_y * b.e1 +
+          J.dir_fa_x_x_fb_x_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 83 +, 131 *, 2 /, 1 sqrt, 5 <
+    // -Jdot v - d/dt(dC/dt): 42 +, 64 *, 1 /, 1 sqrt, 4 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1227,31 +1214,25 @@ struct swing_twist {
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
       const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+      const T w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_fb_x_y - fa_x_y * w_b_x_fb_x_z;
+      const T w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_fb_x_z - fa_x_z * w_b_x_fb_x_x;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_fa_x_y - fb_x_y * w_a_x_fa_x_z;
+      const T w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_fa_x_z - fb_x_z * w_a_x_fa_x_x;
+      const T g1_1 = w_b_x_fb_x_x_fa_x_x - w_a_x_fa_x_x_fb_x_x;
+      const T g1_2 = w_b_x_fb_x_x_fa_x_y - w_a_x_fa_x_x_fb_x_y;
       const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
       const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
       const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
       const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y *
           fa_x_x_fb_x_y + fa_x_x_fb_x_x * fa_x_x_fb_x_x);
-      const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
-      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-          w_b_x_fb_x_z;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-          w_a_x_fa_x_z;
-      const T g1_2 = dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
-      const T w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_fb_x_y - fa_x_y * w_b_x_fb_x_z;
-      const T w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_fb_x_z - fa_x_z * w_b_x_fb_x_x;
-      const T w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_fa_x_y - fb_x_y * w_a_x_fa_x_z;
-      const T w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_fa_x_z - fb_x_z * w_a_x_fa_x_x;
-      const T g1_3 = w_b_x_fb_x_x_fa_x_y - w_a_x_fa_x_x_fb_x_y;
       const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
       const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
           inv_fa_x_x_fb_x_len, T(1));
@@ -1259,44 +1240,13 @@ struct swing_twist {
           inv_fa_x_x_fb_x_len, T(0));
       const T w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_fb_x_x - fa_x_x * w_b_x_fb_x_y;
       const T w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_fa_x_x - fb_x_x * w_a_x_fa_x_y;
-      const T g1_4 = w_b_x_fb_x_x_fa_x_z - w_a_x_fa_x_x_fb_x_z;
+      const T g1_3 = w_b_x_fb_x_x_fa_x_z - w_a_x_fa_x_x_fb_x_z;
       const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
           inv_fa_x_x_fb_x_len, T(0));
-      const T g1_5 = w_b_x_fb_x_x_fa_x_x - w_a_x_fa_x_x_fb_x_x;
-      const T g1_6 = g1_3 * dir_fa_x_x_fb_x_y + g1_4 * dir_fa_x_x_fb_x_z + g1_5 * dir_fa_x_x_fb_x_x;
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
-          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
-          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
-          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
-      const T w_b_x_w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_w_b_x_fb_x_x - fa_x_x * w_b_x_w_b_x_fb_x_y;
-      const T w_a_x_w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_w_a_x_fa_x_x - fb_x_x * w_a_x_w_a_x_fa_x_y;
-      const T w_a_x_fa_x_x_w_b_x_fb_x_z = w_a_x_fa_x_x * w_b_x_fb_x_y - w_a_x_fa_x_y * w_b_x_fb_x_x;
-      const T w_b_x_w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_w_b_x_fb_x_y - fa_x_y * w_b_x_w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_w_b_x_fb_x_z - fa_x_z * w_b_x_w_b_x_fb_x_x;
-      const T w_a_x_w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_w_a_x_fa_x_y - fb_x_y * w_a_x_w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_w_a_x_fa_x_z - fb_x_z * w_a_x_w_a_x_fa_x_x;
-      const T w_a_x_fa_x_x_w_b_x_fb_x_x = w_a_x_fa_x_y * w_b_x_fb_x_z - w_a_x_fa_x_z * w_b_x_fb_x_y;
-      const T w_a_x_fa_x_x_w_b_x_fb_x_y = w_a_x_fa_x_z * w_b_x_fb_x_x - w_a_x_fa_x_x * w_b_x_fb_x_z;
-      g[0] = g1_1 * ((dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x + T(2) *
-          dot_w_a_x_fa_x_w_b_x_fb_x) * fa_x_x_fb_x_len - T(2) *
-          (g1_2 * dot_fa_x_fb_x - g1_6 * fa_x_x_fb_x_len) *
-          (g1_2 * fa_x_x_fb_x_len + g1_6 * dot_fa_x_fb_x) * g1_1 -
-          ((w_a_x_w_a_x_fa_x_x_fb_x_z - w_b_x_w_b_x_fb_x_x_fa_x_z + T(2) *
-          w_a_x_fa_x_x_w_b_x_fb_x_z) * dir_fa_x_x_fb_x_z +
-          (w_a_x_w_a_x_fa_x_x_fb_x_y - w_b_x_w_b_x_fb_x_x_fa_x_y + T(2) *
-          w_a_x_fa_x_x_w_b_x_fb_x_y) * dir_fa_x_x_fb_x_y +
-          (w_a_x_w_a_x_fa_x_x_fb_x_x - w_b_x_w_b_x_fb_x_x_fa_x_x + T(2) *
-          w_a_x_fa_x_x_w_b_x_fb_x_x) * dir_fa_x_x_fb_x_x +
-          (g1_3 * (g1_3 - g1_6 * dir_fa_x_x_fb_x_y) + g1_4 * (g1_4 - g1_6 * dir_fa_x_x_fb_x_z) +
-          g1_5 * (g1_5 - g1_6 * dir_fa_x_x_fb_x_x)) * inv_fa_x_x_fb_x_len) * dot_fa_x_fb_x);
+      const T g1_4 = g1_2 * dir_fa_x_x_fb_x_y + g1_3 * dir_fa_x_x_fb_x_z + g1_1 * dir_fa_x_x_fb_x_x;
+      g[0] = ((vb.wx - va.wx) * (g1_1 - g1_4 * dir_fa_x_x_fb_x_x) + (vb.wy - va.wy) *
+          (g1_2 - g1_4 * dir_fa_x_x_fb_x_y) + (vb.wz - va.wz) *
+          (g1_3 - g1_4 * dir_fa_x_x_fb_x_z)) * inv_fa_x_x_fb_x_len;
     }
 
     // dC/dt at fixed q: nothing
@@ -1305,7 +1255,7 @@ struct swing_twist {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 238 +, 374 *, 2 /, 1 sqrt, 5 <
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 74 +, 106 *, 1 /, 1 sqrt, 4 <
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1319,217 +1269,107 @@ struct swing_twist {
       const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
       const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
       const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-      const T H4_1 = fa_x_y * fb_x_y;
-      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
       const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-      const T H4_2 = fa_x_z * fb_x_z;
-      const T H4_3 = H4_1 + H4_2;
-      const T H4_4 = fa_x_x * fb_x_x;
-      const T dot_fa_x_fb_x = H4_3 + H4_4;
-      const T H4_5 = fb_x_y * fa_x_x;
-      const T H4_6 = fa_x_y * fb_x_x;
-      const T fa_x_x_fb_x_z = H4_5 - H4_6;
-      const T H4_7 = fa_x_y * fb_x_z;
-      const T H4_8 = fb_x_y * fa_x_z;
-      const T fa_x_x_fb_x_x = H4_7 - H4_8;
-      const T H4_9 = fa_x_x * fb_x_z;
-      const T H4_10 = fb_x_x * fa_x_z;
-      const T fa_x_x_fb_x_y = H4_10 - H4_9;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
+      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
       const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y *
           fa_x_x_fb_x_y + fa_x_x_fb_x_x * fa_x_x_fb_x_x);
-      const T H4_11 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
       const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
-      const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
-          inv_fa_x_x_fb_x_len, T(0));
       const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
           inv_fa_x_x_fb_x_len, T(1));
       const T dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
           inv_fa_x_x_fb_x_len, T(0));
-      const T fb_x_x_dir_fa_x_x_fb_x_x = fb_x_y * dir_fa_x_x_fb_x_z - fb_x_z * dir_fa_x_x_fb_x_y;
-      const T fb_x_x_dir_fa_x_x_fb_x_y = fb_x_z * dir_fa_x_x_fb_x_x - fb_x_x * dir_fa_x_x_fb_x_z;
-      const T H4_12 = lambda[0] * H4_11 *
-          (fb_x_y * fa_x_x_fb_x_len - dot_fa_x_fb_x * fb_x_x_dir_fa_x_x_fb_x_y);
-      const T H4_13 = lambda[0] * H4_11;
-      const T H4_14 = dot_fa_x_fb_x * H4_13;
-      const T H4_15 = inv_fa_x_x_fb_x_len * H4_14;
-      const T H4_16 = H4_6 * H4_15;
-      const T H4_17 = H4_3 * dir_fa_x_x_fb_x_x;
-      const T H4_18 = fa_x_y * dir_fa_x_x_fb_x_y;
-      const T H4_19 = fa_x_z * dir_fa_x_x_fb_x_z;
-      const T H4_20 = H4_18 + H4_19;
-      const T H4_21 = H4_13 * fa_x_x_fb_x_x;
-      const T H4_22 = H4_11 * H4_14;
-      const T fb_x_x_dir_fa_x_x_fb_x_z = fb_x_x * dir_fa_x_x_fb_x_y - fb_x_y * dir_fa_x_x_fb_x_x;
-      const T H4_23 = fa_x_y * fb_x_x_dir_fa_x_x_fb_x_z - fa_x_z * fb_x_x_dir_fa_x_x_fb_x_y;
-      const T H4_24 = fa_x_x_fb_x_len * H4_13;
-      const T H4_25 = H4_11 * H4_24;
-      const T H4_26 = H4_25 * fa_x_x_fb_x_x;
-      const T H4_27 = H4_26 - H4_22 * H4_23;
-      const T H4_28 = T(2) * H4_27 * fa_x_x_fb_x_len - H4_15 * (fb_x_x * H4_20 - H4_17) - H4_21;
-      const T H4_29 = H4_16 + H4_28 * dir_fa_x_x_fb_x_y;
-      const T H4_30 = H4_15 * H4_3;
-      const T H4_31 = H4_28 * dir_fa_x_x_fb_x_x - H4_30;
-      const T H4_32 = H4_13 * H4_23 + T(2) * H4_27 * dot_fa_x_fb_x;
-      const T H4_33 = H4_12 + fb_x_x * H4_29 - fb_x_y * H4_31 + fb_x_z * H4_32;
-      const T H4_34 = lambda[0] * H4_11 *
-          (dot_fa_x_fb_x * fb_x_x_dir_fa_x_x_fb_x_z - fb_x_z * fa_x_x_fb_x_len);
-      const T H4_35 = H4_10 * H4_15;
-      const T H4_36 = H4_35 + H4_28 * dir_fa_x_x_fb_x_z;
-      const T H4_37 = H4_34 - fb_x_x * H4_36 + fb_x_y * H4_32 + fb_x_z * H4_31;
-      const T H4_1_2 = fb_x_x * H4_32 + fb_x_y * H4_36 - fb_x_z * H4_29;
-      const T H4_1_3 = H4_24 * fa_x_y;
-      const T H4_2_2 = H4_14 * dir_fa_x_x_fb_x_x;
-      const T H4_3_2 = H4_32 - H4_2_2;
-      const T H4_4_2 = fa_x_y * H4_31 - H4_1_3 - fa_x_x * H4_29 + fa_x_z * H4_3_2;
-      const T H4_5_2 = H4_24 * fa_x_z;
-      const T H4_6_2 = H4_5_2 + fa_x_x * H4_36 - fa_x_z * H4_31 + fa_x_y * H4_3_2;
-      const T H4_1_4 = H4_14 * H4_20 + fa_x_x * H4_32 - fa_x_y * H4_36 + fa_x_z * H4_29;
-      const T H5_1 = lambda[0] * H4_11 *
-          (dot_fa_x_fb_x * fb_x_x_dir_fa_x_x_fb_x_x - fb_x_x * fa_x_x_fb_x_len);
-      const T H5_2 = H4_4 + H4_2;
-      const T H5_3 = H4_15 * H5_2;
-      const T H5_4 = H5_2 * dir_fa_x_x_fb_x_y;
-      const T H5_5 = fa_x_x * dir_fa_x_x_fb_x_x;
-      const T H5_6 = H5_5 + H4_19;
-      const T H5_7 = H4_13 * fa_x_x_fb_x_y;
-      const T H5_8 = fa_x_z * fb_x_x_dir_fa_x_x_fb_x_x - fa_x_x * fb_x_x_dir_fa_x_x_fb_x_z;
-      const T H5_9 = H4_25 * fa_x_x_fb_x_y;
-      const T H5_10 = H5_9 - H4_22 * H5_8;
-      const T H5_11 = T(2) * H5_10 * fa_x_x_fb_x_len - H4_15 * (fb_x_y * H5_6 - H5_4) - H5_7;
-      const T H5_12 = H5_11 * dir_fa_x_x_fb_x_y - H5_3;
-      const T H5_13 = H4_5 * H4_15;
-      const T H5_14 = H5_13 + H5_11 * dir_fa_x_x_fb_x_x;
-      const T H5_15 = H4_13 * H5_8 + T(2) * H5_10 * dot_fa_x_fb_x;
-      const T H5_16 = H5_1 + fb_x_x * H5_12 - fb_x_y * H5_14 + fb_x_z * H5_15;
-      const T H5_17 = H4_8 * H4_15;
-      const T H5_18 = H5_17 + H5_11 * dir_fa_x_x_fb_x_z;
-      const T H5_19 = fb_x_y * H5_15 - fb_x_x * H5_18 + fb_x_z * H5_14;
-      const T H5_1_2 = fb_x_x * H5_15 - H4_34 + fb_x_y * H5_18 - fb_x_z * H5_12;
-      const T H5_1_3 = H4_24 * fa_x_x;
-      const T H5_2_2 = H4_14 * dir_fa_x_x_fb_x_y;
-      const T H5_3_2 = H5_15 - H5_2_2;
-      const T H5_4_2 = H5_1_3 - fa_x_x * H5_12 + fa_x_y * H5_14 + fa_x_z * H5_3_2;
-      const T H5_5_2 = H4_14 * H5_6 + fa_x_x * H5_18 + fa_x_y * H5_15 - fa_x_z * H5_14;
-      const T H5_1_4 = fa_x_z * H5_12 - H4_5_2 - fa_x_y * H5_18 + fa_x_x * H5_3_2;
-      const T H6_1 = H4_7 * H4_15;
-      const T H6_2 = H4_4 + H4_1;
-      const T H6_3 = H6_2 * dir_fa_x_x_fb_x_z;
-      const T H6_4 = H5_5 + H4_18;
-      const T H6_5 = H4_13 * fa_x_x_fb_x_z;
-      const T H6_6 = fa_x_x * fb_x_x_dir_fa_x_x_fb_x_y - fa_x_y * fb_x_x_dir_fa_x_x_fb_x_x;
-      const T H6_7 = H4_25 * fa_x_x_fb_x_z;
-      const T H6_8 = H6_7 - H4_22 * H6_6;
-      const T H6_9 = T(2) * H6_8 * fa_x_x_fb_x_len - H4_15 * (fb_x_z * H6_4 - H6_3) - H6_5;
-      const T H6_10 = H6_1 + H6_9 * dir_fa_x_x_fb_x_y;
-      const T H6_11 = H4_9 * H4_15;
-      const T H6_12 = H6_11 + H6_9 * dir_fa_x_x_fb_x_x;
-      const T H6_13 = H4_13 * H6_6 + T(2) * H6_8 * dot_fa_x_fb_x;
-      const T H6_14 = fb_x_x * H6_10 - fb_x_y * H6_12 + fb_x_z * H6_13;
-      const T H6_15 = H4_15 * H6_2;
-      const T H6_16 = H6_9 * dir_fa_x_x_fb_x_z - H6_15;
-      const T H6_17 = fb_x_y * H6_13 - H5_1 - fb_x_x * H6_16 + fb_x_z * H6_12;
-      const T H6_1_2 = fb_x_x * H6_13 - H4_12 + fb_x_y * H6_16 - fb_x_z * H6_10;
-      const T H6_1_3 = H4_14 * H6_4 - fa_x_x * H6_10 + fa_x_y * H6_12 + fa_x_z * H6_13;
-      const T H6_2_2 = H4_14 * dir_fa_x_x_fb_x_z;
-      const T H6_3_2 = H6_13 - H6_2_2;
-      const T H6_4_2 = fa_x_x * H6_16 - H5_1_3 - fa_x_z * H6_12 + fa_x_y * H6_3_2;
-      const T H6_1_4 = H4_1_3 - fa_x_y * H6_16 + fa_x_z * H6_10 + fa_x_x * H6_3_2;
-      const T H10_1 = H4_24 * fb_x_y;
-      const T H10_2 = fb_x_y * dir_fa_x_x_fb_x_y;
-      const T H10_3 = fb_x_z * dir_fa_x_x_fb_x_z;
-      const T H10_4 = H10_2 + H10_3;
-      const T fa_x_x_dir_fa_x_x_fb_x_z = fa_x_x * dir_fa_x_x_fb_x_y - fa_x_y * dir_fa_x_x_fb_x_x;
-      const T fa_x_x_dir_fa_x_x_fb_x_x = fa_x_y * dir_fa_x_x_fb_x_z - fa_x_z * dir_fa_x_x_fb_x_y;
-      const T fa_x_x_dir_fa_x_x_fb_x_y = fa_x_z * dir_fa_x_x_fb_x_x - fa_x_x * dir_fa_x_x_fb_x_z;
-      const T H10_5 = fb_x_y * fa_x_x_dir_fa_x_x_fb_x_z - fb_x_z * fa_x_x_dir_fa_x_x_fb_x_y;
-      const T H10_6 = H4_22 * H10_5 - H4_26;
-      const T H10_7 = H4_15 * (fa_x_x * H10_4 - H4_17) + H4_21 + T(2) * H10_6 * fa_x_x_fb_x_len;
-      const T H10_8 = H10_7 * dir_fa_x_x_fb_x_y - H5_13;
-      const T H10_9 = H4_30 + H10_7 * dir_fa_x_x_fb_x_x;
-      const T H10_10 = T(2) * H10_6 * dot_fa_x_fb_x - H4_13 * H10_5;
-      const T H10_11 = H4_2_2 + H10_10;
-      const T H10_12 = fb_x_x * H10_8 - H10_1 - fb_x_y * H10_9 + fb_x_z * H10_11;
-      const T H10_13 = H4_24 * fb_x_z;
-      const T H10_14 = H10_7 * dir_fa_x_x_fb_x_z - H6_11;
-      const T H10_15 = H10_13 - fb_x_x * H10_14 + fb_x_z * H10_9 + fb_x_y * H10_11;
-      const T H10_1_2 = fb_x_x * H10_10 - H4_14 * H10_4 + fb_x_y * H10_14 - fb_x_z * H10_8;
-      const T H10_1_3 = lambda[0] * H4_11 *
-          (fa_x_y * fa_x_x_fb_x_len + dot_fa_x_fb_x * fa_x_x_dir_fa_x_x_fb_x_y);
-      const T H10_2_2 = H10_1_3 - fa_x_x * H10_8 + fa_x_y * H10_9 + fa_x_z * H10_10;
-      const T H10_3_2 = lambda[0] * H4_11 *
-          (fa_x_z * fa_x_x_fb_x_len + dot_fa_x_fb_x * fa_x_x_dir_fa_x_x_fb_x_z);
-      const T H10_4_2 = fa_x_x * H10_14 - H10_3_2 + fa_x_y * H10_10 - fa_x_z * H10_9;
-      const T H10_1_4 = fa_x_x * H10_10 - fa_x_y * H10_14 + fa_x_z * H10_8;
-      const T H11_1 = H4_24 * fb_x_x;
-      const T H11_2 = fb_x_x * dir_fa_x_x_fb_x_x;
-      const T H11_3 = H11_2 + H10_3;
-      const T H11_4 = fb_x_z * fa_x_x_dir_fa_x_x_fb_x_x - fb_x_x * fa_x_x_dir_fa_x_x_fb_x_z;
-      const T H11_5 = H4_22 * H11_4 - H5_9;
-      const T H11_6 = H4_15 * (fa_x_y * H11_3 - H5_4) + H5_7 + T(2) * H11_5 * fa_x_x_fb_x_len;
-      const T H11_7 = H5_3 + H11_6 * dir_fa_x_x_fb_x_y;
-      const T H11_8 = H11_6 * dir_fa_x_x_fb_x_x - H4_16;
-      const T H11_9 = T(2) * H11_5 * dot_fa_x_fb_x - H4_13 * H11_4;
-      const T H11_10 = H5_2_2 + H11_9;
-      const T H11_11 = H11_1 + fb_x_x * H11_7 - fb_x_y * H11_8 + fb_x_z * H11_10;
-      const T H11_12 = H11_6 * dir_fa_x_x_fb_x_z - H6_1;
-      const T H11_13 = fb_x_y * H11_9 - H4_14 * H11_3 - fb_x_x * H11_12 + fb_x_z * H11_8;
-      const T H11_1_2 = fb_x_y * H11_12 - H10_13 - fb_x_z * H11_7 + fb_x_x * H11_10;
-      const T H11_1_3 = lambda[0] * H4_11 *
-          (fa_x_x * fa_x_x_fb_x_len + dot_fa_x_fb_x * fa_x_x_dir_fa_x_x_fb_x_x);
-      const T H11_2_2 = fa_x_y * H11_8 - H11_1_3 - fa_x_x * H11_7 + fa_x_z * H11_9;
-      const T H11_3_2 = fa_x_x * H11_12 + fa_x_y * H11_9 - fa_x_z * H11_8;
-      const T H11_1_4 = H10_3_2 + fa_x_x * H11_9 - fa_x_y * H11_12 + fa_x_z * H11_7;
-      const T H12_1 = H11_2 + H10_2;
-      const T H12_2 = fb_x_x * fa_x_x_dir_fa_x_x_fb_x_y - fb_x_y * fa_x_x_dir_fa_x_x_fb_x_x;
-      const T H12_3 = H4_22 * H12_2 - H6_7;
-      const T H12_4 = H4_15 * (fa_x_z * H12_1 - H6_3) + H6_5 + T(2) * H12_3 * fa_x_x_fb_x_len;
-      const T H12_5 = H12_4 * dir_fa_x_x_fb_x_y - H5_17;
-      const T H12_6 = H12_4 * dir_fa_x_x_fb_x_x - H4_35;
-      const T H12_7 = T(2) * H12_3 * dot_fa_x_fb_x - H4_13 * H12_2;
-      const T H12_8 = fb_x_x * H12_5 - H4_14 * H12_1 - fb_x_y * H12_6 + fb_x_z * H12_7;
-      const T H12_9 = H6_15 + H12_4 * dir_fa_x_x_fb_x_z;
-      const T H12_10 = H6_2_2 + H12_7;
-      const T H12_11 = fb_x_z * H12_6 - H11_1 - fb_x_x * H12_9 + fb_x_y * H12_10;
-      const T H12_1_2 = H10_1 + fb_x_y * H12_9 - fb_x_z * H12_5 + fb_x_x * H12_10;
-      const T H12_1_3 = fa_x_y * H12_6 - fa_x_x * H12_5 + fa_x_z * H12_7;
-      const T H12_2_2 = H11_1_3 + fa_x_x * H12_9 + fa_x_y * H12_7 - fa_x_z * H12_6;
-      const T H12_1_4 = fa_x_x * H12_7 - H10_1_3 - fa_x_y * H12_9 + fa_x_z * H12_5;
-      H[3][3] = fa_x_y * H4_33 - fa_x_z * H4_37;
-      H[3][4] = fa_x_z * H4_1_2 - fa_x_x * H4_33;
-      H[3][5] = fa_x_x * H4_37 - fa_x_y * H4_1_2;
-      H[3][9] = fb_x_y * H4_4_2 - fb_x_z * H4_6_2;
-      H[3][10] = fb_x_z * H4_1_4 - fb_x_x * H4_4_2;
-      H[3][11] = fb_x_x * H4_6_2 - fb_x_y * H4_1_4;
-      H[4][3] = fa_x_y * H5_16 - fa_x_z * H5_19;
-      H[4][4] = fa_x_z * H5_1_2 - fa_x_x * H5_16;
-      H[4][5] = fa_x_x * H5_19 - fa_x_y * H5_1_2;
-      H[4][9] = fb_x_y * H5_4_2 - fb_x_z * H5_5_2;
-      H[4][10] = fb_x_z * H5_1_4 - fb_x_x * H5_4_2;
-      H[4][11] = fb_x_x * H5_5_2 - fb_x_y * H5_1_4;
-      H[5][3] = fa_x_y * H6_14 - fa_x_z * H6_17;
-      H[5][4] = fa_x_z * H6_1_2 - fa_x_x * H6_14;
-      H[5][5] = fa_x_x * H6_17 - fa_x_y * H6_1_2;
-      H[5][9] = fb_x_y * H6_1_3 - fb_x_z * H6_4_2;
-      H[5][10] = fb_x_z * H6_1_4 - fb_x_x * H6_1_3;
-      H[5][11] = fb_x_x * H6_4_2 - fb_x_y * H6_1_4;
-      H[9][3] = fa_x_y * H10_12 - fa_x_z * H10_15;
-      H[9][4] = fa_x_z * H10_1_2 - fa_x_x * H10_12;
-      H[9][5] = fa_x_x * H10_15 - fa_x_y * H10_1_2;
-      H[9][9] = fb_x_y * H10_2_2 - fb_x_z * H10_4_2;
-      H[9][10] = fb_x_z * H10_1_4 - fb_x_x * H10_2_2;
-      H[9][11] = fb_x_x * H10_4_2 - fb_x_y * H10_1_4;
-      H[10][3] = fa_x_y * H11_11 - fa_x_z * H11_13;
-      H[10][4] = fa_x_z * H11_1_2 - fa_x_x * H11_11;
-      H[10][5] = fa_x_x * H11_13 - fa_x_y * H11_1_2;
-      H[10][9] = fb_x_y * H11_2_2 - fb_x_z * H11_3_2;
-      H[10][10] = fb_x_z * H11_1_4 - fb_x_x * H11_2_2;
-      H[10][11] = fb_x_x * H11_3_2 - fb_x_y * H11_1_4;
-      H[11][3] = fa_x_y * H12_8 - fa_x_z * H12_11;
-      H[11][4] = fa_x_z * H12_1_2 - fa_x_x * H12_8;
-      H[11][5] = fa_x_x * H12_11 - fa_x_y * H12_1_2;
-      H[11][9] = fb_x_y * H12_1_3 - fb_x_z * H12_2_2;
-      H[11][10] = fb_x_z * H12_1_4 - fb_x_x * H12_1_3;
-      H[11][11] = fb_x_x * H12_2_2 - fb_x_y * H12_1_4;
+      const T H4_1 = lambda[0] * inv_fa_x_x_fb_x_len;
+      const T H4_2 = dir_fa_x_x_fb_x_x * H4_1;
+      const T H4_3 = dir_fa_x_x_fb_x_y * H4_2;
+      const T H4_4 = H4_2 * dir_fa_x_x_fb_x_x - H4_1;
+      const T H4_5 = fb_x_y * H4_4 - H4_3 * fb_x_x;
+      const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
+          inv_fa_x_x_fb_x_len, T(0));
+      const T H4_6 = H4_2 * dir_fa_x_x_fb_x_z;
+      const T H4_7 = H4_6 * fb_x_x - fb_x_z * H4_4;
+      const T H4_8 = fa_x_z * H4_7 - fa_x_y * H4_5;
+      const T H4_1_2 = H4_6 * fb_x_y;
+      const T H4_2_2 = H4_3 * fb_x_z;
+      const T H4_3_2 = H4_2_2 - H4_1_2;
+      const T H4_4_2 = fa_x_x * H4_5 - fa_x_z * H4_3_2;
+      const T H4_1_3 = fa_x_y * H4_3_2 - fa_x_x * H4_7;
+      const T H4_1_4 = H4_3 * fa_x_x - fa_x_y * H4_4;
+      const T H4_2_3 = fa_x_z * H4_4 - H4_6 * fa_x_x;
+      const T H4_3_3 = fb_x_z * H4_2_3 - fb_x_y * H4_1_4;
+      const T H4_1_5 = H4_6 * fa_x_y;
+      const T H4_2_4 = H4_3 * fa_x_z;
+      const T H4_3_4 = H4_1_5 - H4_2_4;
+      const T H4_4_3 = fb_x_x * H4_1_4 - fb_x_z * H4_3_4;
+      const T H4_1_6 = fb_x_y * H4_3_4 - fb_x_x * H4_2_3;
+      const T H5_1 = H4_1 * (dir_fa_x_x_fb_x_y * dir_fa_x_x_fb_x_y - T(1));
+      const T H5_2 = H4_3 * fb_x_y - fb_x_x * H5_1;
+      const T H5_3 = H4_1 * dir_fa_x_x_fb_x_z;
+      const T H5_4 = dir_fa_x_x_fb_x_y * H5_3;
+      const T H5_5 = H5_4 * fb_x_x;
+      const T H5_6 = H5_5 - H4_2_2;
+      const T H5_7 = fa_x_z * H5_6 - fa_x_y * H5_2;
+      const T H5_1_2 = fb_x_z * H5_1 - H5_4 * fb_x_y;
+      const T H5_2_2 = fa_x_x * H5_2 - fa_x_z * H5_1_2;
+      const T H5_1_3 = fa_x_y * H5_1_2 - fa_x_x * H5_6;
+      const T H5_1_4 = fa_x_x * H5_1 - H4_3 * fa_x_y;
+      const T H5_2_3 = H5_4 * fa_x_x;
+      const T H5_3_2 = H4_2_4 - H5_2_3;
+      const T H5_4_2 = fb_x_z * H5_3_2 - fb_x_y * H5_1_4;
+      const T H5_1_5 = H5_4 * fa_x_y - fa_x_z * H5_1;
+      const T H5_2_4 = fb_x_x * H5_1_4 - fb_x_z * H5_1_5;
+      const T H5_1_6 = fb_x_y * H5_1_5 - fb_x_x * H5_3_2;
+      const T H6_1 = H4_1_2 - H5_5;
+      const T H6_2 = H5_3 * dir_fa_x_x_fb_x_z - H4_1;
+      const T H6_3 = fb_x_x * H6_2 - H4_6 * fb_x_z;
+      const T H6_4 = fa_x_z * H6_3 - fa_x_y * H6_1;
+      const T H6_1_2 = H5_4 * fb_x_z - fb_x_y * H6_2;
+      const T H6_2_2 = fa_x_x * H6_1 - fa_x_z * H6_1_2;
+      const T H6_1_3 = fa_x_y * H6_1_2 - fa_x_x * H6_3;
+      const T H6_1_4 = H5_2_3 - H4_1_5;
+      const T H6_2_3 = H4_6 * fa_x_z - fa_x_x * H6_2;
+      const T H6_3_2 = fb_x_z * H6_2_3 - fb_x_y * H6_1_4;
+      const T H6_1_5 = fa_x_y * H6_2 - H5_4 * fa_x_z;
+      const T H6_2_4 = fb_x_x * H6_1_4 - fb_x_z * H6_1_5;
+      const T H6_1_6 = fb_x_y * H6_1_5 - fb_x_x * H6_2_3;
+      H[3][3] = H4_8;
+      H[3][4] = H4_4_2;
+      H[3][5] = H4_1_3;
+      H[3][9] = H4_3_3;
+      H[3][10] = H4_4_3;
+      H[3][11] = H4_1_6;
+      H[4][3] = H5_7;
+      H[4][4] = H5_2_2;
+      H[4][5] = H5_1_3;
+      H[4][9] = H5_4_2;
+      H[4][10] = H5_2_4;
+      H[4][11] = H5_1_6;
+      H[5][3] = H6_4;
+      H[5][4] = H6_2_2;
+      H[5][5] = H6_1_3;
+      H[5][9] = H6_3_2;
+      H[5][10] = H6_2_4;
+      H[5][11] = H6_1_6;
+      H[9][3] = -H4_8;
+      H[9][4] = -H4_4_2;
+      H[9][5] = -H4_1_3;
+      H[9][9] = -H4_3_3;
+      H[9][10] = -H4_4_3;
+      H[9][11] = -H4_1_6;
+      H[10][3] = -H5_7;
+      H[10][4] = -H5_2_2;
+      H[10][5] = -H5_1_3;
+      H[10][9] = -H5_4_2;
+      H[10][10] = -H5_2_4;
+      H[10][11] = -H5_1_6;
+      H[11][3] = -H6_4;
+      H[11][4] = -H6_2_2;
+      H[11][5] = -H6_1_3;
+      H[11][9] = -H6_3_2;
+      H[11][10] = -H6_2_4;
+      H[11][11] = -H6_1_6;
     }
 
     struct a_immovable;
@@ -2507,67 +2347,23 @@ struct swing_twist::twist::b_immovable : swing_twist::twist {
 struct swing_twist::swing::a_immovable : swing_twist::swing {
   static constexpr int immovable_body = 0;
 
-  template <class T>
-  struct Jacobian {
-    T wb_x, wb_y, wb_z;
-  };
-
-  // C and J: 29 +, 55 *, 2 /, 1 sqrt, 5 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
-    const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
-    const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y * fa_x_x_fb_x_y +
-        fa_x_x_fb_x_x * fa_x_x_fb_x_x);
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T wb_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
-    const T wb_x_2 = fa_x_x_fb_x_len * wb_x_1;
-    const T wb_x_3 = dot_fa_x_fb_x * wb_x_1;
-    const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
-    const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
-        inv_fa_x_x_fb_x_len, T(1));
-    const T dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
-        inv_fa_x_x_fb_x_len, T(0));
-    const T fa_x_x_dir_fa_x_x_fb_x_z = fa_x_x * dir_fa_x_x_fb_x_y - fa_x_y * dir_fa_x_x_fb_x_x;
-    const T wb_x_4 = wb_x_2 * fa_x_z + wb_x_3 * fa_x_x_dir_fa_x_x_fb_x_z;
-    const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
-        inv_fa_x_x_fb_x_len, T(0));
-    const T fa_x_x_dir_fa_x_x_fb_x_x = fa_x_y * dir_fa_x_x_fb_x_z - fa_x_z * dir_fa_x_x_fb_x_y;
-    const T fa_x_x_dir_fa_x_x_fb_x_y = fa_x_z * dir_fa_x_x_fb_x_x - fa_x_x * dir_fa_x_x_fb_x_z;
-    const T wb_x_5 = wb_x_2 * fa_x_y + wb_x_3 * fa_x_x_dir_fa_x_x_fb_x_y;
-    const T wb_y_1 = wb_x_2 * fa_x_x + wb_x_3 * fa_x_x_dir_fa_x_x_fb_x_x;
-    C[0] = atan2(fa_x_x_fb_x_len, dot_fa_x_fb_x);
-    J.wb_x = fb_x_z * wb_x_5 - fb_x_y * wb_x_4;
-    J.wb_y = fb_x_x * wb_x_4 - fb_x_z * wb_y_1;
-    J.wb_z = fb_x_y * wb_y_1 - fb_x_x * wb_x_5;
-  }
-
   // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& mb = m[1];
-    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
-        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
-        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    K[0] = J.dir_fa_x_x_fb_x_x * (mb.Ixx * J.dir_fa_x_x_fb_x_x + mb.Ixy * J.dir_fa_x_x_fb_x_y +
+        mb.Ixz * J.dir_fa_x_x_fb_x_z) + J.dir_fa_x_x_fb_x_y *
+        (mb.Ixy * J.dir_fa_x_x_fb_x_x + mb.Iyy * J.dir_fa_x_x_fb_x_y + mb.Iyz *
+        J.dir_fa_x_x_fb_x_z) + J.dir_fa_x_x_fb_x_z *
+        (mb.Ixz * J.dir_fa_x_x_fb_x_x + mb.Iyz * J.dir_fa_x_x_fb_x_y + mb.Izz *
+        J.dir_fa_x_x_fb_x_z);
   }
 
   // J v: 2 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.wb_x * vb.wx + J.wb_y * vb.wy + J.wb_z * vb.wz;
+    Jv[0] = J.dir_fa_x_x_fb_x_x * vb.wx + J.dir_fa_x_x_fb_x_y * vb.wy + J.dir_fa_x_x_fb_x_z * vb.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -2576,9 +2372,9 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
       Velocity<T> (&v)[2]) {
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
-    const T v2_1 = J.wb_x * lambda[0];
-    const T v2_2 = lambda[0] * J.wb_y;
-    const T v2_3 = lambda[0] * J.wb_z;
+    const T v2_1 = J.dir_fa_x_x_fb_x_x * lambda[0];
+    const T v2_2 = lambda[0] * J.dir_fa_x_x_fb_x_y;
+    const T v2_3 = lambda[0] * J.dir_fa_x_x_fb_x_z;
     v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
     v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
     v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
@@ -2590,9 +2386,9 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][9] = J.wb_x;
-    D[0][10] = J.wb_y;
-    D[0][11] = J.wb_z;
+    D[0][9] = J.dir_fa_x_x_fb_x_x;
+    D[0][10] = J.dir_fa_x_x_fb_x_y;
+    D[0][11] = J.dir_fa_x_x_fb_x_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
@@ -2603,17 +2399,19 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& mb = m[1];
-    D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
-    D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
-    D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+    D[0][9] = mb.Ixx * J.dir_fa_x_x_fb_x_x + mb.Ixy * J.dir_fa_x_x_fb_x_y + mb.Ixz *
+        J.dir_fa_x_x_fb_x_z;
+    D[0][10] = mb.Ixy * J.dir_fa_x_x_fb_x_x + mb.Iyy * J.dir_fa_x_x_fb_x_y + mb.Iyz *
+        J.dir_fa_x_x_fb_x_z;
+    D[0][11] = mb.Ixz * J.dir_fa_x_x_fb_x_x + mb.Iyz * J.dir_fa_x_x_fb_x_y + mb.Izz *
+        J.dir_fa_x_x_fb_x_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: nothing
   template <class T>
-  static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
-      T (&K)[1]) {
+  static void effective_mass(const Jacobian<T>&, const IsotropicInverseMass<T> (&m)[2], T (&K)[1]) {
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    K[0] = mb.I;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -2623,9 +2421,9 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
     const Velocity<T> vb = v[1];
     const IsotropicInverseMass<T>& mb = m[1];
     const T v2_1 = mb.I * lambda[0];
-    v[1].wx = vb.wx + v2_1 * J.wb_x;
-    v[1].wy = vb.wy + v2_1 * J.wb_y;
-    v[1].wz = vb.wz + v2_1 * J.wb_z;
+    v[1].wx = vb.wx + v2_1 * J.dir_fa_x_x_fb_x_x;
+    v[1].wy = vb.wy + v2_1 * J.dir_fa_x_x_fb_x_y;
+    v[1].wz = vb.wz + v2_1 * J.dir_fa_x_x_fb_x_z;
   }
 
   // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
@@ -2636,9 +2434,9 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& mb = m[1];
-    D[0][9] = mb.I * J.wb_x;
-    D[0][10] = mb.I * J.wb_y;
-    D[0][11] = mb.I * J.wb_z;
+    D[0][9] = mb.I * J.dir_fa_x_x_fb_x_x;
+    D[0][10] = mb.I * J.dir_fa_x_x_fb_x_y;
+    D[0][11] = mb.I * J.dir_fa_x_x_fb_x_z;
   }
 
   // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
@@ -2648,9 +2446,9 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+    D[0][9] = J.dir_fa_x_x_fb_x_x * b.xx + J.dir_fa_x_x_fb_x_y * b.yx + J.dir_fa_x_x_fb_x_z * b.zx;
+    D[0][10] = J.dir_fa_x_x_fb_x_x * b.xy + J.dir_fa_x_x_fb_x_y * b.yy + J.dir_fa_x_x_fb_x_z * b.zy;
+    D[0][11] = J.dir_fa_x_x_fb_x_x * b.xz + J.dir_fa_x_x_fb_x_y * b.yz + J.dir_fa_x_x_fb_x_z * b.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
@@ -2660,13 +2458,17 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+    D[0][10] = -T(2) * (J.dir_fa_x_x_fb_x_x * b.e1 + J.dir_fa_x_x_fb_x_y * b.e2 +
+        J.dir_fa_x_x_fb_x_z * b.e3);
+    D[0][11] = T(2) * (J.dir_fa_x_x_fb_x_x * b.e0 + J.dir_fa_x_x_fb_x_y * b.e3 -
+        J.dir_fa_x_x_fb_x_z * b.e2);
+    D[0][12] = T(2) * (J.dir_fa_x_x_fb_x_y * b.e0 - J.dir_fa_x_x_fb_x_x * b.e3 +
+        J.dir_fa_x_x_fb_x_z * b.e1);
+    D[0][13] = T(2) * (J.dir_fa_x_x_fb_x_x * b.e2 - J.dir_fa_x_x_fb_x_y * b.e1 +
+        J.dir_fa_x_x_fb_x_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 50 +, 88 *, 2 /, 1 sqrt, 5 <
+  // -Jdot v - d/dt(dC/dt): 31 +, 52 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -2678,56 +2480,36 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+    const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+    const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+    const T w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_fb_x_y - fa_x_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_fb_x_z - fa_x_z * w_b_x_fb_x_x;
     const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
     const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
     const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
     const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y * fa_x_x_fb_x_y +
         fa_x_x_fb_x_x * fa_x_x_fb_x_x);
-    const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-    const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_w_b_x_fb_x_x - fa_x_x * w_b_x_w_b_x_fb_x_y;
     const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
-    const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
-        inv_fa_x_x_fb_x_len, T(0));
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_w_b_x_fb_x_y - fa_x_y * w_b_x_w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_w_b_x_fb_x_z - fa_x_z * w_b_x_w_b_x_fb_x_x;
     const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
         inv_fa_x_x_fb_x_len, T(1));
     const T dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
         inv_fa_x_x_fb_x_len, T(0));
-    const T dot_w_b_x_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x = w_b_x_w_b_x_fb_x_x_fa_x_z *
-        dir_fa_x_x_fb_x_z + w_b_x_w_b_x_fb_x_x_fa_x_y * dir_fa_x_x_fb_x_y +
-        w_b_x_w_b_x_fb_x_x_fa_x_x * dir_fa_x_x_fb_x_x;
-    const T w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_fb_x_y - fa_x_y * w_b_x_fb_x_z;
-    const T w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_fb_x_z - fa_x_z * w_b_x_fb_x_x;
     const T w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_fb_x_x - fa_x_x * w_b_x_fb_x_y;
+    const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
+        inv_fa_x_x_fb_x_len, T(0));
     const T dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x = w_b_x_fb_x_x_fa_x_y * dir_fa_x_x_fb_x_y +
         w_b_x_fb_x_x_fa_x_z * dir_fa_x_x_fb_x_z + w_b_x_fb_x_x_fa_x_x * dir_fa_x_x_fb_x_x;
-    const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y * w_b_x_w_b_x_fb_x_y +
-        fa_x_z * w_b_x_w_b_x_fb_x_z;
-    const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-        w_b_x_fb_x_z;
-    g[0] = g1_1 * ((dot_w_b_x_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x +
-        ((dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_y - w_b_x_fb_x_x_fa_x_y) *
-        w_b_x_fb_x_x_fa_x_y + (dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_z -
-        w_b_x_fb_x_x_fa_x_z) * w_b_x_fb_x_x_fa_x_z +
-        (dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_x - w_b_x_fb_x_x_fa_x_x) *
-        w_b_x_fb_x_x_fa_x_x) * inv_fa_x_x_fb_x_len) * dot_fa_x_fb_x + dot_w_b_x_w_b_x_fb_x_fa_x *
-        fa_x_x_fb_x_len - T(2) * (dot_fa_x_fb_x * dot_w_b_x_fb_x_fa_x -
-        dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x * fa_x_x_fb_x_len) *
-        (dot_fa_x_fb_x * dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x + dot_w_b_x_fb_x_fa_x *
-        fa_x_x_fb_x_len) * g1_1);
+    g[0] = -(vb.wx * (dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_x -
+        w_b_x_fb_x_x_fa_x_x) + vb.wy *
+        (dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_y - w_b_x_fb_x_x_fa_x_y) + vb.wz *
+        (dot_w_b_x_fb_x_x_fa_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_z - w_b_x_fb_x_x_fa_x_z)) *
+        inv_fa_x_x_fb_x_len;
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 91 +, 162 *, 2 /, 1 sqrt, 5 <
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 38 +, 73 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[12][12]) {
@@ -2741,116 +2523,6 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T H10_1 = fb_x_y * fa_x_x;
-    const T H10_2 = fa_x_y * fb_x_x;
-    const T fa_x_x_fb_x_z = H10_1 - H10_2;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H10_3 = fa_x_y * fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H10_4 = fb_x_y * fa_x_z;
-    const T fa_x_x_fb_x_x = H10_3 - H10_4;
-    const T H10_5 = fa_x_x * fb_x_z;
-    const T H10_6 = fb_x_x * fa_x_z;
-    const T fa_x_x_fb_x_y = H10_6 - H10_5;
-    const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y * fa_x_x_fb_x_y +
-        fa_x_x_fb_x_x * fa_x_x_fb_x_x);
-    const T H10_7 = fa_x_y * fb_x_y;
-    const T H10_8 = fa_x_z * fb_x_z;
-    const T H10_9 = H10_7 + H10_8;
-    const T H10_10 = fa_x_x * fb_x_x;
-    const T dot_fa_x_fb_x = H10_9 + H10_10;
-    const T H10_11 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
-    const T H10_12 = fa_x_x_fb_x_len * H10_11;
-    const T H10_13 = dot_fa_x_fb_x * H10_11;
-    const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
-    const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
-        inv_fa_x_x_fb_x_len, T(0));
-    const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
-        inv_fa_x_x_fb_x_len, T(1));
-    const T dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
-        inv_fa_x_x_fb_x_len, T(0));
-    const T fa_x_x_dir_fa_x_x_fb_x_x = fa_x_y * dir_fa_x_x_fb_x_z - fa_x_z * dir_fa_x_x_fb_x_y;
-    const T fa_x_x_dir_fa_x_x_fb_x_y = fa_x_z * dir_fa_x_x_fb_x_x - fa_x_x * dir_fa_x_x_fb_x_z;
-    const T H10_14 = lambda[0] * (H10_12 * fa_x_y + H10_13 * fa_x_x_dir_fa_x_x_fb_x_y);
-    const T H10_15 = lambda[0] * H10_11;
-    const T H10_16 = dot_fa_x_fb_x * H10_15;
-    const T H10_17 = inv_fa_x_x_fb_x_len * H10_16;
-    const T H10_18 = H10_11 * H10_16;
-    const T fa_x_x_dir_fa_x_x_fb_x_z = fa_x_x * dir_fa_x_x_fb_x_y - fa_x_y * dir_fa_x_x_fb_x_x;
-    const T H10_19 = fb_x_y * fa_x_x_dir_fa_x_x_fb_x_z - fb_x_z * fa_x_x_dir_fa_x_x_fb_x_y;
-    const T H10_20 = H10_12 * H10_15;
-    const T H10_21 = H10_20 * fa_x_x_fb_x_x - H10_18 * H10_19;
-    const T H10_22 = T(2) * H10_21 * fa_x_x_fb_x_len - H10_17 *
-        (H10_1 * dir_fa_x_x_fb_x_y + H10_5 * dir_fa_x_x_fb_x_z - H10_9 * dir_fa_x_x_fb_x_x) -
-        H10_15 * fa_x_x_fb_x_x;
-    const T H10_23 = H10_1 * H10_17 + H10_22 * dir_fa_x_x_fb_x_y;
-    const T H10_24 = H10_22 * dir_fa_x_x_fb_x_x - H10_17 * H10_9;
-    const T H10_25 = H10_15 * H10_19 + T(2) * H10_21 * dot_fa_x_fb_x;
-    const T H10_26 = H10_14 + fa_x_x * H10_23 - fa_x_y * H10_24 - fa_x_z * H10_25;
-    const T H10_27 = lambda[0] * (H10_12 * fa_x_z + H10_13 * fa_x_x_dir_fa_x_x_fb_x_z);
-    const T H10_28 = H10_5 * H10_17 + H10_22 * dir_fa_x_x_fb_x_z;
-    const T H10_29 = fa_x_z * H10_24 - H10_27 - fa_x_x * H10_28 - fa_x_y * H10_25;
-    const T H10_1_2 = fa_x_y * H10_28 - fa_x_x * H10_25 - fa_x_z * H10_23;
-    const T H11_1 = lambda[0] * (H10_12 * fa_x_x + H10_13 * fa_x_x_dir_fa_x_x_fb_x_x);
-    const T H11_2 = H10_10 + H10_8;
-    const T H11_3 = fb_x_z * fa_x_x_dir_fa_x_x_fb_x_x - fb_x_x * fa_x_x_dir_fa_x_x_fb_x_z;
-    const T H11_4 = H10_20 * fa_x_x_fb_x_y - H10_18 * H11_3;
-    const T H11_5 = T(2) * H11_4 * fa_x_x_fb_x_len - H10_17 *
-        (H10_2 * dir_fa_x_x_fb_x_x + H10_3 * dir_fa_x_x_fb_x_z - H11_2 * dir_fa_x_x_fb_x_y) -
-        H10_15 * fa_x_x_fb_x_y;
-    const T H11_6 = H11_5 * dir_fa_x_x_fb_x_y - H10_17 * H11_2;
-    const T H11_7 = H10_2 * H10_17 + H11_5 * dir_fa_x_x_fb_x_x;
-    const T H11_8 = H10_15 * H11_3 + T(2) * H11_4 * dot_fa_x_fb_x;
-    const T H11_9 = fa_x_x * H11_6 - H11_1 - fa_x_y * H11_7 - fa_x_z * H11_8;
-    const T H11_10 = H10_3 * H10_17 + H11_5 * dir_fa_x_x_fb_x_z;
-    const T H11_11 = fa_x_z * H11_7 - fa_x_x * H11_10 - fa_x_y * H11_8;
-    const T H11_1_2 = H10_27 - fa_x_x * H11_8 + fa_x_y * H11_10 - fa_x_z * H11_6;
-    const T H12_1 = H10_10 + H10_7;
-    const T H12_2 = fb_x_x * fa_x_x_dir_fa_x_x_fb_x_y - fb_x_y * fa_x_x_dir_fa_x_x_fb_x_x;
-    const T H12_3 = H10_20 * fa_x_x_fb_x_z - H10_18 * H12_2;
-    const T H12_4 = T(2) * H12_3 * fa_x_x_fb_x_len - H10_17 *
-        (H10_6 * dir_fa_x_x_fb_x_x + H10_4 * dir_fa_x_x_fb_x_y - H12_1 * dir_fa_x_x_fb_x_z) -
-        H10_15 * fa_x_x_fb_x_z;
-    const T H12_5 = H10_4 * H10_17 + H12_4 * dir_fa_x_x_fb_x_y;
-    const T H12_6 = H10_6 * H10_17 + H12_4 * dir_fa_x_x_fb_x_x;
-    const T H12_7 = H10_15 * H12_2 + T(2) * H12_3 * dot_fa_x_fb_x;
-    const T H12_8 = fa_x_x * H12_5 - fa_x_y * H12_6 - fa_x_z * H12_7;
-    const T H12_9 = H12_4 * dir_fa_x_x_fb_x_z - H10_17 * H12_1;
-    const T H12_10 = H11_1 - fa_x_x * H12_9 - fa_x_y * H12_7 + fa_x_z * H12_6;
-    const T H12_1_2 = fa_x_y * H12_9 - H10_14 - fa_x_x * H12_7 - fa_x_z * H12_5;
-    H[9][9] = fb_x_y * H10_26 - fb_x_z * H10_29;
-    H[9][10] = fb_x_z * H10_1_2 - fb_x_x * H10_26;
-    H[9][11] = fb_x_x * H10_29 - fb_x_y * H10_1_2;
-    H[10][9] = fb_x_y * H11_9 - fb_x_z * H11_11;
-    H[10][10] = fb_x_z * H11_1_2 - fb_x_x * H11_9;
-    H[10][11] = fb_x_x * H11_11 - fb_x_y * H11_1_2;
-    H[11][9] = fb_x_y * H12_8 - fb_x_z * H12_10;
-    H[11][10] = fb_x_z * H12_1_2 - fb_x_x * H12_8;
-    H[11][11] = fb_x_x * H12_10 - fb_x_y * H12_1_2;
-  }
-};
-
-// swing_twist::swing with b immovable: its velocity and inverse mass are zero and gone.
-struct swing_twist::swing::b_immovable : swing_twist::swing {
-  static constexpr int immovable_body = 1;
-
-  template <class T>
-  struct Jacobian {
-    T wa_x, wa_y, wa_z;
-  };
-
-  // C and J: 29 +, 55 *, 2 /, 1 sqrt, 5 <, 1 call
-  template <class T>
-  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
-      Jacobian<T>& J) {
-    using std::atan2;
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
@@ -2858,43 +2530,68 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
     const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
     const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y * fa_x_x_fb_x_y +
         fa_x_x_fb_x_x * fa_x_x_fb_x_x);
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T wa_x_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
-    const T wa_x_2 = fa_x_x_fb_x_len * wa_x_1;
-    const T wa_x_3 = dot_fa_x_fb_x * wa_x_1;
     const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
     const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
         inv_fa_x_x_fb_x_len, T(1));
     const T dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
         inv_fa_x_x_fb_x_len, T(0));
-    const T fb_x_x_dir_fa_x_x_fb_x_z = fb_x_x * dir_fa_x_x_fb_x_y - fb_x_y * dir_fa_x_x_fb_x_x;
-    const T wa_x_4 = wa_x_3 * fb_x_x_dir_fa_x_x_fb_x_z - wa_x_2 * fb_x_z;
+    const T H10_1 = lambda[0] * inv_fa_x_x_fb_x_len;
+    const T H10_2 = dir_fa_x_x_fb_x_x * H10_1;
+    const T H10_3 = dir_fa_x_x_fb_x_y * H10_2;
+    const T H10_4 = H10_2 * dir_fa_x_x_fb_x_x - H10_1;
+    const T H10_5 = fa_x_y * H10_4 - H10_3 * fa_x_x;
     const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
         inv_fa_x_x_fb_x_len, T(0));
-    const T fb_x_x_dir_fa_x_x_fb_x_x = fb_x_y * dir_fa_x_x_fb_x_z - fb_x_z * dir_fa_x_x_fb_x_y;
-    const T fb_x_x_dir_fa_x_x_fb_x_y = fb_x_z * dir_fa_x_x_fb_x_x - fb_x_x * dir_fa_x_x_fb_x_z;
-    const T wa_x_5 = wa_x_3 * fb_x_x_dir_fa_x_x_fb_x_y - wa_x_2 * fb_x_y;
-    const T wa_y_1 = wa_x_3 * fb_x_x_dir_fa_x_x_fb_x_x - wa_x_2 * fb_x_x;
-    C[0] = atan2(fa_x_x_fb_x_len, dot_fa_x_fb_x);
-    J.wa_x = fa_x_y * wa_x_4 - fa_x_z * wa_x_5;
-    J.wa_y = fa_x_z * wa_y_1 - fa_x_x * wa_x_4;
-    J.wa_z = fa_x_x * wa_x_5 - fa_x_y * wa_y_1;
+    const T H10_6 = H10_2 * dir_fa_x_x_fb_x_z;
+    const T H10_7 = H10_6 * fa_x_x - fa_x_z * H10_4;
+    const T H10_1_2 = H10_6 * fa_x_y;
+    const T H10_2_2 = H10_3 * fa_x_z;
+    const T H10_3_2 = H10_2_2 - H10_1_2;
+    const T H11_1 = H10_1 * (dir_fa_x_x_fb_x_y * dir_fa_x_x_fb_x_y - T(1));
+    const T H11_2 = H10_3 * fa_x_y - fa_x_x * H11_1;
+    const T H11_3 = H10_1 * dir_fa_x_x_fb_x_z;
+    const T H11_4 = dir_fa_x_x_fb_x_y * H11_3;
+    const T H11_5 = H11_4 * fa_x_x;
+    const T H11_6 = H11_5 - H10_2_2;
+    const T H11_1_2 = fa_x_z * H11_1 - H11_4 * fa_x_y;
+    const T H12_1 = H10_1_2 - H11_5;
+    const T H12_2 = H11_3 * dir_fa_x_x_fb_x_z - H10_1;
+    const T H12_3 = fa_x_x * H12_2 - H10_6 * fa_x_z;
+    const T H12_1_2 = H11_4 * fa_x_z - fa_x_y * H12_2;
+    H[9][9] = fb_x_z * H10_7 - fb_x_y * H10_5;
+    H[9][10] = fb_x_x * H10_5 - fb_x_z * H10_3_2;
+    H[9][11] = fb_x_y * H10_3_2 - fb_x_x * H10_7;
+    H[10][9] = fb_x_z * H11_6 - fb_x_y * H11_2;
+    H[10][10] = fb_x_x * H11_2 - fb_x_z * H11_1_2;
+    H[10][11] = fb_x_y * H11_1_2 - fb_x_x * H11_6;
+    H[11][9] = fb_x_z * H12_3 - fb_x_y * H12_1;
+    H[11][10] = fb_x_x * H12_1 - fb_x_z * H12_1_2;
+    H[11][11] = fb_x_y * H12_1_2 - fb_x_x * H12_3;
   }
+};
+
+// swing_twist::swing with b immovable: its velocity and inverse mass are zero and gone.
+struct swing_twist::swing::b_immovable : swing_twist::swing {
+  static constexpr int immovable_body = 1;
 
   // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = J.dir_fa_x_x_fb_x_x * (ma.Ixx * J.dir_fa_x_x_fb_x_x + ma.Ixy * J.dir_fa_x_x_fb_x_y +
+        ma.Ixz * J.dir_fa_x_x_fb_x_z) + J.dir_fa_x_x_fb_x_y *
+        (ma.Ixy * J.dir_fa_x_x_fb_x_x + ma.Iyy * J.dir_fa_x_x_fb_x_y + ma.Iyz *
+        J.dir_fa_x_x_fb_x_z) + J.dir_fa_x_x_fb_x_z *
+        (ma.Ixz * J.dir_fa_x_x_fb_x_x + ma.Iyz * J.dir_fa_x_x_fb_x_y + ma.Izz *
+        J.dir_fa_x_x_fb_x_z);
   }
 
-  // J v: 2 +, 3 *
+  // J v: 3 +, 3 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+    Jv[0] = -J.dir_fa_x_x_fb_x_x * va.wx - J.dir_fa_x_x_fb_x_y * va.wy - J.dir_fa_x_x_fb_x_z *
+        va.wz;
   }
 
   // v += M^-1 J^T lambda: 9 +, 12 *
@@ -2903,26 +2600,26 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_x * lambda[0];
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
-    v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    const T v1_1 = J.dir_fa_x_x_fb_x_x * lambda[0];
+    const T v1_2 = lambda[0] * J.dir_fa_x_x_fb_x_y;
+    const T v1_3 = lambda[0] * J.dir_fa_x_x_fb_x_z;
+    v[0].wx = va.wx - v1_1 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: nothing
+  // J with its zeros: v, w of each body: 3 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.dir_fa_x_x_fb_x_x;
+    D[0][4] = -J.dir_fa_x_x_fb_x_y;
+    D[0][5] = -J.dir_fa_x_x_fb_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  // (M^-1 J^T)^T, laid out like dense: 9 +, 9 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2930,17 +2627,19 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
       for (T& entry : row) entry = T(0);
     }
     const InverseMass<T>& ma = m[0];
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.dir_fa_x_x_fb_x_x - ma.Ixy * J.dir_fa_x_x_fb_x_y - ma.Ixz *
+        J.dir_fa_x_x_fb_x_z;
+    D[0][4] = -ma.Ixy * J.dir_fa_x_x_fb_x_x - ma.Iyy * J.dir_fa_x_x_fb_x_y - ma.Iyz *
+        J.dir_fa_x_x_fb_x_z;
+    D[0][5] = -ma.Ixz * J.dir_fa_x_x_fb_x_x - ma.Iyz * J.dir_fa_x_x_fb_x_y - ma.Izz *
+        J.dir_fa_x_x_fb_x_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: nothing
   template <class T>
-  static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
-      T (&K)[1]) {
+  static void effective_mass(const Jacobian<T>&, const IsotropicInverseMass<T> (&m)[2], T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    K[0] = ma.I;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
@@ -2950,12 +2649,12 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
     const T v1_1 = ma.I * lambda[0];
-    v[0].wx = va.wx + v1_1 * J.wa_x;
-    v[0].wy = va.wy + v1_1 * J.wa_y;
-    v[0].wz = va.wz + v1_1 * J.wa_z;
+    v[0].wx = va.wx - v1_1 * J.dir_fa_x_x_fb_x_x;
+    v[0].wy = va.wy - v1_1 * J.dir_fa_x_x_fb_x_y;
+    v[0].wz = va.wz - v1_1 * J.dir_fa_x_x_fb_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 3 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2963,21 +2662,21 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
       for (T& entry : row) entry = T(0);
     }
     const IsotropicInverseMass<T>& ma = m[0];
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.dir_fa_x_x_fb_x_x;
+    D[0][4] = -ma.I * J.dir_fa_x_x_fb_x_y;
+    D[0][5] = -ma.I * J.dir_fa_x_x_fb_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.dir_fa_x_x_fb_x_x * a.xx - J.dir_fa_x_x_fb_x_y * a.yx - J.dir_fa_x_x_fb_x_z * a.zx;
+    D[0][4] = -J.dir_fa_x_x_fb_x_x * a.xy - J.dir_fa_x_x_fb_x_y * a.yy - J.dir_fa_x_x_fb_x_z * a.zy;
+    D[0][5] = -J.dir_fa_x_x_fb_x_x * a.xz - J.dir_fa_x_x_fb_x_y * a.yz - J.dir_fa_x_x_fb_x_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
@@ -2987,13 +2686,17 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.dir_fa_x_x_fb_x_x * a.e1 + J.dir_fa_x_x_fb_x_y * a.e2 +
+        J.dir_fa_x_x_fb_x_z * a.e3);
+    D[0][4] = T(2) * (J.dir_fa_x_x_fb_x_z * a.e2 - J.dir_fa_x_x_fb_x_x * a.e0 -
+        J.dir_fa_x_x_fb_x_y * a.e3);
+    D[0][5] = T(2) * (J.dir_fa_x_x_fb_x_x * a.e3 - J.dir_fa_x_x_fb_x_y * a.e0 -
+        J.dir_fa_x_x_fb_x_z * a.e1);
+    D[0][6] = T(2) * (J.dir_fa_x_x_fb_x_y * a.e1 - J.dir_fa_x_x_fb_x_x * a.e2 -
+        J.dir_fa_x_x_fb_x_z * a.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 50 +, 88 *, 2 /, 1 sqrt, 5 <
+  // -Jdot v - d/dt(dC/dt): 30 +, 52 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -3001,60 +2704,40 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
     const Pose<T>& a = q[0];
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+    const T w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_fa_x_y - fb_x_y * w_a_x_fa_x_z;
+    const T w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_fa_x_z - fb_x_z * w_a_x_fa_x_x;
     const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
     const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
     const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
     const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y * fa_x_x_fb_x_y +
         fa_x_x_fb_x_x * fa_x_x_fb_x_x);
-    const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_w_a_x_fa_x_x - fb_x_x * w_a_x_w_a_x_fa_x_y;
     const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
-    const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
-        inv_fa_x_x_fb_x_len, T(0));
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_w_a_x_fa_x_y - fb_x_y * w_a_x_w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_w_a_x_fa_x_z - fb_x_z * w_a_x_w_a_x_fa_x_x;
     const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
         inv_fa_x_x_fb_x_len, T(1));
     const T dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
         inv_fa_x_x_fb_x_len, T(0));
-    const T dot_w_a_x_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x = w_a_x_w_a_x_fa_x_x_fb_x_z *
-        dir_fa_x_x_fb_x_z + w_a_x_w_a_x_fa_x_x_fb_x_y * dir_fa_x_x_fb_x_y +
-        w_a_x_w_a_x_fa_x_x_fb_x_x * dir_fa_x_x_fb_x_x;
-    const T w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_fa_x_y - fb_x_y * w_a_x_fa_x_z;
-    const T w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_fa_x_z - fb_x_z * w_a_x_fa_x_x;
     const T w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_fa_x_x - fb_x_x * w_a_x_fa_x_y;
+    const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
+        inv_fa_x_x_fb_x_len, T(0));
     const T dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x = w_a_x_fa_x_x_fb_x_y * dir_fa_x_x_fb_x_y +
         w_a_x_fa_x_x_fb_x_z * dir_fa_x_x_fb_x_z + w_a_x_fa_x_x_fb_x_x * dir_fa_x_x_fb_x_x;
-    const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y * w_a_x_w_a_x_fa_x_y +
-        fb_x_z * w_a_x_w_a_x_fa_x_z;
-    const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-        w_a_x_fa_x_z;
-    g[0] = g1_1 * (dot_w_a_x_w_a_x_fa_x_fb_x * fa_x_x_fb_x_len -
-        (dot_w_a_x_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x +
-        ((w_a_x_fa_x_x_fb_x_y - dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_y) *
-        w_a_x_fa_x_x_fb_x_y + (w_a_x_fa_x_x_fb_x_z - dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x *
-        dir_fa_x_x_fb_x_z) * w_a_x_fa_x_x_fb_x_z +
-        (w_a_x_fa_x_x_fb_x_x - dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_x) *
-        w_a_x_fa_x_x_fb_x_x) * inv_fa_x_x_fb_x_len) * dot_fa_x_fb_x + T(2) *
-        (dot_fa_x_fb_x * dot_w_a_x_fa_x_fb_x + dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x *
-        fa_x_x_fb_x_len) * (dot_fa_x_fb_x * dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x -
-        dot_w_a_x_fa_x_fb_x * fa_x_x_fb_x_len) * g1_1);
+    g[0] = (va.wx * (w_a_x_fa_x_x_fb_x_x - dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x *
+        dir_fa_x_x_fb_x_x) + va.wy *
+        (w_a_x_fa_x_x_fb_x_y - dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_y) + va.wz *
+        (w_a_x_fa_x_x_fb_x_z - dot_w_a_x_fa_x_x_fb_x_dir_fa_x_x_fb_x * dir_fa_x_x_fb_x_z)) *
+        inv_fa_x_x_fb_x_len;
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 91 +, 162 *, 2 /, 1 sqrt, 5 <
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 38 +, 73 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[12][12]) {
@@ -3068,92 +2751,50 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_1 = fb_x_y * fa_x_x;
-    const T H4_2 = fa_x_y * fb_x_x;
-    const T fa_x_x_fb_x_z = H4_1 - H4_2;
+    const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H4_3 = fa_x_y * fb_x_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H4_4 = fb_x_y * fa_x_z;
-    const T fa_x_x_fb_x_x = H4_3 - H4_4;
-    const T H4_5 = fa_x_x * fb_x_z;
-    const T H4_6 = fb_x_x * fa_x_z;
-    const T fa_x_x_fb_x_y = H4_6 - H4_5;
+    const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
+    const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
     const T fa_x_x_fb_x_len = sqrt(fa_x_x_fb_x_z * fa_x_x_fb_x_z + fa_x_x_fb_x_y * fa_x_x_fb_x_y +
         fa_x_x_fb_x_x * fa_x_x_fb_x_x);
-    const T H4_7 = fa_x_y * fb_x_y;
-    const T H4_8 = fa_x_z * fb_x_z;
-    const T H4_9 = H4_7 + H4_8;
-    const T H4_10 = fa_x_x * fb_x_x;
-    const T dot_fa_x_fb_x = H4_9 + H4_10;
-    const T H4_11 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + fa_x_x_fb_x_len * fa_x_x_fb_x_len);
-    const T H4_12 = fa_x_x_fb_x_len * H4_11;
-    const T H4_13 = dot_fa_x_fb_x * H4_11;
     const T inv_fa_x_x_fb_x_len = inverse(fa_x_x_fb_x_len);
-    const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
-        inv_fa_x_x_fb_x_len, T(0));
     const T dir_fa_x_x_fb_x_x = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_x *
         inv_fa_x_x_fb_x_len, T(1));
     const T dir_fa_x_x_fb_x_y = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_y *
         inv_fa_x_x_fb_x_len, T(0));
-    const T fb_x_x_dir_fa_x_x_fb_x_x = fb_x_y * dir_fa_x_x_fb_x_z - fb_x_z * dir_fa_x_x_fb_x_y;
-    const T fb_x_x_dir_fa_x_x_fb_x_y = fb_x_z * dir_fa_x_x_fb_x_x - fb_x_x * dir_fa_x_x_fb_x_z;
-    const T H4_14 = lambda[0] * (H4_12 * fb_x_y - H4_13 * fb_x_x_dir_fa_x_x_fb_x_y);
-    const T H4_15 = lambda[0] * H4_11;
-    const T H4_16 = dot_fa_x_fb_x * H4_15;
-    const T H4_17 = inv_fa_x_x_fb_x_len * H4_16;
-    const T H4_18 = H4_11 * H4_16;
-    const T fb_x_x_dir_fa_x_x_fb_x_z = fb_x_x * dir_fa_x_x_fb_x_y - fb_x_y * dir_fa_x_x_fb_x_x;
-    const T H4_19 = fa_x_y * fb_x_x_dir_fa_x_x_fb_x_z - fa_x_z * fb_x_x_dir_fa_x_x_fb_x_y;
-    const T H4_20 = H4_12 * H4_15;
-    const T H4_21 = H4_20 * fa_x_x_fb_x_x - H4_18 * H4_19;
-    const T H4_22 = T(2) * H4_21 * fa_x_x_fb_x_len - H4_17 *
-        (H4_2 * dir_fa_x_x_fb_x_y + H4_6 * dir_fa_x_x_fb_x_z - H4_9 * dir_fa_x_x_fb_x_x) - H4_15 *
-        fa_x_x_fb_x_x;
-    const T H4_23 = H4_2 * H4_17 + H4_22 * dir_fa_x_x_fb_x_y;
-    const T H4_24 = H4_22 * dir_fa_x_x_fb_x_x - H4_17 * H4_9;
-    const T H4_25 = H4_15 * H4_19 + T(2) * H4_21 * dot_fa_x_fb_x;
-    const T H4_26 = H4_14 + fb_x_x * H4_23 - fb_x_y * H4_24 + fb_x_z * H4_25;
-    const T H4_27 = lambda[0] * (H4_13 * fb_x_x_dir_fa_x_x_fb_x_z - H4_12 * fb_x_z);
-    const T H4_28 = H4_6 * H4_17 + H4_22 * dir_fa_x_x_fb_x_z;
-    const T H4_29 = H4_27 - fb_x_x * H4_28 + fb_x_y * H4_25 + fb_x_z * H4_24;
-    const T H4_1_2 = fb_x_x * H4_25 + fb_x_y * H4_28 - fb_x_z * H4_23;
-    const T H5_1 = lambda[0] * (H4_13 * fb_x_x_dir_fa_x_x_fb_x_x - H4_12 * fb_x_x);
-    const T H5_2 = H4_10 + H4_8;
-    const T H5_3 = fa_x_z * fb_x_x_dir_fa_x_x_fb_x_x - fa_x_x * fb_x_x_dir_fa_x_x_fb_x_z;
-    const T H5_4 = H4_20 * fa_x_x_fb_x_y - H4_18 * H5_3;
-    const T H5_5 = T(2) * H5_4 * fa_x_x_fb_x_len - H4_17 *
-        (H4_1 * dir_fa_x_x_fb_x_x + H4_4 * dir_fa_x_x_fb_x_z - H5_2 * dir_fa_x_x_fb_x_y) - H4_15 *
-        fa_x_x_fb_x_y;
-    const T H5_6 = H5_5 * dir_fa_x_x_fb_x_y - H4_17 * H5_2;
-    const T H5_7 = H4_1 * H4_17 + H5_5 * dir_fa_x_x_fb_x_x;
-    const T H5_8 = H4_15 * H5_3 + T(2) * H5_4 * dot_fa_x_fb_x;
-    const T H5_9 = H5_1 + fb_x_x * H5_6 - fb_x_y * H5_7 + fb_x_z * H5_8;
-    const T H5_10 = H4_4 * H4_17 + H5_5 * dir_fa_x_x_fb_x_z;
-    const T H5_11 = fb_x_y * H5_8 - fb_x_x * H5_10 + fb_x_z * H5_7;
-    const T H5_1_2 = fb_x_x * H5_8 - H4_27 + fb_x_y * H5_10 - fb_x_z * H5_6;
-    const T H6_1 = H4_10 + H4_7;
-    const T H6_2 = fa_x_x * fb_x_x_dir_fa_x_x_fb_x_y - fa_x_y * fb_x_x_dir_fa_x_x_fb_x_x;
-    const T H6_3 = H4_20 * fa_x_x_fb_x_z - H4_18 * H6_2;
-    const T H6_4 = T(2) * H6_3 * fa_x_x_fb_x_len - H4_17 *
-        (H4_5 * dir_fa_x_x_fb_x_x + H4_3 * dir_fa_x_x_fb_x_y - H6_1 * dir_fa_x_x_fb_x_z) - H4_15 *
-        fa_x_x_fb_x_z;
-    const T H6_5 = H4_3 * H4_17 + H6_4 * dir_fa_x_x_fb_x_y;
-    const T H6_6 = H4_5 * H4_17 + H6_4 * dir_fa_x_x_fb_x_x;
-    const T H6_7 = H4_15 * H6_2 + T(2) * H6_3 * dot_fa_x_fb_x;
-    const T H6_8 = fb_x_x * H6_5 - fb_x_y * H6_6 + fb_x_z * H6_7;
-    const T H6_9 = H6_4 * dir_fa_x_x_fb_x_z - H4_17 * H6_1;
-    const T H6_10 = fb_x_y * H6_7 - H5_1 - fb_x_x * H6_9 + fb_x_z * H6_6;
-    const T H6_1_2 = fb_x_x * H6_7 - H4_14 + fb_x_y * H6_9 - fb_x_z * H6_5;
-    H[3][3] = fa_x_y * H4_26 - fa_x_z * H4_29;
-    H[3][4] = fa_x_z * H4_1_2 - fa_x_x * H4_26;
-    H[3][5] = fa_x_x * H4_29 - fa_x_y * H4_1_2;
-    H[4][3] = fa_x_y * H5_9 - fa_x_z * H5_11;
-    H[4][4] = fa_x_z * H5_1_2 - fa_x_x * H5_9;
-    H[4][5] = fa_x_x * H5_11 - fa_x_y * H5_1_2;
-    H[5][3] = fa_x_y * H6_8 - fa_x_z * H6_10;
-    H[5][4] = fa_x_z * H6_1_2 - fa_x_x * H6_8;
-    H[5][5] = fa_x_x * H6_10 - fa_x_y * H6_1_2;
+    const T H4_1 = lambda[0] * inv_fa_x_x_fb_x_len;
+    const T H4_2 = dir_fa_x_x_fb_x_x * H4_1;
+    const T H4_3 = dir_fa_x_x_fb_x_y * H4_2;
+    const T H4_4 = H4_2 * dir_fa_x_x_fb_x_x - H4_1;
+    const T H4_5 = fb_x_y * H4_4 - H4_3 * fb_x_x;
+    const T dir_fa_x_x_fb_x_z = select(fa_x_x_fb_x_len > smallest<T>(), fa_x_x_fb_x_z *
+        inv_fa_x_x_fb_x_len, T(0));
+    const T H4_6 = H4_2 * dir_fa_x_x_fb_x_z;
+    const T H4_7 = H4_6 * fb_x_x - fb_x_z * H4_4;
+    const T H4_1_2 = H4_6 * fb_x_y;
+    const T H4_2_2 = H4_3 * fb_x_z;
+    const T H4_3_2 = H4_2_2 - H4_1_2;
+    const T H5_1 = H4_1 * (dir_fa_x_x_fb_x_y * dir_fa_x_x_fb_x_y - T(1));
+    const T H5_2 = H4_3 * fb_x_y - fb_x_x * H5_1;
+    const T H5_3 = H4_1 * dir_fa_x_x_fb_x_z;
+    const T H5_4 = dir_fa_x_x_fb_x_y * H5_3;
+    const T H5_5 = H5_4 * fb_x_x;
+    const T H5_6 = H5_5 - H4_2_2;
+    const T H5_1_2 = fb_x_z * H5_1 - H5_4 * fb_x_y;
+    const T H6_1 = H4_1_2 - H5_5;
+    const T H6_2 = H5_3 * dir_fa_x_x_fb_x_z - H4_1;
+    const T H6_3 = fb_x_x * H6_2 - H4_6 * fb_x_z;
+    const T H6_1_2 = H5_4 * fb_x_z - fb_x_y * H6_2;
+    H[3][3] = fa_x_z * H4_7 - fa_x_y * H4_5;
+    H[3][4] = fa_x_x * H4_5 - fa_x_z * H4_3_2;
+    H[3][5] = fa_x_y * H4_3_2 - fa_x_x * H4_7;
+    H[4][3] = fa_x_z * H5_6 - fa_x_y * H5_2;
+    H[4][4] = fa_x_x * H5_2 - fa_x_z * H5_1_2;
+    H[4][5] = fa_x_y * H5_1_2 - fa_x_x * H5_6;
+    H[5][3] = fa_x_z * H6_3 - fa_x_y * H6_1;
+    H[5][4] = fa_x_x * H6_1 - fa_x_z * H6_1_2;
+    H[5][5] = fa_x_y * H6_1_2 - fa_x_x * H6_3;
   }
 };
 
