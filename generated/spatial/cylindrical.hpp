@@ -9,33 +9,30 @@
 // C_parallel_z = fa_z · fb_x
 // C_line_y = fa_y · d
 // C_line_z = fa_z · d
-// J = [ 0      | (fa_y × fb_x)'             | 0     | -(fa_y × fb_x)'
-//       0      | (fa_z × fb_x)'             | 0     | -(fa_z × fb_x)'
-//       -fa_y' | (-(ra × fa_y) - d × fa_y)' | fa_y' | (rb × fa_y)'
-//       -fa_z' | (-(ra × fa_z) - d × fa_z)' | fa_z' | (rb × fa_z)'    ]  (columns v_a | w_a | v_b
-//           | w_b)
+// J = [ 0      | (fa_y × fb_x)'      | 0     | -(fa_y × fb_x)'
+//       0      | (fa_z × fb_x)'      | 0     | -(fa_z × fb_x)'
+//       -fa_y' | -((ra + d) × fa_y)' | fa_y' | (rb × fa_y)'
+//       -fa_z' | -((ra + d) × fa_z)' | fa_z' | (rb × fa_z)'    ]  (columns v_a | w_a | v_b | w_b)
 // K[parallel_y, parallel_y] = (fa_y × fb_x)' inv_I_a (fa_y × fb_x)
 //                             + (fa_y × fb_x)' inv_I_b (fa_y × fb_x)
 // K[parallel_y, parallel_z] = (fa_z × fb_x)' inv_I_a (fa_y × fb_x)
 //                             + (fa_z × fb_x)' inv_I_b (fa_y × fb_x)
-// K[parallel_y, line_y] = (-(ra × fa_y) - d × fa_y)' inv_I_a (fa_y × fb_x)
-//                         - (rb × fa_y)' inv_I_b (fa_y × fb_x)
-// K[parallel_y, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (fa_y × fb_x)
-//                         - (rb × fa_z)' inv_I_b (fa_y × fb_x)
+// K[parallel_y, line_y] = -(rb × fa_y)' inv_I_b (fa_y × fb_x)
+//                         - ((ra + d) × fa_y)' inv_I_a (fa_y × fb_x)
+// K[parallel_y, line_z] = -(rb × fa_z)' inv_I_b (fa_y × fb_x)
+//                         - ((ra + d) × fa_z)' inv_I_a (fa_y × fb_x)
 // K[parallel_z, parallel_z] = (fa_z × fb_x)' inv_I_a (fa_z × fb_x)
 //                             + (fa_z × fb_x)' inv_I_b (fa_z × fb_x)
-// K[parallel_z, line_y] = (-(ra × fa_y) - d × fa_y)' inv_I_a (fa_z × fb_x)
-//                         - (rb × fa_y)' inv_I_b (fa_z × fb_x)
-// K[parallel_z, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (fa_z × fb_x)
-//                         - (rb × fa_z)' inv_I_b (fa_z × fb_x)
-// K[line_y, line_y] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_y) - d × fa_y)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_y)' inv_I_b (rb × fa_y)
-// K[line_y, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_y)
-// K[line_z, line_z] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_z) - d × fa_z)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_z)
+// K[parallel_z, line_y] = -(rb × fa_y)' inv_I_b (fa_z × fb_x)
+//                         - ((ra + d) × fa_y)' inv_I_a (fa_z × fb_x)
+// K[parallel_z, line_z] = -(rb × fa_z)' inv_I_b (fa_z × fb_x)
+//                         - ((ra + d) × fa_z)' inv_I_a (fa_z × fb_x)
+// K[line_y, line_y] = inv_m_a + inv_m_b + (rb × fa_y)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
+// K[line_y, line_z] = (rb × fa_z)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_y)
+// K[line_z, line_z] = inv_m_a + inv_m_b + (rb × fa_z)' inv_I_b (rb × fa_z)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
 //
 // coordinate angle = twist(fa, fb)
 // J_angle = [ 0
@@ -46,10 +43,10 @@
 //           + (fa_x + fb_x)' inv_I_b (fa_x + fb_x)/(fa_x · fb_x + 1)^2
 //
 // coordinate slide = fa_x · d
-// J_slide = [ -fa_x' | (-(ra × fa_x) - d × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide = inv_m_a + inv_m_b + (-(ra × fa_x) - d × fa_x)' inv_I_a (-(ra × fa_x) - d × fa_x)
-//           + (rb × fa_x)' inv_I_b (rb × fa_x)
+// J_slide = [ -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide = inv_m_a + inv_m_b + (rb × fa_x)' inv_I_b (rb × fa_x)
+//           + ((ra + d) × fa_x)' inv_I_a ((ra + d) × fa_x)
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -88,8 +85,9 @@ struct cylindrical {
   template <class T>
   struct Jacobian {
     T fa_y_x_fb_x_x, fa_y_x_fb_x_y, fa_y_x_fb_x_z, fa_z_x_fb_x_x, fa_z_x_fb_x_y, fa_z_x_fb_x_z,
-        fa_y_x, fa_y_y, fa_y_z, wa_3_x, wa_3_y, wa_3_z, rb_x_fa_y_x, rb_x_fa_y_y, rb_x_fa_y_z,
-        fa_z_x, fa_z_y, fa_z_z, wa_4_x, wa_4_y, wa_4_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
+        fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, rb_x_fa_y_x,
+        rb_x_fa_y_y, rb_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y,
+        ra_d_x_fa_z_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
   };
 
   // C: 47 +, 57 *
@@ -121,7 +119,7 @@ struct cylindrical {
     C[3] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
   }
 
-  // C and J: 83 +, 105 *
+  // C and J: 68 +, 93 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[4],
       Jacobian<T>& J) {
@@ -145,18 +143,9 @@ struct cylindrical {
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
     C[1] = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
     C[2] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
@@ -170,24 +159,24 @@ struct cylindrical {
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_3_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_3_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_3_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.rb_x_fa_y_x = fa_y_z * rb_y - fa_y_y * rb_z;
     J.rb_x_fa_y_y = fa_y_x * rb_z - fa_y_z * rb_x;
     J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_4_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_4_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_4_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
     J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
     J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
     J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 98 +, 123 *
+  // K = J M^-1 J^T, lower triangle, from J: 102 +, 123 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[10]) {
     const InverseMass<T>& ma = m[0];
@@ -208,36 +197,37 @@ struct cylindrical {
     const T K22_5 = ma.Ixz * J.fa_z_x_fb_x_x + ma.Iyz * J.fa_z_x_fb_x_y + ma.Izz * J.fa_z_x_fb_x_z;
     const T K22_6 = mb.Ixz * J.fa_z_x_fb_x_x + mb.Iyz * J.fa_z_x_fb_x_y + mb.Izz * J.fa_z_x_fb_x_z;
     const T K33_1 = ma.m + mb.m;
-    const T K33_2 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
-    const T K33_3 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
-    const T K33_4 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
-    const T K33_5 = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    const T K33_6 = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    const T K33_7 = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    const T K33_2 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K33_3 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K33_4 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    const T K33_5 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
+    const T K33_6 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
+    const T K33_7 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
     K[0] = J.fa_y_x_fb_x_x * K11_3 + J.fa_y_x_fb_x_y * K11_6 + J.fa_y_x_fb_x_z * K11_9;
     K[1] = J.fa_z_x_fb_x_x * K11_3 + J.fa_z_x_fb_x_y * K11_6 + J.fa_z_x_fb_x_z * K11_9;
     K[2] = J.fa_z_x_fb_x_x * (K22_1 + K22_2) + J.fa_z_x_fb_x_y * (K22_3 + K22_4) +
         J.fa_z_x_fb_x_z * (K22_5 + K22_6);
-    K[3] = J.wa_3_x * K11_1 - J.rb_x_fa_y_x * K11_2 - J.rb_x_fa_y_y * K11_5 - J.rb_x_fa_y_z *
-        K11_8 + J.wa_3_y * K11_4 + J.wa_3_z * K11_7;
-    K[4] = J.wa_3_x * K22_1 - J.rb_x_fa_y_x * K22_2 - J.rb_x_fa_y_y * K22_4 - J.rb_x_fa_y_z *
-        K22_6 + J.wa_3_y * K22_3 + J.wa_3_z * K22_5;
-    K[5] = K33_1 + J.rb_x_fa_y_x * K33_2 + J.rb_x_fa_y_y * K33_3 + J.rb_x_fa_y_z * K33_4 +
-        J.wa_3_x * K33_5 + J.wa_3_y * K33_6 + J.wa_3_z * K33_7;
-    K[6] = J.wa_4_x * K11_1 - J.rb_x_fa_z_x * K11_2 - J.rb_x_fa_z_y * K11_5 - J.rb_x_fa_z_z *
-        K11_8 + J.wa_4_y * K11_4 + J.wa_4_z * K11_7;
-    K[7] = J.wa_4_x * K22_1 - J.rb_x_fa_z_x * K22_2 - J.rb_x_fa_z_y * K22_4 - J.rb_x_fa_z_z *
-        K22_6 + J.wa_4_y * K22_3 + J.wa_4_z * K22_5;
-    K[8] = J.rb_x_fa_z_x * K33_2 + J.rb_x_fa_z_y * K33_3 + J.rb_x_fa_z_z * K33_4 + J.wa_4_x *
-        K33_5 + J.wa_4_y * K33_6 + J.wa_4_z * K33_7;
-    K[9] = K33_1 + J.rb_x_fa_z_x *
-        (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z) +
-        J.rb_x_fa_z_y * (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz *
-        J.rb_x_fa_z_z) + J.rb_x_fa_z_z *
-        (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z) + J.wa_4_x *
-        (ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z) + J.wa_4_y *
-        (ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z) + J.wa_4_z *
-        (ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z);
+    K[3] = -J.ra_d_x_fa_y_x * K11_1 - J.ra_d_x_fa_y_y * K11_4 - J.ra_d_x_fa_y_z * K11_7 -
+        J.rb_x_fa_y_x * K11_2 - J.rb_x_fa_y_y * K11_5 - J.rb_x_fa_y_z * K11_8;
+    K[4] = -J.ra_d_x_fa_y_x * K22_1 - J.ra_d_x_fa_y_y * K22_3 - J.ra_d_x_fa_y_z * K22_5 -
+        J.rb_x_fa_y_x * K22_2 - J.rb_x_fa_y_y * K22_4 - J.rb_x_fa_y_z * K22_6;
+    K[5] = K33_1 + J.ra_d_x_fa_y_x * K33_2 + J.ra_d_x_fa_y_y * K33_3 + J.ra_d_x_fa_y_z * K33_4 +
+        J.rb_x_fa_y_x * K33_5 + J.rb_x_fa_y_y * K33_6 + J.rb_x_fa_y_z * K33_7;
+    K[6] = -J.ra_d_x_fa_z_x * K11_1 - J.ra_d_x_fa_z_y * K11_4 - J.ra_d_x_fa_z_z * K11_7 -
+        J.rb_x_fa_z_x * K11_2 - J.rb_x_fa_z_y * K11_5 - J.rb_x_fa_z_z * K11_8;
+    K[7] = -J.ra_d_x_fa_z_x * K22_1 - J.ra_d_x_fa_z_y * K22_3 - J.ra_d_x_fa_z_z * K22_5 -
+        J.rb_x_fa_z_x * K22_2 - J.rb_x_fa_z_y * K22_4 - J.rb_x_fa_z_z * K22_6;
+    K[8] = J.ra_d_x_fa_z_x * K33_2 + J.ra_d_x_fa_z_y * K33_3 + J.ra_d_x_fa_z_z * K33_4 +
+        J.rb_x_fa_z_x * K33_5 + J.rb_x_fa_z_y * K33_6 + J.rb_x_fa_z_z * K33_7;
+    K[9] = K33_1 + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z) +
+        J.rb_x_fa_z_x * (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz *
+        J.rb_x_fa_z_z) + J.rb_x_fa_z_y *
+        (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z) +
+        J.rb_x_fa_z_z * (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 10 +, 26 *, 4 /, 4 <
@@ -298,12 +288,12 @@ struct cylindrical {
     const T Jv3_3 = vb.z - va.z;
     Jv[0] = J.fa_y_x_fb_x_x * Jv1_1 + J.fa_y_x_fb_x_y * Jv1_2 + J.fa_y_x_fb_x_z * Jv1_3;
     Jv[1] = J.fa_z_x_fb_x_x * Jv1_1 + J.fa_z_x_fb_x_y * Jv1_2 + J.fa_z_x_fb_x_z * Jv1_3;
-    Jv[2] = J.rb_x_fa_y_x * vb.wx + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.wa_3_x *
-        va.wx + J.wa_3_y * va.wy + J.wa_3_z * va.wz + J.fa_y_x * Jv3_1 + J.fa_y_y * Jv3_2 +
-        J.fa_y_z * Jv3_3;
-    Jv[3] = J.rb_x_fa_z_x * vb.wx + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.wa_4_x *
-        va.wx + J.wa_4_y * va.wy + J.wa_4_z * va.wz + J.fa_z_x * Jv3_1 + J.fa_z_y * Jv3_2 +
-        J.fa_z_z * Jv3_3;
+    Jv[2] = J.rb_x_fa_y_x * vb.wx - J.ra_d_x_fa_y_x * va.wx - J.ra_d_x_fa_y_y * va.wy -
+        J.ra_d_x_fa_y_z * va.wz + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.fa_y_x *
+        Jv3_1 + J.fa_y_y * Jv3_2 + J.fa_y_z * Jv3_3;
+    Jv[3] = J.rb_x_fa_z_x * vb.wx - J.ra_d_x_fa_z_x * va.wx - J.ra_d_x_fa_z_y * va.wy -
+        J.ra_d_x_fa_z_z * va.wz + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.fa_z_x *
+        Jv3_1 + J.fa_z_y * Jv3_2 + J.fa_z_z * Jv3_3;
   }
 
   // v += M^-1 J^T lambda: 42 +, 48 *
@@ -318,11 +308,11 @@ struct cylindrical {
     const T v1_1_2 = J.fa_y_y * lambda[2] + J.fa_z_y * lambda[3];
     const T v1_1_3 = J.fa_y_z * lambda[2] + J.fa_z_z * lambda[3];
     const T v1_1_4 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1];
-    const T v1_2 = v1_1_4 + J.wa_3_x * lambda[2] + J.wa_4_x * lambda[3];
+    const T v1_2 = v1_1_4 - J.ra_d_x_fa_y_x * lambda[2] - J.ra_d_x_fa_z_x * lambda[3];
     const T v1_3 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1];
-    const T v1_4 = v1_3 + J.wa_3_y * lambda[2] + J.wa_4_y * lambda[3];
+    const T v1_4 = v1_3 - J.ra_d_x_fa_y_y * lambda[2] - J.ra_d_x_fa_z_y * lambda[3];
     const T v1_5 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1];
-    const T v1_6 = v1_5 + J.wa_3_z * lambda[2] + J.wa_4_z * lambda[3];
+    const T v1_6 = v1_5 - J.ra_d_x_fa_y_z * lambda[2] - J.ra_d_x_fa_z_z * lambda[3];
     const T v2_1 = J.rb_x_fa_y_x * lambda[2] - v1_1_4 + J.rb_x_fa_z_x * lambda[3];
     const T v2_2 = J.rb_x_fa_y_y * lambda[2] - v1_3 + J.rb_x_fa_z_y * lambda[3];
     const T v2_3 = J.rb_x_fa_y_z * lambda[2] - v1_5 + J.rb_x_fa_z_z * lambda[3];
@@ -340,7 +330,7 @@ struct cylindrical {
     v[1].wz = vb.wz + mb.Ixz * v2_1 + mb.Iyz * v2_2 + mb.Izz * v2_3;
   }
 
-  // J with its zeros: v, w of each body: 12 +
+  // J with its zeros: v, w of each body: 18 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[4][12]) {
     for (auto& row : D) {
@@ -361,9 +351,9 @@ struct cylindrical {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = J.wa_3_x;
-    D[2][4] = J.wa_3_y;
-    D[2][5] = J.wa_3_z;
+    D[2][3] = -J.ra_d_x_fa_y_x;
+    D[2][4] = -J.ra_d_x_fa_y_y;
+    D[2][5] = -J.ra_d_x_fa_y_z;
     D[2][6] = J.fa_y_x;
     D[2][7] = J.fa_y_y;
     D[2][8] = J.fa_y_z;
@@ -373,9 +363,9 @@ struct cylindrical {
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = J.wa_4_x;
-    D[3][4] = J.wa_4_y;
-    D[3][5] = J.wa_4_z;
+    D[3][3] = -J.ra_d_x_fa_z_x;
+    D[3][4] = -J.ra_d_x_fa_z_y;
+    D[3][5] = -J.ra_d_x_fa_z_z;
     D[3][6] = J.fa_z_x;
     D[3][7] = J.fa_z_y;
     D[3][8] = J.fa_z_z;
@@ -384,7 +374,7 @@ struct cylindrical {
     D[3][11] = J.rb_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 60 +, 84 *
+  // (M^-1 J^T)^T, laid out like dense: 66 +, 84 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[4][12]) {
@@ -408,9 +398,9 @@ struct cylindrical {
     D[2][0] = -ma.m * J.fa_y_x;
     D[2][1] = -ma.m * J.fa_y_y;
     D[2][2] = -ma.m * J.fa_y_z;
-    D[2][3] = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    D[2][4] = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    D[2][5] = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    D[2][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[2][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[2][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[2][6] = mb.m * J.fa_y_x;
     D[2][7] = mb.m * J.fa_y_y;
     D[2][8] = mb.m * J.fa_y_z;
@@ -420,9 +410,9 @@ struct cylindrical {
     D[3][0] = -ma.m * J.fa_z_x;
     D[3][1] = -ma.m * J.fa_z_y;
     D[3][2] = -ma.m * J.fa_z_z;
-    D[3][3] = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    D[3][4] = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    D[3][5] = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
+    D[3][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[3][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[3][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
     D[3][6] = mb.m * J.fa_z_x;
     D[3][7] = mb.m * J.fa_z_y;
     D[3][8] = mb.m * J.fa_z_z;
@@ -431,7 +421,7 @@ struct cylindrical {
     D[3][11] = mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 45 +, 68 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 49 +, 68 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[10]) {
@@ -444,38 +434,45 @@ struct cylindrical {
         J.fa_z_x_fb_x_y + J.fa_y_x_fb_x_z * J.fa_z_x_fb_x_z;
     const T dot_fa_z_x_fb_x_fa_z_x_fb_x = J.fa_z_x_fb_x_x * J.fa_z_x_fb_x_x + J.fa_z_x_fb_x_y *
         J.fa_z_x_fb_x_y + J.fa_z_x_fb_x_z * J.fa_z_x_fb_x_z;
+    const T dot_fa_y_x_fb_x_ra_d_x_fa_y = J.fa_y_x_fb_x_x * J.ra_d_x_fa_y_x + J.fa_y_x_fb_x_y *
+        J.ra_d_x_fa_y_y + J.fa_y_x_fb_x_z * J.ra_d_x_fa_y_z;
     const T dot_rb_x_fa_y_fa_y_x_fb_x = J.fa_y_x_fb_x_x * J.rb_x_fa_y_x + J.fa_y_x_fb_x_y *
         J.rb_x_fa_y_y + J.fa_y_x_fb_x_z * J.rb_x_fa_y_z;
+    const T dot_fa_z_x_fb_x_ra_d_x_fa_y = J.fa_z_x_fb_x_x * J.ra_d_x_fa_y_x + J.fa_z_x_fb_x_y *
+        J.ra_d_x_fa_y_y + J.fa_z_x_fb_x_z * J.ra_d_x_fa_y_z;
     const T dot_rb_x_fa_y_fa_z_x_fb_x = J.fa_z_x_fb_x_x * J.rb_x_fa_y_x + J.fa_z_x_fb_x_y *
         J.rb_x_fa_y_y + J.fa_z_x_fb_x_z * J.rb_x_fa_y_z;
     const T K33_1 = ma.m + mb.m;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
     const T dot_rb_x_fa_y_rb_x_fa_y = J.rb_x_fa_y_x * J.rb_x_fa_y_x + J.rb_x_fa_y_y *
         J.rb_x_fa_y_y + J.rb_x_fa_y_z * J.rb_x_fa_y_z;
+    const T dot_fa_y_x_fb_x_ra_d_x_fa_z = J.fa_y_x_fb_x_x * J.ra_d_x_fa_z_x + J.fa_y_x_fb_x_y *
+        J.ra_d_x_fa_z_y + J.fa_y_x_fb_x_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_z_fa_y_x_fb_x = J.fa_y_x_fb_x_x * J.rb_x_fa_z_x + J.fa_y_x_fb_x_y *
         J.rb_x_fa_z_y + J.fa_y_x_fb_x_z * J.rb_x_fa_z_z;
+    const T dot_fa_z_x_fb_x_ra_d_x_fa_z = J.fa_z_x_fb_x_x * J.ra_d_x_fa_z_x + J.fa_z_x_fb_x_y *
+        J.ra_d_x_fa_z_y + J.fa_z_x_fb_x_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_z_fa_z_x_fb_x = J.fa_z_x_fb_x_x * J.rb_x_fa_z_x + J.fa_z_x_fb_x_y *
         J.rb_x_fa_z_y + J.fa_z_x_fb_x_z * J.rb_x_fa_z_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_z = J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_y_rb_x_fa_z = J.rb_x_fa_y_x * J.rb_x_fa_z_x + J.rb_x_fa_y_y *
         J.rb_x_fa_z_y + J.rb_x_fa_y_z * J.rb_x_fa_z_z;
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_z_rb_x_fa_z = J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y *
         J.rb_x_fa_z_y + J.rb_x_fa_z_z * J.rb_x_fa_z_z;
     K[0] = dot_fa_y_x_fb_x_fa_y_x_fb_x * K11_1;
     K[1] = dot_fa_y_x_fb_x_fa_z_x_fb_x * K11_1;
     K[2] = dot_fa_z_x_fb_x_fa_z_x_fb_x * K11_1;
-    K[3] = ma.I * (J.fa_y_x_fb_x_x * J.wa_3_x + J.fa_y_x_fb_x_y * J.wa_3_y + J.fa_y_x_fb_x_z *
-        J.wa_3_z) - mb.I * dot_rb_x_fa_y_fa_y_x_fb_x;
-    K[4] = ma.I * (J.fa_z_x_fb_x_x * J.wa_3_x + J.fa_z_x_fb_x_y * J.wa_3_y + J.fa_z_x_fb_x_z *
-        J.wa_3_z) - mb.I * dot_rb_x_fa_y_fa_z_x_fb_x;
-    K[5] = K33_1 + ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z) +
-        mb.I * dot_rb_x_fa_y_rb_x_fa_y;
-    K[6] = ma.I * (J.fa_y_x_fb_x_x * J.wa_4_x + J.fa_y_x_fb_x_y * J.wa_4_y + J.fa_y_x_fb_x_z *
-        J.wa_4_z) - mb.I * dot_rb_x_fa_z_fa_y_x_fb_x;
-    K[7] = ma.I * (J.fa_z_x_fb_x_x * J.wa_4_x + J.fa_z_x_fb_x_y * J.wa_4_y + J.fa_z_x_fb_x_z *
-        J.wa_4_z) - mb.I * dot_rb_x_fa_z_fa_z_x_fb_x;
-    K[8] = ma.I * (J.wa_3_x * J.wa_4_x + J.wa_3_y * J.wa_4_y + J.wa_3_z * J.wa_4_z) + mb.I *
-        dot_rb_x_fa_y_rb_x_fa_z;
-    K[9] = K33_1 + ma.I * (J.wa_4_x * J.wa_4_x + J.wa_4_y * J.wa_4_y + J.wa_4_z * J.wa_4_z) +
-        mb.I * dot_rb_x_fa_z_rb_x_fa_z;
+    K[3] = -ma.I * dot_fa_y_x_fb_x_ra_d_x_fa_y - mb.I * dot_rb_x_fa_y_fa_y_x_fb_x;
+    K[4] = -ma.I * dot_fa_z_x_fb_x_ra_d_x_fa_y - mb.I * dot_rb_x_fa_y_fa_z_x_fb_x;
+    K[5] = K33_1 + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y + mb.I * dot_rb_x_fa_y_rb_x_fa_y;
+    K[6] = -ma.I * dot_fa_y_x_fb_x_ra_d_x_fa_z - mb.I * dot_rb_x_fa_z_fa_y_x_fb_x;
+    K[7] = -ma.I * dot_fa_z_x_fb_x_ra_d_x_fa_z - mb.I * dot_rb_x_fa_z_fa_z_x_fb_x;
+    K[8] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z + mb.I * dot_rb_x_fa_y_rb_x_fa_z;
+    K[9] = K33_1 + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z + mb.I * dot_rb_x_fa_z_rb_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 30 +, 36 *
@@ -495,9 +492,9 @@ struct cylindrical {
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.I * (v1_1_4 + J.wa_3_x * lambda[2] + J.wa_4_x * lambda[3]);
-    v[0].wy = va.wy + ma.I * (v1_1_5 + J.wa_3_y * lambda[2] + J.wa_4_y * lambda[3]);
-    v[0].wz = va.wz + ma.I * (v1_1_6 + J.wa_3_z * lambda[2] + J.wa_4_z * lambda[3]);
+    v[0].wx = va.wx + ma.I * (v1_1_4 - J.ra_d_x_fa_y_x * lambda[2] - J.ra_d_x_fa_z_x * lambda[3]);
+    v[0].wy = va.wy + ma.I * (v1_1_5 - J.ra_d_x_fa_y_y * lambda[2] - J.ra_d_x_fa_z_y * lambda[3]);
+    v[0].wz = va.wz + ma.I * (v1_1_6 - J.ra_d_x_fa_y_z * lambda[2] - J.ra_d_x_fa_z_z * lambda[3]);
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -506,7 +503,7 @@ struct cylindrical {
     v[1].wz = vb.wz + mb.I * (J.rb_x_fa_y_z * lambda[2] - v1_1_6 + J.rb_x_fa_z_z * lambda[3]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 36 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 18 +, 36 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[4][12]) {
@@ -530,9 +527,9 @@ struct cylindrical {
     D[2][0] = -ma.m * J.fa_y_x;
     D[2][1] = -ma.m * J.fa_y_y;
     D[2][2] = -ma.m * J.fa_y_z;
-    D[2][3] = ma.I * J.wa_3_x;
-    D[2][4] = ma.I * J.wa_3_y;
-    D[2][5] = ma.I * J.wa_3_z;
+    D[2][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[2][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[2][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[2][6] = mb.m * J.fa_y_x;
     D[2][7] = mb.m * J.fa_y_y;
     D[2][8] = mb.m * J.fa_y_z;
@@ -542,9 +539,9 @@ struct cylindrical {
     D[3][0] = -ma.m * J.fa_z_x;
     D[3][1] = -ma.m * J.fa_z_y;
     D[3][2] = -ma.m * J.fa_z_z;
-    D[3][3] = ma.I * J.wa_4_x;
-    D[3][4] = ma.I * J.wa_4_y;
-    D[3][5] = ma.I * J.wa_4_z;
+    D[3][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[3][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[3][5] = -ma.I * J.ra_d_x_fa_z_z;
     D[3][6] = mb.m * J.fa_z_x;
     D[3][7] = mb.m * J.fa_z_y;
     D[3][8] = mb.m * J.fa_z_z;
@@ -553,7 +550,7 @@ struct cylindrical {
     D[3][11] = mb.I * J.rb_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 60 +, 72 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 66 +, 72 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][12]) {
     for (auto& row : D) {
@@ -576,9 +573,9 @@ struct cylindrical {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
-    D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
-    D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
+    D[2][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[2][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[2][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[2][6] = J.fa_y_x;
     D[2][7] = J.fa_y_y;
     D[2][8] = J.fa_y_z;
@@ -588,9 +585,9 @@ struct cylindrical {
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = J.wa_4_x * a.xx + J.wa_4_y * a.yx + J.wa_4_z * a.zx;
-    D[3][4] = J.wa_4_x * a.xy + J.wa_4_y * a.yy + J.wa_4_z * a.zy;
-    D[3][5] = J.wa_4_x * a.xz + J.wa_4_y * a.yz + J.wa_4_z * a.zz;
+    D[3][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[3][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[3][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
     D[3][6] = J.fa_z_x;
     D[3][7] = J.fa_z_y;
     D[3][8] = J.fa_z_z;
@@ -626,10 +623,10 @@ struct cylindrical {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
+    D[2][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[2][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[2][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[2][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[2][7] = J.fa_y_x;
     D[2][8] = J.fa_y_y;
     D[2][9] = J.fa_y_z;
@@ -640,10 +637,10 @@ struct cylindrical {
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = -T(2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
-    D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
-    D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
-    D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
+    D[3][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[3][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[3][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[3][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
     D[3][7] = J.fa_z_x;
     D[3][8] = J.fa_z_y;
     D[3][9] = J.fa_z_z;
@@ -781,21 +778,22 @@ struct cylindrical {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_2 = d_y + ra_y;
-    const T H4_3 = H4_1 + lambda[2] * H4_2;
-    const T H4_4 = lambda[1] * fb_x_y;
-    const T H4_5 = H4_4 + lambda[3] * H4_2;
-    const T H4_6 = fa_y_y * H4_3 + fa_z_y * H4_5;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_2 = H4_1 + lambda[2] * ra_d_y;
+    const T H4_3 = lambda[1] * fb_x_y;
+    const T H4_4 = H4_3 + lambda[3] * ra_d_y;
+    const T H4_5 = fa_y_y * H4_2 + fa_z_y * H4_4;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H4_7 = lambda[0] * fb_x_z;
+    const T H4_6 = lambda[0] * fb_x_z;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_8 = d_z + ra_z;
-    const T H4_9 = H4_7 + lambda[2] * H4_8;
-    const T H4_10 = lambda[1] * fb_x_z;
-    const T H4_11 = H4_10 + lambda[3] * H4_8;
-    const T H4_12 = fa_y_z * H4_9 + fa_z_z * H4_11;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_7 = H4_6 + lambda[2] * ra_d_z;
+    const T H4_8 = lambda[1] * fb_x_z;
+    const T H4_9 = H4_8 + lambda[3] * ra_d_z;
+    const T H4_10 = fa_y_z * H4_7 + fa_z_z * H4_9;
     const T H4_1_2 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
     const T H4_2_2 = fb_x_y * H4_1_2 + rb_y * H1_1_2;
     const T H4_3_2 = lambda[0] * fa_y_z + lambda[1] * fa_z_z;
@@ -804,11 +802,10 @@ struct cylindrical {
     const T H4_1_3 = fb_x_x * H4_1_2 + rb_x * H1_1_2;
     const T H4_1_4 = fb_x_x * H4_3_2 + rb_x * H1_1;
     const T H5_1 = lambda[0] * fb_x_x;
-    const T H5_2 = d_x + ra_x;
-    const T H5_3 = H5_1 + lambda[2] * H5_2;
-    const T H5_4 = lambda[1] * fb_x_x;
-    const T H5_5 = H5_4 + lambda[3] * H5_2;
-    const T H5_1_2 = fa_y_x * H5_3 + fa_z_x * H5_5;
+    const T H5_2 = H5_1 + lambda[2] * ra_d_x;
+    const T H5_3 = lambda[1] * fb_x_x;
+    const T H5_4 = H5_3 + lambda[3] * ra_d_x;
+    const T H5_1_2 = fa_y_x * H5_2 + fa_z_x * H5_4;
     const T H5_1_3 = lambda[0] * fa_y_x + lambda[1] * fa_z_x;
     const T H5_2_2 = fb_x_y * H5_1_3 + rb_y * H2_1;
     const T H5_1_4 = fb_x_x * H5_1_3 + rb_x * H2_1;
@@ -818,13 +815,13 @@ struct cylindrical {
     const T H6_1_2 = fb_x_z * H4_1_2 + rb_z * H1_1_2;
     const T H6_1_3 = H4_2_2 + H5_1_4;
     const T H10_1 = H4_1 + lambda[2] * rb_y;
-    const T H10_2 = H4_4 + lambda[3] * rb_y;
+    const T H10_2 = H4_3 + lambda[3] * rb_y;
     const T H10_3 = fa_y_y * H10_1 + fa_z_y * H10_2;
-    const T H10_4 = H4_7 + lambda[2] * rb_z;
-    const T H10_5 = H4_10 + lambda[3] * rb_z;
+    const T H10_4 = H4_6 + lambda[2] * rb_z;
+    const T H10_5 = H4_8 + lambda[3] * rb_z;
     const T H10_6 = fa_y_z * H10_4 + fa_z_z * H10_5;
     const T H11_1 = H5_1 + lambda[2] * rb_x;
-    const T H11_2 = H5_4 + lambda[3] * rb_x;
+    const T H11_2 = H5_3 + lambda[3] * rb_x;
     const T H11_1_2 = fa_y_x * H11_1 + fa_z_x * H11_2;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
@@ -834,9 +831,9 @@ struct cylindrical {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_6 - H4_12;
-    H[3][4] = fa_y_x * H4_3 + fa_z_x * H4_5;
-    H[3][5] = fa_y_x * H4_9 + fa_z_x * H4_11;
+    H[3][3] = -H4_5 - H4_10;
+    H[3][4] = fa_y_x * H4_2 + fa_z_x * H4_4;
+    H[3][5] = fa_y_x * H4_7 + fa_z_x * H4_9;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
     H[3][9] = H4_5_2;
@@ -844,9 +841,9 @@ struct cylindrical {
     H[3][11] = -H4_1_4;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_3 + fa_z_y * H5_5;
-    H[4][4] = -H5_1_2 - H4_12;
-    H[4][5] = fa_y_y * H4_9 + fa_z_y * H4_11;
+    H[4][3] = fa_y_y * H5_2 + fa_z_y * H5_4;
+    H[4][4] = -H5_1_2 - H4_10;
+    H[4][5] = fa_y_y * H4_7 + fa_z_y * H4_9;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
     H[4][9] = -H5_2_2;
@@ -854,9 +851,9 @@ struct cylindrical {
     H[4][11] = -H5_1_5;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_3 + fa_z_z * H5_5;
-    H[5][4] = fa_y_z * H4_3 + fa_z_z * H4_5;
-    H[5][5] = -H4_6 - H5_1_2;
+    H[5][3] = fa_y_z * H5_2 + fa_z_z * H5_4;
+    H[5][4] = fa_y_z * H4_2 + fa_z_z * H4_4;
+    H[5][5] = -H4_5 - H5_1_2;
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
     H[5][9] = -H6_1;
@@ -1328,7 +1325,8 @@ struct cylindrical {
 
     template <class T>
     struct Jacobian {
-      T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z, rb_x_fa_x_x, rb_x_fa_x_y, rb_x_fa_x_z;
+      T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z, rb_x_fa_x_x,
+          rb_x_fa_x_y, rb_x_fa_x_z;
     };
 
     // C: 29 +, 30 *
@@ -1351,7 +1349,7 @@ struct cylindrical {
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1369,19 +1367,16 @@ struct cylindrical {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-      const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-      const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-      const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-      const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-      const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
       J.fa_x_x = fa_x_x;
       J.fa_x_y = fa_x_y;
       J.fa_x_z = fa_x_z;
-      J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-      J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-      J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+      J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+      J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+      J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
       J.rb_x_fa_x_x = fa_x_z * rb_y - fa_x_y * rb_z;
       J.rb_x_fa_x_y = fa_x_x * rb_z - fa_x_z * rb_x;
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
@@ -1392,14 +1387,16 @@ struct cylindrical {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_x_x *
-          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_y * (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_z *
-          (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
+          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
+          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
+          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
+          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
+          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
+          J.rb_x_fa_x_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1419,9 +1416,9 @@ struct cylindrical {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_x_x * vb.wx + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_x_x * (vb.x - va.x) + J.fa_x_y *
-          (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_x_x * vb.wx - J.ra_d_x_fa_x_x * va.wx - J.ra_d_x_fa_x_y * va.wy -
+          J.ra_d_x_fa_x_z * va.wz + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.fa_x_x *
+          (vb.x - va.x) + J.fa_x_y * (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -1433,9 +1430,9 @@ struct cylindrical {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_x_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_x_y;
@@ -1443,9 +1440,9 @@ struct cylindrical {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -1454,7 +1451,7 @@ struct cylindrical {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1463,9 +1460,9 @@ struct cylindrical {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_x_x;
+      D[0][4] = -J.ra_d_x_fa_x_y;
+      D[0][5] = -J.ra_d_x_fa_x_z;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -1474,7 +1471,7 @@ struct cylindrical {
       D[0][11] = J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1486,9 +1483,9 @@ struct cylindrical {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -1503,10 +1500,11 @@ struct cylindrical {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+          J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
       const T dot_rb_x_fa_x_rb_x_fa_x = J.rb_x_fa_x_x * J.rb_x_fa_x_x + J.rb_x_fa_x_y *
           J.rb_x_fa_x_y + J.rb_x_fa_x_z * J.rb_x_fa_x_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_x_rb_x_fa_x;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x + mb.I * dot_rb_x_fa_x_rb_x_fa_x;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -1524,9 +1522,9 @@ struct cylindrical {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -1535,7 +1533,7 @@ struct cylindrical {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1547,9 +1545,9 @@ struct cylindrical {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -1558,7 +1556,7 @@ struct cylindrical {
       D[0][11] = mb.I * J.rb_x_fa_x_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1569,9 +1567,9 @@ struct cylindrical {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -1591,10 +1589,10 @@ struct cylindrical {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
@@ -1684,27 +1682,27 @@ struct cylindrical {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_x_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_x_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_x_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_x_z;
       const T H4_1_2 = fa_x_y * rb_y;
       const T H4_2_2 = fa_x_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_x_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_x_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_x_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_x_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -1713,29 +1711,29 @@ struct cylindrical {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_x_x * H4_1;
-      H[3][5] = fa_x_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_x_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_x_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_x_z * H5_1;
-      H[5][4] = fa_x_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -1747,18 +1745,18 @@ struct cylindrical {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -2182,11 +2180,11 @@ struct cylindrical::b_immovable : cylindrical {
   template <class T>
   struct Jacobian {
     T fa_y_x_fb_x_x, fa_y_x_fb_x_y, fa_y_x_fb_x_z, fa_z_x_fb_x_x, fa_z_x_fb_x_y, fa_z_x_fb_x_z,
-        fa_y_x, fa_y_y, fa_y_z, wa_3_x, wa_3_y, wa_3_z, fa_z_x, fa_z_y, fa_z_z, wa_4_x, wa_4_y,
-        wa_4_z;
+        fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, fa_z_x, fa_z_y,
+        fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z;
   };
 
-  // C and J: 77 +, 93 *
+  // C and J: 62 +, 81 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[4],
       Jacobian<T>& J) {
@@ -2210,18 +2208,9 @@ struct cylindrical::b_immovable : cylindrical {
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
     C[1] = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
     C[2] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
@@ -2235,18 +2224,18 @@ struct cylindrical::b_immovable : cylindrical {
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_3_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_3_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_3_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_4_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_4_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_4_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 46 +, 66 *
+  // K = J M^-1 J^T, lower triangle, from J: 50 +, 66 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[10]) {
     const InverseMass<T>& ma = m[0];
@@ -2256,33 +2245,35 @@ struct cylindrical::b_immovable : cylindrical {
     const T K22_1 = ma.Ixx * J.fa_z_x_fb_x_x + ma.Ixy * J.fa_z_x_fb_x_y + ma.Ixz * J.fa_z_x_fb_x_z;
     const T K22_2 = ma.Ixy * J.fa_z_x_fb_x_x + ma.Iyy * J.fa_z_x_fb_x_y + ma.Iyz * J.fa_z_x_fb_x_z;
     const T K22_3 = ma.Ixz * J.fa_z_x_fb_x_x + ma.Iyz * J.fa_z_x_fb_x_y + ma.Izz * J.fa_z_x_fb_x_z;
-    const T K33_1 = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    const T K33_2 = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    const T K33_3 = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    const T K33_1 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K33_2 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K33_3 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
     K[0] = J.fa_y_x_fb_x_x * K11_1 + J.fa_y_x_fb_x_y * K11_2 + J.fa_y_x_fb_x_z * K11_3;
     K[1] = J.fa_z_x_fb_x_x * K11_1 + J.fa_z_x_fb_x_y * K11_2 + J.fa_z_x_fb_x_z * K11_3;
     K[2] = J.fa_z_x_fb_x_x * K22_1 + J.fa_z_x_fb_x_y * K22_2 + J.fa_z_x_fb_x_z * K22_3;
-    K[3] = J.wa_3_x * K11_1 + J.wa_3_y * K11_2 + J.wa_3_z * K11_3;
-    K[4] = J.wa_3_x * K22_1 + J.wa_3_y * K22_2 + J.wa_3_z * K22_3;
-    K[5] = ma.m + J.wa_3_x * K33_1 + J.wa_3_y * K33_2 + J.wa_3_z * K33_3;
-    K[6] = J.wa_4_x * K11_1 + J.wa_4_y * K11_2 + J.wa_4_z * K11_3;
-    K[7] = J.wa_4_x * K22_1 + J.wa_4_y * K22_2 + J.wa_4_z * K22_3;
-    K[8] = J.wa_4_x * K33_1 + J.wa_4_y * K33_2 + J.wa_4_z * K33_3;
-    K[9] = ma.m + J.wa_4_x * (ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z) +
-        J.wa_4_y * (ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z) + J.wa_4_z *
-        (ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z);
+    K[3] = -J.ra_d_x_fa_y_x * K11_1 - J.ra_d_x_fa_y_y * K11_2 - J.ra_d_x_fa_y_z * K11_3;
+    K[4] = -J.ra_d_x_fa_y_x * K22_1 - J.ra_d_x_fa_y_y * K22_2 - J.ra_d_x_fa_y_z * K22_3;
+    K[5] = ma.m + J.ra_d_x_fa_y_x * K33_1 + J.ra_d_x_fa_y_y * K33_2 + J.ra_d_x_fa_y_z * K33_3;
+    K[6] = -J.ra_d_x_fa_z_x * K11_1 - J.ra_d_x_fa_z_y * K11_2 - J.ra_d_x_fa_z_z * K11_3;
+    K[7] = -J.ra_d_x_fa_z_x * K22_1 - J.ra_d_x_fa_z_y * K22_2 - J.ra_d_x_fa_z_z * K22_3;
+    K[8] = J.ra_d_x_fa_z_x * K33_1 + J.ra_d_x_fa_z_y * K33_2 + J.ra_d_x_fa_z_z * K33_3;
+    K[9] = ma.m + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z);
   }
 
-  // J v: 14 +, 18 *
+  // J v: 16 +, 18 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[4]) {
     const Velocity<T>& va = v[0];
     Jv[0] = J.fa_y_x_fb_x_x * va.wx + J.fa_y_x_fb_x_y * va.wy + J.fa_y_x_fb_x_z * va.wz;
     Jv[1] = J.fa_z_x_fb_x_x * va.wx + J.fa_z_x_fb_x_y * va.wy + J.fa_z_x_fb_x_z * va.wz;
-    Jv[2] = J.wa_3_x * va.wx - J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z + J.wa_3_y *
-        va.wy + J.wa_3_z * va.wz;
-    Jv[3] = J.wa_4_x * va.wx - J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z + J.wa_4_y *
-        va.wy + J.wa_4_z * va.wz;
+    Jv[2] = -J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z - J.ra_d_x_fa_y_x * va.wx -
+        J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
+    Jv[3] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
+        J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 24 +, 30 *
@@ -2291,12 +2282,12 @@ struct cylindrical::b_immovable : cylindrical {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] + J.wa_3_x *
-        lambda[2] + J.wa_4_x * lambda[3];
-    const T v1_2 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] + J.wa_3_y *
-        lambda[2] + J.wa_4_y * lambda[3];
-    const T v1_3 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] + J.wa_3_z *
-        lambda[2] + J.wa_4_z * lambda[3];
+    const T v1_1 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] - J.ra_d_x_fa_y_x *
+        lambda[2] - J.ra_d_x_fa_z_x * lambda[3];
+    const T v1_2 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] - J.ra_d_x_fa_y_y *
+        lambda[2] - J.ra_d_x_fa_z_y * lambda[3];
+    const T v1_3 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] - J.ra_d_x_fa_y_z *
+        lambda[2] - J.ra_d_x_fa_z_z * lambda[3];
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[2] + J.fa_z_x * lambda[3]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[2] + J.fa_z_y * lambda[3]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[2] + J.fa_z_z * lambda[3]);
@@ -2305,7 +2296,7 @@ struct cylindrical::b_immovable : cylindrical {
     v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[4][12]) {
     for (auto& row : D) {
@@ -2320,18 +2311,18 @@ struct cylindrical::b_immovable : cylindrical {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = J.wa_3_x;
-    D[2][4] = J.wa_3_y;
-    D[2][5] = J.wa_3_z;
+    D[2][3] = -J.ra_d_x_fa_y_x;
+    D[2][4] = -J.ra_d_x_fa_y_y;
+    D[2][5] = -J.ra_d_x_fa_y_z;
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = J.wa_4_x;
-    D[3][4] = J.wa_4_y;
-    D[3][5] = J.wa_4_z;
+    D[3][3] = -J.ra_d_x_fa_z_x;
+    D[3][4] = -J.ra_d_x_fa_z_y;
+    D[3][5] = -J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 30 +, 42 *
+  // (M^-1 J^T)^T, laid out like dense: 36 +, 42 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[4][12]) {
@@ -2348,18 +2339,18 @@ struct cylindrical::b_immovable : cylindrical {
     D[2][0] = -ma.m * J.fa_y_x;
     D[2][1] = -ma.m * J.fa_y_y;
     D[2][2] = -ma.m * J.fa_y_z;
-    D[2][3] = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    D[2][4] = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    D[2][5] = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    D[2][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[2][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[2][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[3][0] = -ma.m * J.fa_z_x;
     D[3][1] = -ma.m * J.fa_z_y;
     D[3][2] = -ma.m * J.fa_z_z;
-    D[3][3] = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    D[3][4] = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    D[3][5] = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
+    D[3][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[3][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[3][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 22 +, 40 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 26 +, 40 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[10]) {
@@ -2370,20 +2361,30 @@ struct cylindrical::b_immovable : cylindrical {
         J.fa_z_x_fb_x_y + J.fa_y_x_fb_x_z * J.fa_z_x_fb_x_z;
     const T dot_fa_z_x_fb_x_fa_z_x_fb_x = J.fa_z_x_fb_x_x * J.fa_z_x_fb_x_x + J.fa_z_x_fb_x_y *
         J.fa_z_x_fb_x_y + J.fa_z_x_fb_x_z * J.fa_z_x_fb_x_z;
+    const T dot_fa_y_x_fb_x_ra_d_x_fa_y = J.fa_y_x_fb_x_x * J.ra_d_x_fa_y_x + J.fa_y_x_fb_x_y *
+        J.ra_d_x_fa_y_y + J.fa_y_x_fb_x_z * J.ra_d_x_fa_y_z;
+    const T dot_fa_z_x_fb_x_ra_d_x_fa_y = J.fa_z_x_fb_x_x * J.ra_d_x_fa_y_x + J.fa_z_x_fb_x_y *
+        J.ra_d_x_fa_y_y + J.fa_z_x_fb_x_z * J.ra_d_x_fa_y_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
+    const T dot_fa_y_x_fb_x_ra_d_x_fa_z = J.fa_y_x_fb_x_x * J.ra_d_x_fa_z_x + J.fa_y_x_fb_x_y *
+        J.ra_d_x_fa_z_y + J.fa_y_x_fb_x_z * J.ra_d_x_fa_z_z;
+    const T dot_fa_z_x_fb_x_ra_d_x_fa_z = J.fa_z_x_fb_x_x * J.ra_d_x_fa_z_x + J.fa_z_x_fb_x_y *
+        J.ra_d_x_fa_z_y + J.fa_z_x_fb_x_z * J.ra_d_x_fa_z_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_z = J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
     K[0] = ma.I * dot_fa_y_x_fb_x_fa_y_x_fb_x;
     K[1] = ma.I * dot_fa_y_x_fb_x_fa_z_x_fb_x;
     K[2] = ma.I * dot_fa_z_x_fb_x_fa_z_x_fb_x;
-    K[3] = ma.I * (J.fa_y_x_fb_x_x * J.wa_3_x + J.fa_y_x_fb_x_y * J.wa_3_y + J.fa_y_x_fb_x_z *
-        J.wa_3_z);
-    K[4] = ma.I * (J.fa_z_x_fb_x_x * J.wa_3_x + J.fa_z_x_fb_x_y * J.wa_3_y + J.fa_z_x_fb_x_z *
-        J.wa_3_z);
-    K[5] = ma.m + ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z);
-    K[6] = ma.I * (J.fa_y_x_fb_x_x * J.wa_4_x + J.fa_y_x_fb_x_y * J.wa_4_y + J.fa_y_x_fb_x_z *
-        J.wa_4_z);
-    K[7] = ma.I * (J.fa_z_x_fb_x_x * J.wa_4_x + J.fa_z_x_fb_x_y * J.wa_4_y + J.fa_z_x_fb_x_z *
-        J.wa_4_z);
-    K[8] = ma.I * (J.wa_3_x * J.wa_4_x + J.wa_3_y * J.wa_4_y + J.wa_3_z * J.wa_4_z);
-    K[9] = ma.m + ma.I * (J.wa_4_x * J.wa_4_x + J.wa_4_y * J.wa_4_y + J.wa_4_z * J.wa_4_z);
+    K[3] = -ma.I * dot_fa_y_x_fb_x_ra_d_x_fa_y;
+    K[4] = -ma.I * dot_fa_z_x_fb_x_ra_d_x_fa_y;
+    K[5] = ma.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y;
+    K[6] = -ma.I * dot_fa_y_x_fb_x_ra_d_x_fa_z;
+    K[7] = -ma.I * dot_fa_z_x_fb_x_ra_d_x_fa_z;
+    K[8] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z;
+    K[9] = ma.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 18 +, 24 *
@@ -2395,15 +2396,15 @@ struct cylindrical::b_immovable : cylindrical {
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[2] + J.fa_z_x * lambda[3]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[2] + J.fa_z_y * lambda[3]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[2] + J.fa_z_z * lambda[3]);
-    v[0].wx = va.wx + ma.I * (J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] +
-        J.wa_3_x * lambda[2] + J.wa_4_x * lambda[3]);
-    v[0].wy = va.wy + ma.I * (J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] +
-        J.wa_3_y * lambda[2] + J.wa_4_y * lambda[3]);
-    v[0].wz = va.wz + ma.I * (J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] +
-        J.wa_3_z * lambda[2] + J.wa_4_z * lambda[3]);
+    v[0].wx = va.wx + ma.I * (J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] -
+        J.ra_d_x_fa_y_x * lambda[2] - J.ra_d_x_fa_z_x * lambda[3]);
+    v[0].wy = va.wy + ma.I * (J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] -
+        J.ra_d_x_fa_y_y * lambda[2] - J.ra_d_x_fa_z_y * lambda[3]);
+    v[0].wz = va.wz + ma.I * (J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] -
+        J.ra_d_x_fa_y_z * lambda[2] - J.ra_d_x_fa_z_z * lambda[3]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 18 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 18 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[4][12]) {
@@ -2420,18 +2421,18 @@ struct cylindrical::b_immovable : cylindrical {
     D[2][0] = -ma.m * J.fa_y_x;
     D[2][1] = -ma.m * J.fa_y_y;
     D[2][2] = -ma.m * J.fa_y_z;
-    D[2][3] = ma.I * J.wa_3_x;
-    D[2][4] = ma.I * J.wa_3_y;
-    D[2][5] = ma.I * J.wa_3_z;
+    D[2][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[2][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[2][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[3][0] = -ma.m * J.fa_z_x;
     D[3][1] = -ma.m * J.fa_z_y;
     D[3][2] = -ma.m * J.fa_z_z;
-    D[3][3] = ma.I * J.wa_4_x;
-    D[3][4] = ma.I * J.wa_4_y;
-    D[3][5] = ma.I * J.wa_4_z;
+    D[3][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[3][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[3][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 30 +, 36 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 36 +, 36 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][12]) {
     for (auto& row : D) {
@@ -2447,15 +2448,15 @@ struct cylindrical::b_immovable : cylindrical {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
-    D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
-    D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
+    D[2][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[2][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[2][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = J.wa_4_x * a.xx + J.wa_4_y * a.yx + J.wa_4_z * a.zx;
-    D[3][4] = J.wa_4_x * a.xy + J.wa_4_y * a.yy + J.wa_4_z * a.zy;
-    D[3][5] = J.wa_4_x * a.xz + J.wa_4_y * a.yz + J.wa_4_z * a.zz;
+    D[3][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[3][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[3][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 38 +, 64 *
@@ -2476,17 +2477,17 @@ struct cylindrical::b_immovable : cylindrical {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
+    D[2][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[2][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[2][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[2][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = -T(2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
-    D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
-    D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
-    D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
+    D[3][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[3][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[3][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[3][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 84 +, 107 *
@@ -2583,22 +2584,22 @@ struct cylindrical::b_immovable : cylindrical {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = d_y + ra_y;
-    const T H4_2 = lambda[0] * fb_x_y + lambda[2] * H4_1;
-    const T H4_3 = lambda[1] * fb_x_y + lambda[3] * H4_1;
-    const T H4_4 = fa_y_y * H4_2 + fa_z_y * H4_3;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = lambda[0] * fb_x_y + lambda[2] * ra_d_y;
+    const T H4_2 = lambda[1] * fb_x_y + lambda[3] * ra_d_y;
+    const T H4_3 = fa_y_y * H4_1 + fa_z_y * H4_2;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_5 = d_z + ra_z;
-    const T H4_6 = lambda[0] * fb_x_z + lambda[2] * H4_5;
-    const T H4_7 = lambda[1] * fb_x_z + lambda[3] * H4_5;
-    const T H4_8 = fa_y_z * H4_6 + fa_z_z * H4_7;
-    const T H5_1 = d_x + ra_x;
-    const T H5_2 = lambda[0] * fb_x_x + lambda[2] * H5_1;
-    const T H5_3 = lambda[1] * fb_x_x + lambda[3] * H5_1;
-    const T H5_1_2 = fa_y_x * H5_2 + fa_z_x * H5_3;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_4 = lambda[0] * fb_x_z + lambda[2] * ra_d_z;
+    const T H4_5 = lambda[1] * fb_x_z + lambda[3] * ra_d_z;
+    const T H4_6 = fa_y_z * H4_4 + fa_z_z * H4_5;
+    const T H5_1 = lambda[0] * fb_x_x + lambda[2] * ra_d_x;
+    const T H5_2 = lambda[1] * fb_x_x + lambda[3] * ra_d_x;
+    const T H5_1_2 = fa_y_x * H5_1 + fa_z_x * H5_2;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -2607,19 +2608,19 @@ struct cylindrical::b_immovable : cylindrical {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_4 - H4_8;
-    H[3][4] = fa_y_x * H4_2 + fa_z_x * H4_3;
-    H[3][5] = fa_y_x * H4_6 + fa_z_x * H4_7;
+    H[3][3] = -H4_3 - H4_6;
+    H[3][4] = fa_y_x * H4_1 + fa_z_x * H4_2;
+    H[3][5] = fa_y_x * H4_4 + fa_z_x * H4_5;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_2 + fa_z_y * H5_3;
-    H[4][4] = -H5_1_2 - H4_8;
-    H[4][5] = fa_y_y * H4_6 + fa_z_y * H4_7;
+    H[4][3] = fa_y_y * H5_1 + fa_z_y * H5_2;
+    H[4][4] = -H5_1_2 - H4_6;
+    H[4][5] = fa_y_y * H4_4 + fa_z_y * H4_5;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_2 + fa_z_z * H5_3;
-    H[5][4] = fa_y_z * H4_2 + fa_z_z * H4_3;
-    H[5][5] = -H4_4 - H5_1_2;
+    H[5][3] = fa_y_z * H5_1 + fa_z_z * H5_2;
+    H[5][4] = fa_y_z * H4_1 + fa_z_z * H4_2;
+    H[5][5] = -H4_3 - H5_1_2;
   }
 };
 
@@ -3280,10 +3281,10 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -3301,36 +3302,35 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z - J.ra_d_x_fa_x_x * va.wx -
+        J.ra_d_x_fa_x_y * va.wy - J.ra_d_x_fa_x_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -3340,18 +3340,18 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3360,12 +3360,12 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_x_x;
+    D[0][4] = -J.ra_d_x_fa_x_y;
+    D[0][5] = -J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3376,9 +3376,9 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -3386,7 +3386,9 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -3400,12 +3402,12 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3416,12 +3418,12 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3431,9 +3433,9 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -3446,10 +3448,10 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -3516,15 +3518,15 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_x_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_x_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_x_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_x_z;
+    const T H5_1 = ra_d_x * fa_x_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -3533,19 +3535,19 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_x_x * H4_1;
-    H[3][5] = fa_x_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_x_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_x_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1;
-    H[5][4] = fa_x_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 

@@ -7,9 +7,8 @@
 //
 // d = pb - pa
 // C = n · d
-// J = [ -n' | (-(ra × n) - d × n)' | n' | (rb × n)' ]             (columns v_a | w_a | v_b | w_b)
-// K = inv_m_a + inv_m_b + (-(ra × n) - d × n)' inv_I_a (-(ra × n) - d × n)
-//     + (rb × n)' inv_I_b (rb × n)
+// J = [ -n' | -((ra + d) × n)' | n' | (rb × n)' ]                 (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a + inv_m_b + (rb × n)' inv_I_b (rb × n) + ((ra + d) × n)' inv_I_a ((ra + d) × n)
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -43,7 +42,7 @@ struct n2 {
 
   template <class T>
   struct Jacobian {
-    T n_x, n_y, n_z, wa_x, wa_y, wa_z, rb_x_n_x, rb_x_n_y, rb_x_n_z;
+    T n_x, n_y, n_z, ra_d_x_n_x, ra_d_x_n_y, ra_d_x_n_z, rb_x_n_x, rb_x_n_y, rb_x_n_z;
   };
 
   // C: 29 +, 30 *
@@ -66,7 +65,7 @@ struct n2 {
     C[0] = d_x * n_x + d_y * n_y + d_z * n_z;
   }
 
-  // C and J: 44 +, 48 *
+  // C and J: 38 +, 42 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -84,19 +83,16 @@ struct n2 {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T n_z = a.zx * p.n_x + a.zy * p.n_y + a.zz * p.n_z;
-    const T d_x_n_x = d_y * n_z - d_z * n_y;
-    const T d_x_n_y = d_z * n_x - d_x * n_z;
-    const T ra_x_n_x = ra_y * n_z - n_y * ra_z;
-    const T ra_x_n_y = n_x * ra_z - ra_x * n_z;
-    const T d_x_n_z = d_x * n_y - d_y * n_x;
-    const T ra_x_n_z = ra_x * n_y - n_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * n_x + d_y * n_y + d_z * n_z;
     J.n_x = n_x;
     J.n_y = n_y;
     J.n_z = n_z;
-    J.wa_x = -d_x_n_x - ra_x_n_x;
-    J.wa_y = -d_x_n_y - ra_x_n_y;
-    J.wa_z = -d_x_n_z - ra_x_n_z;
+    J.ra_d_x_n_x = ra_d_y * n_z - ra_d_z * n_y;
+    J.ra_d_x_n_y = ra_d_z * n_x - ra_d_x * n_z;
+    J.ra_d_x_n_z = ra_d_x * n_y - ra_d_y * n_x;
     J.rb_x_n_x = n_z * rb_y - n_y * rb_z;
     J.rb_x_n_y = n_x * rb_z - n_z * rb_x;
     J.rb_x_n_z = n_y * rb_x - n_x * rb_y;
@@ -107,13 +103,13 @@ struct n2 {
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    K[0] = ma.m + mb.m + J.rb_x_n_x *
+    K[0] = ma.m + mb.m + J.ra_d_x_n_x *
+        (ma.Ixx * J.ra_d_x_n_x + ma.Ixy * J.ra_d_x_n_y + ma.Ixz * J.ra_d_x_n_z) + J.ra_d_x_n_y *
+        (ma.Ixy * J.ra_d_x_n_x + ma.Iyy * J.ra_d_x_n_y + ma.Iyz * J.ra_d_x_n_z) + J.ra_d_x_n_z *
+        (ma.Ixz * J.ra_d_x_n_x + ma.Iyz * J.ra_d_x_n_y + ma.Izz * J.ra_d_x_n_z) + J.rb_x_n_x *
         (mb.Ixx * J.rb_x_n_x + mb.Ixy * J.rb_x_n_y + mb.Ixz * J.rb_x_n_z) + J.rb_x_n_y *
         (mb.Ixy * J.rb_x_n_x + mb.Iyy * J.rb_x_n_y + mb.Iyz * J.rb_x_n_z) + J.rb_x_n_z *
-        (mb.Ixz * J.rb_x_n_x + mb.Iyz * J.rb_x_n_y + mb.Izz * J.rb_x_n_z) + J.wa_x *
-        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+        (mb.Ixz * J.rb_x_n_x + mb.Iyz * J.rb_x_n_y + mb.Izz * J.rb_x_n_z);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -133,9 +129,9 @@ struct n2 {
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.rb_x_n_x * vb.wx + J.rb_x_n_y * vb.wy + J.rb_x_n_z * vb.wz + J.wa_x * va.wx +
-        J.wa_y * va.wy + J.wa_z * va.wz + J.n_x * (vb.x - va.x) + J.n_y * (vb.y - va.y) + J.n_z *
-        (vb.z - va.z);
+    Jv[0] = J.rb_x_n_x * vb.wx - J.ra_d_x_n_x * va.wx - J.ra_d_x_n_y * va.wy - J.ra_d_x_n_z *
+        va.wz + J.rb_x_n_y * vb.wy + J.rb_x_n_z * vb.wz + J.n_x * (vb.x - va.x) + J.n_y *
+        (vb.y - va.y) + J.n_z * (vb.z - va.z);
   }
 
   // v += M^-1 J^T lambda: 24 +, 32 *
@@ -147,9 +143,9 @@ struct n2 {
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_n_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_n_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_n_z;
     const T v2_1 = lambda[0] * mb.m;
     const T v2_1_2 = lambda[0] * J.rb_x_n_x;
     const T v2_2 = lambda[0] * J.rb_x_n_y;
@@ -157,9 +153,9 @@ struct n2 {
     v[0].x = va.x - v1_1 * J.n_x;
     v[0].y = va.y - v1_1 * J.n_y;
     v[0].z = va.z - v1_1 * J.n_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
     v[1].x = vb.x + v2_1 * J.n_x;
     v[1].y = vb.y + v2_1 * J.n_y;
     v[1].z = vb.z + v2_1 * J.n_z;
@@ -168,7 +164,7 @@ struct n2 {
     v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -177,9 +173,9 @@ struct n2 {
     D[0][0] = -J.n_x;
     D[0][1] = -J.n_y;
     D[0][2] = -J.n_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_n_x;
+    D[0][4] = -J.ra_d_x_n_y;
+    D[0][5] = -J.ra_d_x_n_z;
     D[0][6] = J.n_x;
     D[0][7] = J.n_y;
     D[0][8] = J.n_z;
@@ -188,7 +184,7 @@ struct n2 {
     D[0][11] = J.rb_x_n_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -200,9 +196,9 @@ struct n2 {
     D[0][0] = -ma.m * J.n_x;
     D[0][1] = -ma.m * J.n_y;
     D[0][2] = -ma.m * J.n_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_n_x - ma.Ixy * J.ra_d_x_n_y - ma.Ixz * J.ra_d_x_n_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_n_x - ma.Iyy * J.ra_d_x_n_y - ma.Iyz * J.ra_d_x_n_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_n_x - ma.Iyz * J.ra_d_x_n_y - ma.Izz * J.ra_d_x_n_z;
     D[0][6] = mb.m * J.n_x;
     D[0][7] = mb.m * J.n_y;
     D[0][8] = mb.m * J.n_z;
@@ -217,10 +213,11 @@ struct n2 {
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
+    const T dot_ra_d_x_n_ra_d_x_n = J.ra_d_x_n_x * J.ra_d_x_n_x + J.ra_d_x_n_y * J.ra_d_x_n_y +
+        J.ra_d_x_n_z * J.ra_d_x_n_z;
     const T dot_rb_x_n_rb_x_n = J.rb_x_n_x * J.rb_x_n_x + J.rb_x_n_y * J.rb_x_n_y + J.rb_x_n_z *
         J.rb_x_n_z;
-    K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-        dot_rb_x_n_rb_x_n;
+    K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_n_ra_d_x_n + mb.I * dot_rb_x_n_rb_x_n;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -238,9 +235,9 @@ struct n2 {
     v[0].x = va.x - v1_1 * J.n_x;
     v[0].y = va.y - v1_1 * J.n_y;
     v[0].z = va.z - v1_1 * J.n_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_n_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_n_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_n_z;
     v[1].x = vb.x + v2_1 * J.n_x;
     v[1].y = vb.y + v2_1 * J.n_y;
     v[1].z = vb.z + v2_1 * J.n_z;
@@ -249,7 +246,7 @@ struct n2 {
     v[1].wz = vb.wz + v2_1_2 * J.rb_x_n_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -261,9 +258,9 @@ struct n2 {
     D[0][0] = -ma.m * J.n_x;
     D[0][1] = -ma.m * J.n_y;
     D[0][2] = -ma.m * J.n_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_n_x;
+    D[0][4] = -ma.I * J.ra_d_x_n_y;
+    D[0][5] = -ma.I * J.ra_d_x_n_z;
     D[0][6] = mb.m * J.n_x;
     D[0][7] = mb.m * J.n_y;
     D[0][8] = mb.m * J.n_z;
@@ -272,7 +269,7 @@ struct n2 {
     D[0][11] = mb.I * J.rb_x_n_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -283,9 +280,9 @@ struct n2 {
     D[0][0] = -J.n_x;
     D[0][1] = -J.n_y;
     D[0][2] = -J.n_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_n_x * a.xx - J.ra_d_x_n_y * a.yx - J.ra_d_x_n_z * a.zx;
+    D[0][4] = -J.ra_d_x_n_x * a.xy - J.ra_d_x_n_y * a.yy - J.ra_d_x_n_z * a.zy;
+    D[0][5] = -J.ra_d_x_n_x * a.xz - J.ra_d_x_n_y * a.yz - J.ra_d_x_n_z * a.zz;
     D[0][6] = J.n_x;
     D[0][7] = J.n_y;
     D[0][8] = J.n_z;
@@ -305,10 +302,10 @@ struct n2 {
     D[0][0] = -J.n_x;
     D[0][1] = -J.n_y;
     D[0][2] = -J.n_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_n_x * a.e1 + J.ra_d_x_n_y * a.e2 + J.ra_d_x_n_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_n_z * a.e2 - J.ra_d_x_n_x * a.e0 - J.ra_d_x_n_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_n_x * a.e3 - J.ra_d_x_n_y * a.e0 - J.ra_d_x_n_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_n_y * a.e1 - J.ra_d_x_n_x * a.e2 - J.ra_d_x_n_z * a.e0);
     D[0][7] = J.n_x;
     D[0][8] = J.n_y;
     D[0][9] = J.n_z;
@@ -396,27 +393,27 @@ struct n2 {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = n_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * n_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = n_z * H4_3;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * n_z;
     const T H4_1_2 = n_y * rb_y;
     const T H4_2_2 = n_z * rb_z;
-    const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+    const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
     const T H4_1_3 = H1_1_2 * rb_x;
     const T H4_1_4 = H1_1 * rb_x;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = n_x * H5_1;
-    const T H5_1_3 = H2_1 * rb_y;
-    const T H5_1_4 = n_x * rb_x;
-    const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-    const T H5_1_5 = H1_1 * rb_y;
+    const T H5_1 = ra_d_x * n_x;
+    const T H5_1_2 = H2_1 * rb_y;
+    const T H5_1_3 = n_x * rb_x;
+    const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+    const T H5_1_4 = H1_1 * rb_y;
     const T H6_1 = H2_1 * rb_z;
     const T H6_1_2 = H1_1_2 * rb_z;
-    const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+    const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -425,29 +422,29 @@ struct n2 {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = n_x * H4_1;
-    H[3][5] = n_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
-    H[3][9] = H4_3_2;
+    H[3][9] = H4_3;
     H[3][10] = -H4_1_3;
     H[3][11] = -H4_1_4;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = n_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = n_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
-    H[4][9] = -H5_1_3;
+    H[4][9] = -H5_1_2;
     H[4][10] = H5_2;
-    H[4][11] = -H5_1_5;
+    H[4][11] = -H5_1_4;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = n_z * H5_1;
-    H[5][4] = n_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
     H[5][9] = -H6_1;
@@ -459,18 +456,18 @@ struct n2 {
     H[7][5] = H2_1;
     H[8][3] = H1_1_2;
     H[8][4] = H[1][5];
-    H[9][3] = H4_3_2;
+    H[9][3] = H4_3;
     H[9][4] = H[4][9];
     H[9][5] = H[5][9];
-    H[9][9] = -H4_3_2;
+    H[9][9] = -H4_3;
     H[9][10] = H4_1_3;
     H[9][11] = H4_1_4;
     H[10][3] = H[3][10];
     H[10][4] = H5_2;
     H[10][5] = H[5][10];
-    H[10][9] = H5_1_3;
+    H[10][9] = H5_1_2;
     H[10][10] = -H5_2;
-    H[10][11] = H5_1_5;
+    H[10][11] = H5_1_4;
     H[11][3] = H[3][11];
     H[11][4] = H[4][11];
     H[11][5] = H6_1_3;
@@ -743,10 +740,10 @@ struct n2::b_immovable : n2 {
 
   template <class T>
   struct Jacobian {
-    T n_x, n_y, n_z, wa_x, wa_y, wa_z;
+    T n_x, n_y, n_z, ra_d_x_n_x, ra_d_x_n_y, ra_d_x_n_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -764,36 +761,34 @@ struct n2::b_immovable : n2 {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T n_z = a.zx * p.n_x + a.zy * p.n_y + a.zz * p.n_z;
-    const T d_x_n_x = d_y * n_z - d_z * n_y;
-    const T d_x_n_y = d_z * n_x - d_x * n_z;
-    const T ra_x_n_x = ra_y * n_z - n_y * ra_z;
-    const T ra_x_n_y = n_x * ra_z - ra_x * n_z;
-    const T d_x_n_z = d_x * n_y - d_y * n_x;
-    const T ra_x_n_z = ra_x * n_y - n_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * n_x + d_y * n_y + d_z * n_z;
     J.n_x = n_x;
     J.n_y = n_y;
     J.n_z = n_z;
-    J.wa_x = -d_x_n_x - ra_x_n_x;
-    J.wa_y = -d_x_n_y - ra_x_n_y;
-    J.wa_z = -d_x_n_z - ra_x_n_z;
+    J.ra_d_x_n_x = ra_d_y * n_z - ra_d_z * n_y;
+    J.ra_d_x_n_y = ra_d_z * n_x - ra_d_x * n_z;
+    J.ra_d_x_n_z = ra_d_x * n_y - ra_d_y * n_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_n_x * (ma.Ixx * J.ra_d_x_n_x + ma.Ixy * J.ra_d_x_n_y + ma.Ixz *
+        J.ra_d_x_n_z) + J.ra_d_x_n_y *
+        (ma.Ixy * J.ra_d_x_n_x + ma.Iyy * J.ra_d_x_n_y + ma.Iyz * J.ra_d_x_n_z) + J.ra_d_x_n_z *
+        (ma.Ixz * J.ra_d_x_n_x + ma.Iyz * J.ra_d_x_n_y + ma.Izz * J.ra_d_x_n_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.n_x * va.x - J.n_y * va.y - J.n_z * va.z + J.wa_y * va.wy + J.wa_z *
-        va.wz;
+    Jv[0] = -J.n_x * va.x - J.n_y * va.y - J.n_z * va.z - J.ra_d_x_n_x * va.wx - J.ra_d_x_n_y *
+        va.wy - J.ra_d_x_n_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -803,18 +798,18 @@ struct n2::b_immovable : n2 {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_n_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_n_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_n_z;
     v[0].x = va.x - v1_1 * J.n_x;
     v[0].y = va.y - v1_1 * J.n_y;
     v[0].z = va.z - v1_1 * J.n_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -823,12 +818,12 @@ struct n2::b_immovable : n2 {
     D[0][0] = -J.n_x;
     D[0][1] = -J.n_y;
     D[0][2] = -J.n_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_n_x;
+    D[0][4] = -J.ra_d_x_n_y;
+    D[0][5] = -J.ra_d_x_n_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -839,9 +834,9 @@ struct n2::b_immovable : n2 {
     D[0][0] = -ma.m * J.n_x;
     D[0][1] = -ma.m * J.n_y;
     D[0][2] = -ma.m * J.n_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_n_x - ma.Ixy * J.ra_d_x_n_y - ma.Ixz * J.ra_d_x_n_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_n_x - ma.Iyy * J.ra_d_x_n_y - ma.Iyz * J.ra_d_x_n_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_n_x - ma.Iyz * J.ra_d_x_n_y - ma.Izz * J.ra_d_x_n_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -849,7 +844,9 @@ struct n2::b_immovable : n2 {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_n_ra_d_x_n = J.ra_d_x_n_x * J.ra_d_x_n_x + J.ra_d_x_n_y * J.ra_d_x_n_y +
+        J.ra_d_x_n_z * J.ra_d_x_n_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_n_ra_d_x_n;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -863,12 +860,12 @@ struct n2::b_immovable : n2 {
     v[0].x = va.x - v1_1 * J.n_x;
     v[0].y = va.y - v1_1 * J.n_y;
     v[0].z = va.z - v1_1 * J.n_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_n_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_n_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_n_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -879,12 +876,12 @@ struct n2::b_immovable : n2 {
     D[0][0] = -ma.m * J.n_x;
     D[0][1] = -ma.m * J.n_y;
     D[0][2] = -ma.m * J.n_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_n_x;
+    D[0][4] = -ma.I * J.ra_d_x_n_y;
+    D[0][5] = -ma.I * J.ra_d_x_n_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -894,9 +891,9 @@ struct n2::b_immovable : n2 {
     D[0][0] = -J.n_x;
     D[0][1] = -J.n_y;
     D[0][2] = -J.n_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_n_x * a.xx - J.ra_d_x_n_y * a.yx - J.ra_d_x_n_z * a.zx;
+    D[0][4] = -J.ra_d_x_n_x * a.xy - J.ra_d_x_n_y * a.yy - J.ra_d_x_n_z * a.zy;
+    D[0][5] = -J.ra_d_x_n_x * a.xz - J.ra_d_x_n_y * a.yz - J.ra_d_x_n_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -909,10 +906,10 @@ struct n2::b_immovable : n2 {
     D[0][0] = -J.n_x;
     D[0][1] = -J.n_y;
     D[0][2] = -J.n_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_n_x * a.e1 + J.ra_d_x_n_y * a.e2 + J.ra_d_x_n_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_n_z * a.e2 - J.ra_d_x_n_x * a.e0 - J.ra_d_x_n_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_n_x * a.e3 - J.ra_d_x_n_y * a.e0 - J.ra_d_x_n_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_n_y * a.e1 - J.ra_d_x_n_x * a.e2 - J.ra_d_x_n_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -978,15 +975,15 @@ struct n2::b_immovable : n2 {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = n_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * n_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = n_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = n_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * n_z;
+    const T H5_1 = ra_d_x * n_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -995,19 +992,19 @@ struct n2::b_immovable : n2 {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = n_x * H4_1;
-    H[3][5] = n_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = n_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = n_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = n_z * H5_1;
-    H[5][4] = n_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 

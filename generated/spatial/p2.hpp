@@ -7,17 +7,14 @@
 // d = pb - pa
 // C_line_y = fa_y · d
 // C_line_z = fa_z · d
-// J = [ -fa_y' | (-(ra × fa_y) - d × fa_y)' | fa_y' | (rb × fa_y)'
-//       -fa_z' | (-(ra × fa_z) - d × fa_z)' | fa_z' | (rb × fa_z)' ]  (columns v_a | w_a | v_b |
-//           w_b)
-// K[line_y, line_y] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_y) - d × fa_y)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_y)' inv_I_b (rb × fa_y)
-// K[line_y, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_y)
-// K[line_z, line_z] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_z) - d × fa_z)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_z)
+// J = [ -fa_y' | -((ra + d) × fa_y)' | fa_y' | (rb × fa_y)'
+//       -fa_z' | -((ra + d) × fa_z)' | fa_z' | (rb × fa_z)' ]     (columns v_a | w_a | v_b | w_b)
+// K[line_y, line_y] = inv_m_a + inv_m_b + (rb × fa_y)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
+// K[line_y, line_z] = (rb × fa_z)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_y)
+// K[line_z, line_z] = inv_m_a + inv_m_b + (rb × fa_z)' inv_I_b (rb × fa_z)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -51,8 +48,9 @@ struct p2 {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_1_x, wa_1_y, wa_1_z, rb_x_fa_y_x, rb_x_fa_y_y, rb_x_fa_y_z,
-        fa_z_x, fa_z_y, fa_z_z, wa_2_x, wa_2_y, wa_2_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, rb_x_fa_y_x,
+        rb_x_fa_y_y, rb_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y,
+        ra_d_x_fa_z_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
   };
 
   // C: 37 +, 42 *
@@ -79,7 +77,7 @@ struct p2 {
     C[1] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
   }
 
-  // C and J: 67 +, 78 *
+  // C and J: 52 +, 66 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[2],
       Jacobian<T>& J) {
@@ -100,35 +98,26 @@ struct p2 {
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     C[1] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_1_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_1_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_1_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.rb_x_fa_y_x = fa_y_z * rb_y - fa_y_y * rb_z;
     J.rb_x_fa_y_y = fa_y_x * rb_z - fa_y_z * rb_x;
     J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_2_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_2_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_2_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
     J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
     J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
     J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
@@ -140,24 +129,25 @@ struct p2 {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
-    const T K11_2 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
-    const T K11_3 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
-    const T K11_4 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
-    const T K11_5 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_6 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_7 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
-    K[0] = K11_1 + J.rb_x_fa_y_x * K11_2 + J.rb_x_fa_y_y * K11_3 + J.rb_x_fa_y_z * K11_4 +
-        J.wa_1_x * K11_5 + J.wa_1_y * K11_6 + J.wa_1_z * K11_7;
-    K[1] = J.rb_x_fa_z_x * K11_2 + J.rb_x_fa_z_y * K11_3 + J.rb_x_fa_z_z * K11_4 + J.wa_2_x *
-        K11_5 + J.wa_2_y * K11_6 + J.wa_2_z * K11_7;
-    K[2] = K11_1 + J.rb_x_fa_z_x *
-        (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z) +
-        J.rb_x_fa_z_y * (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz *
-        J.rb_x_fa_z_z) + J.rb_x_fa_z_z *
-        (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z) + J.wa_2_x *
-        (ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z) + J.wa_2_y *
-        (ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z) + J.wa_2_z *
-        (ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z);
+    const T K11_2 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K11_3 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K11_4 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    const T K11_5 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
+    const T K11_6 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
+    const T K11_7 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
+    K[0] = K11_1 + J.ra_d_x_fa_y_x * K11_2 + J.ra_d_x_fa_y_y * K11_3 + J.ra_d_x_fa_y_z * K11_4 +
+        J.rb_x_fa_y_x * K11_5 + J.rb_x_fa_y_y * K11_6 + J.rb_x_fa_y_z * K11_7;
+    K[1] = J.ra_d_x_fa_z_x * K11_2 + J.ra_d_x_fa_z_y * K11_3 + J.ra_d_x_fa_z_z * K11_4 +
+        J.rb_x_fa_z_x * K11_5 + J.rb_x_fa_z_y * K11_6 + J.rb_x_fa_z_z * K11_7;
+    K[2] = K11_1 + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z) +
+        J.rb_x_fa_z_x * (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz *
+        J.rb_x_fa_z_z) + J.rb_x_fa_z_y *
+        (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z) +
+        J.rb_x_fa_z_z * (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 +, 5 *, 2 /, 2 <
@@ -188,12 +178,12 @@ struct p2 {
     const T Jv1_1 = vb.x - va.x;
     const T Jv1_2 = vb.y - va.y;
     const T Jv1_3 = vb.z - va.z;
-    Jv[0] = J.rb_x_fa_y_x * vb.wx + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.wa_1_x *
-        va.wx + J.wa_1_y * va.wy + J.wa_1_z * va.wz + J.fa_y_x * Jv1_1 + J.fa_y_y * Jv1_2 +
-        J.fa_y_z * Jv1_3;
-    Jv[1] = J.rb_x_fa_z_x * vb.wx + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.wa_2_x *
-        va.wx + J.wa_2_y * va.wy + J.wa_2_z * va.wz + J.fa_z_x * Jv1_1 + J.fa_z_y * Jv1_2 +
-        J.fa_z_z * Jv1_3;
+    Jv[0] = J.rb_x_fa_y_x * vb.wx - J.ra_d_x_fa_y_x * va.wx - J.ra_d_x_fa_y_y * va.wy -
+        J.ra_d_x_fa_y_z * va.wz + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.fa_y_x *
+        Jv1_1 + J.fa_y_y * Jv1_2 + J.fa_y_z * Jv1_3;
+    Jv[1] = J.rb_x_fa_z_x * vb.wx - J.ra_d_x_fa_z_x * va.wx - J.ra_d_x_fa_z_y * va.wy -
+        J.ra_d_x_fa_z_z * va.wz + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.fa_z_x *
+        Jv1_1 + J.fa_z_y * Jv1_2 + J.fa_z_z * Jv1_3;
   }
 
   // v += M^-1 J^T lambda: 33 +, 42 *
@@ -207,18 +197,18 @@ struct p2 {
     const T v1_1 = J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1];
     const T v1_1_2 = J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1];
     const T v1_1_3 = J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1];
-    const T v1_1_4 = J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1];
-    const T v1_2 = J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1];
-    const T v1_3 = J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1];
+    const T v1_1_4 = J.ra_d_x_fa_y_x * lambda[0] + J.ra_d_x_fa_z_x * lambda[1];
+    const T v1_2 = J.ra_d_x_fa_y_y * lambda[0] + J.ra_d_x_fa_z_y * lambda[1];
+    const T v1_3 = J.ra_d_x_fa_y_z * lambda[0] + J.ra_d_x_fa_z_z * lambda[1];
     const T v2_1 = J.rb_x_fa_y_x * lambda[0] + J.rb_x_fa_z_x * lambda[1];
     const T v2_2 = J.rb_x_fa_y_y * lambda[0] + J.rb_x_fa_z_y * lambda[1];
     const T v2_3 = J.rb_x_fa_y_z * lambda[0] + J.rb_x_fa_z_z * lambda[1];
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.Ixx * v1_1_4 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
-    v[0].wy = va.wy + ma.Ixy * v1_1_4 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
-    v[0].wz = va.wz + ma.Ixz * v1_1_4 + ma.Iyz * v1_2 + ma.Izz * v1_3;
+    v[0].wx = va.wx - ma.Ixx * v1_1_4 - ma.Ixy * v1_2 - ma.Ixz * v1_3;
+    v[0].wy = va.wy - ma.Ixy * v1_1_4 - ma.Iyy * v1_2 - ma.Iyz * v1_3;
+    v[0].wz = va.wz - ma.Ixz * v1_1_4 - ma.Iyz * v1_2 - ma.Izz * v1_3;
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -227,7 +217,7 @@ struct p2 {
     v[1].wz = vb.wz + mb.Ixz * v2_1 + mb.Iyz * v2_2 + mb.Izz * v2_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[2][12]) {
     for (auto& row : D) {
@@ -236,9 +226,9 @@ struct p2 {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x;
-    D[0][4] = J.wa_1_y;
-    D[0][5] = J.wa_1_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
     D[0][6] = J.fa_y_x;
     D[0][7] = J.fa_y_y;
     D[0][8] = J.fa_y_z;
@@ -248,9 +238,9 @@ struct p2 {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x;
-    D[1][4] = J.wa_2_y;
-    D[1][5] = J.wa_2_z;
+    D[1][3] = -J.ra_d_x_fa_z_x;
+    D[1][4] = -J.ra_d_x_fa_z_y;
+    D[1][5] = -J.ra_d_x_fa_z_z;
     D[1][6] = J.fa_z_x;
     D[1][7] = J.fa_z_y;
     D[1][8] = J.fa_z_z;
@@ -259,7 +249,7 @@ struct p2 {
     D[1][11] = J.rb_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 30 +, 48 *
+  // (M^-1 J^T)^T, laid out like dense: 36 +, 48 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[2][12]) {
@@ -271,9 +261,9 @@ struct p2 {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    D[0][4] = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    D[0][5] = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[0][6] = mb.m * J.fa_y_x;
     D[0][7] = mb.m * J.fa_y_y;
     D[0][8] = mb.m * J.fa_y_z;
@@ -283,9 +273,9 @@ struct p2 {
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    D[1][4] = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    D[1][5] = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
+    D[1][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[1][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[1][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
     D[1][6] = mb.m * J.fa_z_x;
     D[1][7] = mb.m * J.fa_z_y;
     D[1][8] = mb.m * J.fa_z_z;
@@ -301,18 +291,21 @@ struct p2 {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
     const T dot_rb_x_fa_y_rb_x_fa_y = J.rb_x_fa_y_x * J.rb_x_fa_y_x + J.rb_x_fa_y_y *
         J.rb_x_fa_y_y + J.rb_x_fa_y_z * J.rb_x_fa_y_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_z = J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_y_rb_x_fa_z = J.rb_x_fa_y_x * J.rb_x_fa_z_x + J.rb_x_fa_y_y *
         J.rb_x_fa_z_y + J.rb_x_fa_y_z * J.rb_x_fa_z_z;
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_z_rb_x_fa_z = J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y *
         J.rb_x_fa_z_y + J.rb_x_fa_z_z * J.rb_x_fa_z_z;
-    K[0] = K11_1 + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z) +
-        mb.I * dot_rb_x_fa_y_rb_x_fa_y;
-    K[1] = ma.I * (J.wa_1_x * J.wa_2_x + J.wa_1_y * J.wa_2_y + J.wa_1_z * J.wa_2_z) + mb.I *
-        dot_rb_x_fa_y_rb_x_fa_z;
-    K[2] = K11_1 + ma.I * (J.wa_2_x * J.wa_2_x + J.wa_2_y * J.wa_2_y + J.wa_2_z * J.wa_2_z) +
-        mb.I * dot_rb_x_fa_z_rb_x_fa_z;
+    K[0] = K11_1 + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y + mb.I * dot_rb_x_fa_y_rb_x_fa_y;
+    K[1] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z + mb.I * dot_rb_x_fa_y_rb_x_fa_z;
+    K[2] = K11_1 + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z + mb.I * dot_rb_x_fa_z_rb_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 21 +, 30 *
@@ -329,9 +322,9 @@ struct p2 {
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.I * (J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1]);
-    v[0].wy = va.wy + ma.I * (J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1]);
-    v[0].wz = va.wz + ma.I * (J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1]);
+    v[0].wx = va.wx - ma.I * (J.ra_d_x_fa_y_x * lambda[0] + J.ra_d_x_fa_z_x * lambda[1]);
+    v[0].wy = va.wy - ma.I * (J.ra_d_x_fa_y_y * lambda[0] + J.ra_d_x_fa_z_y * lambda[1]);
+    v[0].wz = va.wz - ma.I * (J.ra_d_x_fa_y_z * lambda[0] + J.ra_d_x_fa_z_z * lambda[1]);
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -340,7 +333,7 @@ struct p2 {
     v[1].wz = vb.wz + mb.I * (J.rb_x_fa_y_z * lambda[0] + J.rb_x_fa_z_z * lambda[1]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[2][12]) {
@@ -352,9 +345,9 @@ struct p2 {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_1_x;
-    D[0][4] = ma.I * J.wa_1_y;
-    D[0][5] = ma.I * J.wa_1_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[0][6] = mb.m * J.fa_y_x;
     D[0][7] = mb.m * J.fa_y_y;
     D[0][8] = mb.m * J.fa_y_z;
@@ -364,9 +357,9 @@ struct p2 {
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.I * J.wa_2_x;
-    D[1][4] = ma.I * J.wa_2_y;
-    D[1][5] = ma.I * J.wa_2_z;
+    D[1][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[1][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[1][5] = -ma.I * J.ra_d_x_fa_z_z;
     D[1][6] = mb.m * J.fa_z_x;
     D[1][7] = mb.m * J.fa_z_y;
     D[1][8] = mb.m * J.fa_z_z;
@@ -375,7 +368,7 @@ struct p2 {
     D[1][11] = mb.I * J.rb_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 30 +, 36 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 36 +, 36 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][12]) {
     for (auto& row : D) {
@@ -386,9 +379,9 @@ struct p2 {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[0][6] = J.fa_y_x;
     D[0][7] = J.fa_y_y;
     D[0][8] = J.fa_y_z;
@@ -398,9 +391,9 @@ struct p2 {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x * a.xx + J.wa_2_y * a.yx + J.wa_2_z * a.zx;
-    D[1][4] = J.wa_2_x * a.xy + J.wa_2_y * a.yy + J.wa_2_z * a.zy;
-    D[1][5] = J.wa_2_x * a.xz + J.wa_2_y * a.yz + J.wa_2_z * a.zz;
+    D[1][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[1][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[1][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
     D[1][6] = J.fa_z_x;
     D[1][7] = J.fa_z_y;
     D[1][8] = J.fa_z_z;
@@ -420,10 +413,10 @@ struct p2 {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
@@ -434,10 +427,10 @@ struct p2 {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = -T(2) * (J.wa_2_x * a.e1 + J.wa_2_y * a.e2 + J.wa_2_z * a.e3);
-    D[1][4] = T(2) * (J.wa_2_x * a.e0 + J.wa_2_y * a.e3 - J.wa_2_z * a.e2);
-    D[1][5] = T(2) * (J.wa_2_y * a.e0 - J.wa_2_x * a.e3 + J.wa_2_z * a.e1);
-    D[1][6] = T(2) * (J.wa_2_x * a.e2 - J.wa_2_y * a.e1 + J.wa_2_z * a.e0);
+    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
@@ -521,7 +514,7 @@ struct p2 {
     C_t[1] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 78 +, 87 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 75 +, 81 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[2],
       T (&H)[12][12]) {
@@ -545,33 +538,30 @@ struct p2 {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = d_y + ra_y;
-    const T H4_2 = lambda[0] * H4_1;
-    const T H4_3 = lambda[1] * H4_1;
-    const T H4_4 = fa_y_y * H4_2 + fa_z_y * H4_3;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_y_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_5 = d_z + ra_z;
-    const T H4_6 = lambda[0] * H4_5;
-    const T H4_7 = lambda[1] * H4_5;
-    const T H4_8 = fa_y_z * H4_6 + fa_z_z * H4_7;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_y_z;
+    const T H4_3 = ra_d_y * fa_z_y;
+    const T H4_4 = ra_d_z * fa_z_z;
     const T H4_1_2 = rb_y * H1_1_2;
     const T H4_2_2 = rb_z * H1_1;
     const T H4_3_2 = H4_1_2 + H4_2_2;
     const T H4_1_3 = rb_x * H1_1_2;
     const T H4_1_4 = rb_x * H1_1;
-    const T H5_1 = d_x + ra_x;
-    const T H5_2 = lambda[0] * H5_1;
-    const T H5_3 = lambda[1] * H5_1;
-    const T H5_1_2 = fa_y_x * H5_2 + fa_z_x * H5_3;
-    const T H5_1_3 = rb_y * H2_1;
-    const T H5_1_4 = rb_x * H2_1;
-    const T H5_2_2 = H5_1_4 + H4_2_2;
-    const T H5_1_5 = rb_y * H1_1;
+    const T H5_1 = ra_d_x * fa_y_x;
+    const T H5_2 = ra_d_x * fa_z_x;
+    const T H5_1_2 = rb_y * H2_1;
+    const T H5_1_3 = rb_x * H2_1;
+    const T H5_2_2 = H5_1_3 + H4_2_2;
+    const T H5_1_4 = rb_y * H1_1;
     const T H6_1 = rb_z * H2_1;
     const T H6_1_2 = rb_z * H1_1_2;
-    const T H6_1_3 = H5_1_4 + H4_1_2;
+    const T H6_1_3 = H5_1_3 + H4_1_2;
     const T H10_1 = fa_y_y * rb_y;
     const T H10_2 = fa_y_z * rb_z;
     const T H10_3 = fa_z_y * rb_y;
@@ -586,9 +576,9 @@ struct p2 {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_4 - H4_8;
-    H[3][4] = fa_y_x * H4_2 + fa_z_x * H4_3;
-    H[3][5] = fa_y_x * H4_6 + fa_z_x * H4_7;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2) - lambda[1] * (H4_3 + H4_4);
+    H[3][4] = ra_d_y * H2_1;
+    H[3][5] = ra_d_z * H2_1;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
     H[3][9] = H4_3_2;
@@ -596,19 +586,19 @@ struct p2 {
     H[3][11] = -H4_1_4;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_2 + fa_z_y * H5_3;
-    H[4][4] = -H5_1_2 - H4_8;
-    H[4][5] = fa_y_y * H4_6 + fa_z_y * H4_7;
+    H[4][3] = ra_d_x * H1_1_2;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2) - lambda[1] * (H5_2 + H4_4);
+    H[4][5] = ra_d_z * H1_1_2;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
-    H[4][9] = -H5_1_3;
+    H[4][9] = -H5_1_2;
     H[4][10] = H5_2_2;
-    H[4][11] = -H5_1_5;
+    H[4][11] = -H5_1_4;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_2 + fa_z_z * H5_3;
-    H[5][4] = fa_y_z * H4_2 + fa_z_z * H4_3;
-    H[5][5] = -H4_4 - H5_1_2;
+    H[5][3] = ra_d_x * H1_1;
+    H[5][4] = ra_d_y * H1_1;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1) - lambda[1] * (H5_2 + H4_3);
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
     H[5][9] = -H6_1;
@@ -629,9 +619,9 @@ struct p2 {
     H[10][3] = H[3][10];
     H[10][4] = lambda[0] * (H11_1 + H10_2) + lambda[1] * (H11_2 + H10_4);
     H[10][5] = H[5][10];
-    H[10][9] = H5_1_3;
+    H[10][9] = H5_1_2;
     H[10][10] = -H5_2_2;
-    H[10][11] = H5_1_5;
+    H[10][11] = H5_1_4;
     H[11][3] = H[3][11];
     H[11][4] = H[4][11];
     H[11][5] = lambda[0] * (H11_1 + H10_1) + lambda[1] * (H11_2 + H10_3);
@@ -964,11 +954,11 @@ struct p2::b_immovable : p2 {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_1_x, wa_1_y, wa_1_z, fa_z_x, fa_z_y, fa_z_z, wa_2_x, wa_2_y,
-        wa_2_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z,
+        ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z;
   };
 
-  // C and J: 61 +, 66 *
+  // C and J: 46 +, 54 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[2],
       Jacobian<T>& J) {
@@ -989,56 +979,49 @@ struct p2::b_immovable : p2 {
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     C[1] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_1_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_1_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_1_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_2_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_2_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_2_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 20 +, 27 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[3]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_2 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_3 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
-    K[0] = ma.m + J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3;
-    K[1] = J.wa_2_x * K11_1 + J.wa_2_y * K11_2 + J.wa_2_z * K11_3;
-    K[2] = ma.m + J.wa_2_x * (ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z) +
-        J.wa_2_y * (ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z) + J.wa_2_z *
-        (ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z);
+    const T K11_1 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K11_2 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K11_3 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    K[0] = ma.m + J.ra_d_x_fa_y_x * K11_1 + J.ra_d_x_fa_y_y * K11_2 + J.ra_d_x_fa_y_z * K11_3;
+    K[1] = J.ra_d_x_fa_z_x * K11_1 + J.ra_d_x_fa_z_y * K11_2 + J.ra_d_x_fa_z_z * K11_3;
+    K[2] = ma.m + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z);
   }
 
-  // J v: 10 +, 12 *
+  // J v: 12 +, 12 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[2]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_1_x * va.wx - J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z + J.wa_1_y *
-        va.wy + J.wa_1_z * va.wz;
-    Jv[1] = J.wa_2_x * va.wx - J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z + J.wa_2_y *
-        va.wy + J.wa_2_z * va.wz;
+    Jv[0] = -J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z - J.ra_d_x_fa_y_x * va.wx -
+        J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
+    Jv[1] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
+        J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 18 +, 24 *
@@ -1047,18 +1030,18 @@ struct p2::b_immovable : p2 {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1];
-    const T v1_2 = J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1];
-    const T v1_3 = J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1];
+    const T v1_1 = J.ra_d_x_fa_y_x * lambda[0] + J.ra_d_x_fa_z_x * lambda[1];
+    const T v1_2 = J.ra_d_x_fa_y_y * lambda[0] + J.ra_d_x_fa_z_y * lambda[1];
+    const T v1_3 = J.ra_d_x_fa_y_z * lambda[0] + J.ra_d_x_fa_z_z * lambda[1];
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1]);
-    v[0].wx = va.wx + ma.Ixx * v1_1 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
-    v[0].wy = va.wy + ma.Ixy * v1_1 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
-    v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
+    v[0].wx = va.wx - ma.Ixx * v1_1 - ma.Ixy * v1_2 - ma.Ixz * v1_3;
+    v[0].wy = va.wy - ma.Ixy * v1_1 - ma.Iyy * v1_2 - ma.Iyz * v1_3;
+    v[0].wz = va.wz - ma.Ixz * v1_1 - ma.Iyz * v1_2 - ma.Izz * v1_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[2][12]) {
     for (auto& row : D) {
@@ -1067,18 +1050,18 @@ struct p2::b_immovable : p2 {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x;
-    D[0][4] = J.wa_1_y;
-    D[0][5] = J.wa_1_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x;
-    D[1][4] = J.wa_2_y;
-    D[1][5] = J.wa_2_z;
+    D[1][3] = -J.ra_d_x_fa_z_x;
+    D[1][4] = -J.ra_d_x_fa_z_y;
+    D[1][5] = -J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense: 24 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[2][12]) {
@@ -1089,15 +1072,15 @@ struct p2::b_immovable : p2 {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    D[0][4] = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    D[0][5] = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    D[1][4] = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    D[1][5] = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
+    D[1][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[1][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[1][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 8 +, 12 *
@@ -1105,9 +1088,15 @@ struct p2::b_immovable : p2 {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[3]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
-    K[1] = ma.I * (J.wa_1_x * J.wa_2_x + J.wa_1_y * J.wa_2_y + J.wa_1_z * J.wa_2_z);
-    K[2] = ma.m + ma.I * (J.wa_2_x * J.wa_2_x + J.wa_2_y * J.wa_2_y + J.wa_2_z * J.wa_2_z);
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_z = J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y;
+    K[1] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z;
+    K[2] = ma.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 18 *
@@ -1119,12 +1108,12 @@ struct p2::b_immovable : p2 {
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1]);
-    v[0].wx = va.wx + ma.I * (J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1]);
-    v[0].wy = va.wy + ma.I * (J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1]);
-    v[0].wz = va.wz + ma.I * (J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1]);
+    v[0].wx = va.wx - ma.I * (J.ra_d_x_fa_y_x * lambda[0] + J.ra_d_x_fa_z_x * lambda[1]);
+    v[0].wy = va.wy - ma.I * (J.ra_d_x_fa_y_y * lambda[0] + J.ra_d_x_fa_z_y * lambda[1]);
+    v[0].wz = va.wz - ma.I * (J.ra_d_x_fa_y_z * lambda[0] + J.ra_d_x_fa_z_z * lambda[1]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[2][12]) {
@@ -1135,18 +1124,18 @@ struct p2::b_immovable : p2 {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_1_x;
-    D[0][4] = ma.I * J.wa_1_y;
-    D[0][5] = ma.I * J.wa_1_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.I * J.wa_2_x;
-    D[1][4] = ma.I * J.wa_2_y;
-    D[1][5] = ma.I * J.wa_2_z;
+    D[1][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[1][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[1][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 24 +, 18 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][12]) {
     for (auto& row : D) {
@@ -1156,15 +1145,15 @@ struct p2::b_immovable : p2 {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x * a.xx + J.wa_2_y * a.yx + J.wa_2_z * a.zx;
-    D[1][4] = J.wa_2_x * a.xy + J.wa_2_y * a.yy + J.wa_2_z * a.zy;
-    D[1][5] = J.wa_2_x * a.xz + J.wa_2_y * a.yz + J.wa_2_z * a.zz;
+    D[1][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[1][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[1][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 22 +, 32 *
@@ -1177,17 +1166,17 @@ struct p2::b_immovable : p2 {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = -T(2) * (J.wa_2_x * a.e1 + J.wa_2_y * a.e2 + J.wa_2_z * a.e3);
-    D[1][4] = T(2) * (J.wa_2_x * a.e0 + J.wa_2_y * a.e3 - J.wa_2_z * a.e2);
-    D[1][5] = T(2) * (J.wa_2_y * a.e0 - J.wa_2_x * a.e3 + J.wa_2_z * a.e1);
-    D[1][6] = T(2) * (J.wa_2_x * a.e2 - J.wa_2_y * a.e1 + J.wa_2_z * a.e0);
+    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 72 +, 92 *
@@ -1249,7 +1238,7 @@ struct p2::b_immovable : p2 {
     g[1] = -dot_d_w_a_x_w_a_x_fa_z - T(2) * dot_d_dot_w_a_x_fa_z - dot_d_dot_dot_fa_z;
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 57 +, 66 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 54 +, 60 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[2],
       T (&H)[12][12]) {
@@ -1273,21 +1262,18 @@ struct p2::b_immovable : p2 {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = d_y + ra_y;
-    const T H4_2 = lambda[0] * H4_1;
-    const T H4_3 = lambda[1] * H4_1;
-    const T H4_4 = fa_y_y * H4_2 + fa_z_y * H4_3;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_y_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_5 = d_z + ra_z;
-    const T H4_6 = lambda[0] * H4_5;
-    const T H4_7 = lambda[1] * H4_5;
-    const T H4_8 = fa_y_z * H4_6 + fa_z_z * H4_7;
-    const T H5_1 = d_x + ra_x;
-    const T H5_2 = lambda[0] * H5_1;
-    const T H5_3 = lambda[1] * H5_1;
-    const T H5_1_2 = fa_y_x * H5_2 + fa_z_x * H5_3;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_y_z;
+    const T H4_3 = ra_d_y * fa_z_y;
+    const T H4_4 = ra_d_z * fa_z_z;
+    const T H5_1 = ra_d_x * fa_y_x;
+    const T H5_2 = ra_d_x * fa_z_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -1296,19 +1282,19 @@ struct p2::b_immovable : p2 {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_4 - H4_8;
-    H[3][4] = fa_y_x * H4_2 + fa_z_x * H4_3;
-    H[3][5] = fa_y_x * H4_6 + fa_z_x * H4_7;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2) - lambda[1] * (H4_3 + H4_4);
+    H[3][4] = ra_d_y * H2_1;
+    H[3][5] = ra_d_z * H2_1;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_2 + fa_z_y * H5_3;
-    H[4][4] = -H5_1_2 - H4_8;
-    H[4][5] = fa_y_y * H4_6 + fa_z_y * H4_7;
+    H[4][3] = ra_d_x * H1_1_2;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2) - lambda[1] * (H5_2 + H4_4);
+    H[4][5] = ra_d_z * H1_1_2;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_2 + fa_z_z * H5_3;
-    H[5][4] = fa_y_z * H4_2 + fa_z_z * H4_3;
-    H[5][5] = -H4_4 - H5_1_2;
+    H[5][3] = ra_d_x * H1_1;
+    H[5][4] = ra_d_y * H1_1;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1) - lambda[1] * (H5_2 + H4_3);
   }
 };
 

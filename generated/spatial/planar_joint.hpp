@@ -8,35 +8,33 @@
 // C_parallel_y = fa_y · fb_x
 // C_parallel_z = fa_z · fb_x
 // C_normal = fa_x · d
-// J = [ 0      | (fa_y × fb_x)'             | 0     | -(fa_y × fb_x)'
-//       0      | (fa_z × fb_x)'             | 0     | -(fa_z × fb_x)'
-//       -fa_x' | (-(ra × fa_x) - d × fa_x)' | fa_x' | (rb × fa_x)'    ]  (columns v_a | w_a | v_b
-//           | w_b)
+// J = [ 0      | (fa_y × fb_x)'      | 0     | -(fa_y × fb_x)'
+//       0      | (fa_z × fb_x)'      | 0     | -(fa_z × fb_x)'
+//       -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)'    ]  (columns v_a | w_a | v_b | w_b)
 // K[parallel_y, parallel_y] = (fa_y × fb_x)' inv_I_a (fa_y × fb_x)
 //                             + (fa_y × fb_x)' inv_I_b (fa_y × fb_x)
 // K[parallel_y, parallel_z] = (fa_z × fb_x)' inv_I_a (fa_y × fb_x)
 //                             + (fa_z × fb_x)' inv_I_b (fa_y × fb_x)
-// K[parallel_y, normal] = (-(ra × fa_x) - d × fa_x)' inv_I_a (fa_y × fb_x)
-//                         - (rb × fa_x)' inv_I_b (fa_y × fb_x)
+// K[parallel_y, normal] = -(rb × fa_x)' inv_I_b (fa_y × fb_x)
+//                         - ((ra + d) × fa_x)' inv_I_a (fa_y × fb_x)
 // K[parallel_z, parallel_z] = (fa_z × fb_x)' inv_I_a (fa_z × fb_x)
 //                             + (fa_z × fb_x)' inv_I_b (fa_z × fb_x)
-// K[parallel_z, normal] = (-(ra × fa_x) - d × fa_x)' inv_I_a (fa_z × fb_x)
-//                         - (rb × fa_x)' inv_I_b (fa_z × fb_x)
-// K[normal, normal] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_x) - d × fa_x)' inv_I_a (-(ra × fa_x) - d × fa_x)
-//                     + (rb × fa_x)' inv_I_b (rb × fa_x)
+// K[parallel_z, normal] = -(rb × fa_x)' inv_I_b (fa_z × fb_x)
+//                         - ((ra + d) × fa_x)' inv_I_a (fa_z × fb_x)
+// K[normal, normal] = inv_m_a + inv_m_b + (rb × fa_x)' inv_I_b (rb × fa_x)
+//                     + ((ra + d) × fa_x)' inv_I_a ((ra + d) × fa_x)
 //
 // coordinate slide_y = fa_y · d
-// J_slide_y = [ -fa_y' | (-(ra × fa_y) - d × fa_y)' | fa_y' | (rb × fa_y)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide_y = inv_m_a + inv_m_b + (-(ra × fa_y) - d × fa_y)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//             + (rb × fa_y)' inv_I_b (rb × fa_y)
+// J_slide_y = [ -fa_y' | -((ra + d) × fa_y)' | fa_y' | (rb × fa_y)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide_y = inv_m_a + inv_m_b + (rb × fa_y)' inv_I_b (rb × fa_y)
+//             + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
 //
 // coordinate slide_z = fa_z · d
-// J_slide_z = [ -fa_z' | (-(ra × fa_z) - d × fa_z)' | fa_z' | (rb × fa_z)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide_z = inv_m_a + inv_m_b + (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_z) - d × fa_z)
-//             + (rb × fa_z)' inv_I_b (rb × fa_z)
+// J_slide_z = [ -fa_z' | -((ra + d) × fa_z)' | fa_z' | (rb × fa_z)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide_z = inv_m_a + inv_m_b + (rb × fa_z)' inv_I_b (rb × fa_z)
+//             + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
 //
 // coordinate angle = twist(fa, fb)
 // J_angle = [ 0
@@ -83,7 +81,8 @@ struct planar_joint {
   template <class T>
   struct Jacobian {
     T fa_y_x_fb_x_x, fa_y_x_fb_x_y, fa_y_x_fb_x_z, fa_z_x_fb_x_x, fa_z_x_fb_x_y, fa_z_x_fb_x_z,
-        fa_x_x, fa_x_y, fa_x_z, wa_3_x, wa_3_y, wa_3_z, rb_x_fa_x_x, rb_x_fa_x_y, rb_x_fa_x_z;
+        fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z, rb_x_fa_x_x,
+        rb_x_fa_x_y, rb_x_fa_x_z;
   };
 
   // C: 51 +, 63 *
@@ -117,7 +116,7 @@ struct planar_joint {
     C[2] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
   }
 
-  // C and J: 72 +, 93 *
+  // C and J: 66 +, 87 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -144,12 +143,9 @@ struct planar_joint {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
     C[1] = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
     C[2] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
@@ -162,15 +158,15 @@ struct planar_joint {
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_3_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_3_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_3_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
     J.rb_x_fa_x_x = fa_x_z * rb_y - fa_x_y * rb_z;
     J.rb_x_fa_x_y = fa_x_x * rb_z - fa_x_z * rb_x;
     J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 65 +, 81 *
+  // K = J M^-1 J^T, lower triangle, from J: 67 +, 81 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
@@ -194,18 +190,19 @@ struct planar_joint {
     K[1] = J.fa_z_x_fb_x_x * K11_3 + J.fa_z_x_fb_x_y * K11_6 + J.fa_z_x_fb_x_z * K11_9;
     K[2] = J.fa_z_x_fb_x_x * (K22_1 + K22_2) + J.fa_z_x_fb_x_y * (K22_3 + K22_4) +
         J.fa_z_x_fb_x_z * (K22_5 + K22_6);
-    K[3] = J.wa_3_x * K11_1 - J.rb_x_fa_x_x * K11_2 - J.rb_x_fa_x_y * K11_5 - J.rb_x_fa_x_z *
-        K11_8 + J.wa_3_y * K11_4 + J.wa_3_z * K11_7;
-    K[4] = J.wa_3_x * K22_1 - J.rb_x_fa_x_x * K22_2 - J.rb_x_fa_x_y * K22_4 - J.rb_x_fa_x_z *
-        K22_6 + J.wa_3_y * K22_3 + J.wa_3_z * K22_5;
-    K[5] = ma.m + mb.m + J.rb_x_fa_x_x *
-        (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz * J.rb_x_fa_x_z) +
-        J.rb_x_fa_x_y * (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz *
-        J.rb_x_fa_x_z) + J.rb_x_fa_x_z *
-        (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z) + J.wa_3_x *
-        (ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z) + J.wa_3_y *
-        (ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z) + J.wa_3_z *
-        (ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z);
+    K[3] = -J.ra_d_x_fa_x_x * K11_1 - J.ra_d_x_fa_x_y * K11_4 - J.ra_d_x_fa_x_z * K11_7 -
+        J.rb_x_fa_x_x * K11_2 - J.rb_x_fa_x_y * K11_5 - J.rb_x_fa_x_z * K11_8;
+    K[4] = -J.ra_d_x_fa_x_x * K22_1 - J.ra_d_x_fa_x_y * K22_3 - J.ra_d_x_fa_x_z * K22_5 -
+        J.rb_x_fa_x_x * K22_2 - J.rb_x_fa_x_y * K22_4 - J.rb_x_fa_x_z * K22_6;
+    K[5] = ma.m + mb.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
+        J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
+        J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
+        (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
+        J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 4 +, 13 *, 3 /, 3 <
@@ -249,9 +246,9 @@ struct planar_joint {
     const T Jv1_3 = va.wz - vb.wz;
     Jv[0] = J.fa_y_x_fb_x_x * Jv1_1 + J.fa_y_x_fb_x_y * Jv1_2 + J.fa_y_x_fb_x_z * Jv1_3;
     Jv[1] = J.fa_z_x_fb_x_x * Jv1_1 + J.fa_z_x_fb_x_y * Jv1_2 + J.fa_z_x_fb_x_z * Jv1_3;
-    Jv[2] = J.rb_x_fa_x_x * vb.wx + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.wa_3_x *
-        va.wx + J.wa_3_y * va.wy + J.wa_3_z * va.wz + J.fa_x_x * (vb.x - va.x) + J.fa_x_y *
-        (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
+    Jv[2] = J.rb_x_fa_x_x * vb.wx - J.ra_d_x_fa_x_x * va.wx - J.ra_d_x_fa_x_y * va.wy -
+        J.ra_d_x_fa_x_z * va.wz + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.fa_x_x *
+        (vb.x - va.x) + J.fa_x_y * (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
   }
 
   // v += M^-1 J^T lambda: 33 +, 38 *
@@ -264,11 +261,11 @@ struct planar_joint {
     const InverseMass<T>& mb = m[1];
     const T v1_1 = ma.m * lambda[2];
     const T v1_1_2 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1];
-    const T v1_2 = v1_1_2 + J.wa_3_x * lambda[2];
+    const T v1_2 = v1_1_2 - J.ra_d_x_fa_x_x * lambda[2];
     const T v1_3 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1];
-    const T v1_4 = v1_3 + J.wa_3_y * lambda[2];
+    const T v1_4 = v1_3 - J.ra_d_x_fa_x_y * lambda[2];
     const T v1_5 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1];
-    const T v1_6 = v1_5 + J.wa_3_z * lambda[2];
+    const T v1_6 = v1_5 - J.ra_d_x_fa_x_z * lambda[2];
     const T v2_1 = lambda[2] * mb.m;
     const T v2_1_2 = J.rb_x_fa_x_x * lambda[2] - v1_1_2;
     const T v2_2 = J.rb_x_fa_x_y * lambda[2] - v1_3;
@@ -287,7 +284,7 @@ struct planar_joint {
     v[1].wz = vb.wz + mb.Ixz * v2_1_2 + mb.Iyz * v2_2 + mb.Izz * v2_3;
   }
 
-  // J with its zeros: v, w of each body: 9 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[3][12]) {
     for (auto& row : D) {
@@ -308,9 +305,9 @@ struct planar_joint {
     D[2][0] = -J.fa_x_x;
     D[2][1] = -J.fa_x_y;
     D[2][2] = -J.fa_x_z;
-    D[2][3] = J.wa_3_x;
-    D[2][4] = J.wa_3_y;
-    D[2][5] = J.wa_3_z;
+    D[2][3] = -J.ra_d_x_fa_x_x;
+    D[2][4] = -J.ra_d_x_fa_x_y;
+    D[2][5] = -J.ra_d_x_fa_x_z;
     D[2][6] = J.fa_x_x;
     D[2][7] = J.fa_x_y;
     D[2][8] = J.fa_x_z;
@@ -319,7 +316,7 @@ struct planar_joint {
     D[2][11] = J.rb_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 45 +, 60 *
+  // (M^-1 J^T)^T, laid out like dense: 48 +, 60 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[3][12]) {
@@ -343,9 +340,9 @@ struct planar_joint {
     D[2][0] = -ma.m * J.fa_x_x;
     D[2][1] = -ma.m * J.fa_x_y;
     D[2][2] = -ma.m * J.fa_x_z;
-    D[2][3] = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    D[2][4] = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    D[2][5] = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    D[2][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[2][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[2][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
     D[2][6] = mb.m * J.fa_x_x;
     D[2][7] = mb.m * J.fa_x_y;
     D[2][8] = mb.m * J.fa_x_z;
@@ -354,7 +351,7 @@ struct planar_joint {
     D[2][11] = mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 24 +, 36 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 26 +, 36 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
@@ -367,21 +364,24 @@ struct planar_joint {
         J.fa_z_x_fb_x_y + J.fa_y_x_fb_x_z * J.fa_z_x_fb_x_z;
     const T dot_fa_z_x_fb_x_fa_z_x_fb_x = J.fa_z_x_fb_x_x * J.fa_z_x_fb_x_x + J.fa_z_x_fb_x_y *
         J.fa_z_x_fb_x_y + J.fa_z_x_fb_x_z * J.fa_z_x_fb_x_z;
+    const T dot_fa_y_x_fb_x_ra_d_x_fa_x = J.fa_y_x_fb_x_x * J.ra_d_x_fa_x_x + J.fa_y_x_fb_x_y *
+        J.ra_d_x_fa_x_y + J.fa_y_x_fb_x_z * J.ra_d_x_fa_x_z;
     const T dot_rb_x_fa_x_fa_y_x_fb_x = J.fa_y_x_fb_x_x * J.rb_x_fa_x_x + J.fa_y_x_fb_x_y *
         J.rb_x_fa_x_y + J.fa_y_x_fb_x_z * J.rb_x_fa_x_z;
+    const T dot_fa_z_x_fb_x_ra_d_x_fa_x = J.fa_z_x_fb_x_x * J.ra_d_x_fa_x_x + J.fa_z_x_fb_x_y *
+        J.ra_d_x_fa_x_y + J.fa_z_x_fb_x_z * J.ra_d_x_fa_x_z;
     const T dot_rb_x_fa_x_fa_z_x_fb_x = J.fa_z_x_fb_x_x * J.rb_x_fa_x_x + J.fa_z_x_fb_x_y *
         J.rb_x_fa_x_y + J.fa_z_x_fb_x_z * J.rb_x_fa_x_z;
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
     const T dot_rb_x_fa_x_rb_x_fa_x = J.rb_x_fa_x_x * J.rb_x_fa_x_x + J.rb_x_fa_x_y *
         J.rb_x_fa_x_y + J.rb_x_fa_x_z * J.rb_x_fa_x_z;
     K[0] = dot_fa_y_x_fb_x_fa_y_x_fb_x * K11_1;
     K[1] = dot_fa_y_x_fb_x_fa_z_x_fb_x * K11_1;
     K[2] = dot_fa_z_x_fb_x_fa_z_x_fb_x * K11_1;
-    K[3] = ma.I * (J.fa_y_x_fb_x_x * J.wa_3_x + J.fa_y_x_fb_x_y * J.wa_3_y + J.fa_y_x_fb_x_z *
-        J.wa_3_z) - mb.I * dot_rb_x_fa_x_fa_y_x_fb_x;
-    K[4] = ma.I * (J.fa_z_x_fb_x_x * J.wa_3_x + J.fa_z_x_fb_x_y * J.wa_3_y + J.fa_z_x_fb_x_z *
-        J.wa_3_z) - mb.I * dot_rb_x_fa_x_fa_z_x_fb_x;
-    K[5] = ma.m + mb.m + ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z) +
-        mb.I * dot_rb_x_fa_x_rb_x_fa_x;
+    K[3] = -ma.I * dot_fa_y_x_fb_x_ra_d_x_fa_x - mb.I * dot_rb_x_fa_x_fa_y_x_fb_x;
+    K[4] = -ma.I * dot_fa_z_x_fb_x_ra_d_x_fa_x - mb.I * dot_rb_x_fa_x_fa_z_x_fb_x;
+    K[5] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x + mb.I * dot_rb_x_fa_x_rb_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 21 +, 26 *
@@ -400,9 +400,9 @@ struct planar_joint {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + ma.I * (v1_1_2 + J.wa_3_x * lambda[2]);
-    v[0].wy = va.wy + ma.I * (v1_1_3 + J.wa_3_y * lambda[2]);
-    v[0].wz = va.wz + ma.I * (v1_1_4 + J.wa_3_z * lambda[2]);
+    v[0].wx = va.wx + ma.I * (v1_1_2 - J.ra_d_x_fa_x_x * lambda[2]);
+    v[0].wy = va.wy + ma.I * (v1_1_3 - J.ra_d_x_fa_x_y * lambda[2]);
+    v[0].wz = va.wz + ma.I * (v1_1_4 - J.ra_d_x_fa_x_z * lambda[2]);
     v[1].x = vb.x + v2_1 * J.fa_x_x;
     v[1].y = vb.y + v2_1 * J.fa_x_y;
     v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -411,7 +411,7 @@ struct planar_joint {
     v[1].wz = vb.wz + mb.I * (J.rb_x_fa_x_z * lambda[2] - v1_1_4);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 9 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[3][12]) {
@@ -435,9 +435,9 @@ struct planar_joint {
     D[2][0] = -ma.m * J.fa_x_x;
     D[2][1] = -ma.m * J.fa_x_y;
     D[2][2] = -ma.m * J.fa_x_z;
-    D[2][3] = ma.I * J.wa_3_x;
-    D[2][4] = ma.I * J.wa_3_y;
-    D[2][5] = ma.I * J.wa_3_z;
+    D[2][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[2][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[2][5] = -ma.I * J.ra_d_x_fa_x_z;
     D[2][6] = mb.m * J.fa_x_x;
     D[2][7] = mb.m * J.fa_x_y;
     D[2][8] = mb.m * J.fa_x_z;
@@ -446,7 +446,7 @@ struct planar_joint {
     D[2][11] = mb.I * J.rb_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 45 +, 54 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 48 +, 54 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
     for (auto& row : D) {
@@ -469,9 +469,9 @@ struct planar_joint {
     D[2][0] = -J.fa_x_x;
     D[2][1] = -J.fa_x_y;
     D[2][2] = -J.fa_x_z;
-    D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
-    D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
-    D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
+    D[2][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[2][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[2][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
     D[2][6] = J.fa_x_x;
     D[2][7] = J.fa_x_y;
     D[2][8] = J.fa_x_z;
@@ -507,10 +507,10 @@ struct planar_joint {
     D[2][0] = -J.fa_x_x;
     D[2][1] = -J.fa_x_y;
     D[2][2] = -J.fa_x_z;
-    D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
+    D[2][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[2][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[2][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[2][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
     D[2][7] = J.fa_x_x;
     D[2][8] = J.fa_x_y;
     D[2][9] = J.fa_x_z;
@@ -658,13 +658,14 @@ struct planar_joint {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_6 = lambda[2] * (d_y + ra_y);
-    const T H4_7 = fa_x_y * H4_6;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_6 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_8 = lambda[2] * (d_z + ra_z);
-    const T H4_9 = fa_x_z * H4_8;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_7 = ra_d_z * fa_x_z;
     const T H4_1_2 = lambda[0] * fa_y_x + lambda[1] * fa_z_x;
     const T H4_2_2 = fb_x_y * H4_1_2;
     const T H4_1_3 = fb_x_z * H4_1_2;
@@ -675,28 +676,27 @@ struct planar_joint {
     const T H4_5_2 = fb_x_y * H4_4_2;
     const T H4_6_2 = lambda[0] * fa_y_z + lambda[1] * fa_z_z;
     const T H4_7_2 = fb_x_z * H4_6_2;
-    const T H4_8_2 = H4_3_2 + H4_5_2 + H4_7_2;
+    const T H4_8 = H4_3_2 + H4_5_2 + H4_7_2;
     const T H4_1_5 = fb_x_x * H4_4_2;
     const T H4_2_4 = H1_1_2 * rb_x + H4_1_5;
     const T H4_1_6 = fb_x_x * H4_6_2;
     const T H4_2_5 = H1_1 * rb_x + H4_1_6;
-    const T H5_1 = lambda[2] * (d_x + ra_x);
-    const T H5_1_2 = fa_y_x * fb_x_x;
+    const T H5_1 = fa_y_x * fb_x_x;
     const T H5_2 = fa_z_x * fb_x_x;
-    const T H5_3 = lambda[0] * (H5_1_2 + H4_2) + lambda[1] * (H5_2 + H4_4);
-    const T H5_4 = fa_x_x * H5_1;
-    const T H5_1_3 = fb_x_z * H4_4_2;
-    const T H5_1_4 = H4_2_2 + H2_1 * rb_y;
-    const T H5_1_5 = fa_x_x * rb_x;
-    const T H5_2_2 = lambda[2] * (H5_1_5 + H4_2_3);
+    const T H5_3 = lambda[0] * (H5_1 + H4_2) + lambda[1] * (H5_2 + H4_4);
+    const T H5_4 = ra_d_x * fa_x_x;
+    const T H5_1_2 = fb_x_z * H4_4_2;
+    const T H5_1_3 = H4_2_2 + H2_1 * rb_y;
+    const T H5_1_4 = fa_x_x * rb_x;
+    const T H5_2_2 = lambda[2] * (H5_1_4 + H4_2_3);
     const T H5_3_2 = fb_x_x * H4_1_2;
     const T H5_4_2 = H5_2_2 + H5_3_2 + H4_7_2;
-    const T H5_1_6 = fb_x_y * H4_6_2;
-    const T H5_2_3 = H1_1 * rb_y + H5_1_6;
-    const T H6_1 = lambda[0] * (H5_1_2 + H4_1) + lambda[1] * (H5_2 + H4_3);
+    const T H5_1_5 = fb_x_y * H4_6_2;
+    const T H5_2_3 = H1_1 * rb_y + H5_1_5;
+    const T H6_1 = lambda[0] * (H5_1 + H4_1) + lambda[1] * (H5_2 + H4_3);
     const T H6_1_2 = H4_1_3 + H2_1 * rb_z;
-    const T H6_1_3 = H5_1_3 + H1_1_2 * rb_z;
-    const T H6_1_4 = lambda[2] * (H5_1_5 + H4_1_4);
+    const T H6_1_3 = H5_1_2 + H1_1_2 * rb_z;
+    const T H6_1_4 = lambda[2] * (H5_1_4 + H4_1_4);
     const T H6_2 = H6_1_4 + H5_3_2 + H4_5_2;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
@@ -706,29 +706,29 @@ struct planar_joint {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_5 - H4_7 - H4_9;
-    H[3][4] = H4_2_2 + fa_x_x * H4_6;
-    H[3][5] = H4_1_3 + fa_x_x * H4_8;
+    H[3][3] = -H4_5 - lambda[2] * (H4_6 + H4_7);
+    H[3][4] = H4_2_2 + H2_1 * ra_d_y;
+    H[3][5] = H4_1_3 + H2_1 * ra_d_z;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
-    H[3][9] = H4_8_2;
+    H[3][9] = H4_8;
     H[3][10] = -H4_2_4;
     H[3][11] = -H4_2_5;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = H4_1_5 + fa_x_y * H5_1;
-    H[4][4] = -H5_3 - H5_4 - H4_9;
-    H[4][5] = H5_1_3 + fa_x_y * H4_8;
+    H[4][3] = H4_1_5 + H1_1_2 * ra_d_x;
+    H[4][4] = -H5_3 - lambda[2] * (H5_4 + H4_7);
+    H[4][5] = H5_1_2 + H1_1_2 * ra_d_z;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
-    H[4][9] = -H5_1_4;
+    H[4][9] = -H5_1_3;
     H[4][10] = H5_4_2;
     H[4][11] = -H5_2_3;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = H4_1_6 + fa_x_z * H5_1;
-    H[5][4] = H5_1_6 + fa_x_z * H4_6;
-    H[5][5] = -H6_1 - H5_4 - H4_7;
+    H[5][3] = H4_1_6 + H1_1 * ra_d_x;
+    H[5][4] = H5_1_5 + H1_1 * ra_d_y;
+    H[5][5] = -H6_1 - lambda[2] * (H5_4 + H4_6);
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
     H[5][9] = -H6_1_2;
@@ -743,13 +743,13 @@ struct planar_joint {
     H[9][3] = H4_5 + H4_3_2;
     H[9][4] = H[4][9];
     H[9][5] = H[5][9];
-    H[9][9] = -H4_8_2;
+    H[9][9] = -H4_8;
     H[9][10] = H4_2_4;
     H[9][11] = H4_2_5;
     H[10][3] = H[3][10];
     H[10][4] = H5_3 + H5_2_2;
     H[10][5] = H[5][10];
-    H[10][9] = H5_1_4;
+    H[10][9] = H5_1_3;
     H[10][10] = -H5_4_2;
     H[10][11] = H5_2_3;
     H[11][3] = H[3][11];
@@ -817,7 +817,8 @@ struct planar_joint {
 
     template <class T>
     struct Jacobian {
-      T fa_y_x, fa_y_y, fa_y_z, wa_x, wa_y, wa_z, rb_x_fa_y_x, rb_x_fa_y_y, rb_x_fa_y_z;
+      T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, rb_x_fa_y_x,
+          rb_x_fa_y_y, rb_x_fa_y_z;
     };
 
     // C: 29 +, 30 *
@@ -840,7 +841,7 @@ struct planar_joint {
       C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -858,19 +859,16 @@ struct planar_joint {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-      const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-      const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-      const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-      const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-      const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
       J.fa_y_x = fa_y_x;
       J.fa_y_y = fa_y_y;
       J.fa_y_z = fa_y_z;
-      J.wa_x = -d_x_fa_y_x - ra_x_fa_y_x;
-      J.wa_y = -d_x_fa_y_y - ra_x_fa_y_y;
-      J.wa_z = -d_x_fa_y_z - ra_x_fa_y_z;
+      J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+      J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+      J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
       J.rb_x_fa_y_x = fa_y_z * rb_y - fa_y_y * rb_z;
       J.rb_x_fa_y_y = fa_y_x * rb_z - fa_y_z * rb_x;
       J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
@@ -881,14 +879,16 @@ struct planar_joint {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_y_x *
-          (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z) +
-          J.rb_x_fa_y_y * (mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz *
-          J.rb_x_fa_y_z) + J.rb_x_fa_y_z *
-          (mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_y_x *
+          (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z) +
+          J.ra_d_x_fa_y_y * (ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz *
+          J.ra_d_x_fa_y_z) + J.ra_d_x_fa_y_z *
+          (ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z) +
+          J.rb_x_fa_y_x * (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz *
+          J.rb_x_fa_y_z) + J.rb_x_fa_y_y *
+          (mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z) +
+          J.rb_x_fa_y_z * (mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz *
+          J.rb_x_fa_y_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -908,9 +908,9 @@ struct planar_joint {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_y_x * vb.wx + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_y_x * (vb.x - va.x) + J.fa_y_y *
-          (vb.y - va.y) + J.fa_y_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_y_x * vb.wx - J.ra_d_x_fa_y_x * va.wx - J.ra_d_x_fa_y_y * va.wy -
+          J.ra_d_x_fa_y_z * va.wz + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.fa_y_x *
+          (vb.x - va.x) + J.fa_y_y * (vb.y - va.y) + J.fa_y_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -922,9 +922,9 @@ struct planar_joint {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_y_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_y_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_y_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_y_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_y_y;
@@ -932,9 +932,9 @@ struct planar_joint {
       v[0].x = va.x - v1_1 * J.fa_y_x;
       v[0].y = va.y - v1_1 * J.fa_y_y;
       v[0].z = va.z - v1_1 * J.fa_y_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_y_x;
       v[1].y = vb.y + v2_1 * J.fa_y_y;
       v[1].z = vb.z + v2_1 * J.fa_y_z;
@@ -943,7 +943,7 @@ struct planar_joint {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -952,9 +952,9 @@ struct planar_joint {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_y_x;
+      D[0][4] = -J.ra_d_x_fa_y_y;
+      D[0][5] = -J.ra_d_x_fa_y_z;
       D[0][6] = J.fa_y_x;
       D[0][7] = J.fa_y_y;
       D[0][8] = J.fa_y_z;
@@ -963,7 +963,7 @@ struct planar_joint {
       D[0][11] = J.rb_x_fa_y_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -975,9 +975,9 @@ struct planar_joint {
       D[0][0] = -ma.m * J.fa_y_x;
       D[0][1] = -ma.m * J.fa_y_y;
       D[0][2] = -ma.m * J.fa_y_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
       D[0][6] = mb.m * J.fa_y_x;
       D[0][7] = mb.m * J.fa_y_y;
       D[0][8] = mb.m * J.fa_y_z;
@@ -992,10 +992,11 @@ struct planar_joint {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+          J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
       const T dot_rb_x_fa_y_rb_x_fa_y = J.rb_x_fa_y_x * J.rb_x_fa_y_x + J.rb_x_fa_y_y *
           J.rb_x_fa_y_y + J.rb_x_fa_y_z * J.rb_x_fa_y_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_y_rb_x_fa_y;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y + mb.I * dot_rb_x_fa_y_rb_x_fa_y;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -1013,9 +1014,9 @@ struct planar_joint {
       v[0].x = va.x - v1_1 * J.fa_y_x;
       v[0].y = va.y - v1_1 * J.fa_y_y;
       v[0].z = va.z - v1_1 * J.fa_y_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_y_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_y_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_y_z;
       v[1].x = vb.x + v2_1 * J.fa_y_x;
       v[1].y = vb.y + v2_1 * J.fa_y_y;
       v[1].z = vb.z + v2_1 * J.fa_y_z;
@@ -1024,7 +1025,7 @@ struct planar_joint {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_y_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1036,9 +1037,9 @@ struct planar_joint {
       D[0][0] = -ma.m * J.fa_y_x;
       D[0][1] = -ma.m * J.fa_y_y;
       D[0][2] = -ma.m * J.fa_y_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
       D[0][6] = mb.m * J.fa_y_x;
       D[0][7] = mb.m * J.fa_y_y;
       D[0][8] = mb.m * J.fa_y_z;
@@ -1047,7 +1048,7 @@ struct planar_joint {
       D[0][11] = mb.I * J.rb_x_fa_y_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1058,9 +1059,9 @@ struct planar_joint {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
       D[0][6] = J.fa_y_x;
       D[0][7] = J.fa_y_y;
       D[0][8] = J.fa_y_z;
@@ -1080,10 +1081,10 @@ struct planar_joint {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
       D[0][7] = J.fa_y_x;
       D[0][8] = J.fa_y_y;
       D[0][9] = J.fa_y_z;
@@ -1173,27 +1174,27 @@ struct planar_joint {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_y_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_y_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_y_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_y_z;
       const T H4_1_2 = fa_y_y * rb_y;
       const T H4_2_2 = fa_y_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_y_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_y_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_y_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_y_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -1202,29 +1203,29 @@ struct planar_joint {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_y_x * H4_1;
-      H[3][5] = fa_y_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_y_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_y_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_y_z * H5_1;
-      H[5][4] = fa_y_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -1236,18 +1237,18 @@ struct planar_joint {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -1273,7 +1274,8 @@ struct planar_joint {
 
     template <class T>
     struct Jacobian {
-      T fa_z_x, fa_z_y, fa_z_z, wa_x, wa_y, wa_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
+      T fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z, rb_x_fa_z_x,
+          rb_x_fa_z_y, rb_x_fa_z_z;
     };
 
     // C: 29 +, 30 *
@@ -1296,7 +1298,7 @@ struct planar_joint {
       C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1314,19 +1316,16 @@ struct planar_joint {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-      const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-      const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-      const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-      const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-      const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
       J.fa_z_x = fa_z_x;
       J.fa_z_y = fa_z_y;
       J.fa_z_z = fa_z_z;
-      J.wa_x = -d_x_fa_z_x - ra_x_fa_z_x;
-      J.wa_y = -d_x_fa_z_y - ra_x_fa_z_y;
-      J.wa_z = -d_x_fa_z_z - ra_x_fa_z_z;
+      J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+      J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+      J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
       J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
       J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
       J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
@@ -1337,14 +1336,16 @@ struct planar_joint {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_z_x *
-          (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z) +
-          J.rb_x_fa_z_y * (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz *
-          J.rb_x_fa_z_z) + J.rb_x_fa_z_z *
-          (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_z_x *
+          (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+          J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+          J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+          (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z) +
+          J.rb_x_fa_z_x * (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz *
+          J.rb_x_fa_z_z) + J.rb_x_fa_z_y *
+          (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z) +
+          J.rb_x_fa_z_z * (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz *
+          J.rb_x_fa_z_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1364,9 +1365,9 @@ struct planar_joint {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_z_x * vb.wx + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_z_x * (vb.x - va.x) + J.fa_z_y *
-          (vb.y - va.y) + J.fa_z_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_z_x * vb.wx - J.ra_d_x_fa_z_x * va.wx - J.ra_d_x_fa_z_y * va.wy -
+          J.ra_d_x_fa_z_z * va.wz + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.fa_z_x *
+          (vb.x - va.x) + J.fa_z_y * (vb.y - va.y) + J.fa_z_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -1378,9 +1379,9 @@ struct planar_joint {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_z_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_z_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_z_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_z_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_z_y;
@@ -1388,9 +1389,9 @@ struct planar_joint {
       v[0].x = va.x - v1_1 * J.fa_z_x;
       v[0].y = va.y - v1_1 * J.fa_z_y;
       v[0].z = va.z - v1_1 * J.fa_z_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_z_x;
       v[1].y = vb.y + v2_1 * J.fa_z_y;
       v[1].z = vb.z + v2_1 * J.fa_z_z;
@@ -1399,7 +1400,7 @@ struct planar_joint {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1408,9 +1409,9 @@ struct planar_joint {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_z_x;
+      D[0][4] = -J.ra_d_x_fa_z_y;
+      D[0][5] = -J.ra_d_x_fa_z_z;
       D[0][6] = J.fa_z_x;
       D[0][7] = J.fa_z_y;
       D[0][8] = J.fa_z_z;
@@ -1419,7 +1420,7 @@ struct planar_joint {
       D[0][11] = J.rb_x_fa_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1431,9 +1432,9 @@ struct planar_joint {
       D[0][0] = -ma.m * J.fa_z_x;
       D[0][1] = -ma.m * J.fa_z_y;
       D[0][2] = -ma.m * J.fa_z_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
       D[0][6] = mb.m * J.fa_z_x;
       D[0][7] = mb.m * J.fa_z_y;
       D[0][8] = mb.m * J.fa_z_z;
@@ -1448,10 +1449,11 @@ struct planar_joint {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+          J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
       const T dot_rb_x_fa_z_rb_x_fa_z = J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y *
           J.rb_x_fa_z_y + J.rb_x_fa_z_z * J.rb_x_fa_z_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_z_rb_x_fa_z;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z + mb.I * dot_rb_x_fa_z_rb_x_fa_z;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -1469,9 +1471,9 @@ struct planar_joint {
       v[0].x = va.x - v1_1 * J.fa_z_x;
       v[0].y = va.y - v1_1 * J.fa_z_y;
       v[0].z = va.z - v1_1 * J.fa_z_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_z_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_z_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_z_z;
       v[1].x = vb.x + v2_1 * J.fa_z_x;
       v[1].y = vb.y + v2_1 * J.fa_z_y;
       v[1].z = vb.z + v2_1 * J.fa_z_z;
@@ -1480,7 +1482,7 @@ struct planar_joint {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1492,9 +1494,9 @@ struct planar_joint {
       D[0][0] = -ma.m * J.fa_z_x;
       D[0][1] = -ma.m * J.fa_z_y;
       D[0][2] = -ma.m * J.fa_z_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_z_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_z_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_z_z;
       D[0][6] = mb.m * J.fa_z_x;
       D[0][7] = mb.m * J.fa_z_y;
       D[0][8] = mb.m * J.fa_z_z;
@@ -1503,7 +1505,7 @@ struct planar_joint {
       D[0][11] = mb.I * J.rb_x_fa_z_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1514,9 +1516,9 @@ struct planar_joint {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
       D[0][6] = J.fa_z_x;
       D[0][7] = J.fa_z_y;
       D[0][8] = J.fa_z_z;
@@ -1536,10 +1538,10 @@ struct planar_joint {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
       D[0][7] = J.fa_z_x;
       D[0][8] = J.fa_z_y;
       D[0][9] = J.fa_z_z;
@@ -1629,27 +1631,27 @@ struct planar_joint {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_z_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_z_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_z_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_z_z;
       const T H4_1_2 = fa_z_y * rb_y;
       const T H4_2_2 = fa_z_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_z_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_z_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_z_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_z_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -1658,29 +1660,29 @@ struct planar_joint {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_z_x * H4_1;
-      H[3][5] = fa_z_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_z_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_z_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_z_z * H5_1;
-      H[5][4] = fa_z_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -1692,18 +1694,18 @@ struct planar_joint {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -2463,10 +2465,10 @@ struct planar_joint::b_immovable : planar_joint {
   template <class T>
   struct Jacobian {
     T fa_y_x_fb_x_x, fa_y_x_fb_x_y, fa_y_x_fb_x_z, fa_z_x_fb_x_x, fa_z_x_fb_x_y, fa_z_x_fb_x_z,
-        fa_x_x, fa_x_y, fa_x_z, wa_3_x, wa_3_y, wa_3_z;
+        fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z;
   };
 
-  // C and J: 69 +, 87 *
+  // C and J: 63 +, 81 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -2493,12 +2495,9 @@ struct planar_joint::b_immovable : planar_joint {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
     C[1] = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
     C[2] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
@@ -2511,12 +2510,12 @@ struct planar_joint::b_immovable : planar_joint {
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_3_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_3_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_3_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 31 +, 45 *
+  // K = J M^-1 J^T, lower triangle, from J: 33 +, 45 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
@@ -2529,21 +2528,23 @@ struct planar_joint::b_immovable : planar_joint {
     K[0] = J.fa_y_x_fb_x_x * K11_1 + J.fa_y_x_fb_x_y * K11_2 + J.fa_y_x_fb_x_z * K11_3;
     K[1] = J.fa_z_x_fb_x_x * K11_1 + J.fa_z_x_fb_x_y * K11_2 + J.fa_z_x_fb_x_z * K11_3;
     K[2] = J.fa_z_x_fb_x_x * K22_1 + J.fa_z_x_fb_x_y * K22_2 + J.fa_z_x_fb_x_z * K22_3;
-    K[3] = J.wa_3_x * K11_1 + J.wa_3_y * K11_2 + J.wa_3_z * K11_3;
-    K[4] = J.wa_3_x * K22_1 + J.wa_3_y * K22_2 + J.wa_3_z * K22_3;
-    K[5] = ma.m + J.wa_3_x * (ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z) +
-        J.wa_3_y * (ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z) + J.wa_3_z *
-        (ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z);
+    K[3] = -J.ra_d_x_fa_x_x * K11_1 - J.ra_d_x_fa_x_y * K11_2 - J.ra_d_x_fa_x_z * K11_3;
+    K[4] = -J.ra_d_x_fa_x_x * K22_1 - J.ra_d_x_fa_x_y * K22_2 - J.ra_d_x_fa_x_z * K22_3;
+    K[5] = ma.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z);
   }
 
-  // J v: 9 +, 12 *
+  // J v: 10 +, 12 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[3]) {
     const Velocity<T>& va = v[0];
     Jv[0] = J.fa_y_x_fb_x_x * va.wx + J.fa_y_x_fb_x_y * va.wy + J.fa_y_x_fb_x_z * va.wz;
     Jv[1] = J.fa_z_x_fb_x_x * va.wx + J.fa_z_x_fb_x_y * va.wy + J.fa_z_x_fb_x_z * va.wz;
-    Jv[2] = J.wa_3_x * va.wx - J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z + J.wa_3_y *
-        va.wy + J.wa_3_z * va.wz;
+    Jv[2] = -J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z - J.ra_d_x_fa_x_x * va.wx -
+        J.ra_d_x_fa_x_y * va.wy - J.ra_d_x_fa_x_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 18 +, 22 *
@@ -2553,10 +2554,12 @@ struct planar_joint::b_immovable : planar_joint {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[2];
-    const T v1_1_2 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] + J.wa_3_x *
+    const T v1_1_2 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] - J.ra_d_x_fa_x_x *
         lambda[2];
-    const T v1_2 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] + J.wa_3_y * lambda[2];
-    const T v1_3 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] + J.wa_3_z * lambda[2];
+    const T v1_2 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] - J.ra_d_x_fa_x_y *
+        lambda[2];
+    const T v1_3 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] - J.ra_d_x_fa_x_z *
+        lambda[2];
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
@@ -2565,7 +2568,7 @@ struct planar_joint::b_immovable : planar_joint {
     v[0].wz = va.wz + ma.Ixz * v1_1_2 + ma.Iyz * v1_2 + ma.Izz * v1_3;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[3][12]) {
     for (auto& row : D) {
@@ -2580,12 +2583,12 @@ struct planar_joint::b_immovable : planar_joint {
     D[2][0] = -J.fa_x_x;
     D[2][1] = -J.fa_x_y;
     D[2][2] = -J.fa_x_z;
-    D[2][3] = J.wa_3_x;
-    D[2][4] = J.wa_3_y;
-    D[2][5] = J.wa_3_z;
+    D[2][3] = -J.ra_d_x_fa_x_x;
+    D[2][4] = -J.ra_d_x_fa_x_y;
+    D[2][5] = -J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 21 +, 30 *
+  // (M^-1 J^T)^T, laid out like dense: 24 +, 30 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[3][12]) {
@@ -2602,12 +2605,12 @@ struct planar_joint::b_immovable : planar_joint {
     D[2][0] = -ma.m * J.fa_x_x;
     D[2][1] = -ma.m * J.fa_x_y;
     D[2][2] = -ma.m * J.fa_x_z;
-    D[2][3] = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    D[2][4] = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    D[2][5] = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    D[2][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[2][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[2][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 13 +, 24 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 15 +, 24 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
@@ -2618,14 +2621,18 @@ struct planar_joint::b_immovable : planar_joint {
         J.fa_z_x_fb_x_y + J.fa_y_x_fb_x_z * J.fa_z_x_fb_x_z;
     const T dot_fa_z_x_fb_x_fa_z_x_fb_x = J.fa_z_x_fb_x_x * J.fa_z_x_fb_x_x + J.fa_z_x_fb_x_y *
         J.fa_z_x_fb_x_y + J.fa_z_x_fb_x_z * J.fa_z_x_fb_x_z;
+    const T dot_fa_y_x_fb_x_ra_d_x_fa_x = J.fa_y_x_fb_x_x * J.ra_d_x_fa_x_x + J.fa_y_x_fb_x_y *
+        J.ra_d_x_fa_x_y + J.fa_y_x_fb_x_z * J.ra_d_x_fa_x_z;
+    const T dot_fa_z_x_fb_x_ra_d_x_fa_x = J.fa_z_x_fb_x_x * J.ra_d_x_fa_x_x + J.fa_z_x_fb_x_y *
+        J.ra_d_x_fa_x_y + J.fa_z_x_fb_x_z * J.ra_d_x_fa_x_z;
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
     K[0] = ma.I * dot_fa_y_x_fb_x_fa_y_x_fb_x;
     K[1] = ma.I * dot_fa_y_x_fb_x_fa_z_x_fb_x;
     K[2] = ma.I * dot_fa_z_x_fb_x_fa_z_x_fb_x;
-    K[3] = ma.I * (J.fa_y_x_fb_x_x * J.wa_3_x + J.fa_y_x_fb_x_y * J.wa_3_y + J.fa_y_x_fb_x_z *
-        J.wa_3_z);
-    K[4] = ma.I * (J.fa_z_x_fb_x_x * J.wa_3_x + J.fa_z_x_fb_x_y * J.wa_3_y + J.fa_z_x_fb_x_z *
-        J.wa_3_z);
-    K[5] = ma.m + ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z);
+    K[3] = -ma.I * dot_fa_y_x_fb_x_ra_d_x_fa_x;
+    K[4] = -ma.I * dot_fa_z_x_fb_x_ra_d_x_fa_x;
+    K[5] = ma.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -2638,15 +2645,15 @@ struct planar_joint::b_immovable : planar_joint {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + ma.I * (J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] +
-        J.wa_3_x * lambda[2]);
-    v[0].wy = va.wy + ma.I * (J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] +
-        J.wa_3_y * lambda[2]);
-    v[0].wz = va.wz + ma.I * (J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] +
-        J.wa_3_z * lambda[2]);
+    v[0].wx = va.wx + ma.I * (J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] -
+        J.ra_d_x_fa_x_x * lambda[2]);
+    v[0].wy = va.wy + ma.I * (J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] -
+        J.ra_d_x_fa_x_y * lambda[2]);
+    v[0].wz = va.wz + ma.I * (J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] -
+        J.ra_d_x_fa_x_z * lambda[2]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[3][12]) {
@@ -2663,12 +2670,12 @@ struct planar_joint::b_immovable : planar_joint {
     D[2][0] = -ma.m * J.fa_x_x;
     D[2][1] = -ma.m * J.fa_x_y;
     D[2][2] = -ma.m * J.fa_x_z;
-    D[2][3] = ma.I * J.wa_3_x;
-    D[2][4] = ma.I * J.wa_3_y;
-    D[2][5] = ma.I * J.wa_3_z;
+    D[2][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[2][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[2][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 21 +, 27 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 24 +, 27 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
     for (auto& row : D) {
@@ -2684,9 +2691,9 @@ struct planar_joint::b_immovable : planar_joint {
     D[2][0] = -J.fa_x_x;
     D[2][1] = -J.fa_x_y;
     D[2][2] = -J.fa_x_z;
-    D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
-    D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
-    D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
+    D[2][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[2][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[2][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 27 +, 48 *
@@ -2707,10 +2714,10 @@ struct planar_joint::b_immovable : planar_joint {
     D[2][0] = -J.fa_x_x;
     D[2][1] = -J.fa_x_y;
     D[2][2] = -J.fa_x_z;
-    D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
+    D[2][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[2][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[2][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[2][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 87 +, 118 *
@@ -2817,19 +2824,19 @@ struct planar_joint::b_immovable : planar_joint {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_5 = lambda[2] * (d_y + ra_y);
-    const T H4_6 = fa_x_y * H4_5;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_5 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_7 = lambda[2] * (d_z + ra_z);
-    const T H4_8 = fa_x_z * H4_7;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_6 = ra_d_z * fa_x_z;
     const T H4_1_2 = lambda[0] * fa_y_x + lambda[1] * fa_z_x;
-    const T H5_1 = lambda[2] * (d_x + ra_x);
-    const T H5_2 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
+    const T H5_1 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
     const T H5_1_2 = fa_y_x * fb_x_x;
-    const T H5_2_2 = fa_z_x * fb_x_x;
-    const T H5_3 = fa_x_x * H5_1;
+    const T H5_2 = fa_z_x * fb_x_x;
+    const T H5_3 = ra_d_x * fa_x_x;
     const T H6_1 = lambda[0] * fa_y_z + lambda[1] * fa_z_z;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
@@ -2839,19 +2846,19 @@ struct planar_joint::b_immovable : planar_joint {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -lambda[0] * (H4_1 + H4_2) - lambda[1] * (H4_3 + H4_4) - H4_6 - H4_8;
-    H[3][4] = fa_x_x * H4_5 + fb_x_y * H4_1_2;
-    H[3][5] = fa_x_x * H4_7 + fb_x_z * H4_1_2;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2) - lambda[1] * (H4_3 + H4_4) - lambda[2] * (H4_5 + H4_6);
+    H[3][4] = H2_1 * ra_d_y + fb_x_y * H4_1_2;
+    H[3][5] = H2_1 * ra_d_z + fb_x_z * H4_1_2;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_x_y * H5_1 + fb_x_x * H5_2;
-    H[4][4] = -lambda[0] * (H5_1_2 + H4_2) - lambda[1] * (H5_2_2 + H4_4) - H5_3 - H4_8;
-    H[4][5] = fa_x_y * H4_7 + fb_x_z * H5_2;
+    H[4][3] = H1_1_2 * ra_d_x + fb_x_x * H5_1;
+    H[4][4] = -lambda[0] * (H5_1_2 + H4_2) - lambda[1] * (H5_2 + H4_4) - lambda[2] * (H5_3 + H4_6);
+    H[4][5] = H1_1_2 * ra_d_z + fb_x_z * H5_1;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1 + fb_x_x * H6_1;
-    H[5][4] = fa_x_z * H4_5 + fb_x_y * H6_1;
-    H[5][5] = -lambda[0] * (H5_1_2 + H4_1) - lambda[1] * (H5_2_2 + H4_3) - H5_3 - H4_6;
+    H[5][3] = H1_1 * ra_d_x + fb_x_x * H6_1;
+    H[5][4] = H1_1 * ra_d_y + fb_x_y * H6_1;
+    H[5][5] = -lambda[0] * (H5_1_2 + H4_1) - lambda[1] * (H5_2 + H4_3) - lambda[2] * (H5_3 + H4_5);
   }
 };
 
@@ -3091,10 +3098,10 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_x, wa_y, wa_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -3112,36 +3119,35 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_y_x *
+        (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z) +
+        J.ra_d_x_fa_y_y * (ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz *
+        J.ra_d_x_fa_y_z) + J.ra_d_x_fa_y_z *
+        (ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z - J.ra_d_x_fa_y_x * va.wx -
+        J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -3151,18 +3157,18 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_y_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_y_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_y_z;
     v[0].x = va.x - v1_1 * J.fa_y_x;
     v[0].y = va.y - v1_1 * J.fa_y_y;
     v[0].z = va.z - v1_1 * J.fa_y_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3171,12 +3177,12 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3187,9 +3193,9 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -3197,7 +3203,9 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -3211,12 +3219,12 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     v[0].x = va.x - v1_1 * J.fa_y_x;
     v[0].y = va.y - v1_1 * J.fa_y_y;
     v[0].z = va.z - v1_1 * J.fa_y_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_y_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_y_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_y_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3227,12 +3235,12 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3242,9 +3250,9 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -3257,10 +3265,10 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -3327,15 +3335,15 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_y_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_y_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_y_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_y_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_y_z;
+    const T H5_1 = ra_d_x * fa_y_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -3344,19 +3352,19 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_y_x * H4_1;
-    H[3][5] = fa_y_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_y_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_1;
-    H[5][4] = fa_y_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 
@@ -3596,10 +3604,10 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
 
   template <class T>
   struct Jacobian {
-    T fa_z_x, fa_z_y, fa_z_z, wa_x, wa_y, wa_z;
+    T fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -3617,36 +3625,35 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
+        J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -3656,18 +3663,18 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_z_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_z_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_z_z;
     v[0].x = va.x - v1_1 * J.fa_z_x;
     v[0].y = va.y - v1_1 * J.fa_z_y;
     v[0].z = va.z - v1_1 * J.fa_z_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3676,12 +3683,12 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_z_x;
+    D[0][4] = -J.ra_d_x_fa_z_y;
+    D[0][5] = -J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3692,9 +3699,9 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     D[0][0] = -ma.m * J.fa_z_x;
     D[0][1] = -ma.m * J.fa_z_y;
     D[0][2] = -ma.m * J.fa_z_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -3702,7 +3709,9 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -3716,12 +3725,12 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     v[0].x = va.x - v1_1 * J.fa_z_x;
     v[0].y = va.y - v1_1 * J.fa_z_y;
     v[0].z = va.z - v1_1 * J.fa_z_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_z_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_z_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3732,12 +3741,12 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     D[0][0] = -ma.m * J.fa_z_x;
     D[0][1] = -ma.m * J.fa_z_y;
     D[0][2] = -ma.m * J.fa_z_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3747,9 +3756,9 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -3762,10 +3771,10 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -3832,15 +3841,15 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_z_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_z_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_z_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_z_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_z_z;
+    const T H5_1 = ra_d_x * fa_z_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -3849,19 +3858,19 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_z_x * H4_1;
-    H[3][5] = fa_z_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_z_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_z_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_z_z * H5_1;
-    H[5][4] = fa_z_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 

@@ -6,23 +6,20 @@
 // d = pb - pa
 // C_line_y = fa_y · d
 // C_line_z = fa_z · d
-// J = [ -fa_y' | (-(ra × fa_y) - d × fa_y)' | fa_y' | (rb × fa_y)'
-//       -fa_z' | (-(ra × fa_z) - d × fa_z)' | fa_z' | (rb × fa_z)' ]  (columns v_a | w_a | v_b |
-//           w_b)
-// K[line_y, line_y] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_y) - d × fa_y)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_y)' inv_I_b (rb × fa_y)
-// K[line_y, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_y)
-// K[line_z, line_z] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_z) - d × fa_z)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_z)
+// J = [ -fa_y' | -((ra + d) × fa_y)' | fa_y' | (rb × fa_y)'
+//       -fa_z' | -((ra + d) × fa_z)' | fa_z' | (rb × fa_z)' ]     (columns v_a | w_a | v_b | w_b)
+// K[line_y, line_y] = inv_m_a + inv_m_b + (rb × fa_y)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
+// K[line_y, line_z] = (rb × fa_z)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_y)
+// K[line_z, line_z] = inv_m_a + inv_m_b + (rb × fa_z)' inv_I_b (rb × fa_z)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
 //
 // coordinate slide = fa_x · d
-// J_slide = [ -fa_x' | (-(ra × fa_x) - d × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide = inv_m_a + inv_m_b + (-(ra × fa_x) - d × fa_x)' inv_I_a (-(ra × fa_x) - d × fa_x)
-//           + (rb × fa_x)' inv_I_b (rb × fa_x)
+// J_slide = [ -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide = inv_m_a + inv_m_b + (rb × fa_x)' inv_I_b (rb × fa_x)
+//           + ((ra + d) × fa_x)' inv_I_a ((ra + d) × fa_x)
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -55,8 +52,9 @@ struct point_on_line {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_1_x, wa_1_y, wa_1_z, rb_x_fa_y_x, rb_x_fa_y_y, rb_x_fa_y_z,
-        fa_z_x, fa_z_y, fa_z_z, wa_2_x, wa_2_y, wa_2_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, rb_x_fa_y_x,
+        rb_x_fa_y_y, rb_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y,
+        ra_d_x_fa_z_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
   };
 
   // C: 37 +, 42 *
@@ -83,7 +81,7 @@ struct point_on_line {
     C[1] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
   }
 
-  // C and J: 67 +, 78 *
+  // C and J: 52 +, 66 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[2],
       Jacobian<T>& J) {
@@ -104,35 +102,26 @@ struct point_on_line {
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     C[1] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_1_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_1_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_1_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.rb_x_fa_y_x = fa_y_z * rb_y - fa_y_y * rb_z;
     J.rb_x_fa_y_y = fa_y_x * rb_z - fa_y_z * rb_x;
     J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_2_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_2_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_2_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
     J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
     J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
     J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
@@ -144,24 +133,25 @@ struct point_on_line {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
-    const T K11_2 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
-    const T K11_3 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
-    const T K11_4 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
-    const T K11_5 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_6 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_7 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
-    K[0] = K11_1 + J.rb_x_fa_y_x * K11_2 + J.rb_x_fa_y_y * K11_3 + J.rb_x_fa_y_z * K11_4 +
-        J.wa_1_x * K11_5 + J.wa_1_y * K11_6 + J.wa_1_z * K11_7;
-    K[1] = J.rb_x_fa_z_x * K11_2 + J.rb_x_fa_z_y * K11_3 + J.rb_x_fa_z_z * K11_4 + J.wa_2_x *
-        K11_5 + J.wa_2_y * K11_6 + J.wa_2_z * K11_7;
-    K[2] = K11_1 + J.rb_x_fa_z_x *
-        (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z) +
-        J.rb_x_fa_z_y * (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz *
-        J.rb_x_fa_z_z) + J.rb_x_fa_z_z *
-        (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z) + J.wa_2_x *
-        (ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z) + J.wa_2_y *
-        (ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z) + J.wa_2_z *
-        (ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z);
+    const T K11_2 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K11_3 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K11_4 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    const T K11_5 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
+    const T K11_6 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
+    const T K11_7 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
+    K[0] = K11_1 + J.ra_d_x_fa_y_x * K11_2 + J.ra_d_x_fa_y_y * K11_3 + J.ra_d_x_fa_y_z * K11_4 +
+        J.rb_x_fa_y_x * K11_5 + J.rb_x_fa_y_y * K11_6 + J.rb_x_fa_y_z * K11_7;
+    K[1] = J.ra_d_x_fa_z_x * K11_2 + J.ra_d_x_fa_z_y * K11_3 + J.ra_d_x_fa_z_z * K11_4 +
+        J.rb_x_fa_z_x * K11_5 + J.rb_x_fa_z_y * K11_6 + J.rb_x_fa_z_z * K11_7;
+    K[2] = K11_1 + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z) +
+        J.rb_x_fa_z_x * (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz *
+        J.rb_x_fa_z_z) + J.rb_x_fa_z_y *
+        (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z) +
+        J.rb_x_fa_z_z * (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 +, 5 *, 2 /, 2 <
@@ -192,12 +182,12 @@ struct point_on_line {
     const T Jv1_1 = vb.x - va.x;
     const T Jv1_2 = vb.y - va.y;
     const T Jv1_3 = vb.z - va.z;
-    Jv[0] = J.rb_x_fa_y_x * vb.wx + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.wa_1_x *
-        va.wx + J.wa_1_y * va.wy + J.wa_1_z * va.wz + J.fa_y_x * Jv1_1 + J.fa_y_y * Jv1_2 +
-        J.fa_y_z * Jv1_3;
-    Jv[1] = J.rb_x_fa_z_x * vb.wx + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.wa_2_x *
-        va.wx + J.wa_2_y * va.wy + J.wa_2_z * va.wz + J.fa_z_x * Jv1_1 + J.fa_z_y * Jv1_2 +
-        J.fa_z_z * Jv1_3;
+    Jv[0] = J.rb_x_fa_y_x * vb.wx - J.ra_d_x_fa_y_x * va.wx - J.ra_d_x_fa_y_y * va.wy -
+        J.ra_d_x_fa_y_z * va.wz + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.fa_y_x *
+        Jv1_1 + J.fa_y_y * Jv1_2 + J.fa_y_z * Jv1_3;
+    Jv[1] = J.rb_x_fa_z_x * vb.wx - J.ra_d_x_fa_z_x * va.wx - J.ra_d_x_fa_z_y * va.wy -
+        J.ra_d_x_fa_z_z * va.wz + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.fa_z_x *
+        Jv1_1 + J.fa_z_y * Jv1_2 + J.fa_z_z * Jv1_3;
   }
 
   // v += M^-1 J^T lambda: 33 +, 42 *
@@ -211,18 +201,18 @@ struct point_on_line {
     const T v1_1 = J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1];
     const T v1_1_2 = J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1];
     const T v1_1_3 = J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1];
-    const T v1_1_4 = J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1];
-    const T v1_2 = J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1];
-    const T v1_3 = J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1];
+    const T v1_1_4 = J.ra_d_x_fa_y_x * lambda[0] + J.ra_d_x_fa_z_x * lambda[1];
+    const T v1_2 = J.ra_d_x_fa_y_y * lambda[0] + J.ra_d_x_fa_z_y * lambda[1];
+    const T v1_3 = J.ra_d_x_fa_y_z * lambda[0] + J.ra_d_x_fa_z_z * lambda[1];
     const T v2_1 = J.rb_x_fa_y_x * lambda[0] + J.rb_x_fa_z_x * lambda[1];
     const T v2_2 = J.rb_x_fa_y_y * lambda[0] + J.rb_x_fa_z_y * lambda[1];
     const T v2_3 = J.rb_x_fa_y_z * lambda[0] + J.rb_x_fa_z_z * lambda[1];
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.Ixx * v1_1_4 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
-    v[0].wy = va.wy + ma.Ixy * v1_1_4 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
-    v[0].wz = va.wz + ma.Ixz * v1_1_4 + ma.Iyz * v1_2 + ma.Izz * v1_3;
+    v[0].wx = va.wx - ma.Ixx * v1_1_4 - ma.Ixy * v1_2 - ma.Ixz * v1_3;
+    v[0].wy = va.wy - ma.Ixy * v1_1_4 - ma.Iyy * v1_2 - ma.Iyz * v1_3;
+    v[0].wz = va.wz - ma.Ixz * v1_1_4 - ma.Iyz * v1_2 - ma.Izz * v1_3;
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -231,7 +221,7 @@ struct point_on_line {
     v[1].wz = vb.wz + mb.Ixz * v2_1 + mb.Iyz * v2_2 + mb.Izz * v2_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[2][12]) {
     for (auto& row : D) {
@@ -240,9 +230,9 @@ struct point_on_line {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x;
-    D[0][4] = J.wa_1_y;
-    D[0][5] = J.wa_1_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
     D[0][6] = J.fa_y_x;
     D[0][7] = J.fa_y_y;
     D[0][8] = J.fa_y_z;
@@ -252,9 +242,9 @@ struct point_on_line {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x;
-    D[1][4] = J.wa_2_y;
-    D[1][5] = J.wa_2_z;
+    D[1][3] = -J.ra_d_x_fa_z_x;
+    D[1][4] = -J.ra_d_x_fa_z_y;
+    D[1][5] = -J.ra_d_x_fa_z_z;
     D[1][6] = J.fa_z_x;
     D[1][7] = J.fa_z_y;
     D[1][8] = J.fa_z_z;
@@ -263,7 +253,7 @@ struct point_on_line {
     D[1][11] = J.rb_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 30 +, 48 *
+  // (M^-1 J^T)^T, laid out like dense: 36 +, 48 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[2][12]) {
@@ -275,9 +265,9 @@ struct point_on_line {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    D[0][4] = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    D[0][5] = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[0][6] = mb.m * J.fa_y_x;
     D[0][7] = mb.m * J.fa_y_y;
     D[0][8] = mb.m * J.fa_y_z;
@@ -287,9 +277,9 @@ struct point_on_line {
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    D[1][4] = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    D[1][5] = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
+    D[1][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[1][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[1][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
     D[1][6] = mb.m * J.fa_z_x;
     D[1][7] = mb.m * J.fa_z_y;
     D[1][8] = mb.m * J.fa_z_z;
@@ -305,18 +295,21 @@ struct point_on_line {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
     const T dot_rb_x_fa_y_rb_x_fa_y = J.rb_x_fa_y_x * J.rb_x_fa_y_x + J.rb_x_fa_y_y *
         J.rb_x_fa_y_y + J.rb_x_fa_y_z * J.rb_x_fa_y_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_z = J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_y_rb_x_fa_z = J.rb_x_fa_y_x * J.rb_x_fa_z_x + J.rb_x_fa_y_y *
         J.rb_x_fa_z_y + J.rb_x_fa_y_z * J.rb_x_fa_z_z;
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_z_rb_x_fa_z = J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y *
         J.rb_x_fa_z_y + J.rb_x_fa_z_z * J.rb_x_fa_z_z;
-    K[0] = K11_1 + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z) +
-        mb.I * dot_rb_x_fa_y_rb_x_fa_y;
-    K[1] = ma.I * (J.wa_1_x * J.wa_2_x + J.wa_1_y * J.wa_2_y + J.wa_1_z * J.wa_2_z) + mb.I *
-        dot_rb_x_fa_y_rb_x_fa_z;
-    K[2] = K11_1 + ma.I * (J.wa_2_x * J.wa_2_x + J.wa_2_y * J.wa_2_y + J.wa_2_z * J.wa_2_z) +
-        mb.I * dot_rb_x_fa_z_rb_x_fa_z;
+    K[0] = K11_1 + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y + mb.I * dot_rb_x_fa_y_rb_x_fa_y;
+    K[1] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z + mb.I * dot_rb_x_fa_y_rb_x_fa_z;
+    K[2] = K11_1 + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z + mb.I * dot_rb_x_fa_z_rb_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 21 +, 30 *
@@ -333,9 +326,9 @@ struct point_on_line {
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.I * (J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1]);
-    v[0].wy = va.wy + ma.I * (J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1]);
-    v[0].wz = va.wz + ma.I * (J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1]);
+    v[0].wx = va.wx - ma.I * (J.ra_d_x_fa_y_x * lambda[0] + J.ra_d_x_fa_z_x * lambda[1]);
+    v[0].wy = va.wy - ma.I * (J.ra_d_x_fa_y_y * lambda[0] + J.ra_d_x_fa_z_y * lambda[1]);
+    v[0].wz = va.wz - ma.I * (J.ra_d_x_fa_y_z * lambda[0] + J.ra_d_x_fa_z_z * lambda[1]);
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -344,7 +337,7 @@ struct point_on_line {
     v[1].wz = vb.wz + mb.I * (J.rb_x_fa_y_z * lambda[0] + J.rb_x_fa_z_z * lambda[1]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[2][12]) {
@@ -356,9 +349,9 @@ struct point_on_line {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_1_x;
-    D[0][4] = ma.I * J.wa_1_y;
-    D[0][5] = ma.I * J.wa_1_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[0][6] = mb.m * J.fa_y_x;
     D[0][7] = mb.m * J.fa_y_y;
     D[0][8] = mb.m * J.fa_y_z;
@@ -368,9 +361,9 @@ struct point_on_line {
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.I * J.wa_2_x;
-    D[1][4] = ma.I * J.wa_2_y;
-    D[1][5] = ma.I * J.wa_2_z;
+    D[1][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[1][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[1][5] = -ma.I * J.ra_d_x_fa_z_z;
     D[1][6] = mb.m * J.fa_z_x;
     D[1][7] = mb.m * J.fa_z_y;
     D[1][8] = mb.m * J.fa_z_z;
@@ -379,7 +372,7 @@ struct point_on_line {
     D[1][11] = mb.I * J.rb_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 30 +, 36 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 36 +, 36 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][12]) {
     for (auto& row : D) {
@@ -390,9 +383,9 @@ struct point_on_line {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[0][6] = J.fa_y_x;
     D[0][7] = J.fa_y_y;
     D[0][8] = J.fa_y_z;
@@ -402,9 +395,9 @@ struct point_on_line {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x * a.xx + J.wa_2_y * a.yx + J.wa_2_z * a.zx;
-    D[1][4] = J.wa_2_x * a.xy + J.wa_2_y * a.yy + J.wa_2_z * a.zy;
-    D[1][5] = J.wa_2_x * a.xz + J.wa_2_y * a.yz + J.wa_2_z * a.zz;
+    D[1][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[1][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[1][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
     D[1][6] = J.fa_z_x;
     D[1][7] = J.fa_z_y;
     D[1][8] = J.fa_z_z;
@@ -424,10 +417,10 @@ struct point_on_line {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
@@ -438,10 +431,10 @@ struct point_on_line {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = -T(2) * (J.wa_2_x * a.e1 + J.wa_2_y * a.e2 + J.wa_2_z * a.e3);
-    D[1][4] = T(2) * (J.wa_2_x * a.e0 + J.wa_2_y * a.e3 - J.wa_2_z * a.e2);
-    D[1][5] = T(2) * (J.wa_2_y * a.e0 - J.wa_2_x * a.e3 + J.wa_2_z * a.e1);
-    D[1][6] = T(2) * (J.wa_2_x * a.e2 - J.wa_2_y * a.e1 + J.wa_2_z * a.e0);
+    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
@@ -525,7 +518,7 @@ struct point_on_line {
     C_t[1] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 78 +, 87 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 75 +, 81 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[2],
       T (&H)[12][12]) {
@@ -549,33 +542,30 @@ struct point_on_line {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = d_y + ra_y;
-    const T H4_2 = lambda[0] * H4_1;
-    const T H4_3 = lambda[1] * H4_1;
-    const T H4_4 = fa_y_y * H4_2 + fa_z_y * H4_3;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_y_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_5 = d_z + ra_z;
-    const T H4_6 = lambda[0] * H4_5;
-    const T H4_7 = lambda[1] * H4_5;
-    const T H4_8 = fa_y_z * H4_6 + fa_z_z * H4_7;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_y_z;
+    const T H4_3 = ra_d_y * fa_z_y;
+    const T H4_4 = ra_d_z * fa_z_z;
     const T H4_1_2 = rb_y * H1_1_2;
     const T H4_2_2 = rb_z * H1_1;
     const T H4_3_2 = H4_1_2 + H4_2_2;
     const T H4_1_3 = rb_x * H1_1_2;
     const T H4_1_4 = rb_x * H1_1;
-    const T H5_1 = d_x + ra_x;
-    const T H5_2 = lambda[0] * H5_1;
-    const T H5_3 = lambda[1] * H5_1;
-    const T H5_1_2 = fa_y_x * H5_2 + fa_z_x * H5_3;
-    const T H5_1_3 = rb_y * H2_1;
-    const T H5_1_4 = rb_x * H2_1;
-    const T H5_2_2 = H5_1_4 + H4_2_2;
-    const T H5_1_5 = rb_y * H1_1;
+    const T H5_1 = ra_d_x * fa_y_x;
+    const T H5_2 = ra_d_x * fa_z_x;
+    const T H5_1_2 = rb_y * H2_1;
+    const T H5_1_3 = rb_x * H2_1;
+    const T H5_2_2 = H5_1_3 + H4_2_2;
+    const T H5_1_4 = rb_y * H1_1;
     const T H6_1 = rb_z * H2_1;
     const T H6_1_2 = rb_z * H1_1_2;
-    const T H6_1_3 = H5_1_4 + H4_1_2;
+    const T H6_1_3 = H5_1_3 + H4_1_2;
     const T H10_1 = fa_y_y * rb_y;
     const T H10_2 = fa_y_z * rb_z;
     const T H10_3 = fa_z_y * rb_y;
@@ -590,9 +580,9 @@ struct point_on_line {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_4 - H4_8;
-    H[3][4] = fa_y_x * H4_2 + fa_z_x * H4_3;
-    H[3][5] = fa_y_x * H4_6 + fa_z_x * H4_7;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2) - lambda[1] * (H4_3 + H4_4);
+    H[3][4] = ra_d_y * H2_1;
+    H[3][5] = ra_d_z * H2_1;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
     H[3][9] = H4_3_2;
@@ -600,19 +590,19 @@ struct point_on_line {
     H[3][11] = -H4_1_4;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_2 + fa_z_y * H5_3;
-    H[4][4] = -H5_1_2 - H4_8;
-    H[4][5] = fa_y_y * H4_6 + fa_z_y * H4_7;
+    H[4][3] = ra_d_x * H1_1_2;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2) - lambda[1] * (H5_2 + H4_4);
+    H[4][5] = ra_d_z * H1_1_2;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
-    H[4][9] = -H5_1_3;
+    H[4][9] = -H5_1_2;
     H[4][10] = H5_2_2;
-    H[4][11] = -H5_1_5;
+    H[4][11] = -H5_1_4;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_2 + fa_z_z * H5_3;
-    H[5][4] = fa_y_z * H4_2 + fa_z_z * H4_3;
-    H[5][5] = -H4_4 - H5_1_2;
+    H[5][3] = ra_d_x * H1_1;
+    H[5][4] = ra_d_y * H1_1;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1) - lambda[1] * (H5_2 + H4_3);
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
     H[5][9] = -H6_1;
@@ -633,9 +623,9 @@ struct point_on_line {
     H[10][3] = H[3][10];
     H[10][4] = lambda[0] * (H11_1 + H10_2) + lambda[1] * (H11_2 + H10_4);
     H[10][5] = H[5][10];
-    H[10][9] = H5_1_3;
+    H[10][9] = H5_1_2;
     H[10][10] = -H5_2_2;
-    H[10][11] = H5_1_5;
+    H[10][11] = H5_1_4;
     H[11][3] = H[3][11];
     H[11][4] = H[4][11];
     H[11][5] = lambda[0] * (H11_1 + H10_1) + lambda[1] * (H11_2 + H10_3);
@@ -678,7 +668,8 @@ struct point_on_line {
 
     template <class T>
     struct Jacobian {
-      T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z, rb_x_fa_x_x, rb_x_fa_x_y, rb_x_fa_x_z;
+      T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z, rb_x_fa_x_x,
+          rb_x_fa_x_y, rb_x_fa_x_z;
     };
 
     // C: 29 +, 30 *
@@ -701,7 +692,7 @@ struct point_on_line {
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -719,19 +710,16 @@ struct point_on_line {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-      const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-      const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-      const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-      const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-      const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
       J.fa_x_x = fa_x_x;
       J.fa_x_y = fa_x_y;
       J.fa_x_z = fa_x_z;
-      J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-      J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-      J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+      J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+      J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+      J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
       J.rb_x_fa_x_x = fa_x_z * rb_y - fa_x_y * rb_z;
       J.rb_x_fa_x_y = fa_x_x * rb_z - fa_x_z * rb_x;
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
@@ -742,14 +730,16 @@ struct point_on_line {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_x_x *
-          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_y * (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_z *
-          (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
+          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
+          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
+          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
+          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
+          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
+          J.rb_x_fa_x_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -769,9 +759,9 @@ struct point_on_line {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_x_x * vb.wx + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_x_x * (vb.x - va.x) + J.fa_x_y *
-          (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_x_x * vb.wx - J.ra_d_x_fa_x_x * va.wx - J.ra_d_x_fa_x_y * va.wy -
+          J.ra_d_x_fa_x_z * va.wz + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.fa_x_x *
+          (vb.x - va.x) + J.fa_x_y * (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -783,9 +773,9 @@ struct point_on_line {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_x_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_x_y;
@@ -793,9 +783,9 @@ struct point_on_line {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -804,7 +794,7 @@ struct point_on_line {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -813,9 +803,9 @@ struct point_on_line {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_x_x;
+      D[0][4] = -J.ra_d_x_fa_x_y;
+      D[0][5] = -J.ra_d_x_fa_x_z;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -824,7 +814,7 @@ struct point_on_line {
       D[0][11] = J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -836,9 +826,9 @@ struct point_on_line {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -853,10 +843,11 @@ struct point_on_line {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+          J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
       const T dot_rb_x_fa_x_rb_x_fa_x = J.rb_x_fa_x_x * J.rb_x_fa_x_x + J.rb_x_fa_x_y *
           J.rb_x_fa_x_y + J.rb_x_fa_x_z * J.rb_x_fa_x_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_x_rb_x_fa_x;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x + mb.I * dot_rb_x_fa_x_rb_x_fa_x;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -874,9 +865,9 @@ struct point_on_line {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -885,7 +876,7 @@ struct point_on_line {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -897,9 +888,9 @@ struct point_on_line {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -908,7 +899,7 @@ struct point_on_line {
       D[0][11] = mb.I * J.rb_x_fa_x_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -919,9 +910,9 @@ struct point_on_line {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -941,10 +932,10 @@ struct point_on_line {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
@@ -1034,27 +1025,27 @@ struct point_on_line {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_x_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_x_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_x_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_x_z;
       const T H4_1_2 = fa_x_y * rb_y;
       const T H4_2_2 = fa_x_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_x_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_x_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_x_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_x_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -1063,29 +1054,29 @@ struct point_on_line {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_x_x * H4_1;
-      H[3][5] = fa_x_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_x_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_x_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_x_z * H5_1;
-      H[5][4] = fa_x_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -1097,18 +1088,18 @@ struct point_on_line {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -1424,11 +1415,11 @@ struct point_on_line::b_immovable : point_on_line {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_1_x, wa_1_y, wa_1_z, fa_z_x, fa_z_y, fa_z_z, wa_2_x, wa_2_y,
-        wa_2_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z,
+        ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z;
   };
 
-  // C and J: 61 +, 66 *
+  // C and J: 46 +, 54 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[2],
       Jacobian<T>& J) {
@@ -1449,56 +1440,49 @@ struct point_on_line::b_immovable : point_on_line {
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     C[1] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_1_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_1_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_1_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_2_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_2_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_2_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 20 +, 27 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[3]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_2 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_3 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
-    K[0] = ma.m + J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3;
-    K[1] = J.wa_2_x * K11_1 + J.wa_2_y * K11_2 + J.wa_2_z * K11_3;
-    K[2] = ma.m + J.wa_2_x * (ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z) +
-        J.wa_2_y * (ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z) + J.wa_2_z *
-        (ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z);
+    const T K11_1 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K11_2 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K11_3 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    K[0] = ma.m + J.ra_d_x_fa_y_x * K11_1 + J.ra_d_x_fa_y_y * K11_2 + J.ra_d_x_fa_y_z * K11_3;
+    K[1] = J.ra_d_x_fa_z_x * K11_1 + J.ra_d_x_fa_z_y * K11_2 + J.ra_d_x_fa_z_z * K11_3;
+    K[2] = ma.m + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z);
   }
 
-  // J v: 10 +, 12 *
+  // J v: 12 +, 12 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[2]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_1_x * va.wx - J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z + J.wa_1_y *
-        va.wy + J.wa_1_z * va.wz;
-    Jv[1] = J.wa_2_x * va.wx - J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z + J.wa_2_y *
-        va.wy + J.wa_2_z * va.wz;
+    Jv[0] = -J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z - J.ra_d_x_fa_y_x * va.wx -
+        J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
+    Jv[1] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
+        J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 18 +, 24 *
@@ -1507,18 +1491,18 @@ struct point_on_line::b_immovable : point_on_line {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1];
-    const T v1_2 = J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1];
-    const T v1_3 = J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1];
+    const T v1_1 = J.ra_d_x_fa_y_x * lambda[0] + J.ra_d_x_fa_z_x * lambda[1];
+    const T v1_2 = J.ra_d_x_fa_y_y * lambda[0] + J.ra_d_x_fa_z_y * lambda[1];
+    const T v1_3 = J.ra_d_x_fa_y_z * lambda[0] + J.ra_d_x_fa_z_z * lambda[1];
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1]);
-    v[0].wx = va.wx + ma.Ixx * v1_1 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
-    v[0].wy = va.wy + ma.Ixy * v1_1 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
-    v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
+    v[0].wx = va.wx - ma.Ixx * v1_1 - ma.Ixy * v1_2 - ma.Ixz * v1_3;
+    v[0].wy = va.wy - ma.Ixy * v1_1 - ma.Iyy * v1_2 - ma.Iyz * v1_3;
+    v[0].wz = va.wz - ma.Ixz * v1_1 - ma.Iyz * v1_2 - ma.Izz * v1_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[2][12]) {
     for (auto& row : D) {
@@ -1527,18 +1511,18 @@ struct point_on_line::b_immovable : point_on_line {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x;
-    D[0][4] = J.wa_1_y;
-    D[0][5] = J.wa_1_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x;
-    D[1][4] = J.wa_2_y;
-    D[1][5] = J.wa_2_z;
+    D[1][3] = -J.ra_d_x_fa_z_x;
+    D[1][4] = -J.ra_d_x_fa_z_y;
+    D[1][5] = -J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense: 24 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[2][12]) {
@@ -1549,15 +1533,15 @@ struct point_on_line::b_immovable : point_on_line {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    D[0][4] = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    D[0][5] = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    D[1][4] = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    D[1][5] = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
+    D[1][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[1][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[1][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 8 +, 12 *
@@ -1565,9 +1549,15 @@ struct point_on_line::b_immovable : point_on_line {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[3]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
-    K[1] = ma.I * (J.wa_1_x * J.wa_2_x + J.wa_1_y * J.wa_2_y + J.wa_1_z * J.wa_2_z);
-    K[2] = ma.m + ma.I * (J.wa_2_x * J.wa_2_x + J.wa_2_y * J.wa_2_y + J.wa_2_z * J.wa_2_z);
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_z = J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y;
+    K[1] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z;
+    K[2] = ma.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 18 *
@@ -1579,12 +1569,12 @@ struct point_on_line::b_immovable : point_on_line {
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1]);
-    v[0].wx = va.wx + ma.I * (J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1]);
-    v[0].wy = va.wy + ma.I * (J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1]);
-    v[0].wz = va.wz + ma.I * (J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1]);
+    v[0].wx = va.wx - ma.I * (J.ra_d_x_fa_y_x * lambda[0] + J.ra_d_x_fa_z_x * lambda[1]);
+    v[0].wy = va.wy - ma.I * (J.ra_d_x_fa_y_y * lambda[0] + J.ra_d_x_fa_z_y * lambda[1]);
+    v[0].wz = va.wz - ma.I * (J.ra_d_x_fa_y_z * lambda[0] + J.ra_d_x_fa_z_z * lambda[1]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[2][12]) {
@@ -1595,18 +1585,18 @@ struct point_on_line::b_immovable : point_on_line {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_1_x;
-    D[0][4] = ma.I * J.wa_1_y;
-    D[0][5] = ma.I * J.wa_1_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.I * J.wa_2_x;
-    D[1][4] = ma.I * J.wa_2_y;
-    D[1][5] = ma.I * J.wa_2_z;
+    D[1][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[1][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[1][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 24 +, 18 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][12]) {
     for (auto& row : D) {
@@ -1616,15 +1606,15 @@ struct point_on_line::b_immovable : point_on_line {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x * a.xx + J.wa_2_y * a.yx + J.wa_2_z * a.zx;
-    D[1][4] = J.wa_2_x * a.xy + J.wa_2_y * a.yy + J.wa_2_z * a.zy;
-    D[1][5] = J.wa_2_x * a.xz + J.wa_2_y * a.yz + J.wa_2_z * a.zz;
+    D[1][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[1][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[1][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 22 +, 32 *
@@ -1637,17 +1627,17 @@ struct point_on_line::b_immovable : point_on_line {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = -T(2) * (J.wa_2_x * a.e1 + J.wa_2_y * a.e2 + J.wa_2_z * a.e3);
-    D[1][4] = T(2) * (J.wa_2_x * a.e0 + J.wa_2_y * a.e3 - J.wa_2_z * a.e2);
-    D[1][5] = T(2) * (J.wa_2_y * a.e0 - J.wa_2_x * a.e3 + J.wa_2_z * a.e1);
-    D[1][6] = T(2) * (J.wa_2_x * a.e2 - J.wa_2_y * a.e1 + J.wa_2_z * a.e0);
+    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 72 +, 92 *
@@ -1709,7 +1699,7 @@ struct point_on_line::b_immovable : point_on_line {
     g[1] = -dot_d_w_a_x_w_a_x_fa_z - T(2) * dot_d_dot_w_a_x_fa_z - dot_d_dot_dot_fa_z;
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 57 +, 66 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 54 +, 60 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[2],
       T (&H)[12][12]) {
@@ -1733,21 +1723,18 @@ struct point_on_line::b_immovable : point_on_line {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = d_y + ra_y;
-    const T H4_2 = lambda[0] * H4_1;
-    const T H4_3 = lambda[1] * H4_1;
-    const T H4_4 = fa_y_y * H4_2 + fa_z_y * H4_3;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_y_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_5 = d_z + ra_z;
-    const T H4_6 = lambda[0] * H4_5;
-    const T H4_7 = lambda[1] * H4_5;
-    const T H4_8 = fa_y_z * H4_6 + fa_z_z * H4_7;
-    const T H5_1 = d_x + ra_x;
-    const T H5_2 = lambda[0] * H5_1;
-    const T H5_3 = lambda[1] * H5_1;
-    const T H5_1_2 = fa_y_x * H5_2 + fa_z_x * H5_3;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_y_z;
+    const T H4_3 = ra_d_y * fa_z_y;
+    const T H4_4 = ra_d_z * fa_z_z;
+    const T H5_1 = ra_d_x * fa_y_x;
+    const T H5_2 = ra_d_x * fa_z_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -1756,19 +1743,19 @@ struct point_on_line::b_immovable : point_on_line {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_4 - H4_8;
-    H[3][4] = fa_y_x * H4_2 + fa_z_x * H4_3;
-    H[3][5] = fa_y_x * H4_6 + fa_z_x * H4_7;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2) - lambda[1] * (H4_3 + H4_4);
+    H[3][4] = ra_d_y * H2_1;
+    H[3][5] = ra_d_z * H2_1;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_2 + fa_z_y * H5_3;
-    H[4][4] = -H5_1_2 - H4_8;
-    H[4][5] = fa_y_y * H4_6 + fa_z_y * H4_7;
+    H[4][3] = ra_d_x * H1_1_2;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2) - lambda[1] * (H5_2 + H4_4);
+    H[4][5] = ra_d_z * H1_1_2;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_2 + fa_z_z * H5_3;
-    H[5][4] = fa_y_z * H4_2 + fa_z_z * H4_3;
-    H[5][5] = -H4_4 - H5_1_2;
+    H[5][3] = ra_d_x * H1_1;
+    H[5][4] = ra_d_y * H1_1;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1) - lambda[1] * (H5_2 + H4_3);
   }
 };
 
@@ -2008,10 +1995,10 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -2029,36 +2016,35 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z - J.ra_d_x_fa_x_x * va.wx -
+        J.ra_d_x_fa_x_y * va.wy - J.ra_d_x_fa_x_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -2068,18 +2054,18 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -2088,12 +2074,12 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_x_x;
+    D[0][4] = -J.ra_d_x_fa_x_y;
+    D[0][5] = -J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2104,9 +2090,9 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -2114,7 +2100,9 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -2128,12 +2116,12 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2144,12 +2132,12 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -2159,9 +2147,9 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -2174,10 +2162,10 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -2244,15 +2232,15 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_x_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_x_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_x_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_x_z;
+    const T H5_1 = ra_d_x * fa_x_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -2261,19 +2249,19 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_x_x * H4_1;
-    H[3][5] = fa_x_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_x_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_x_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1;
-    H[5][4] = fa_x_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 

@@ -6,22 +6,21 @@
 //
 // d = pb - pa
 // C = fa_x · d
-// J = [ -fa_x' | (-(ra × fa_x) - d × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a | v_b |
-//     w_b)
-// K = inv_m_a + inv_m_b + (-(ra × fa_x) - d × fa_x)' inv_I_a (-(ra × fa_x) - d × fa_x)
-//     + (rb × fa_x)' inv_I_b (rb × fa_x)
+// J = [ -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)' ]     (columns v_a | w_a | v_b | w_b)
+// K = inv_m_a + inv_m_b + (rb × fa_x)' inv_I_b (rb × fa_x)
+//     + ((ra + d) × fa_x)' inv_I_a ((ra + d) × fa_x)
 //
 // coordinate slide_y = fa_y · d
-// J_slide_y = [ -fa_y' | (-(ra × fa_y) - d × fa_y)' | fa_y' | (rb × fa_y)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide_y = inv_m_a + inv_m_b + (-(ra × fa_y) - d × fa_y)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//             + (rb × fa_y)' inv_I_b (rb × fa_y)
+// J_slide_y = [ -fa_y' | -((ra + d) × fa_y)' | fa_y' | (rb × fa_y)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide_y = inv_m_a + inv_m_b + (rb × fa_y)' inv_I_b (rb × fa_y)
+//             + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
 //
 // coordinate slide_z = fa_z · d
-// J_slide_z = [ -fa_z' | (-(ra × fa_z) - d × fa_z)' | fa_z' | (rb × fa_z)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide_z = inv_m_a + inv_m_b + (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_z) - d × fa_z)
-//             + (rb × fa_z)' inv_I_b (rb × fa_z)
+// J_slide_z = [ -fa_z' | -((ra + d) × fa_z)' | fa_z' | (rb × fa_z)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide_z = inv_m_a + inv_m_b + (rb × fa_z)' inv_I_b (rb × fa_z)
+//             + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -55,7 +54,8 @@ struct point_on_plane {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z, rb_x_fa_x_x, rb_x_fa_x_y, rb_x_fa_x_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z, rb_x_fa_x_x,
+        rb_x_fa_x_y, rb_x_fa_x_z;
   };
 
   // C: 29 +, 30 *
@@ -78,7 +78,7 @@ struct point_on_plane {
     C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
   }
 
-  // C and J: 44 +, 48 *
+  // C and J: 38 +, 42 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -96,19 +96,16 @@ struct point_on_plane {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
     J.rb_x_fa_x_x = fa_x_z * rb_y - fa_x_y * rb_z;
     J.rb_x_fa_x_y = fa_x_x * rb_z - fa_x_z * rb_x;
     J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
@@ -119,14 +116,15 @@ struct point_on_plane {
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    K[0] = ma.m + mb.m + J.rb_x_fa_x_x *
-        (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz * J.rb_x_fa_x_z) +
-        J.rb_x_fa_x_y * (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz *
-        J.rb_x_fa_x_z) + J.rb_x_fa_x_z *
-        (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z) + J.wa_x *
-        (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
+        J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
+        J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
+        (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
+        J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z);
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -146,9 +144,9 @@ struct point_on_plane {
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.rb_x_fa_x_x * vb.wx + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.wa_x *
-        va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_x_x * (vb.x - va.x) + J.fa_x_y *
-        (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
+    Jv[0] = J.rb_x_fa_x_x * vb.wx - J.ra_d_x_fa_x_x * va.wx - J.ra_d_x_fa_x_y * va.wy -
+        J.ra_d_x_fa_x_z * va.wz + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.fa_x_x *
+        (vb.x - va.x) + J.fa_x_y * (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
   }
 
   // v += M^-1 J^T lambda: 24 +, 32 *
@@ -160,9 +158,9 @@ struct point_on_plane {
     const Velocity<T> vb = v[1];
     const InverseMass<T>& mb = m[1];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
     const T v2_1 = lambda[0] * mb.m;
     const T v2_1_2 = lambda[0] * J.rb_x_fa_x_x;
     const T v2_2 = lambda[0] * J.rb_x_fa_x_y;
@@ -170,9 +168,9 @@ struct point_on_plane {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
     v[1].x = vb.x + v2_1 * J.fa_x_x;
     v[1].y = vb.y + v2_1 * J.fa_x_y;
     v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -181,7 +179,7 @@ struct point_on_plane {
     v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -190,9 +188,9 @@ struct point_on_plane {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_x_x;
+    D[0][4] = -J.ra_d_x_fa_x_y;
+    D[0][5] = -J.ra_d_x_fa_x_z;
     D[0][6] = J.fa_x_x;
     D[0][7] = J.fa_x_y;
     D[0][8] = J.fa_x_z;
@@ -201,7 +199,7 @@ struct point_on_plane {
     D[0][11] = J.rb_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -213,9 +211,9 @@ struct point_on_plane {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
     D[0][6] = mb.m * J.fa_x_x;
     D[0][7] = mb.m * J.fa_x_y;
     D[0][8] = mb.m * J.fa_x_z;
@@ -230,10 +228,11 @@ struct point_on_plane {
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
     const T dot_rb_x_fa_x_rb_x_fa_x = J.rb_x_fa_x_x * J.rb_x_fa_x_x + J.rb_x_fa_x_y *
         J.rb_x_fa_x_y + J.rb_x_fa_x_z * J.rb_x_fa_x_z;
-    K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-        dot_rb_x_fa_x_rb_x_fa_x;
+    K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x + mb.I * dot_rb_x_fa_x_rb_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -251,9 +250,9 @@ struct point_on_plane {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
     v[1].x = vb.x + v2_1 * J.fa_x_x;
     v[1].y = vb.y + v2_1 * J.fa_x_y;
     v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -262,7 +261,7 @@ struct point_on_plane {
     v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -274,9 +273,9 @@ struct point_on_plane {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
     D[0][6] = mb.m * J.fa_x_x;
     D[0][7] = mb.m * J.fa_x_y;
     D[0][8] = mb.m * J.fa_x_z;
@@ -285,7 +284,7 @@ struct point_on_plane {
     D[0][11] = mb.I * J.rb_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -296,9 +295,9 @@ struct point_on_plane {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
     D[0][6] = J.fa_x_x;
     D[0][7] = J.fa_x_y;
     D[0][8] = J.fa_x_z;
@@ -318,10 +317,10 @@ struct point_on_plane {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
     D[0][7] = J.fa_x_x;
     D[0][8] = J.fa_x_y;
     D[0][9] = J.fa_x_z;
@@ -410,27 +409,27 @@ struct point_on_plane {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_x_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_x_z * H4_3;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_x_z;
     const T H4_1_2 = fa_x_y * rb_y;
     const T H4_2_2 = fa_x_z * rb_z;
-    const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+    const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
     const T H4_1_3 = H1_1_2 * rb_x;
     const T H4_1_4 = H1_1 * rb_x;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_x_x * H5_1;
-    const T H5_1_3 = H2_1 * rb_y;
-    const T H5_1_4 = fa_x_x * rb_x;
-    const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-    const T H5_1_5 = H1_1 * rb_y;
+    const T H5_1 = ra_d_x * fa_x_x;
+    const T H5_1_2 = H2_1 * rb_y;
+    const T H5_1_3 = fa_x_x * rb_x;
+    const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+    const T H5_1_4 = H1_1 * rb_y;
     const T H6_1 = H2_1 * rb_z;
     const T H6_1_2 = H1_1_2 * rb_z;
-    const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+    const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -439,29 +438,29 @@ struct point_on_plane {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_x_x * H4_1;
-    H[3][5] = fa_x_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
-    H[3][9] = H4_3_2;
+    H[3][9] = H4_3;
     H[3][10] = -H4_1_3;
     H[3][11] = -H4_1_4;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_x_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_x_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
-    H[4][9] = -H5_1_3;
+    H[4][9] = -H5_1_2;
     H[4][10] = H5_2;
-    H[4][11] = -H5_1_5;
+    H[4][11] = -H5_1_4;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1;
-    H[5][4] = fa_x_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
     H[5][9] = -H6_1;
@@ -473,18 +472,18 @@ struct point_on_plane {
     H[7][5] = H2_1;
     H[8][3] = H1_1_2;
     H[8][4] = H[1][5];
-    H[9][3] = H4_3_2;
+    H[9][3] = H4_3;
     H[9][4] = H[4][9];
     H[9][5] = H[5][9];
-    H[9][9] = -H4_3_2;
+    H[9][9] = -H4_3;
     H[9][10] = H4_1_3;
     H[9][11] = H4_1_4;
     H[10][3] = H[3][10];
     H[10][4] = H5_2;
     H[10][5] = H[5][10];
-    H[10][9] = H5_1_3;
+    H[10][9] = H5_1_2;
     H[10][10] = -H5_2;
-    H[10][11] = H5_1_5;
+    H[10][11] = H5_1_4;
     H[11][3] = H[3][11];
     H[11][4] = H[4][11];
     H[11][5] = H6_1_3;
@@ -527,7 +526,8 @@ struct point_on_plane {
 
     template <class T>
     struct Jacobian {
-      T fa_y_x, fa_y_y, fa_y_z, wa_x, wa_y, wa_z, rb_x_fa_y_x, rb_x_fa_y_y, rb_x_fa_y_z;
+      T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, rb_x_fa_y_x,
+          rb_x_fa_y_y, rb_x_fa_y_z;
     };
 
     // C: 29 +, 30 *
@@ -550,7 +550,7 @@ struct point_on_plane {
       C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -568,19 +568,16 @@ struct point_on_plane {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-      const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-      const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-      const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-      const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-      const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
       J.fa_y_x = fa_y_x;
       J.fa_y_y = fa_y_y;
       J.fa_y_z = fa_y_z;
-      J.wa_x = -d_x_fa_y_x - ra_x_fa_y_x;
-      J.wa_y = -d_x_fa_y_y - ra_x_fa_y_y;
-      J.wa_z = -d_x_fa_y_z - ra_x_fa_y_z;
+      J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+      J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+      J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
       J.rb_x_fa_y_x = fa_y_z * rb_y - fa_y_y * rb_z;
       J.rb_x_fa_y_y = fa_y_x * rb_z - fa_y_z * rb_x;
       J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
@@ -591,14 +588,16 @@ struct point_on_plane {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_y_x *
-          (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z) +
-          J.rb_x_fa_y_y * (mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz *
-          J.rb_x_fa_y_z) + J.rb_x_fa_y_z *
-          (mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_y_x *
+          (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z) +
+          J.ra_d_x_fa_y_y * (ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz *
+          J.ra_d_x_fa_y_z) + J.ra_d_x_fa_y_z *
+          (ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z) +
+          J.rb_x_fa_y_x * (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz *
+          J.rb_x_fa_y_z) + J.rb_x_fa_y_y *
+          (mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z) +
+          J.rb_x_fa_y_z * (mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz *
+          J.rb_x_fa_y_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -618,9 +617,9 @@ struct point_on_plane {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_y_x * vb.wx + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_y_x * (vb.x - va.x) + J.fa_y_y *
-          (vb.y - va.y) + J.fa_y_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_y_x * vb.wx - J.ra_d_x_fa_y_x * va.wx - J.ra_d_x_fa_y_y * va.wy -
+          J.ra_d_x_fa_y_z * va.wz + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.fa_y_x *
+          (vb.x - va.x) + J.fa_y_y * (vb.y - va.y) + J.fa_y_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -632,9 +631,9 @@ struct point_on_plane {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_y_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_y_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_y_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_y_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_y_y;
@@ -642,9 +641,9 @@ struct point_on_plane {
       v[0].x = va.x - v1_1 * J.fa_y_x;
       v[0].y = va.y - v1_1 * J.fa_y_y;
       v[0].z = va.z - v1_1 * J.fa_y_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_y_x;
       v[1].y = vb.y + v2_1 * J.fa_y_y;
       v[1].z = vb.z + v2_1 * J.fa_y_z;
@@ -653,7 +652,7 @@ struct point_on_plane {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -662,9 +661,9 @@ struct point_on_plane {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_y_x;
+      D[0][4] = -J.ra_d_x_fa_y_y;
+      D[0][5] = -J.ra_d_x_fa_y_z;
       D[0][6] = J.fa_y_x;
       D[0][7] = J.fa_y_y;
       D[0][8] = J.fa_y_z;
@@ -673,7 +672,7 @@ struct point_on_plane {
       D[0][11] = J.rb_x_fa_y_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -685,9 +684,9 @@ struct point_on_plane {
       D[0][0] = -ma.m * J.fa_y_x;
       D[0][1] = -ma.m * J.fa_y_y;
       D[0][2] = -ma.m * J.fa_y_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
       D[0][6] = mb.m * J.fa_y_x;
       D[0][7] = mb.m * J.fa_y_y;
       D[0][8] = mb.m * J.fa_y_z;
@@ -702,10 +701,11 @@ struct point_on_plane {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+          J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
       const T dot_rb_x_fa_y_rb_x_fa_y = J.rb_x_fa_y_x * J.rb_x_fa_y_x + J.rb_x_fa_y_y *
           J.rb_x_fa_y_y + J.rb_x_fa_y_z * J.rb_x_fa_y_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_y_rb_x_fa_y;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y + mb.I * dot_rb_x_fa_y_rb_x_fa_y;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -723,9 +723,9 @@ struct point_on_plane {
       v[0].x = va.x - v1_1 * J.fa_y_x;
       v[0].y = va.y - v1_1 * J.fa_y_y;
       v[0].z = va.z - v1_1 * J.fa_y_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_y_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_y_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_y_z;
       v[1].x = vb.x + v2_1 * J.fa_y_x;
       v[1].y = vb.y + v2_1 * J.fa_y_y;
       v[1].z = vb.z + v2_1 * J.fa_y_z;
@@ -734,7 +734,7 @@ struct point_on_plane {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_y_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -746,9 +746,9 @@ struct point_on_plane {
       D[0][0] = -ma.m * J.fa_y_x;
       D[0][1] = -ma.m * J.fa_y_y;
       D[0][2] = -ma.m * J.fa_y_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
       D[0][6] = mb.m * J.fa_y_x;
       D[0][7] = mb.m * J.fa_y_y;
       D[0][8] = mb.m * J.fa_y_z;
@@ -757,7 +757,7 @@ struct point_on_plane {
       D[0][11] = mb.I * J.rb_x_fa_y_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -768,9 +768,9 @@ struct point_on_plane {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
       D[0][6] = J.fa_y_x;
       D[0][7] = J.fa_y_y;
       D[0][8] = J.fa_y_z;
@@ -790,10 +790,10 @@ struct point_on_plane {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
       D[0][7] = J.fa_y_x;
       D[0][8] = J.fa_y_y;
       D[0][9] = J.fa_y_z;
@@ -883,27 +883,27 @@ struct point_on_plane {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_y_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_y_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_y_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_y_z;
       const T H4_1_2 = fa_y_y * rb_y;
       const T H4_2_2 = fa_y_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_y_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_y_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_y_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_y_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -912,29 +912,29 @@ struct point_on_plane {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_y_x * H4_1;
-      H[3][5] = fa_y_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_y_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_y_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_y_z * H5_1;
-      H[5][4] = fa_y_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -946,18 +946,18 @@ struct point_on_plane {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -983,7 +983,8 @@ struct point_on_plane {
 
     template <class T>
     struct Jacobian {
-      T fa_z_x, fa_z_y, fa_z_z, wa_x, wa_y, wa_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
+      T fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z, rb_x_fa_z_x,
+          rb_x_fa_z_y, rb_x_fa_z_z;
     };
 
     // C: 29 +, 30 *
@@ -1006,7 +1007,7 @@ struct point_on_plane {
       C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1024,19 +1025,16 @@ struct point_on_plane {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-      const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-      const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-      const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-      const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-      const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
       J.fa_z_x = fa_z_x;
       J.fa_z_y = fa_z_y;
       J.fa_z_z = fa_z_z;
-      J.wa_x = -d_x_fa_z_x - ra_x_fa_z_x;
-      J.wa_y = -d_x_fa_z_y - ra_x_fa_z_y;
-      J.wa_z = -d_x_fa_z_z - ra_x_fa_z_z;
+      J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+      J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+      J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
       J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
       J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
       J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
@@ -1047,14 +1045,16 @@ struct point_on_plane {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_z_x *
-          (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z) +
-          J.rb_x_fa_z_y * (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz *
-          J.rb_x_fa_z_z) + J.rb_x_fa_z_z *
-          (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_z_x *
+          (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+          J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+          J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+          (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z) +
+          J.rb_x_fa_z_x * (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz *
+          J.rb_x_fa_z_z) + J.rb_x_fa_z_y *
+          (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z) +
+          J.rb_x_fa_z_z * (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz *
+          J.rb_x_fa_z_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1074,9 +1074,9 @@ struct point_on_plane {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_z_x * vb.wx + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_z_x * (vb.x - va.x) + J.fa_z_y *
-          (vb.y - va.y) + J.fa_z_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_z_x * vb.wx - J.ra_d_x_fa_z_x * va.wx - J.ra_d_x_fa_z_y * va.wy -
+          J.ra_d_x_fa_z_z * va.wz + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.fa_z_x *
+          (vb.x - va.x) + J.fa_z_y * (vb.y - va.y) + J.fa_z_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -1088,9 +1088,9 @@ struct point_on_plane {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_z_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_z_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_z_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_z_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_z_y;
@@ -1098,9 +1098,9 @@ struct point_on_plane {
       v[0].x = va.x - v1_1 * J.fa_z_x;
       v[0].y = va.y - v1_1 * J.fa_z_y;
       v[0].z = va.z - v1_1 * J.fa_z_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_z_x;
       v[1].y = vb.y + v2_1 * J.fa_z_y;
       v[1].z = vb.z + v2_1 * J.fa_z_z;
@@ -1109,7 +1109,7 @@ struct point_on_plane {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1118,9 +1118,9 @@ struct point_on_plane {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_z_x;
+      D[0][4] = -J.ra_d_x_fa_z_y;
+      D[0][5] = -J.ra_d_x_fa_z_z;
       D[0][6] = J.fa_z_x;
       D[0][7] = J.fa_z_y;
       D[0][8] = J.fa_z_z;
@@ -1129,7 +1129,7 @@ struct point_on_plane {
       D[0][11] = J.rb_x_fa_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1141,9 +1141,9 @@ struct point_on_plane {
       D[0][0] = -ma.m * J.fa_z_x;
       D[0][1] = -ma.m * J.fa_z_y;
       D[0][2] = -ma.m * J.fa_z_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
       D[0][6] = mb.m * J.fa_z_x;
       D[0][7] = mb.m * J.fa_z_y;
       D[0][8] = mb.m * J.fa_z_z;
@@ -1158,10 +1158,11 @@ struct point_on_plane {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+          J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
       const T dot_rb_x_fa_z_rb_x_fa_z = J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y *
           J.rb_x_fa_z_y + J.rb_x_fa_z_z * J.rb_x_fa_z_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_z_rb_x_fa_z;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z + mb.I * dot_rb_x_fa_z_rb_x_fa_z;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -1179,9 +1180,9 @@ struct point_on_plane {
       v[0].x = va.x - v1_1 * J.fa_z_x;
       v[0].y = va.y - v1_1 * J.fa_z_y;
       v[0].z = va.z - v1_1 * J.fa_z_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_z_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_z_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_z_z;
       v[1].x = vb.x + v2_1 * J.fa_z_x;
       v[1].y = vb.y + v2_1 * J.fa_z_y;
       v[1].z = vb.z + v2_1 * J.fa_z_z;
@@ -1190,7 +1191,7 @@ struct point_on_plane {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1202,9 +1203,9 @@ struct point_on_plane {
       D[0][0] = -ma.m * J.fa_z_x;
       D[0][1] = -ma.m * J.fa_z_y;
       D[0][2] = -ma.m * J.fa_z_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_z_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_z_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_z_z;
       D[0][6] = mb.m * J.fa_z_x;
       D[0][7] = mb.m * J.fa_z_y;
       D[0][8] = mb.m * J.fa_z_z;
@@ -1213,7 +1214,7 @@ struct point_on_plane {
       D[0][11] = mb.I * J.rb_x_fa_z_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1224,9 +1225,9 @@ struct point_on_plane {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
       D[0][6] = J.fa_z_x;
       D[0][7] = J.fa_z_y;
       D[0][8] = J.fa_z_z;
@@ -1246,10 +1247,10 @@ struct point_on_plane {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
       D[0][7] = J.fa_z_x;
       D[0][8] = J.fa_z_y;
       D[0][9] = J.fa_z_z;
@@ -1339,27 +1340,27 @@ struct point_on_plane {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_z_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_z_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_z_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_z_z;
       const T H4_1_2 = fa_z_y * rb_y;
       const T H4_2_2 = fa_z_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_z_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_z_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_z_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_z_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -1368,29 +1369,29 @@ struct point_on_plane {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_z_x * H4_1;
-      H[3][5] = fa_z_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_z_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_z_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_z_z * H5_1;
-      H[5][4] = fa_z_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -1402,18 +1403,18 @@ struct point_on_plane {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -1670,10 +1671,10 @@ struct point_on_plane::b_immovable : point_on_plane {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -1691,36 +1692,35 @@ struct point_on_plane::b_immovable : point_on_plane {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z - J.ra_d_x_fa_x_x * va.wx -
+        J.ra_d_x_fa_x_y * va.wy - J.ra_d_x_fa_x_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -1730,18 +1730,18 @@ struct point_on_plane::b_immovable : point_on_plane {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -1750,12 +1750,12 @@ struct point_on_plane::b_immovable : point_on_plane {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_x_x;
+    D[0][4] = -J.ra_d_x_fa_x_y;
+    D[0][5] = -J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -1766,9 +1766,9 @@ struct point_on_plane::b_immovable : point_on_plane {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -1776,7 +1776,9 @@ struct point_on_plane::b_immovable : point_on_plane {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -1790,12 +1792,12 @@ struct point_on_plane::b_immovable : point_on_plane {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -1806,12 +1808,12 @@ struct point_on_plane::b_immovable : point_on_plane {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -1821,9 +1823,9 @@ struct point_on_plane::b_immovable : point_on_plane {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -1836,10 +1838,10 @@ struct point_on_plane::b_immovable : point_on_plane {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -1906,15 +1908,15 @@ struct point_on_plane::b_immovable : point_on_plane {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_x_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_x_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_x_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_x_z;
+    const T H5_1 = ra_d_x * fa_x_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -1923,19 +1925,19 @@ struct point_on_plane::b_immovable : point_on_plane {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_x_x * H4_1;
-    H[3][5] = fa_x_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_x_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_x_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1;
-    H[5][4] = fa_x_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 
@@ -2175,10 +2177,10 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_x, wa_y, wa_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -2196,36 +2198,35 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_y_x *
+        (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z) +
+        J.ra_d_x_fa_y_y * (ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz *
+        J.ra_d_x_fa_y_z) + J.ra_d_x_fa_y_z *
+        (ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z - J.ra_d_x_fa_y_x * va.wx -
+        J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -2235,18 +2236,18 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_y_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_y_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_y_z;
     v[0].x = va.x - v1_1 * J.fa_y_x;
     v[0].y = va.y - v1_1 * J.fa_y_y;
     v[0].z = va.z - v1_1 * J.fa_y_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -2255,12 +2256,12 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2271,9 +2272,9 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -2281,7 +2282,9 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -2295,12 +2298,12 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     v[0].x = va.x - v1_1 * J.fa_y_x;
     v[0].y = va.y - v1_1 * J.fa_y_y;
     v[0].z = va.z - v1_1 * J.fa_y_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_y_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_y_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_y_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2311,12 +2314,12 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -2326,9 +2329,9 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -2341,10 +2344,10 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -2411,15 +2414,15 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_y_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_y_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_y_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_y_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_y_z;
+    const T H5_1 = ra_d_x * fa_y_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -2428,19 +2431,19 @@ struct point_on_plane::slide_y::b_immovable : point_on_plane::slide_y {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_y_x * H4_1;
-    H[3][5] = fa_y_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_y_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_1;
-    H[5][4] = fa_y_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 
@@ -2680,10 +2683,10 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
 
   template <class T>
   struct Jacobian {
-    T fa_z_x, fa_z_y, fa_z_z, wa_x, wa_y, wa_z;
+    T fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -2701,36 +2704,35 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
+        J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -2740,18 +2742,18 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_z_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_z_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_z_z;
     v[0].x = va.x - v1_1 * J.fa_z_x;
     v[0].y = va.y - v1_1 * J.fa_z_y;
     v[0].z = va.z - v1_1 * J.fa_z_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -2760,12 +2762,12 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_z_x;
+    D[0][4] = -J.ra_d_x_fa_z_y;
+    D[0][5] = -J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2776,9 +2778,9 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     D[0][0] = -ma.m * J.fa_z_x;
     D[0][1] = -ma.m * J.fa_z_y;
     D[0][2] = -ma.m * J.fa_z_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -2786,7 +2788,9 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -2800,12 +2804,12 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     v[0].x = va.x - v1_1 * J.fa_z_x;
     v[0].y = va.y - v1_1 * J.fa_z_y;
     v[0].z = va.z - v1_1 * J.fa_z_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_z_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_z_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -2816,12 +2820,12 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     D[0][0] = -ma.m * J.fa_z_x;
     D[0][1] = -ma.m * J.fa_z_y;
     D[0][2] = -ma.m * J.fa_z_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -2831,9 +2835,9 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -2846,10 +2850,10 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -2916,15 +2920,15 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_z_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_z_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_z_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_z_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_z_z;
+    const T H5_1 = ra_d_x * fa_z_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -2933,19 +2937,19 @@ struct point_on_plane::slide_z::b_immovable : point_on_plane::slide_z {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_z_x * H4_1;
-    H[3][5] = fa_z_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_z_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_z_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_z_z * H5_1;
-    H[5][4] = fa_z_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 

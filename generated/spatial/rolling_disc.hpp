@@ -13,18 +13,17 @@
 //     level: C is 0)
 // Cdot_roll_z = fa_z · (v_b - v_a - radius (w_b × (k × unit(m))) - w_a × arm_a)  (at velocity
 //     level: C is 0)
-// J = [ -fa_x' | (-(ra × fa_x) - ((u + arm_b) × fa_x))' | fa_x' | -radius ((fa_x × unit(m)) × k)'
-//       -fa_y' | -(arm_a × fa_y)'                       | fa_y' | -radius ((k × unit(m)) × fa_y)'
-//       -fa_z' | -(arm_a × fa_z)'                       | fa_z' | -radius ((k × unit(m)) × fa_z)' ]
+// J = [ -fa_x' | -((ra + u + arm_b) × fa_x)' | fa_x' | -radius ((fa_x × unit(m)) × k)'
+//       -fa_y' | -(arm_a × fa_y)'            | fa_y' | -radius ((k × unit(m)) × fa_y)'
+//       -fa_z' | -(arm_a × fa_z)'            | fa_z' | -radius ((k × unit(m)) × fa_z)' ]
 //       (columns v_a | w_a | v_b | w_b)
 // K[touch, touch] = inv_m_a + inv_m_b
 //                   + radius^2 ((fa_x × unit(m)) × k)' inv_I_b ((fa_x × unit(m)) × k)
-//                   + (-(ra × fa_x) - ((u + arm_b) × fa_x))' inv_I_a (-(ra × fa_x) - ((u + arm_b)
-//                       × fa_x))
+//                   + ((ra + u + arm_b) × fa_x)' inv_I_a ((ra + u + arm_b) × fa_x)
 // K[touch, roll_y] = radius^2 ((k × unit(m)) × fa_y)' inv_I_b ((fa_x × unit(m)) × k)
-//                    - (arm_a × fa_y)' inv_I_a (-(ra × fa_x) - ((u + arm_b) × fa_x))
+//                    + (arm_a × fa_y)' inv_I_a ((ra + u + arm_b) × fa_x)
 // K[touch, roll_z] = radius^2 ((k × unit(m)) × fa_z)' inv_I_b ((fa_x × unit(m)) × k)
-//                    - (arm_a × fa_z)' inv_I_a (-(ra × fa_x) - ((u + arm_b) × fa_x))
+//                    + (arm_a × fa_z)' inv_I_a ((ra + u + arm_b) × fa_x)
 // K[roll_y, roll_y] = inv_m_a + inv_m_b
 //                     + radius^2 ((k × unit(m)) × fa_y)' inv_I_b ((k × unit(m)) × fa_y)
 //                     + (arm_a × fa_y)' inv_I_a (arm_a × fa_y)
@@ -104,7 +103,7 @@ struct rolling_disc {
     C[2] = T(0);
   }
 
-  // C and J: 86 +, 118 *, 1 /, 1 sqrt, 4 <
+  // C and J: 80 +, 112 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -134,27 +133,21 @@ struct rolling_disc {
     const T dir_m_y = select(m_len > smallest<T>(), m_y * inv_m_len, T(0));
     const T k_x_dir_m_x = k_y * dir_m_z - k_z * dir_m_y;
     const T k_x_dir_m_y = k_z * dir_m_x - k_x * dir_m_z;
-    const T wa_1_x_1 = p.radius * k_x_dir_m_x;
-    const T u_arm_b_x = u_x - wa_1_x_1;
-    const T wa_1_x_2 = p.radius * k_x_dir_m_y;
-    const T u_arm_b_y = u_y - wa_1_x_2;
+    const T wa_1_x_1 = p.radius * k_x_dir_m_y;
+    const T wa_1_x_2 = u_y + ra_y - wa_1_x_1;
     const T k_x_dir_m_z = k_x * dir_m_y - k_y * dir_m_x;
     const T wa_1_x_3 = p.radius * k_x_dir_m_z;
-    const T u_arm_b_z = u_z - wa_1_x_3;
-    const T u_arm_b_x_fa_x_x = u_arm_b_y * fa_x_z - u_arm_b_z * fa_x_y;
-    const T u_arm_b_x_fa_x_y = u_arm_b_z * fa_x_x - u_arm_b_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T u_arm_b_x_fa_x_z = u_arm_b_x * fa_x_y - u_arm_b_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T wa_1_x_4 = u_z + ra_z - wa_1_x_3;
+    const T wa_1_y_1 = p.radius * k_x_dir_m_x;
+    const T wa_1_y_2 = u_x + ra_x - wa_1_y_1;
     const T fa_x_x_dir_m_z = fa_x_x * dir_m_y - fa_x_y * dir_m_x;
     const T fa_x_x_dir_m_x = fa_x_y * dir_m_z - fa_x_z * dir_m_y;
     const T fa_x_x_dir_m_y = fa_x_z * dir_m_x - fa_x_x * dir_m_z;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T arm_a_x = b.x - a.x - wa_1_x_1;
-    const T arm_a_y = b.y - a.y - wa_1_x_2;
+    const T arm_a_x = b.x - a.x - wa_1_y_1;
+    const T arm_a_y = b.y - a.y - wa_1_x_1;
     const T arm_a_z = b.z - a.z - wa_1_x_3;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
@@ -165,9 +158,9 @@ struct rolling_disc {
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_1_x = -u_arm_b_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_1_y = -u_arm_b_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_1_z = -u_arm_b_x_fa_x_z - ra_x_fa_x_z;
+    J.wa_1_x = wa_1_x_4 * fa_x_y - wa_1_x_2 * fa_x_z;
+    J.wa_1_y = wa_1_y_2 * fa_x_z - wa_1_x_4 * fa_x_x;
+    J.wa_1_z = wa_1_x_2 * fa_x_x - wa_1_y_2 * fa_x_y;
     J.radius = p.radius;
     J.fa_x_x_dir_m_x_k_x = k_z * fa_x_x_dir_m_y - k_y * fa_x_x_dir_m_z;
     J.fa_x_x_dir_m_x_k_y = k_x * fa_x_x_dir_m_z - k_z * fa_x_x_dir_m_x;
@@ -192,60 +185,65 @@ struct rolling_disc {
     J.k_x_dir_m_x_fa_z_z = fa_z_y * k_x_dir_m_x - fa_z_x * k_x_dir_m_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 70 +, 97 *
+  // K = J M^-1 J^T, lower triangle, from J: 85 +, 126 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    const T K11_1 = ma.m + mb.m;
-    const T K11_2 = J.radius * J.radius;
-    const T K11_3 = mb.Ixx * J.fa_x_x_dir_m_x_k_x + mb.Ixy * J.fa_x_x_dir_m_x_k_y + mb.Ixz *
-        J.fa_x_x_dir_m_x_k_z;
-    const T K11_4 = mb.Ixy * J.fa_x_x_dir_m_x_k_x + mb.Iyy * J.fa_x_x_dir_m_x_k_y + mb.Iyz *
-        J.fa_x_x_dir_m_x_k_z;
-    const T K11_5 = mb.Ixz * J.fa_x_x_dir_m_x_k_x + mb.Iyz * J.fa_x_x_dir_m_x_k_y + mb.Izz *
-        J.fa_x_x_dir_m_x_k_z;
-    const T K11_6 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_7 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_8 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    const T K11_1 = J.fa_x_x_dir_m_x_k_x * J.radius;
+    const T K11_2 = J.radius * mb.Ixy;
+    const T K11_3 = J.radius * mb.Ixz;
+    const T K11_4 = K11_1 * mb.Ixx + K11_2 * J.fa_x_x_dir_m_x_k_y + K11_3 * J.fa_x_x_dir_m_x_k_z;
+    const T K11_5 = J.radius * J.fa_x_x_dir_m_x_k_y;
+    const T K11_6 = J.radius * mb.Iyz;
+    const T K11_7 = K11_2 * J.fa_x_x_dir_m_x_k_x + K11_5 * mb.Iyy + K11_6 * J.fa_x_x_dir_m_x_k_z;
+    const T K11_8 = J.radius * J.fa_x_x_dir_m_x_k_z;
+    const T K11_9 = K11_3 * J.fa_x_x_dir_m_x_k_x + K11_6 * J.fa_x_x_dir_m_x_k_y + K11_8 * mb.Izz;
+    const T K11_10 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
+    const T K11_11 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
+    const T K11_12 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    const T K11_13 = ma.m + mb.m;
+    const T K11_14 = J.fa_x_x * K11_13;
+    const T K11_15 = J.fa_x_y * K11_13;
+    const T K11_16 = J.fa_x_z * K11_13;
+    const T K21_1 = J.radius * J.k_x_dir_m_x_fa_y_x;
+    const T K21_2 = J.radius * J.k_x_dir_m_x_fa_y_y;
+    const T K21_3 = J.radius * J.k_x_dir_m_x_fa_y_z;
     const T K22_1 = ma.Ixx * J.arm_a_x_fa_y_x + ma.Ixy * J.arm_a_x_fa_y_y + ma.Ixz *
         J.arm_a_x_fa_y_z;
     const T K22_2 = ma.Ixy * J.arm_a_x_fa_y_x + ma.Iyy * J.arm_a_x_fa_y_y + ma.Iyz *
         J.arm_a_x_fa_y_z;
     const T K22_3 = ma.Ixz * J.arm_a_x_fa_y_x + ma.Iyz * J.arm_a_x_fa_y_y + ma.Izz *
         J.arm_a_x_fa_y_z;
-    const T K22_4 = mb.Ixx * J.k_x_dir_m_x_fa_y_x + mb.Ixy * J.k_x_dir_m_x_fa_y_y + mb.Ixz *
-        J.k_x_dir_m_x_fa_y_z;
-    const T K22_5 = mb.Ixy * J.k_x_dir_m_x_fa_y_x + mb.Iyy * J.k_x_dir_m_x_fa_y_y + mb.Iyz *
-        J.k_x_dir_m_x_fa_y_z;
-    const T K22_6 = mb.Ixz * J.k_x_dir_m_x_fa_y_x + mb.Iyz * J.k_x_dir_m_x_fa_y_y + mb.Izz *
-        J.k_x_dir_m_x_fa_y_z;
-    K[0] = K11_1 + K11_2 * (J.fa_x_x_dir_m_x_k_x * K11_3 + J.fa_x_x_dir_m_x_k_y * K11_4 +
-        J.fa_x_x_dir_m_x_k_z * K11_5) + J.wa_1_x * K11_6 + J.wa_1_y * K11_7 + J.wa_1_z * K11_8;
-    K[1] = K11_2 * (J.k_x_dir_m_x_fa_y_x * K11_3 + J.k_x_dir_m_x_fa_y_y * K11_4 +
-        J.k_x_dir_m_x_fa_y_z * K11_5) - J.arm_a_x_fa_y_x * K11_6 - J.arm_a_x_fa_y_y * K11_7 -
-        J.arm_a_x_fa_y_z * K11_8;
-    K[2] = K11_1 + J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3 +
-        K11_2 * (J.k_x_dir_m_x_fa_y_x * K22_4 + J.k_x_dir_m_x_fa_y_y * K22_5 +
-        J.k_x_dir_m_x_fa_y_z * K22_6);
-    K[3] = K11_2 * (J.k_x_dir_m_x_fa_z_x * K11_3 + J.k_x_dir_m_x_fa_z_y * K11_4 +
-        J.k_x_dir_m_x_fa_z_z * K11_5) - J.arm_a_x_fa_z_x * K11_6 - J.arm_a_x_fa_z_y * K11_7 -
-        J.arm_a_x_fa_z_z * K11_8;
-    K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3 + K11_2 *
-        (J.k_x_dir_m_x_fa_z_x * K22_4 + J.k_x_dir_m_x_fa_z_y * K22_5 + J.k_x_dir_m_x_fa_z_z *
-        K22_6);
-    K[5] = K11_1 + J.arm_a_x_fa_z_x *
-        (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz * J.arm_a_x_fa_z_z) +
-        J.arm_a_x_fa_z_y * (ma.Ixy * J.arm_a_x_fa_z_x + ma.Iyy * J.arm_a_x_fa_z_y + ma.Iyz *
-        J.arm_a_x_fa_z_z) + J.arm_a_x_fa_z_z *
-        (ma.Ixz * J.arm_a_x_fa_z_x + ma.Iyz * J.arm_a_x_fa_z_y + ma.Izz * J.arm_a_x_fa_z_z) +
-        K11_2 * (J.k_x_dir_m_x_fa_z_x *
-        (mb.Ixx * J.k_x_dir_m_x_fa_z_x + mb.Ixy * J.k_x_dir_m_x_fa_z_y + mb.Ixz *
-        J.k_x_dir_m_x_fa_z_z) + J.k_x_dir_m_x_fa_z_y *
-        (mb.Ixy * J.k_x_dir_m_x_fa_z_x + mb.Iyy * J.k_x_dir_m_x_fa_z_y + mb.Iyz *
-        J.k_x_dir_m_x_fa_z_z) + J.k_x_dir_m_x_fa_z_z *
-        (mb.Ixz * J.k_x_dir_m_x_fa_z_x + mb.Iyz * J.k_x_dir_m_x_fa_z_y + mb.Izz *
-        J.k_x_dir_m_x_fa_z_z));
+    const T K22_4 = K21_1 * mb.Ixx + K11_2 * J.k_x_dir_m_x_fa_y_y + K11_3 * J.k_x_dir_m_x_fa_y_z;
+    const T K22_5 = K11_2 * J.k_x_dir_m_x_fa_y_x + K21_2 * mb.Iyy + K11_6 * J.k_x_dir_m_x_fa_y_z;
+    const T K22_6 = K11_3 * J.k_x_dir_m_x_fa_y_x + K11_6 * J.k_x_dir_m_x_fa_y_y + K21_3 * mb.Izz;
+    const T K31_1 = J.radius * J.k_x_dir_m_x_fa_z_x;
+    const T K31_2 = J.radius * J.k_x_dir_m_x_fa_z_y;
+    const T K31_3 = J.radius * J.k_x_dir_m_x_fa_z_z;
+    K[0] = K11_1 * K11_4 + K11_5 * K11_7 + K11_8 * K11_9 + J.wa_1_x * K11_10 + J.wa_1_y * K11_11 +
+        J.wa_1_z * K11_12 + J.fa_x_x * K11_14 + J.fa_x_y * K11_15 + J.fa_x_z * K11_16;
+    K[1] = K21_1 * K11_4 - J.arm_a_x_fa_y_x * K11_10 - J.arm_a_x_fa_y_y * K11_11 -
+        J.arm_a_x_fa_y_z * K11_12 + K21_2 * K11_7 + K21_3 * K11_9 + J.fa_y_x * K11_14 + J.fa_y_y *
+        K11_15 + J.fa_y_z * K11_16;
+    K[2] = J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3 + K21_1 *
+        K22_4 + K21_2 * K22_5 + K21_3 * K22_6 +
+        (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) * K11_13;
+    K[3] = K31_1 * K11_4 - J.arm_a_x_fa_z_x * K11_10 - J.arm_a_x_fa_z_y * K11_11 -
+        J.arm_a_x_fa_z_z * K11_12 + K31_2 * K11_7 + K31_3 * K11_9 + J.fa_z_x * K11_14 + J.fa_z_y *
+        K11_15 + J.fa_z_z * K11_16;
+    K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3 + K31_1 *
+        K22_4 + K31_2 * K22_5 + K31_3 * K22_6 +
+        (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z) * K11_13;
+    K[5] = J.arm_a_x_fa_z_x * (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz *
+        J.arm_a_x_fa_z_z) + J.arm_a_x_fa_z_y *
+        (ma.Ixy * J.arm_a_x_fa_z_x + ma.Iyy * J.arm_a_x_fa_z_y + ma.Iyz * J.arm_a_x_fa_z_z) +
+        J.arm_a_x_fa_z_z * (ma.Ixz * J.arm_a_x_fa_z_x + ma.Iyz * J.arm_a_x_fa_z_y + ma.Izz *
+        J.arm_a_x_fa_z_z) + K31_1 *
+        (K31_1 * mb.Ixx + K11_2 * J.k_x_dir_m_x_fa_z_y + K11_3 * J.k_x_dir_m_x_fa_z_z) + K31_2 *
+        (K11_2 * J.k_x_dir_m_x_fa_z_x + K31_2 * mb.Iyy + K11_6 * J.k_x_dir_m_x_fa_z_z) + K31_3 *
+        (K11_3 * J.k_x_dir_m_x_fa_z_x + K11_6 * J.k_x_dir_m_x_fa_z_y + K31_3 * mb.Izz) +
+        (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) * K11_13;
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 4 +, 13 *, 3 /, 3 <
@@ -447,43 +445,51 @@ struct rolling_disc {
         J.k_x_dir_m_x_fa_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 34 +, 50 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 49 +, 76 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
-    const T K11_1 = ma.m + mb.m;
-    const T K11_2 = J.radius * mb.I * J.radius;
-    const T dot_fa_x_x_dir_m_x_k_fa_x_x_dir_m_x_k = J.fa_x_x_dir_m_x_k_x * J.fa_x_x_dir_m_x_k_x +
-        J.fa_x_x_dir_m_x_k_y * J.fa_x_x_dir_m_x_k_y + J.fa_x_x_dir_m_x_k_z * J.fa_x_x_dir_m_x_k_z;
-    const T dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_y = J.fa_x_x_dir_m_x_k_x * J.k_x_dir_m_x_fa_y_x +
-        J.fa_x_x_dir_m_x_k_y * J.k_x_dir_m_x_fa_y_y + J.fa_x_x_dir_m_x_k_z * J.k_x_dir_m_x_fa_y_z;
-    const T dot_arm_a_x_fa_y_arm_a_x_fa_y = J.arm_a_x_fa_y_x * J.arm_a_x_fa_y_x +
-        J.arm_a_x_fa_y_y * J.arm_a_x_fa_y_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_y_z;
-    const T dot_k_x_dir_m_x_fa_y_k_x_dir_m_x_fa_y = J.k_x_dir_m_x_fa_y_x * J.k_x_dir_m_x_fa_y_x +
-        J.k_x_dir_m_x_fa_y_y * J.k_x_dir_m_x_fa_y_y + J.k_x_dir_m_x_fa_y_z * J.k_x_dir_m_x_fa_y_z;
-    const T dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_z = J.fa_x_x_dir_m_x_k_x * J.k_x_dir_m_x_fa_z_x +
-        J.fa_x_x_dir_m_x_k_y * J.k_x_dir_m_x_fa_z_y + J.fa_x_x_dir_m_x_k_z * J.k_x_dir_m_x_fa_z_z;
-    const T dot_arm_a_x_fa_y_arm_a_x_fa_z = J.arm_a_x_fa_y_x * J.arm_a_x_fa_z_x +
-        J.arm_a_x_fa_y_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_z_z;
-    const T dot_k_x_dir_m_x_fa_y_k_x_dir_m_x_fa_z = J.k_x_dir_m_x_fa_y_x * J.k_x_dir_m_x_fa_z_x +
-        J.k_x_dir_m_x_fa_y_y * J.k_x_dir_m_x_fa_z_y + J.k_x_dir_m_x_fa_y_z * J.k_x_dir_m_x_fa_z_z;
-    const T dot_arm_a_x_fa_z_arm_a_x_fa_z = J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x +
-        J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z;
-    const T dot_k_x_dir_m_x_fa_z_k_x_dir_m_x_fa_z = J.k_x_dir_m_x_fa_z_x * J.k_x_dir_m_x_fa_z_x +
-        J.k_x_dir_m_x_fa_z_y * J.k_x_dir_m_x_fa_z_y + J.k_x_dir_m_x_fa_z_z * J.k_x_dir_m_x_fa_z_z;
-    K[0] = K11_1 + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z) +
-        K11_2 * dot_fa_x_x_dir_m_x_k_fa_x_x_dir_m_x_k;
-    K[1] = K11_2 * dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_y - ma.I *
-        (J.arm_a_x_fa_y_x * J.wa_1_x + J.arm_a_x_fa_y_y * J.wa_1_y + J.arm_a_x_fa_y_z * J.wa_1_z);
-    K[2] = K11_1 + ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_y + K11_2 *
-        dot_k_x_dir_m_x_fa_y_k_x_dir_m_x_fa_y;
-    K[3] = K11_2 * dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_z - ma.I *
-        (J.arm_a_x_fa_z_x * J.wa_1_x + J.arm_a_x_fa_z_y * J.wa_1_y + J.arm_a_x_fa_z_z * J.wa_1_z);
-    K[4] = ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_z + K11_2 * dot_k_x_dir_m_x_fa_y_k_x_dir_m_x_fa_z;
-    K[5] = K11_1 + ma.I * dot_arm_a_x_fa_z_arm_a_x_fa_z + K11_2 *
-        dot_k_x_dir_m_x_fa_z_k_x_dir_m_x_fa_z;
+    const T ia_wa_1_x = ma.I * J.wa_1_x;
+    const T ia_wa_1_y = ma.I * J.wa_1_y;
+    const T ia_wa_1_z = ma.I * J.wa_1_z;
+    const T K11_1 = J.radius * mb.I * J.radius;
+    const T K11_2 = J.fa_x_x_dir_m_x_k_x * K11_1;
+    const T K11_3 = K11_1 * J.fa_x_x_dir_m_x_k_y;
+    const T K11_4 = K11_1 * J.fa_x_x_dir_m_x_k_z;
+    const T K11_5 = ma.m + mb.m;
+    const T K11_6 = J.fa_x_x * K11_5;
+    const T K11_7 = J.fa_x_y * K11_5;
+    const T K11_8 = J.fa_x_z * K11_5;
+    const T ia_arm_a_x_fa_y_x = ma.I * J.arm_a_x_fa_y_x;
+    const T ia_arm_a_x_fa_y_y = ma.I * J.arm_a_x_fa_y_y;
+    const T ia_arm_a_x_fa_y_z = ma.I * J.arm_a_x_fa_y_z;
+    const T K22_1 = K11_1 * J.k_x_dir_m_x_fa_y_x;
+    const T K22_2 = K11_1 * J.k_x_dir_m_x_fa_y_y;
+    const T K22_3 = K11_1 * J.k_x_dir_m_x_fa_y_z;
+    K[0] = ia_wa_1_x * J.wa_1_x + ia_wa_1_y * J.wa_1_y + ia_wa_1_z * J.wa_1_z + K11_2 *
+        J.fa_x_x_dir_m_x_k_x + K11_3 * J.fa_x_x_dir_m_x_k_y + K11_4 * J.fa_x_x_dir_m_x_k_z +
+        J.fa_x_x * K11_6 + J.fa_x_y * K11_7 + J.fa_x_z * K11_8;
+    K[1] = K11_2 * J.k_x_dir_m_x_fa_y_x - ia_wa_1_x * J.arm_a_x_fa_y_x - ia_wa_1_y *
+        J.arm_a_x_fa_y_y - ia_wa_1_z * J.arm_a_x_fa_y_z + K11_3 * J.k_x_dir_m_x_fa_y_y + K11_4 *
+        J.k_x_dir_m_x_fa_y_z + J.fa_y_x * K11_6 + J.fa_y_y * K11_7 + J.fa_y_z * K11_8;
+    K[2] = ia_arm_a_x_fa_y_x * J.arm_a_x_fa_y_x + ia_arm_a_x_fa_y_y * J.arm_a_x_fa_y_y +
+        ia_arm_a_x_fa_y_z * J.arm_a_x_fa_y_z + K22_1 * J.k_x_dir_m_x_fa_y_x + K22_2 *
+        J.k_x_dir_m_x_fa_y_y + K22_3 * J.k_x_dir_m_x_fa_y_z +
+        (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) * K11_5;
+    K[3] = K11_2 * J.k_x_dir_m_x_fa_z_x - ia_wa_1_x * J.arm_a_x_fa_z_x - ia_wa_1_y *
+        J.arm_a_x_fa_z_y - ia_wa_1_z * J.arm_a_x_fa_z_z + K11_3 * J.k_x_dir_m_x_fa_z_y + K11_4 *
+        J.k_x_dir_m_x_fa_z_z + J.fa_z_x * K11_6 + J.fa_z_y * K11_7 + J.fa_z_z * K11_8;
+    K[4] = ia_arm_a_x_fa_y_x * J.arm_a_x_fa_z_x + ia_arm_a_x_fa_y_y * J.arm_a_x_fa_z_y +
+        ia_arm_a_x_fa_y_z * J.arm_a_x_fa_z_z + K22_1 * J.k_x_dir_m_x_fa_z_x + K22_2 *
+        J.k_x_dir_m_x_fa_z_y + K22_3 * J.k_x_dir_m_x_fa_z_z +
+        (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z) * K11_5;
+    K[5] = ma.I * (J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x + J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y +
+        J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z) + K11_1 *
+        (J.k_x_dir_m_x_fa_z_x * J.k_x_dir_m_x_fa_z_x + J.k_x_dir_m_x_fa_z_y *
+        J.k_x_dir_m_x_fa_z_y + J.k_x_dir_m_x_fa_z_z * J.k_x_dir_m_x_fa_z_z) +
+        (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) * K11_5;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 30 +, 42 *
@@ -840,7 +846,7 @@ struct rolling_disc {
     C_t[2] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 277 +, 392 *, 1 /, 1 sqrt, 4 <
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 276 +, 392 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
       T (&H)[12][12]) {
@@ -908,9 +914,7 @@ struct rolling_disc {
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T u_x = -H4_1 - ra_x;
     const T u_y = -H4_13 - ra_y;
-    const T u_arm_b_x = u_x - H4_12;
-    const T u_arm_b_y = u_y - H4_14;
-    const T H4_23 = lambda[0] * (u_arm_b_y + ra_y);
+    const T H4_23 = lambda[0] * (H4_14 - u_y - ra_y);
     const T H4_24 = p.radius * inv_m_len;
     const T H4_25 = k_x * H4_24;
     const T H4_26 = k_y * H1_2_2;
@@ -922,11 +926,10 @@ struct rolling_disc {
     const T H4_32 = H4_24 * (H4_28 * dir_m_x - k_x * H4_31);
     const T H4_33 = H4_25 * H1_2_2 + H4_32 * dir_m_y;
     const T H4_34 = H4_24 * H4_28 - H4_32 * dir_m_x;
-    const T H4_35 = H4_23 + k_x * H4_33 + k_y * H4_34;
+    const T H4_35 = H4_23 - k_x * H4_33 - k_y * H4_34;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T u_z = -H4_16 - ra_z;
-    const T u_arm_b_z = u_z - H4_19;
-    const T H4_36 = lambda[0] * (u_arm_b_z + ra_z);
+    const T H4_36 = lambda[0] * (u_z + ra_z - H4_19);
     const T H4_37 = H4_25 * H1_2 + H4_32 * dir_m_z;
     const T H4_38 = H4_36 + k_x * H4_37 + k_z * H4_34;
     const T H4_1_2 = k_z * H4_33 - k_y * H4_37;
@@ -934,7 +937,7 @@ struct rolling_disc {
     const T H4_2_2 = H4_1_3 * H1_2 + fa_x_x * H4_33 + fa_x_y * H4_34;
     const T H4_3_2 = H4_1_3 * H1_2_2 - fa_x_x * H4_37 - fa_x_z * H4_34;
     const T H4_1_4 = fa_x_y * H4_37 - p.radius * H4_31 - fa_x_z * H4_33;
-    const T H5_1 = lambda[0] * (u_arm_b_x + ra_x);
+    const T H5_1 = lambda[0] * (u_x + ra_x - H4_12);
     const T H5_2 = k_x * H2_2;
     const T H5_3 = H5_2 + H4_27;
     const T H5_4 = H2_2 * dir_m_x;
@@ -962,7 +965,7 @@ struct rolling_disc {
     const T H6_7 = k_x * H6_5 - k_y * H6_6;
     const T H6_8 = H4_24 * H6_2 - H6_4 * dir_m_z;
     const T H6_9 = -H5_1 - k_x * H6_8 - k_z * H6_6;
-    const T H6_1_2 = H4_23 + k_y * H6_8 + k_z * H6_5;
+    const T H6_1_2 = k_y * H6_8 - H4_23 + k_z * H6_5;
     const T H6_1_3 = fa_x_x * H6_5 - p.radius * H6_3 - fa_x_y * H6_6;
     const T H6_2_2 = p.radius * dir_m_z;
     const T H6_3_2 = H6_2_2 * H1_2_2 + fa_x_x * H6_8 + fa_x_z * H6_6;
@@ -1048,9 +1051,9 @@ struct rolling_disc {
     H[2][4] = H2_2;
     H[3][1] = H1_2;
     H[3][2] = H[2][3];
-    H[3][3] = -lambda[1] * (H4_15 + H4_20) - lambda[2] * (H4_21 + H4_22) - fa_x_y * H4_35 -
-        fa_x_z * H4_38;
-    H[3][4] = fa_x_x * H4_35 + fa_x_z * H4_1_2 + arm_a_y * H2_1;
+    H[3][3] = fa_x_y * H4_35 - lambda[1] * (H4_15 + H4_20) - lambda[2] * (H4_21 + H4_22) - fa_x_z *
+        H4_38;
+    H[3][4] = fa_x_z * H4_1_2 - fa_x_x * H4_35 + arm_a_y * H2_1;
     H[3][5] = fa_x_x * H4_38 - fa_x_y * H4_1_2 + arm_a_z * H2_1;
     H[3][7] = H[0][4];
     H[3][8] = H1_2_2;
@@ -1702,7 +1705,7 @@ struct rolling_disc::b_immovable : rolling_disc {
         arm_a_x_fa_z_z;
   };
 
-  // C and J: 74 +, 94 *, 1 /, 1 sqrt, 4 <
+  // C and J: 68 +, 88 *, 1 /, 1 sqrt, 4 <
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -1732,24 +1735,18 @@ struct rolling_disc::b_immovable : rolling_disc {
     const T dir_m_y = select(m_len > smallest<T>(), m_y * inv_m_len, T(0));
     const T k_x_dir_m_x = k_y * dir_m_z - k_z * dir_m_y;
     const T k_x_dir_m_y = k_z * dir_m_x - k_x * dir_m_z;
-    const T wa_1_x_1 = p.radius * k_x_dir_m_x;
-    const T u_arm_b_x = u_x - wa_1_x_1;
-    const T wa_1_x_2 = p.radius * k_x_dir_m_y;
-    const T u_arm_b_y = u_y - wa_1_x_2;
+    const T wa_1_x_1 = p.radius * k_x_dir_m_y;
+    const T wa_1_x_2 = u_y + ra_y - wa_1_x_1;
     const T k_x_dir_m_z = k_x * dir_m_y - k_y * dir_m_x;
     const T wa_1_x_3 = p.radius * k_x_dir_m_z;
-    const T u_arm_b_z = u_z - wa_1_x_3;
-    const T u_arm_b_x_fa_x_x = u_arm_b_y * fa_x_z - u_arm_b_z * fa_x_y;
-    const T u_arm_b_x_fa_x_y = u_arm_b_z * fa_x_x - u_arm_b_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T u_arm_b_x_fa_x_z = u_arm_b_x * fa_x_y - u_arm_b_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T wa_1_x_4 = u_z + ra_z - wa_1_x_3;
+    const T wa_1_y_1 = p.radius * k_x_dir_m_x;
+    const T wa_1_y_2 = u_x + ra_x - wa_1_y_1;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T arm_a_x = b.x - a.x - wa_1_x_1;
-    const T arm_a_y = b.y - a.y - wa_1_x_2;
+    const T arm_a_x = b.x - a.x - wa_1_y_1;
+    const T arm_a_y = b.y - a.y - wa_1_x_1;
     const T arm_a_z = b.z - a.z - wa_1_x_3;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
@@ -1760,9 +1757,9 @@ struct rolling_disc::b_immovable : rolling_disc {
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_1_x = -u_arm_b_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_1_y = -u_arm_b_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_1_z = -u_arm_b_x_fa_x_z - ra_x_fa_x_z;
+    J.wa_1_x = wa_1_x_4 * fa_x_y - wa_1_x_2 * fa_x_z;
+    J.wa_1_y = wa_1_y_2 * fa_x_z - wa_1_x_4 * fa_x_x;
+    J.wa_1_z = wa_1_x_2 * fa_x_x - wa_1_y_2 * fa_x_y;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
@@ -1777,7 +1774,7 @@ struct rolling_disc::b_immovable : rolling_disc {
     J.arm_a_x_fa_z_z = arm_a_x * fa_z_y - arm_a_y * fa_z_x;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 35 +, 45 *
+  // K = J M^-1 J^T, lower triangle, from J: 48 +, 69 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
@@ -1790,16 +1787,22 @@ struct rolling_disc::b_immovable : rolling_disc {
         J.arm_a_x_fa_y_z;
     const T K22_3 = ma.Ixz * J.arm_a_x_fa_y_x + ma.Iyz * J.arm_a_x_fa_y_y + ma.Izz *
         J.arm_a_x_fa_y_z;
-    K[0] = ma.m + J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3;
-    K[1] = -J.arm_a_x_fa_y_x * K11_1 - J.arm_a_x_fa_y_y * K11_2 - J.arm_a_x_fa_y_z * K11_3;
-    K[2] = ma.m + J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3;
-    K[3] = -J.arm_a_x_fa_z_x * K11_1 - J.arm_a_x_fa_z_y * K11_2 - J.arm_a_x_fa_z_z * K11_3;
-    K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3;
-    K[5] = ma.m + J.arm_a_x_fa_z_x *
-        (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz * J.arm_a_x_fa_z_z) +
-        J.arm_a_x_fa_z_y * (ma.Ixy * J.arm_a_x_fa_z_x + ma.Iyy * J.arm_a_x_fa_z_y + ma.Iyz *
-        J.arm_a_x_fa_z_z) + J.arm_a_x_fa_z_z *
-        (ma.Ixz * J.arm_a_x_fa_z_x + ma.Iyz * J.arm_a_x_fa_z_y + ma.Izz * J.arm_a_x_fa_z_z);
+    K[0] = J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3 + ma.m *
+        (J.fa_x_x * J.fa_x_x + J.fa_x_y * J.fa_x_y + J.fa_x_z * J.fa_x_z);
+    K[1] = ma.m * (J.fa_x_x * J.fa_y_x + J.fa_x_y * J.fa_y_y + J.fa_x_z * J.fa_y_z) -
+        J.arm_a_x_fa_y_x * K11_1 - J.arm_a_x_fa_y_y * K11_2 - J.arm_a_x_fa_y_z * K11_3;
+    K[2] = J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3 + ma.m *
+        (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z);
+    K[3] = ma.m * (J.fa_x_x * J.fa_z_x + J.fa_x_y * J.fa_z_y + J.fa_x_z * J.fa_z_z) -
+        J.arm_a_x_fa_z_x * K11_1 - J.arm_a_x_fa_z_y * K11_2 - J.arm_a_x_fa_z_z * K11_3;
+    K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3 + ma.m *
+        (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z);
+    K[5] = J.arm_a_x_fa_z_x * (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz *
+        J.arm_a_x_fa_z_z) + J.arm_a_x_fa_z_y *
+        (ma.Ixy * J.arm_a_x_fa_z_x + ma.Iyy * J.arm_a_x_fa_z_y + ma.Iyz * J.arm_a_x_fa_z_z) +
+        J.arm_a_x_fa_z_z * (ma.Ixz * J.arm_a_x_fa_z_x + ma.Iyz * J.arm_a_x_fa_z_y + ma.Izz *
+        J.arm_a_x_fa_z_z) + ma.m *
+        (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z);
   }
 
   // J v: 17 +, 18 *
@@ -1888,25 +1891,26 @@ struct rolling_disc::b_immovable : rolling_disc {
     D[2][5] = -ma.Ixz * J.arm_a_x_fa_z_x - ma.Iyz * J.arm_a_x_fa_z_y - ma.Izz * J.arm_a_x_fa_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 17 +, 24 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 30 +, 48 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    const T dot_arm_a_x_fa_y_arm_a_x_fa_y = J.arm_a_x_fa_y_x * J.arm_a_x_fa_y_x +
-        J.arm_a_x_fa_y_y * J.arm_a_x_fa_y_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_y_z;
-    const T dot_arm_a_x_fa_y_arm_a_x_fa_z = J.arm_a_x_fa_y_x * J.arm_a_x_fa_z_x +
-        J.arm_a_x_fa_y_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_z_z;
-    const T dot_arm_a_x_fa_z_arm_a_x_fa_z = J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x +
-        J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z;
-    K[0] = ma.m + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
-    K[1] = -ma.I * (J.arm_a_x_fa_y_x * J.wa_1_x + J.arm_a_x_fa_y_y * J.wa_1_y + J.arm_a_x_fa_y_z *
-        J.wa_1_z);
-    K[2] = ma.m + ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_y;
-    K[3] = -ma.I * (J.arm_a_x_fa_z_x * J.wa_1_x + J.arm_a_x_fa_z_y * J.wa_1_y + J.arm_a_x_fa_z_z *
-        J.wa_1_z);
-    K[4] = ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_z;
-    K[5] = ma.m + ma.I * dot_arm_a_x_fa_z_arm_a_x_fa_z;
+    K[0] = ma.m * (J.fa_x_x * J.fa_x_x + J.fa_x_y * J.fa_x_y + J.fa_x_z * J.fa_x_z) + ma.I *
+        (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
+    K[1] = ma.m * (J.fa_x_x * J.fa_y_x + J.fa_x_y * J.fa_y_y + J.fa_x_z * J.fa_y_z) - ma.I *
+        (J.arm_a_x_fa_y_x * J.wa_1_x + J.arm_a_x_fa_y_y * J.wa_1_y + J.arm_a_x_fa_y_z * J.wa_1_z);
+    K[2] = ma.m * (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) + ma.I *
+        (J.arm_a_x_fa_y_x * J.arm_a_x_fa_y_x + J.arm_a_x_fa_y_y * J.arm_a_x_fa_y_y +
+        J.arm_a_x_fa_y_z * J.arm_a_x_fa_y_z);
+    K[3] = ma.m * (J.fa_x_x * J.fa_z_x + J.fa_x_y * J.fa_z_y + J.fa_x_z * J.fa_z_z) - ma.I *
+        (J.arm_a_x_fa_z_x * J.wa_1_x + J.arm_a_x_fa_z_y * J.wa_1_y + J.arm_a_x_fa_z_z * J.wa_1_z);
+    K[4] = ma.m * (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z) + ma.I *
+        (J.arm_a_x_fa_y_x * J.arm_a_x_fa_z_x + J.arm_a_x_fa_y_y * J.arm_a_x_fa_z_y +
+        J.arm_a_x_fa_y_z * J.arm_a_x_fa_z_z);
+    K[5] = ma.m * (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) + ma.I *
+        (J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x + J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y +
+        J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z);
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 18 +, 24 *
@@ -2182,9 +2186,7 @@ struct rolling_disc::b_immovable : rolling_disc {
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T u_x = -H4_1 - ra_x;
     const T u_y = -H4_6 - ra_y;
-    const T u_arm_b_x = u_x - H4_5;
-    const T u_arm_b_y = u_y - H4_7;
-    const T H4_15 = lambda[0] * (u_arm_b_y + ra_y);
+    const T H4_15 = lambda[0] * (H4_7 - u_y - ra_y);
     const T H4_16 = H1_2_2 * k_x;
     const T H4_17 = p.radius * inv_m_len;
     const T H4_18 = k_y * H1_2_2;
@@ -2193,15 +2195,14 @@ struct rolling_disc::b_immovable : rolling_disc {
     const T H4_21 = H4_17 * (H4_16 * dir_m_y + H4_3 * H1_2 - H4_20 * dir_m_x);
     const T H4_22 = H4_21 * dir_m_y - H4_16 * H4_17;
     const T H4_23 = H4_21 * dir_m_x + H4_17 * H4_20;
-    const T H4_24 = k_x * H4_22 - H4_15 - k_y * H4_23;
+    const T H4_24 = H4_15 + k_x * H4_22 - k_y * H4_23;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T u_z = -H4_9 - ra_z;
-    const T u_arm_b_z = u_z - H4_11;
-    const T H4_25 = lambda[0] * (u_arm_b_z + ra_z);
+    const T H4_25 = lambda[0] * (u_z + ra_z - H4_11);
     const T H4_26 = H4_21 * dir_m_z - H4_17 * k_x * H1_2;
     const T H4_27 = H4_25 - k_x * H4_26 + k_z * H4_23;
     const T H4_1_2 = k_y * H4_26 - k_z * H4_22;
-    const T H5_1 = lambda[0] * (u_arm_b_x + ra_x);
+    const T H5_1 = lambda[0] * (u_x + ra_x - H4_5);
     const T H5_2 = k_x * H2_2;
     const T H5_3 = H5_2 + H4_19;
     const T H5_4 = H4_17 * (H4_10 * H2_2 + H4_2 * H1_2 - H5_3 * dir_m_y);
@@ -2222,7 +2223,7 @@ struct rolling_disc::b_immovable : rolling_disc {
     const T H6_6 = k_x * H6_4 - k_y * H6_5;
     const T H6_7 = H4_17 * H6_2 + H6_3 * dir_m_z;
     const T H6_8 = k_z * H6_5 - H5_1 - k_x * H6_7;
-    const T H6_1_2 = H4_15 + k_y * H6_7 - k_z * H6_4;
+    const T H6_1_2 = k_y * H6_7 - H4_15 - k_z * H6_4;
     H[0][4] = -H1_2;
     H[0][5] = H1_2_2;
     H[1][3] = H1_2;

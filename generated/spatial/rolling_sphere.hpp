@@ -10,14 +10,12 @@
 // C_touch = fa_x · u - radius
 // Cdot_roll_y = fa_y · (v_b - v_a - radius (w_b × fa_x) - w_a × arm_a)  (at velocity level: C is 0)
 // Cdot_roll_z = fa_z · (v_b - v_a - radius (w_b × fa_x) - w_a × arm_a)  (at velocity level: C is 0)
-// J = [ -fa_x' | (-(ra × fa_x) - u × fa_x)' | fa_x' | 0
-//       -fa_y' | -(arm_a × fa_y)'           | fa_y' | -radius fa_z'
-//       -fa_z' | -(arm_a × fa_z)'           | fa_z' | radius fa_y'  ]  (columns v_a | w_a | v_b |
-//           w_b)
-// K[touch, touch] = inv_m_a + inv_m_b
-//                   + (-(ra × fa_x) - u × fa_x)' inv_I_a (-(ra × fa_x) - u × fa_x)
-// K[touch, roll_y] = -(arm_a × fa_y)' inv_I_a (-(ra × fa_x) - u × fa_x)
-// K[touch, roll_z] = -(arm_a × fa_z)' inv_I_a (-(ra × fa_x) - u × fa_x)
+// J = [ -fa_x' | -((ra + u) × fa_x)' | fa_x' | 0
+//       -fa_y' | -(arm_a × fa_y)'    | fa_y' | -radius fa_z'
+//       -fa_z' | -(arm_a × fa_z)'    | fa_z' | radius fa_y'  ]    (columns v_a | w_a | v_b | w_b)
+// K[touch, touch] = inv_m_a + inv_m_b + ((ra + u) × fa_x)' inv_I_a ((ra + u) × fa_x)
+// K[touch, roll_y] = (arm_a × fa_y)' inv_I_a ((ra + u) × fa_x)
+// K[touch, roll_z] = (arm_a × fa_z)' inv_I_a ((ra + u) × fa_x)
 // K[roll_y, roll_y] = inv_m_a + inv_m_b + radius^2 fa_z' inv_I_b fa_z
 //                     + (arm_a × fa_y)' inv_I_a (arm_a × fa_y)
 // K[roll_y, roll_z] = (arm_a × fa_z)' inv_I_a (arm_a × fa_y) - radius^2 fa_y' inv_I_b fa_z
@@ -57,9 +55,9 @@ struct rolling_sphere {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_1_x, wa_1_y, wa_1_z, fa_y_x, fa_y_y, fa_y_z, arm_a_x_fa_y_x,
-        arm_a_x_fa_y_y, arm_a_x_fa_y_z, fa_z_x, radius, fa_z_y, fa_z_z, arm_a_x_fa_z_x,
-        arm_a_x_fa_z_y, arm_a_x_fa_z_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_u_x_fa_x_x, ra_u_x_fa_x_y, ra_u_x_fa_x_z, fa_y_x, fa_y_y, fa_y_z,
+        arm_a_x_fa_y_x, arm_a_x_fa_y_y, arm_a_x_fa_y_z, fa_z_x, radius, fa_z_y, fa_z_z,
+        arm_a_x_fa_z_x, arm_a_x_fa_z_y, arm_a_x_fa_z_z;
   };
 
   // C: 21 +, 21 *
@@ -82,7 +80,7 @@ struct rolling_sphere {
     C[2] = T(0);
   }
 
-  // C and J: 57 +, 66 *
+  // C and J: 51 +, 60 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -98,12 +96,9 @@ struct rolling_sphere {
     const T u_z = b.z - a.z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
-    const T u_x_fa_x_x = u_y * fa_x_z - u_z * fa_x_y;
-    const T u_x_fa_x_y = u_z * fa_x_x - u_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T u_x_fa_x_z = u_x * fa_x_y - u_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_u_x = u_x + ra_x;
+    const T ra_u_y = u_y + ra_y;
+    const T ra_u_z = u_z + ra_z;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
@@ -119,9 +114,9 @@ struct rolling_sphere {
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_1_x = -u_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_1_y = -u_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_1_z = -u_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_u_x_fa_x_x = ra_u_y * fa_x_z - ra_u_z * fa_x_y;
+    J.ra_u_x_fa_x_y = ra_u_z * fa_x_x - ra_u_x * fa_x_z;
+    J.ra_u_x_fa_x_z = ra_u_x * fa_x_y - ra_u_y * fa_x_x;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
@@ -137,15 +132,15 @@ struct rolling_sphere {
     J.arm_a_x_fa_z_z = arm_a_x * fa_z_y - arm_a_y * fa_z_x;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 57 +, 76 *
+  // K = J M^-1 J^T, lower triangle, from J: 55 +, 76 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
-    const T K11_2 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_3 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_4 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    const T K11_2 = ma.Ixx * J.ra_u_x_fa_x_x + ma.Ixy * J.ra_u_x_fa_x_y + ma.Ixz * J.ra_u_x_fa_x_z;
+    const T K11_3 = ma.Ixy * J.ra_u_x_fa_x_x + ma.Iyy * J.ra_u_x_fa_x_y + ma.Iyz * J.ra_u_x_fa_x_z;
+    const T K11_4 = ma.Ixz * J.ra_u_x_fa_x_x + ma.Iyz * J.ra_u_x_fa_x_y + ma.Izz * J.ra_u_x_fa_x_z;
     const T K22_1 = ma.Ixx * J.arm_a_x_fa_y_x + ma.Ixy * J.arm_a_x_fa_y_y + ma.Ixz *
         J.arm_a_x_fa_y_z;
     const T K22_2 = ma.Ixy * J.arm_a_x_fa_y_x + ma.Iyy * J.arm_a_x_fa_y_y + ma.Iyz *
@@ -156,11 +151,11 @@ struct rolling_sphere {
     const T K22_5 = mb.Ixx * J.fa_z_x + mb.Ixy * J.fa_z_y + mb.Ixz * J.fa_z_z;
     const T K22_6 = mb.Ixy * J.fa_z_x + mb.Iyy * J.fa_z_y + mb.Iyz * J.fa_z_z;
     const T K22_7 = mb.Ixz * J.fa_z_x + mb.Iyz * J.fa_z_y + mb.Izz * J.fa_z_z;
-    K[0] = K11_1 + J.wa_1_x * K11_2 + J.wa_1_y * K11_3 + J.wa_1_z * K11_4;
-    K[1] = -J.arm_a_x_fa_y_x * K11_2 - J.arm_a_x_fa_y_y * K11_3 - J.arm_a_x_fa_y_z * K11_4;
+    K[0] = K11_1 + J.ra_u_x_fa_x_x * K11_2 + J.ra_u_x_fa_x_y * K11_3 + J.ra_u_x_fa_x_z * K11_4;
+    K[1] = J.arm_a_x_fa_y_x * K11_2 + J.arm_a_x_fa_y_y * K11_3 + J.arm_a_x_fa_y_z * K11_4;
     K[2] = K11_1 + J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3 +
         K22_4 * (J.fa_z_x * K22_5 + J.fa_z_y * K22_6 + J.fa_z_z * K22_7);
-    K[3] = -J.arm_a_x_fa_z_x * K11_2 - J.arm_a_x_fa_z_y * K11_3 - J.arm_a_x_fa_z_z * K11_4;
+    K[3] = J.arm_a_x_fa_z_x * K11_2 + J.arm_a_x_fa_z_y * K11_3 + J.arm_a_x_fa_z_z * K11_4;
     K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3 - K22_4 *
         (J.fa_y_x * K22_5 + J.fa_y_y * K22_6 + J.fa_y_z * K22_7);
     K[5] = K11_1 + J.arm_a_x_fa_z_x *
@@ -212,8 +207,8 @@ struct rolling_sphere {
     const T Jv1_1 = vb.x - va.x;
     const T Jv1_2 = vb.y - va.y;
     const T Jv1_3 = vb.z - va.z;
-    Jv[0] = J.wa_1_x * va.wx + J.wa_1_y * va.wy + J.wa_1_z * va.wz + J.fa_x_x * Jv1_1 + J.fa_x_y *
-        Jv1_2 + J.fa_x_z * Jv1_3;
+    Jv[0] = J.fa_x_x * Jv1_1 - J.ra_u_x_fa_x_x * va.wx - J.ra_u_x_fa_x_y * va.wy -
+        J.ra_u_x_fa_x_z * va.wz + J.fa_x_y * Jv1_2 + J.fa_x_z * Jv1_3;
     Jv[1] = J.fa_y_x * Jv1_1 - J.arm_a_x_fa_y_x * va.wx - J.arm_a_x_fa_y_y * va.wy -
         J.arm_a_x_fa_y_z * va.wz - J.radius *
         (J.fa_z_x * vb.wx + J.fa_z_y * vb.wy + J.fa_z_z * vb.wz) + J.fa_y_y * Jv1_2 + J.fa_y_z *
@@ -234,12 +229,12 @@ struct rolling_sphere {
     const T v1_1 = J.fa_x_x * lambda[0] + J.fa_y_x * lambda[1] + J.fa_z_x * lambda[2];
     const T v1_1_2 = J.fa_x_y * lambda[0] + J.fa_y_y * lambda[1] + J.fa_z_y * lambda[2];
     const T v1_1_3 = J.fa_x_z * lambda[0] + J.fa_y_z * lambda[1] + J.fa_z_z * lambda[2];
-    const T v1_1_4 = J.wa_1_x * lambda[0] - J.arm_a_x_fa_y_x * lambda[1] - J.arm_a_x_fa_z_x *
-        lambda[2];
-    const T v1_2 = J.wa_1_y * lambda[0] - J.arm_a_x_fa_y_y * lambda[1] - J.arm_a_x_fa_z_y *
-        lambda[2];
-    const T v1_3 = J.wa_1_z * lambda[0] - J.arm_a_x_fa_y_z * lambda[1] - J.arm_a_x_fa_z_z *
-        lambda[2];
+    const T v1_1_4 = J.arm_a_x_fa_y_x * lambda[1] + J.arm_a_x_fa_z_x * lambda[2] +
+        J.ra_u_x_fa_x_x * lambda[0];
+    const T v1_2 = J.arm_a_x_fa_y_y * lambda[1] + J.arm_a_x_fa_z_y * lambda[2] + J.ra_u_x_fa_x_y *
+        lambda[0];
+    const T v1_3 = J.arm_a_x_fa_y_z * lambda[1] + J.arm_a_x_fa_z_z * lambda[2] + J.ra_u_x_fa_x_z *
+        lambda[0];
     const T v2_1 = lambda[2] * J.radius;
     const T v2_2 = lambda[1] * J.radius;
     const T v2_3 = v2_1 * J.fa_y_x - v2_2 * J.fa_z_x;
@@ -248,9 +243,9 @@ struct rolling_sphere {
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.Ixx * v1_1_4 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
-    v[0].wy = va.wy + ma.Ixy * v1_1_4 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
-    v[0].wz = va.wz + ma.Ixz * v1_1_4 + ma.Iyz * v1_2 + ma.Izz * v1_3;
+    v[0].wx = va.wx - ma.Ixx * v1_1_4 - ma.Ixy * v1_2 - ma.Ixz * v1_3;
+    v[0].wy = va.wy - ma.Ixy * v1_1_4 - ma.Iyy * v1_2 - ma.Iyz * v1_3;
+    v[0].wz = va.wz - ma.Ixz * v1_1_4 - ma.Iyz * v1_2 - ma.Izz * v1_3;
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -259,7 +254,7 @@ struct rolling_sphere {
     v[1].wz = vb.wz + mb.Ixz * v2_3 + mb.Iyz * v2_4 + mb.Izz * v2_5;
   }
 
-  // J with its zeros: v, w of each body: 18 +, 6 *
+  // J with its zeros: v, w of each body: 21 +, 6 *
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[3][12]) {
     for (auto& row : D) {
@@ -268,9 +263,9 @@ struct rolling_sphere {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_1_x;
-    D[0][4] = J.wa_1_y;
-    D[0][5] = J.wa_1_z;
+    D[0][3] = -J.ra_u_x_fa_x_x;
+    D[0][4] = -J.ra_u_x_fa_x_y;
+    D[0][5] = -J.ra_u_x_fa_x_z;
     D[0][6] = J.fa_x_x;
     D[0][7] = J.fa_x_y;
     D[0][8] = J.fa_x_z;
@@ -300,7 +295,7 @@ struct rolling_sphere {
     D[2][11] = J.fa_y_z * J.radius;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 48 +, 69 *
+  // (M^-1 J^T)^T, laid out like dense: 51 +, 69 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[3][12]) {
@@ -318,9 +313,9 @@ struct rolling_sphere {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    D[0][4] = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    D[0][5] = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    D[0][3] = -ma.Ixx * J.ra_u_x_fa_x_x - ma.Ixy * J.ra_u_x_fa_x_y - ma.Ixz * J.ra_u_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_u_x_fa_x_x - ma.Iyy * J.ra_u_x_fa_x_y - ma.Iyz * J.ra_u_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_u_x_fa_x_x - ma.Iyz * J.ra_u_x_fa_x_y - ma.Izz * J.ra_u_x_fa_x_z;
     D[0][6] = mb.m * J.fa_x_x;
     D[0][7] = mb.m * J.fa_x_y;
     D[0][8] = mb.m * J.fa_x_z;
@@ -350,26 +345,30 @@ struct rolling_sphere {
     D[2][11] = D2_3 * J.fa_y_x + D2_2_2 * J.fa_y_y + D2_1_3 * J.fa_y_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 19 +, 26 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 17 +, 26 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
+    const T dot_ra_u_x_fa_x_ra_u_x_fa_x = J.ra_u_x_fa_x_x * J.ra_u_x_fa_x_x + J.ra_u_x_fa_x_y *
+        J.ra_u_x_fa_x_y + J.ra_u_x_fa_x_z * J.ra_u_x_fa_x_z;
+    const T dot_arm_a_x_fa_y_ra_u_x_fa_x = J.arm_a_x_fa_y_x * J.ra_u_x_fa_x_x + J.arm_a_x_fa_y_y *
+        J.ra_u_x_fa_x_y + J.arm_a_x_fa_y_z * J.ra_u_x_fa_x_z;
     const T K22_1 = K11_1 + mb.I * J.radius * J.radius;
     const T dot_arm_a_x_fa_y_arm_a_x_fa_y = J.arm_a_x_fa_y_x * J.arm_a_x_fa_y_x +
         J.arm_a_x_fa_y_y * J.arm_a_x_fa_y_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_y_z;
+    const T dot_arm_a_x_fa_z_ra_u_x_fa_x = J.arm_a_x_fa_z_x * J.ra_u_x_fa_x_x + J.arm_a_x_fa_z_y *
+        J.ra_u_x_fa_x_y + J.arm_a_x_fa_z_z * J.ra_u_x_fa_x_z;
     const T dot_arm_a_x_fa_y_arm_a_x_fa_z = J.arm_a_x_fa_y_x * J.arm_a_x_fa_z_x +
         J.arm_a_x_fa_y_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_z_z;
     const T dot_arm_a_x_fa_z_arm_a_x_fa_z = J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x +
         J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z;
-    K[0] = K11_1 + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
-    K[1] = -ma.I * (J.arm_a_x_fa_y_x * J.wa_1_x + J.arm_a_x_fa_y_y * J.wa_1_y + J.arm_a_x_fa_y_z *
-        J.wa_1_z);
+    K[0] = K11_1 + ma.I * dot_ra_u_x_fa_x_ra_u_x_fa_x;
+    K[1] = ma.I * dot_arm_a_x_fa_y_ra_u_x_fa_x;
     K[2] = K22_1 + ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_y;
-    K[3] = -ma.I * (J.arm_a_x_fa_z_x * J.wa_1_x + J.arm_a_x_fa_z_y * J.wa_1_y + J.arm_a_x_fa_z_z *
-        J.wa_1_z);
+    K[3] = ma.I * dot_arm_a_x_fa_z_ra_u_x_fa_x;
     K[4] = ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_z;
     K[5] = K22_1 + ma.I * dot_arm_a_x_fa_z_arm_a_x_fa_z;
   }
@@ -390,12 +389,12 @@ struct rolling_sphere {
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.I * (J.wa_1_x * lambda[0] - J.arm_a_x_fa_y_x * lambda[1] -
-        J.arm_a_x_fa_z_x * lambda[2]);
-    v[0].wy = va.wy + ma.I * (J.wa_1_y * lambda[0] - J.arm_a_x_fa_y_y * lambda[1] -
-        J.arm_a_x_fa_z_y * lambda[2]);
-    v[0].wz = va.wz + ma.I * (J.wa_1_z * lambda[0] - J.arm_a_x_fa_y_z * lambda[1] -
-        J.arm_a_x_fa_z_z * lambda[2]);
+    v[0].wx = va.wx - ma.I * (J.arm_a_x_fa_y_x * lambda[1] + J.arm_a_x_fa_z_x * lambda[2] +
+        J.ra_u_x_fa_x_x * lambda[0]);
+    v[0].wy = va.wy - ma.I * (J.arm_a_x_fa_y_y * lambda[1] + J.arm_a_x_fa_z_y * lambda[2] +
+        J.ra_u_x_fa_x_y * lambda[0]);
+    v[0].wz = va.wz - ma.I * (J.arm_a_x_fa_y_z * lambda[1] + J.arm_a_x_fa_z_z * lambda[2] +
+        J.ra_u_x_fa_x_z * lambda[0]);
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -404,7 +403,7 @@ struct rolling_sphere {
     v[1].wz = vb.wz + mb.I * (v2_1 * J.fa_y_z - v2_2 * J.fa_z_z);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 18 +, 34 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 21 +, 34 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[3][12]) {
@@ -417,9 +416,9 @@ struct rolling_sphere {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_1_x;
-    D[0][4] = ma.I * J.wa_1_y;
-    D[0][5] = ma.I * J.wa_1_z;
+    D[0][3] = -ma.I * J.ra_u_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_u_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_u_x_fa_x_z;
     D[0][6] = mb.m * J.fa_x_x;
     D[0][7] = mb.m * J.fa_x_y;
     D[0][8] = mb.m * J.fa_x_z;
@@ -449,7 +448,7 @@ struct rolling_sphere {
     D[2][11] = ib_radius * J.fa_y_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 48 +, 51 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 51 +, 51 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
     for (auto& row : D) {
@@ -466,9 +465,9 @@ struct rolling_sphere {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
+    D[0][3] = -J.ra_u_x_fa_x_x * a.xx - J.ra_u_x_fa_x_y * a.yx - J.ra_u_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_u_x_fa_x_x * a.xy - J.ra_u_x_fa_x_y * a.yy - J.ra_u_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_u_x_fa_x_x * a.xz - J.ra_u_x_fa_x_y * a.yz - J.ra_u_x_fa_x_z * a.zz;
     D[0][6] = J.fa_x_x;
     D[0][7] = J.fa_x_y;
     D[0][8] = J.fa_x_z;
@@ -513,10 +512,10 @@ struct rolling_sphere {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = T(2) * (J.ra_u_x_fa_x_x * a.e1 + J.ra_u_x_fa_x_y * a.e2 + J.ra_u_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_u_x_fa_x_z * a.e2 - J.ra_u_x_fa_x_x * a.e0 - J.ra_u_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_u_x_fa_x_x * a.e3 - J.ra_u_x_fa_x_y * a.e0 - J.ra_u_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_u_x_fa_x_y * a.e1 - J.ra_u_x_fa_x_x * a.e2 - J.ra_u_x_fa_x_z * a.e0);
     D[0][7] = J.fa_x_x;
     D[0][8] = J.fa_x_y;
     D[0][9] = J.fa_x_z;
@@ -644,7 +643,7 @@ struct rolling_sphere {
     C_t[2] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 83 +, 89 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 84 +, 89 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
       T (&H)[12][12]) {
@@ -682,13 +681,16 @@ struct rolling_sphere {
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T u_x = -H4_1 - ra_x;
     const T u_y = -H4_2 - ra_y;
-    const T H4_8 = -p.radius * H1_1_2 - lambda[0] * (u_y + ra_y);
+    const T ra_u_x = u_x + ra_x;
+    const T ra_u_y = u_y + ra_y;
+    const T H4_8 = lambda[0] * ra_u_y + p.radius * H1_1_2;
     const T H4_9 = fa_x_y * H4_8;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T u_z = -H4_4 - ra_z;
-    const T H4_10 = p.radius * H1_1 + lambda[0] * (u_z + ra_z);
+    const T ra_u_z = u_z + ra_z;
+    const T H4_10 = lambda[0] * ra_u_z + p.radius * H1_1;
     const T H4_11 = fa_x_z * H4_10;
-    const T H5_1 = p.radius * H2_1 + lambda[0] * (u_x + ra_x);
+    const T H5_1 = lambda[0] * ra_u_x + p.radius * H2_1;
     const T H5_1_2 = arm_a_x * fa_y_x;
     const T H5_2 = arm_a_x * fa_z_x;
     const T H5_3 = fa_x_x * H5_1;
@@ -705,8 +707,8 @@ struct rolling_sphere {
     H[2][4] = H2_2;
     H[3][1] = H1_2;
     H[3][2] = H[2][3];
-    H[3][3] = H4_9 - lambda[1] * (H4_3 + H4_5) - lambda[2] * (H4_6 + H4_7) - H4_11;
-    H[3][4] = arm_a_y * H2_1 - fa_x_x * H4_8;
+    H[3][3] = -lambda[1] * (H4_3 + H4_5) - lambda[2] * (H4_6 + H4_7) - H4_9 - H4_11;
+    H[3][4] = fa_x_x * H4_8 + arm_a_y * H2_1;
     H[3][5] = fa_x_x * H4_10 + arm_a_z * H2_1;
     H[3][7] = H[0][4];
     H[3][8] = H1_2_2;
@@ -720,8 +722,8 @@ struct rolling_sphere {
     H[5][0] = H1_2_2;
     H[5][1] = H[1][5];
     H[5][3] = fa_x_z * H5_1 + arm_a_x * H1_1;
-    H[5][4] = arm_a_y * H1_1 - fa_x_z * H4_8;
-    H[5][5] = H4_9 - lambda[1] * (H5_1_2 + H4_3) - lambda[2] * (H5_2 + H4_6) - H5_3;
+    H[5][4] = fa_x_z * H4_8 + arm_a_y * H1_1;
+    H[5][5] = -lambda[1] * (H5_1_2 + H4_3) - lambda[2] * (H5_2 + H4_6) - H5_3 - H4_9;
     H[5][6] = H[2][3];
     H[5][7] = H2_2;
     H[6][4] = H1_2;
@@ -1074,12 +1076,12 @@ struct rolling_sphere::b_immovable : rolling_sphere {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_1_x, wa_1_y, wa_1_z, fa_y_x, fa_y_y, fa_y_z, arm_a_x_fa_y_x,
-        arm_a_x_fa_y_y, arm_a_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z, arm_a_x_fa_z_x, arm_a_x_fa_z_y,
-        arm_a_x_fa_z_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_u_x_fa_x_x, ra_u_x_fa_x_y, ra_u_x_fa_x_z, fa_y_x, fa_y_y, fa_y_z,
+        arm_a_x_fa_y_x, arm_a_x_fa_y_y, arm_a_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z, arm_a_x_fa_z_x,
+        arm_a_x_fa_z_y, arm_a_x_fa_z_z;
   };
 
-  // C and J: 57 +, 66 *
+  // C and J: 51 +, 60 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -1095,12 +1097,9 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     const T u_z = b.z - a.z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
-    const T u_x_fa_x_x = u_y * fa_x_z - u_z * fa_x_y;
-    const T u_x_fa_x_y = u_z * fa_x_x - u_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T u_x_fa_x_z = u_x * fa_x_y - u_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_u_x = u_x + ra_x;
+    const T ra_u_y = u_y + ra_y;
+    const T ra_u_z = u_z + ra_z;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
@@ -1116,9 +1115,9 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_1_x = -u_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_1_y = -u_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_1_z = -u_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_u_x_fa_x_x = ra_u_y * fa_x_z - ra_u_z * fa_x_y;
+    J.ra_u_x_fa_x_y = ra_u_z * fa_x_x - ra_u_x * fa_x_z;
+    J.ra_u_x_fa_x_z = ra_u_x * fa_x_y - ra_u_y * fa_x_x;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
@@ -1133,23 +1132,23 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     J.arm_a_x_fa_z_z = arm_a_x * fa_z_y - arm_a_y * fa_z_x;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 35 +, 45 *
+  // K = J M^-1 J^T, lower triangle, from J: 33 +, 45 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_2 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_3 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    const T K11_1 = ma.Ixx * J.ra_u_x_fa_x_x + ma.Ixy * J.ra_u_x_fa_x_y + ma.Ixz * J.ra_u_x_fa_x_z;
+    const T K11_2 = ma.Ixy * J.ra_u_x_fa_x_x + ma.Iyy * J.ra_u_x_fa_x_y + ma.Iyz * J.ra_u_x_fa_x_z;
+    const T K11_3 = ma.Ixz * J.ra_u_x_fa_x_x + ma.Iyz * J.ra_u_x_fa_x_y + ma.Izz * J.ra_u_x_fa_x_z;
     const T K22_1 = ma.Ixx * J.arm_a_x_fa_y_x + ma.Ixy * J.arm_a_x_fa_y_y + ma.Ixz *
         J.arm_a_x_fa_y_z;
     const T K22_2 = ma.Ixy * J.arm_a_x_fa_y_x + ma.Iyy * J.arm_a_x_fa_y_y + ma.Iyz *
         J.arm_a_x_fa_y_z;
     const T K22_3 = ma.Ixz * J.arm_a_x_fa_y_x + ma.Iyz * J.arm_a_x_fa_y_y + ma.Izz *
         J.arm_a_x_fa_y_z;
-    K[0] = ma.m + J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3;
-    K[1] = -J.arm_a_x_fa_y_x * K11_1 - J.arm_a_x_fa_y_y * K11_2 - J.arm_a_x_fa_y_z * K11_3;
+    K[0] = ma.m + J.ra_u_x_fa_x_x * K11_1 + J.ra_u_x_fa_x_y * K11_2 + J.ra_u_x_fa_x_z * K11_3;
+    K[1] = J.arm_a_x_fa_y_x * K11_1 + J.arm_a_x_fa_y_y * K11_2 + J.arm_a_x_fa_y_z * K11_3;
     K[2] = ma.m + J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3;
-    K[3] = -J.arm_a_x_fa_z_x * K11_1 - J.arm_a_x_fa_z_y * K11_2 - J.arm_a_x_fa_z_z * K11_3;
+    K[3] = J.arm_a_x_fa_z_x * K11_1 + J.arm_a_x_fa_z_y * K11_2 + J.arm_a_x_fa_z_z * K11_3;
     K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3;
     K[5] = ma.m + J.arm_a_x_fa_z_x *
         (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz * J.arm_a_x_fa_z_z) +
@@ -1171,12 +1170,12 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     lambda[2] = x3;
   }
 
-  // J v: 17 +, 18 *
+  // J v: 18 +, 18 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[3]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_1_x * va.wx - J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z + J.wa_1_y *
-        va.wy + J.wa_1_z * va.wz;
+    Jv[0] = -J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z - J.ra_u_x_fa_x_x * va.wx -
+        J.ra_u_x_fa_x_y * va.wy - J.ra_u_x_fa_x_z * va.wz;
     Jv[1] = -J.arm_a_x_fa_y_x * va.wx - J.arm_a_x_fa_y_y * va.wy - J.arm_a_x_fa_y_z * va.wz -
         J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z;
     Jv[2] = -J.arm_a_x_fa_z_x * va.wx - J.arm_a_x_fa_z_y * va.wy - J.arm_a_x_fa_z_z * va.wz -
@@ -1189,21 +1188,21 @@ struct rolling_sphere::b_immovable : rolling_sphere {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_1_x * lambda[0] - J.arm_a_x_fa_y_x * lambda[1] - J.arm_a_x_fa_z_x *
-        lambda[2];
-    const T v1_2 = J.wa_1_y * lambda[0] - J.arm_a_x_fa_y_y * lambda[1] - J.arm_a_x_fa_z_y *
-        lambda[2];
-    const T v1_3 = J.wa_1_z * lambda[0] - J.arm_a_x_fa_y_z * lambda[1] - J.arm_a_x_fa_z_z *
-        lambda[2];
+    const T v1_1 = J.arm_a_x_fa_y_x * lambda[1] + J.arm_a_x_fa_z_x * lambda[2] + J.ra_u_x_fa_x_x *
+        lambda[0];
+    const T v1_2 = J.arm_a_x_fa_y_y * lambda[1] + J.arm_a_x_fa_z_y * lambda[2] + J.ra_u_x_fa_x_y *
+        lambda[0];
+    const T v1_3 = J.arm_a_x_fa_y_z * lambda[1] + J.arm_a_x_fa_z_z * lambda[2] + J.ra_u_x_fa_x_z *
+        lambda[0];
     v[0].x = va.x - ma.m * (J.fa_x_x * lambda[0] + J.fa_y_x * lambda[1] + J.fa_z_x * lambda[2]);
     v[0].y = va.y - ma.m * (J.fa_x_y * lambda[0] + J.fa_y_y * lambda[1] + J.fa_z_y * lambda[2]);
     v[0].z = va.z - ma.m * (J.fa_x_z * lambda[0] + J.fa_y_z * lambda[1] + J.fa_z_z * lambda[2]);
-    v[0].wx = va.wx + ma.Ixx * v1_1 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
-    v[0].wy = va.wy + ma.Ixy * v1_1 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
-    v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
+    v[0].wx = va.wx - ma.Ixx * v1_1 - ma.Ixy * v1_2 - ma.Ixz * v1_3;
+    v[0].wy = va.wy - ma.Ixy * v1_1 - ma.Iyy * v1_2 - ma.Iyz * v1_3;
+    v[0].wz = va.wz - ma.Ixz * v1_1 - ma.Iyz * v1_2 - ma.Izz * v1_3;
   }
 
-  // J with its zeros: v, w of each body: 15 +
+  // J with its zeros: v, w of each body: 18 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[3][12]) {
     for (auto& row : D) {
@@ -1212,9 +1211,9 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_1_x;
-    D[0][4] = J.wa_1_y;
-    D[0][5] = J.wa_1_z;
+    D[0][3] = -J.ra_u_x_fa_x_x;
+    D[0][4] = -J.ra_u_x_fa_x_y;
+    D[0][5] = -J.ra_u_x_fa_x_z;
     D[1][0] = -J.fa_y_x;
     D[1][1] = -J.fa_y_y;
     D[1][2] = -J.fa_y_z;
@@ -1229,7 +1228,7 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[2][5] = -J.arm_a_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 33 +, 36 *
+  // (M^-1 J^T)^T, laid out like dense: 36 +, 36 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[3][12]) {
@@ -1240,9 +1239,9 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    D[0][4] = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    D[0][5] = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    D[0][3] = -ma.Ixx * J.ra_u_x_fa_x_x - ma.Ixy * J.ra_u_x_fa_x_y - ma.Ixz * J.ra_u_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_u_x_fa_x_x - ma.Iyy * J.ra_u_x_fa_x_y - ma.Iyz * J.ra_u_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_u_x_fa_x_x - ma.Iyz * J.ra_u_x_fa_x_y - ma.Izz * J.ra_u_x_fa_x_z;
     D[1][0] = -ma.m * J.fa_y_x;
     D[1][1] = -ma.m * J.fa_y_y;
     D[1][2] = -ma.m * J.fa_y_z;
@@ -1257,23 +1256,27 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[2][5] = -ma.Ixz * J.arm_a_x_fa_z_x - ma.Iyz * J.arm_a_x_fa_z_y - ma.Izz * J.arm_a_x_fa_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 17 +, 24 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 15 +, 24 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
     const IsotropicInverseMass<T>& ma = m[0];
+    const T dot_ra_u_x_fa_x_ra_u_x_fa_x = J.ra_u_x_fa_x_x * J.ra_u_x_fa_x_x + J.ra_u_x_fa_x_y *
+        J.ra_u_x_fa_x_y + J.ra_u_x_fa_x_z * J.ra_u_x_fa_x_z;
+    const T dot_arm_a_x_fa_y_ra_u_x_fa_x = J.arm_a_x_fa_y_x * J.ra_u_x_fa_x_x + J.arm_a_x_fa_y_y *
+        J.ra_u_x_fa_x_y + J.arm_a_x_fa_y_z * J.ra_u_x_fa_x_z;
     const T dot_arm_a_x_fa_y_arm_a_x_fa_y = J.arm_a_x_fa_y_x * J.arm_a_x_fa_y_x +
         J.arm_a_x_fa_y_y * J.arm_a_x_fa_y_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_y_z;
+    const T dot_arm_a_x_fa_z_ra_u_x_fa_x = J.arm_a_x_fa_z_x * J.ra_u_x_fa_x_x + J.arm_a_x_fa_z_y *
+        J.ra_u_x_fa_x_y + J.arm_a_x_fa_z_z * J.ra_u_x_fa_x_z;
     const T dot_arm_a_x_fa_y_arm_a_x_fa_z = J.arm_a_x_fa_y_x * J.arm_a_x_fa_z_x +
         J.arm_a_x_fa_y_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_z_z;
     const T dot_arm_a_x_fa_z_arm_a_x_fa_z = J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x +
         J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z;
-    K[0] = ma.m + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
-    K[1] = -ma.I * (J.arm_a_x_fa_y_x * J.wa_1_x + J.arm_a_x_fa_y_y * J.wa_1_y + J.arm_a_x_fa_y_z *
-        J.wa_1_z);
+    K[0] = ma.m + ma.I * dot_ra_u_x_fa_x_ra_u_x_fa_x;
+    K[1] = ma.I * dot_arm_a_x_fa_y_ra_u_x_fa_x;
     K[2] = ma.m + ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_y;
-    K[3] = -ma.I * (J.arm_a_x_fa_z_x * J.wa_1_x + J.arm_a_x_fa_z_y * J.wa_1_y + J.arm_a_x_fa_z_z *
-        J.wa_1_z);
+    K[3] = ma.I * dot_arm_a_x_fa_z_ra_u_x_fa_x;
     K[4] = ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_z;
     K[5] = ma.m + ma.I * dot_arm_a_x_fa_z_arm_a_x_fa_z;
   }
@@ -1287,15 +1290,15 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     v[0].x = va.x - ma.m * (J.fa_x_x * lambda[0] + J.fa_y_x * lambda[1] + J.fa_z_x * lambda[2]);
     v[0].y = va.y - ma.m * (J.fa_x_y * lambda[0] + J.fa_y_y * lambda[1] + J.fa_z_y * lambda[2]);
     v[0].z = va.z - ma.m * (J.fa_x_z * lambda[0] + J.fa_y_z * lambda[1] + J.fa_z_z * lambda[2]);
-    v[0].wx = va.wx + ma.I * (J.wa_1_x * lambda[0] - J.arm_a_x_fa_y_x * lambda[1] -
-        J.arm_a_x_fa_z_x * lambda[2]);
-    v[0].wy = va.wy + ma.I * (J.wa_1_y * lambda[0] - J.arm_a_x_fa_y_y * lambda[1] -
-        J.arm_a_x_fa_z_y * lambda[2]);
-    v[0].wz = va.wz + ma.I * (J.wa_1_z * lambda[0] - J.arm_a_x_fa_y_z * lambda[1] -
-        J.arm_a_x_fa_z_z * lambda[2]);
+    v[0].wx = va.wx - ma.I * (J.arm_a_x_fa_y_x * lambda[1] + J.arm_a_x_fa_z_x * lambda[2] +
+        J.ra_u_x_fa_x_x * lambda[0]);
+    v[0].wy = va.wy - ma.I * (J.arm_a_x_fa_y_y * lambda[1] + J.arm_a_x_fa_z_y * lambda[2] +
+        J.ra_u_x_fa_x_y * lambda[0]);
+    v[0].wz = va.wz - ma.I * (J.arm_a_x_fa_y_z * lambda[1] + J.arm_a_x_fa_z_z * lambda[2] +
+        J.ra_u_x_fa_x_z * lambda[0]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 15 +, 18 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 18 +, 18 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[3][12]) {
@@ -1306,9 +1309,9 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_1_x;
-    D[0][4] = ma.I * J.wa_1_y;
-    D[0][5] = ma.I * J.wa_1_z;
+    D[0][3] = -ma.I * J.ra_u_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_u_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_u_x_fa_x_z;
     D[1][0] = -ma.m * J.fa_y_x;
     D[1][1] = -ma.m * J.fa_y_y;
     D[1][2] = -ma.m * J.fa_y_z;
@@ -1323,7 +1326,7 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[2][5] = -ma.I * J.arm_a_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 33 +, 27 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 36 +, 27 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
     for (auto& row : D) {
@@ -1333,9 +1336,9 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
+    D[0][3] = -J.ra_u_x_fa_x_x * a.xx - J.ra_u_x_fa_x_y * a.yx - J.ra_u_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_u_x_fa_x_x * a.xy - J.ra_u_x_fa_x_y * a.yy - J.ra_u_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_u_x_fa_x_x * a.xz - J.ra_u_x_fa_x_y * a.yz - J.ra_u_x_fa_x_z * a.zz;
     D[1][0] = -J.fa_y_x;
     D[1][1] = -J.fa_y_y;
     D[1][2] = -J.fa_y_z;
@@ -1360,10 +1363,10 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = T(2) * (J.ra_u_x_fa_x_x * a.e1 + J.ra_u_x_fa_x_y * a.e2 + J.ra_u_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_u_x_fa_x_z * a.e2 - J.ra_u_x_fa_x_x * a.e0 - J.ra_u_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_u_x_fa_x_x * a.e3 - J.ra_u_x_fa_x_y * a.e0 - J.ra_u_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_u_x_fa_x_y * a.e1 - J.ra_u_x_fa_x_x * a.e2 - J.ra_u_x_fa_x_z * a.e0);
     D[1][0] = -J.fa_y_x;
     D[1][1] = -J.fa_y_y;
     D[1][2] = -J.fa_y_z;
@@ -1454,7 +1457,7 @@ struct rolling_sphere::b_immovable : rolling_sphere {
         w_a_x_fa_z_z;
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 77 +, 81 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 78 +, 81 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
       T (&H)[12][12]) {
@@ -1492,13 +1495,16 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T u_x = -H4_1 - ra_x;
     const T u_y = -H4_2 - ra_y;
-    const T H4_8 = -p.radius * H1_1_2 - lambda[0] * (u_y + ra_y);
+    const T ra_u_x = u_x + ra_x;
+    const T ra_u_y = u_y + ra_y;
+    const T H4_8 = lambda[0] * ra_u_y + p.radius * H1_1_2;
     const T H4_9 = fa_x_y * H4_8;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T u_z = -H4_4 - ra_z;
-    const T H4_10 = p.radius * H1_1 + lambda[0] * (u_z + ra_z);
+    const T ra_u_z = u_z + ra_z;
+    const T H4_10 = lambda[0] * ra_u_z + p.radius * H1_1;
     const T H4_11 = fa_x_z * H4_10;
-    const T H5_1 = p.radius * H2_1 + lambda[0] * (u_x + ra_x);
+    const T H5_1 = lambda[0] * ra_u_x + p.radius * H2_1;
     const T H5_1_2 = arm_a_x * fa_y_x;
     const T H5_2 = arm_a_x * fa_z_x;
     const T H5_3 = fa_x_x * H5_1;
@@ -1510,8 +1516,8 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     H[2][4] = H2_2;
     H[3][1] = H1_2;
     H[3][2] = H[2][3];
-    H[3][3] = H4_9 - lambda[1] * (H4_3 + H4_5) - lambda[2] * (H4_6 + H4_7) - H4_11;
-    H[3][4] = arm_a_y * H2_1 - fa_x_x * H4_8;
+    H[3][3] = -lambda[1] * (H4_3 + H4_5) - lambda[2] * (H4_6 + H4_7) - H4_9 - H4_11;
+    H[3][4] = fa_x_x * H4_8 + arm_a_y * H2_1;
     H[3][5] = fa_x_x * H4_10 + arm_a_z * H2_1;
     H[4][0] = H[0][4];
     H[4][2] = H2_2;
@@ -1521,8 +1527,8 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     H[5][0] = H1_2_2;
     H[5][1] = H[1][5];
     H[5][3] = fa_x_z * H5_1 + arm_a_x * H1_1;
-    H[5][4] = arm_a_y * H1_1 - fa_x_z * H4_8;
-    H[5][5] = H4_9 - lambda[1] * (H5_1_2 + H4_3) - lambda[2] * (H5_2 + H4_6) - H5_3;
+    H[5][4] = fa_x_z * H4_8 + arm_a_y * H1_1;
+    H[5][5] = -lambda[1] * (H5_1_2 + H4_3) - lambda[2] * (H5_2 + H4_6) - H5_3 - H4_9;
   }
 };
 

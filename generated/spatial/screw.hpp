@@ -20,17 +20,16 @@
 //     | 0
 //     | -(fa_z × fb_x)'
 //     ; -fa_y'
-//     | (-(ra × fa_y) - d × fa_y)'
+//     | -((ra + d) × fa_y)'
 //     | fa_y'
 //     | (rb × fa_y)'
 //     ; -fa_z'
-//     | (-(ra × fa_z) - d × fa_z)'
+//     | -((ra + d) × fa_z)'
 //     | fa_z'
 //     | (rb × fa_z)'
 //     ; -((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) fa_x'
 //     | (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
-//         fb_z))/pitch) (ra × fa_x) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (d ×
-//         fa_x))'
+//         fb_z))/pitch) ((ra + d) × fa_x))'
 //     | ((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) fa_x'
 //     | (((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (rb × fa_x) - turned × fb_z)' ]
 //       (columns v_a | w_a | v_b | w_b)
@@ -38,55 +37,49 @@
 //                             + (fa_y × fb_x)' inv_I_b (fa_y × fb_x)
 // K[parallel_y, parallel_z] = (fa_z × fb_x)' inv_I_a (fa_y × fb_x)
 //                             + (fa_z × fb_x)' inv_I_b (fa_y × fb_x)
-// K[parallel_y, line_y] = (-(ra × fa_y) - d × fa_y)' inv_I_a (fa_y × fb_x)
-//                         - (rb × fa_y)' inv_I_b (fa_y × fb_x)
-// K[parallel_y, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (fa_y × fb_x)
-//                         - (rb × fa_z)' inv_I_b (fa_y × fb_x)
+// K[parallel_y, line_y] = -(rb × fa_y)' inv_I_b (fa_y × fb_x)
+//                         - ((ra + d) × fa_y)' inv_I_a (fa_y × fb_x)
+// K[parallel_y, line_z] = -(rb × fa_z)' inv_I_b (fa_y × fb_x)
+//                         - ((ra + d) × fa_z)' inv_I_a (fa_y × fb_x)
 // K[parallel_y, thread] = (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) -
-//     sin(s) (fa_y · fb_z))/pitch) (ra × fa_x) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
-//     fb_z))/pitch) (d × fa_x))' inv_I_a (fa_y × fb_x)
+//     sin(s) (fa_y · fb_z))/pitch) ((ra + d) × fa_x))' inv_I_a (fa_y × fb_x)
 //                         - (((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (rb × fa_x) -
 //                             turned × fb_z)' inv_I_b (fa_y × fb_x)
 // K[parallel_z, parallel_z] = (fa_z × fb_x)' inv_I_a (fa_z × fb_x)
 //                             + (fa_z × fb_x)' inv_I_b (fa_z × fb_x)
-// K[parallel_z, line_y] = (-(ra × fa_y) - d × fa_y)' inv_I_a (fa_z × fb_x)
-//                         - (rb × fa_y)' inv_I_b (fa_z × fb_x)
-// K[parallel_z, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (fa_z × fb_x)
-//                         - (rb × fa_z)' inv_I_b (fa_z × fb_x)
+// K[parallel_z, line_y] = -(rb × fa_y)' inv_I_b (fa_z × fb_x)
+//                         - ((ra + d) × fa_y)' inv_I_a (fa_z × fb_x)
+// K[parallel_z, line_z] = -(rb × fa_z)' inv_I_b (fa_z × fb_x)
+//                         - ((ra + d) × fa_z)' inv_I_a (fa_z × fb_x)
 // K[parallel_z, thread] = (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) -
-//     sin(s) (fa_y · fb_z))/pitch) (ra × fa_x) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
-//     fb_z))/pitch) (d × fa_x))' inv_I_a (fa_z × fb_x)
+//     sin(s) (fa_y · fb_z))/pitch) ((ra + d) × fa_x))' inv_I_a (fa_z × fb_x)
 //                         - (((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (rb × fa_x) -
 //                             turned × fb_z)' inv_I_b (fa_z × fb_x)
-// K[line_y, line_y] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_y) - d × fa_y)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_y)' inv_I_b (rb × fa_y)
-// K[line_y, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_y)
-// K[line_y, thread] = (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) -
-//     sin(s) (fa_y · fb_z))/pitch) (ra × fa_x) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
-//     fb_z))/pitch) (d × fa_x))' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (rb × fa_x) -
-//                         turned × fb_z)' inv_I_b (rb × fa_y)
-// K[line_z, line_z] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_z) - d × fa_z)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_z)
-// K[line_z, thread] = (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) -
-//     sin(s) (fa_y · fb_z))/pitch) (ra × fa_x) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
-//     fb_z))/pitch) (d × fa_x))' inv_I_a (-(ra × fa_z) - d × fa_z)
-//                     + (((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (rb × fa_x) -
-//                         turned × fb_z)' inv_I_b (rb × fa_z)
+// K[line_y, line_y] = inv_m_a + inv_m_b + (rb × fa_y)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
+// K[line_y, line_z] = (rb × fa_z)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_y)
+// K[line_y, thread] = (((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (rb × fa_x) - turned
+//     × fb_z)' inv_I_b (rb × fa_y)
+//                     - (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) -
+//                         sin(s) (fa_y · fb_z))/pitch) ((ra + d) × fa_x))' inv_I_a ((ra + d) ×
+//                         fa_y)
+// K[line_z, line_z] = inv_m_a + inv_m_b + (rb × fa_z)' inv_I_b (rb × fa_z)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
+// K[line_z, thread] = (((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (rb × fa_x) - turned
+//     × fb_z)' inv_I_b (rb × fa_z)
+//                     - (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) -
+//                         sin(s) (fa_y · fb_z))/pitch) ((ra + d) × fa_x))' inv_I_a ((ra + d) ×
+//                         fa_z)
 // K[thread, thread] = inv_m_a (cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))^2/pitch^2
 //                     + inv_m_b (cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))^2/pitch^2
-//                     + (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) -
-//                         sin(s) (fa_y · fb_z))/pitch) (ra × fa_x) - ((cos(s) (fa_z · fb_z) -
-//                         sin(s) (fa_y · fb_z))/pitch) (d × fa_x))' inv_I_a (sin(s) (fa_z × fb_z)
-//                         + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
-//                         fb_z))/pitch) (ra × fa_x) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
-//                         fb_z))/pitch) (d × fa_x))
 //                     + (((cos(s) (fa_z · fb_z) - sin(s) (fa_y · fb_z))/pitch) (rb × fa_x) -
 //                         turned × fb_z)' inv_I_b (((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
 //                         fb_z))/pitch) (rb × fa_x) - turned × fb_z)
+//                     + (sin(s) (fa_z × fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) -
+//                         sin(s) (fa_y · fb_z))/pitch) ((ra + d) × fa_x))' inv_I_a (sin(s) (fa_z ×
+//                         fb_z) + cos(s) (fa_y × fb_z) - ((cos(s) (fa_z · fb_z) - sin(s) (fa_y ·
+//                         fb_z))/pitch) ((ra + d) × fa_x))
 //
 // coordinate angle = twist(fa, fb)
 // J_angle = [ 0
@@ -97,10 +90,10 @@
 //           + (fa_x + fb_x)' inv_I_b (fa_x + fb_x)/(fa_x · fb_x + 1)^2
 //
 // coordinate slide = fa_x · d
-// J_slide = [ -fa_x' | (-(ra × fa_x) - d × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide = inv_m_a + inv_m_b + (-(ra × fa_x) - d × fa_x)' inv_I_a (-(ra × fa_x) - d × fa_x)
-//           + (rb × fa_x)' inv_I_b (rb × fa_x)
+// J_slide = [ -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide = inv_m_a + inv_m_b + (rb × fa_x)' inv_I_b (rb × fa_x)
+//           + ((ra + d) × fa_x)' inv_I_a ((ra + d) × fa_x)
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -140,9 +133,10 @@ struct screw {
   template <class T>
   struct Jacobian {
     T fa_y_x_fb_x_x, fa_y_x_fb_x_y, fa_y_x_fb_x_z, fa_z_x_fb_x_x, fa_z_x_fb_x_y, fa_z_x_fb_x_z,
-        fa_y_x, fa_y_y, fa_y_z, wa_3_x, wa_3_y, wa_3_z, rb_x_fa_y_x, rb_x_fa_y_y, rb_x_fa_y_z,
-        fa_z_x, fa_z_y, fa_z_z, wa_4_x, wa_4_y, wa_4_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z,
-        va_5_x, va_5_y, va_5_z, wa_5_x, wa_5_y, wa_5_z, wb_5_x, wb_5_y, wb_5_z;
+        fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, rb_x_fa_y_x,
+        rb_x_fa_y_y, rb_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y,
+        ra_d_x_fa_z_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z, va_5_x, va_5_y, va_5_z, wa_5_x,
+        wa_5_y, wa_5_z, wb_5_x, wb_5_y, wb_5_z;
   };
 
   // C: 66 +, 88 *, 1 /, 1 <, 2 call
@@ -192,7 +186,7 @@ struct screw {
     C[4] = fb_z_x * turned_x + fb_z_y * turned_y + fb_z_z * turned_z;
   }
 
-  // C and J: 137 +, 196 *, 1 /, 1 <, 2 call
+  // C and J: 116 +, 178 *, 1 /, 1 <, 2 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[5],
       Jacobian<T>& J) {
@@ -233,33 +227,21 @@ struct screw {
     const T turned_y = fa_y_y * C5_1 + fa_z_y * C5_2;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T turned_z = fa_y_z * C5_1 + fa_z_z * C5_2;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
     const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
     const T va_5_x_1 = inv_pitch * (dot_fa_z_fb_z * C5_1 - dot_fa_y_fb_z * C5_2);
+    const T ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    const T ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
     const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
     const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
     const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
     const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
+    const T ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
     const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
     const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
     const T turned_x_fb_z_x = fb_z_z * turned_y - fb_z_y * turned_z;
     const T turned_x_fb_z_y = fb_z_x * turned_z - fb_z_z * turned_x;
     const T rb_x_fa_x_x = fa_x_z * rb_y - fa_x_y * rb_z;
@@ -280,33 +262,33 @@ struct screw {
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_3_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_3_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_3_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.rb_x_fa_y_x = fa_y_z * rb_y - fa_y_y * rb_z;
     J.rb_x_fa_y_y = fa_y_x * rb_z - fa_y_z * rb_x;
     J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_4_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_4_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_4_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
     J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
     J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
     J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
     J.va_5_x = va_5_x_1 * fa_x_x;
     J.va_5_y = va_5_x_1 * fa_x_y;
     J.va_5_z = va_5_x_1 * fa_x_z;
-    J.wa_5_x = fa_y_x_fb_z_x * C5_1 + fa_z_x_fb_z_x * C5_2 - va_5_x_1 * (d_x_fa_x_x + ra_x_fa_x_x);
-    J.wa_5_y = fa_y_x_fb_z_y * C5_1 + fa_z_x_fb_z_y * C5_2 - va_5_x_1 * (d_x_fa_x_y + ra_x_fa_x_y);
-    J.wa_5_z = fa_y_x_fb_z_z * C5_1 + fa_z_x_fb_z_z * C5_2 - va_5_x_1 * (d_x_fa_x_z + ra_x_fa_x_z);
+    J.wa_5_x = fa_y_x_fb_z_x * C5_1 - va_5_x_1 * ra_d_x_fa_x_x + fa_z_x_fb_z_x * C5_2;
+    J.wa_5_y = fa_y_x_fb_z_y * C5_1 - va_5_x_1 * ra_d_x_fa_x_y + fa_z_x_fb_z_y * C5_2;
+    J.wa_5_z = fa_y_x_fb_z_z * C5_1 - va_5_x_1 * ra_d_x_fa_x_z + fa_z_x_fb_z_z * C5_2;
     J.wb_5_x = va_5_x_1 * rb_x_fa_x_x - turned_x_fb_z_x;
     J.wb_5_y = va_5_x_1 * rb_x_fa_x_y - turned_x_fb_z_y;
     J.wb_5_z = va_5_x_1 * rb_x_fa_x_z - turned_x_fb_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 151 +, 195 *
+  // K = J M^-1 J^T, lower triangle, from J: 155 +, 195 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[15]) {
     const InverseMass<T>& ma = m[0];
@@ -326,51 +308,51 @@ struct screw {
     const T K22_4 = mb.Ixy * J.fa_z_x_fb_x_x + mb.Iyy * J.fa_z_x_fb_x_y + mb.Iyz * J.fa_z_x_fb_x_z;
     const T K22_5 = ma.Ixz * J.fa_z_x_fb_x_x + ma.Iyz * J.fa_z_x_fb_x_y + ma.Izz * J.fa_z_x_fb_x_z;
     const T K22_6 = mb.Ixz * J.fa_z_x_fb_x_x + mb.Iyz * J.fa_z_x_fb_x_y + mb.Izz * J.fa_z_x_fb_x_z;
-    const T K33_1 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
-    const T K33_2 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
-    const T K33_3 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
-    const T K33_4 = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    const T K33_5 = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    const T K33_6 = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    const T K33_1 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K33_2 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K33_3 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    const T K33_4 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
+    const T K33_5 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
+    const T K33_6 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
     const T K33_7 = ma.m + mb.m;
     const T K33_8 = J.fa_y_x * K33_7;
     const T K33_9 = J.fa_y_y * K33_7;
     const T K33_10 = J.fa_y_z * K33_7;
-    const T K44_1 = mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z;
-    const T K44_2 = mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z;
-    const T K44_3 = mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z;
-    const T K44_4 = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    const T K44_5 = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    const T K44_6 = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
+    const T K44_1 = ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z;
+    const T K44_2 = ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz * J.ra_d_x_fa_z_z;
+    const T K44_3 = ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z;
+    const T K44_4 = mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z;
+    const T K44_5 = mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z;
+    const T K44_6 = mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z;
     K[0] = J.fa_y_x_fb_x_x * K11_3 + J.fa_y_x_fb_x_y * K11_6 + J.fa_y_x_fb_x_z * K11_9;
     K[1] = J.fa_z_x_fb_x_x * K11_3 + J.fa_z_x_fb_x_y * K11_6 + J.fa_z_x_fb_x_z * K11_9;
     K[2] = J.fa_z_x_fb_x_x * (K22_1 + K22_2) + J.fa_z_x_fb_x_y * (K22_3 + K22_4) +
         J.fa_z_x_fb_x_z * (K22_5 + K22_6);
-    K[3] = J.wa_3_x * K11_1 - J.rb_x_fa_y_x * K11_2 - J.rb_x_fa_y_y * K11_5 - J.rb_x_fa_y_z *
-        K11_8 + J.wa_3_y * K11_4 + J.wa_3_z * K11_7;
-    K[4] = J.wa_3_x * K22_1 - J.rb_x_fa_y_x * K22_2 - J.rb_x_fa_y_y * K22_4 - J.rb_x_fa_y_z *
-        K22_6 + J.wa_3_y * K22_3 + J.wa_3_z * K22_5;
-    K[5] = J.rb_x_fa_y_x * K33_1 + J.rb_x_fa_y_y * K33_2 + J.rb_x_fa_y_z * K33_3 + J.wa_3_x *
-        K33_4 + J.wa_3_y * K33_5 + J.wa_3_z * K33_6 + J.fa_y_x * K33_8 + J.fa_y_y * K33_9 +
-        J.fa_y_z * K33_10;
-    K[6] = J.wa_4_x * K11_1 - J.rb_x_fa_z_x * K11_2 - J.rb_x_fa_z_y * K11_5 - J.rb_x_fa_z_z *
-        K11_8 + J.wa_4_y * K11_4 + J.wa_4_z * K11_7;
-    K[7] = J.wa_4_x * K22_1 - J.rb_x_fa_z_x * K22_2 - J.rb_x_fa_z_y * K22_4 - J.rb_x_fa_z_z *
-        K22_6 + J.wa_4_y * K22_3 + J.wa_4_z * K22_5;
-    K[8] = J.rb_x_fa_z_x * K33_1 + J.rb_x_fa_z_y * K33_2 + J.rb_x_fa_z_z * K33_3 + J.wa_4_x *
-        K33_4 + J.wa_4_y * K33_5 + J.wa_4_z * K33_6 + J.fa_z_x * K33_8 + J.fa_z_y * K33_9 +
-        J.fa_z_z * K33_10;
-    K[9] = J.rb_x_fa_z_x * K44_1 + J.rb_x_fa_z_y * K44_2 + J.rb_x_fa_z_z * K44_3 + J.wa_4_x *
-        K44_4 + J.wa_4_y * K44_5 + J.wa_4_z * K44_6 +
+    K[3] = -J.ra_d_x_fa_y_x * K11_1 - J.ra_d_x_fa_y_y * K11_4 - J.ra_d_x_fa_y_z * K11_7 -
+        J.rb_x_fa_y_x * K11_2 - J.rb_x_fa_y_y * K11_5 - J.rb_x_fa_y_z * K11_8;
+    K[4] = -J.ra_d_x_fa_y_x * K22_1 - J.ra_d_x_fa_y_y * K22_3 - J.ra_d_x_fa_y_z * K22_5 -
+        J.rb_x_fa_y_x * K22_2 - J.rb_x_fa_y_y * K22_4 - J.rb_x_fa_y_z * K22_6;
+    K[5] = J.ra_d_x_fa_y_x * K33_1 + J.ra_d_x_fa_y_y * K33_2 + J.ra_d_x_fa_y_z * K33_3 +
+        J.rb_x_fa_y_x * K33_4 + J.rb_x_fa_y_y * K33_5 + J.rb_x_fa_y_z * K33_6 + J.fa_y_x * K33_8 +
+        J.fa_y_y * K33_9 + J.fa_y_z * K33_10;
+    K[6] = -J.ra_d_x_fa_z_x * K11_1 - J.ra_d_x_fa_z_y * K11_4 - J.ra_d_x_fa_z_z * K11_7 -
+        J.rb_x_fa_z_x * K11_2 - J.rb_x_fa_z_y * K11_5 - J.rb_x_fa_z_z * K11_8;
+    K[7] = -J.ra_d_x_fa_z_x * K22_1 - J.ra_d_x_fa_z_y * K22_3 - J.ra_d_x_fa_z_z * K22_5 -
+        J.rb_x_fa_z_x * K22_2 - J.rb_x_fa_z_y * K22_4 - J.rb_x_fa_z_z * K22_6;
+    K[8] = J.ra_d_x_fa_z_x * K33_1 + J.ra_d_x_fa_z_y * K33_2 + J.ra_d_x_fa_z_z * K33_3 +
+        J.rb_x_fa_z_x * K33_4 + J.rb_x_fa_z_y * K33_5 + J.rb_x_fa_z_z * K33_6 + J.fa_z_x * K33_8 +
+        J.fa_z_y * K33_9 + J.fa_z_z * K33_10;
+    K[9] = J.ra_d_x_fa_z_x * K44_1 + J.ra_d_x_fa_z_y * K44_2 + J.ra_d_x_fa_z_z * K44_3 +
+        J.rb_x_fa_z_x * K44_4 + J.rb_x_fa_z_y * K44_5 + J.rb_x_fa_z_z * K44_6 +
         (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) * K33_7;
     K[10] = J.wa_5_x * K11_1 + J.wa_5_y * K11_4 + J.wa_5_z * K11_7 - J.wb_5_x * K11_2 - J.wb_5_y *
         K11_5 - J.wb_5_z * K11_8;
     K[11] = J.wa_5_x * K22_1 + J.wa_5_y * K22_3 + J.wa_5_z * K22_5 - J.wb_5_x * K22_2 - J.wb_5_y *
         K22_4 - J.wb_5_z * K22_6;
-    K[12] = J.wa_5_x * K33_4 + J.wa_5_y * K33_5 + J.wa_5_z * K33_6 + J.wb_5_x * K33_1 + J.wb_5_y *
-        K33_2 + J.wb_5_z * K33_3 + J.va_5_x * K33_8 + J.va_5_y * K33_9 + J.va_5_z * K33_10;
-    K[13] = J.wa_5_x * K44_4 + J.wa_5_y * K44_5 + J.wa_5_z * K44_6 + J.wb_5_x * K44_1 + J.wb_5_y *
-        K44_2 + J.wb_5_z * K44_3 +
+    K[12] = J.wb_5_x * K33_4 - J.wa_5_x * K33_1 - J.wa_5_y * K33_2 - J.wa_5_z * K33_3 + J.wb_5_y *
+        K33_5 + J.wb_5_z * K33_6 + J.va_5_x * K33_8 + J.va_5_y * K33_9 + J.va_5_z * K33_10;
+    K[13] = J.wb_5_x * K44_4 - J.wa_5_x * K44_1 - J.wa_5_y * K44_2 - J.wa_5_z * K44_3 + J.wb_5_y *
+        K44_5 + J.wb_5_z * K44_6 +
         (J.fa_z_x * J.va_5_x + J.fa_z_y * J.va_5_y + J.fa_z_z * J.va_5_z) * K33_7;
     K[14] = J.wa_5_x * (ma.Ixx * J.wa_5_x + ma.Ixy * J.wa_5_y + ma.Ixz * J.wa_5_z) + J.wa_5_y *
         (ma.Ixy * J.wa_5_x + ma.Iyy * J.wa_5_y + ma.Iyz * J.wa_5_z) + J.wa_5_z *
@@ -456,12 +438,12 @@ struct screw {
     const T Jv3_3 = vb.z - va.z;
     Jv[0] = J.fa_y_x_fb_x_x * Jv1_1 + J.fa_y_x_fb_x_y * Jv1_2 + J.fa_y_x_fb_x_z * Jv1_3;
     Jv[1] = J.fa_z_x_fb_x_x * Jv1_1 + J.fa_z_x_fb_x_y * Jv1_2 + J.fa_z_x_fb_x_z * Jv1_3;
-    Jv[2] = J.rb_x_fa_y_x * vb.wx + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.wa_3_x *
-        va.wx + J.wa_3_y * va.wy + J.wa_3_z * va.wz + J.fa_y_x * Jv3_1 + J.fa_y_y * Jv3_2 +
-        J.fa_y_z * Jv3_3;
-    Jv[3] = J.rb_x_fa_z_x * vb.wx + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.wa_4_x *
-        va.wx + J.wa_4_y * va.wy + J.wa_4_z * va.wz + J.fa_z_x * Jv3_1 + J.fa_z_y * Jv3_2 +
-        J.fa_z_z * Jv3_3;
+    Jv[2] = J.rb_x_fa_y_x * vb.wx - J.ra_d_x_fa_y_x * va.wx - J.ra_d_x_fa_y_y * va.wy -
+        J.ra_d_x_fa_y_z * va.wz + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.fa_y_x *
+        Jv3_1 + J.fa_y_y * Jv3_2 + J.fa_y_z * Jv3_3;
+    Jv[3] = J.rb_x_fa_z_x * vb.wx - J.ra_d_x_fa_z_x * va.wx - J.ra_d_x_fa_z_y * va.wy -
+        J.ra_d_x_fa_z_z * va.wz + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.fa_z_x *
+        Jv3_1 + J.fa_z_y * Jv3_2 + J.fa_z_z * Jv3_3;
     Jv[4] = J.wa_5_x * va.wx + J.wa_5_y * va.wy + J.wa_5_z * va.wz + J.wb_5_x * vb.wx + J.wb_5_y *
         vb.wy + J.wb_5_z * vb.wz + J.va_5_x * Jv3_1 + J.va_5_y * Jv3_2 + J.va_5_z * Jv3_3;
   }
@@ -478,11 +460,14 @@ struct screw {
     const T v1_1_2 = J.fa_y_y * lambda[2] + J.fa_z_y * lambda[3] + J.va_5_y * lambda[4];
     const T v1_1_3 = J.fa_y_z * lambda[2] + J.fa_z_z * lambda[3] + J.va_5_z * lambda[4];
     const T v1_1_4 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1];
-    const T v1_2 = v1_1_4 + J.wa_3_x * lambda[2] + J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4];
+    const T v1_2 = v1_1_4 - J.ra_d_x_fa_y_x * lambda[2] - J.ra_d_x_fa_z_x * lambda[3] + J.wa_5_x *
+        lambda[4];
     const T v1_3 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1];
-    const T v1_4 = v1_3 + J.wa_3_y * lambda[2] + J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4];
+    const T v1_4 = v1_3 - J.ra_d_x_fa_y_y * lambda[2] - J.ra_d_x_fa_z_y * lambda[3] + J.wa_5_y *
+        lambda[4];
     const T v1_5 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1];
-    const T v1_6 = v1_5 + J.wa_3_z * lambda[2] + J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4];
+    const T v1_6 = v1_5 - J.ra_d_x_fa_y_z * lambda[2] - J.ra_d_x_fa_z_z * lambda[3] + J.wa_5_z *
+        lambda[4];
     const T v2_1 = J.rb_x_fa_y_x * lambda[2] - v1_1_4 + J.rb_x_fa_z_x * lambda[3] + J.wb_5_x *
         lambda[4];
     const T v2_2 = J.rb_x_fa_y_y * lambda[2] - v1_3 + J.rb_x_fa_z_y * lambda[3] + J.wb_5_y *
@@ -503,7 +488,7 @@ struct screw {
     v[1].wz = vb.wz + mb.Ixz * v2_1 + mb.Iyz * v2_2 + mb.Izz * v2_3;
   }
 
-  // J with its zeros: v, w of each body: 15 +
+  // J with its zeros: v, w of each body: 21 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -524,9 +509,9 @@ struct screw {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = J.wa_3_x;
-    D[2][4] = J.wa_3_y;
-    D[2][5] = J.wa_3_z;
+    D[2][3] = -J.ra_d_x_fa_y_x;
+    D[2][4] = -J.ra_d_x_fa_y_y;
+    D[2][5] = -J.ra_d_x_fa_y_z;
     D[2][6] = J.fa_y_x;
     D[2][7] = J.fa_y_y;
     D[2][8] = J.fa_y_z;
@@ -536,9 +521,9 @@ struct screw {
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = J.wa_4_x;
-    D[3][4] = J.wa_4_y;
-    D[3][5] = J.wa_4_z;
+    D[3][3] = -J.ra_d_x_fa_z_x;
+    D[3][4] = -J.ra_d_x_fa_z_y;
+    D[3][5] = -J.ra_d_x_fa_z_z;
     D[3][6] = J.fa_z_x;
     D[3][7] = J.fa_z_y;
     D[3][8] = J.fa_z_z;
@@ -559,7 +544,7 @@ struct screw {
     D[4][11] = J.wb_5_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 75 +, 108 *
+  // (M^-1 J^T)^T, laid out like dense: 81 +, 108 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -583,9 +568,9 @@ struct screw {
     D[2][0] = -ma.m * J.fa_y_x;
     D[2][1] = -ma.m * J.fa_y_y;
     D[2][2] = -ma.m * J.fa_y_z;
-    D[2][3] = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    D[2][4] = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    D[2][5] = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    D[2][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[2][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[2][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[2][6] = mb.m * J.fa_y_x;
     D[2][7] = mb.m * J.fa_y_y;
     D[2][8] = mb.m * J.fa_y_z;
@@ -595,9 +580,9 @@ struct screw {
     D[3][0] = -ma.m * J.fa_z_x;
     D[3][1] = -ma.m * J.fa_z_y;
     D[3][2] = -ma.m * J.fa_z_z;
-    D[3][3] = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    D[3][4] = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    D[3][5] = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
+    D[3][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[3][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[3][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
     D[3][6] = mb.m * J.fa_z_x;
     D[3][7] = mb.m * J.fa_z_y;
     D[3][8] = mb.m * J.fa_z_z;
@@ -618,7 +603,7 @@ struct screw {
     D[4][11] = mb.Ixz * J.wb_5_x + mb.Iyz * J.wb_5_y + mb.Izz * J.wb_5_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 86 +, 132 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 90 +, 132 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[15]) {
@@ -632,25 +617,32 @@ struct screw {
         J.fa_y_x_fb_x_z * J.fa_z_x_fb_x_z) * K11_1;
     K[2] = (J.fa_z_x_fb_x_x * J.fa_z_x_fb_x_x + J.fa_z_x_fb_x_y * J.fa_z_x_fb_x_y +
         J.fa_z_x_fb_x_z * J.fa_z_x_fb_x_z) * K11_1;
-    K[3] = ma.I * (J.fa_y_x_fb_x_x * J.wa_3_x + J.fa_y_x_fb_x_y * J.wa_3_y + J.fa_y_x_fb_x_z *
-        J.wa_3_z) - mb.I * (J.fa_y_x_fb_x_x * J.rb_x_fa_y_x + J.fa_y_x_fb_x_y * J.rb_x_fa_y_y +
-        J.fa_y_x_fb_x_z * J.rb_x_fa_y_z);
-    K[4] = ma.I * (J.fa_z_x_fb_x_x * J.wa_3_x + J.fa_z_x_fb_x_y * J.wa_3_y + J.fa_z_x_fb_x_z *
-        J.wa_3_z) - mb.I * (J.fa_z_x_fb_x_x * J.rb_x_fa_y_x + J.fa_z_x_fb_x_y * J.rb_x_fa_y_y +
-        J.fa_z_x_fb_x_z * J.rb_x_fa_y_z);
-    K[5] = ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z) + mb.I *
+    K[3] = -ma.I * (J.fa_y_x_fb_x_x * J.ra_d_x_fa_y_x + J.fa_y_x_fb_x_y * J.ra_d_x_fa_y_y +
+        J.fa_y_x_fb_x_z * J.ra_d_x_fa_y_z) - mb.I *
+        (J.fa_y_x_fb_x_x * J.rb_x_fa_y_x + J.fa_y_x_fb_x_y * J.rb_x_fa_y_y + J.fa_y_x_fb_x_z *
+        J.rb_x_fa_y_z);
+    K[4] = -ma.I * (J.fa_z_x_fb_x_x * J.ra_d_x_fa_y_x + J.fa_z_x_fb_x_y * J.ra_d_x_fa_y_y +
+        J.fa_z_x_fb_x_z * J.ra_d_x_fa_y_z) - mb.I *
+        (J.fa_z_x_fb_x_x * J.rb_x_fa_y_x + J.fa_z_x_fb_x_y * J.rb_x_fa_y_y + J.fa_z_x_fb_x_z *
+        J.rb_x_fa_y_z);
+    K[5] = ma.I * (J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y * J.ra_d_x_fa_y_y +
+        J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z) + mb.I *
         (J.rb_x_fa_y_x * J.rb_x_fa_y_x + J.rb_x_fa_y_y * J.rb_x_fa_y_y + J.rb_x_fa_y_z *
         J.rb_x_fa_y_z) + (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) * K33_1;
-    K[6] = ma.I * (J.fa_y_x_fb_x_x * J.wa_4_x + J.fa_y_x_fb_x_y * J.wa_4_y + J.fa_y_x_fb_x_z *
-        J.wa_4_z) - mb.I * (J.fa_y_x_fb_x_x * J.rb_x_fa_z_x + J.fa_y_x_fb_x_y * J.rb_x_fa_z_y +
-        J.fa_y_x_fb_x_z * J.rb_x_fa_z_z);
-    K[7] = ma.I * (J.fa_z_x_fb_x_x * J.wa_4_x + J.fa_z_x_fb_x_y * J.wa_4_y + J.fa_z_x_fb_x_z *
-        J.wa_4_z) - mb.I * (J.fa_z_x_fb_x_x * J.rb_x_fa_z_x + J.fa_z_x_fb_x_y * J.rb_x_fa_z_y +
-        J.fa_z_x_fb_x_z * J.rb_x_fa_z_z);
-    K[8] = ma.I * (J.wa_3_x * J.wa_4_x + J.wa_3_y * J.wa_4_y + J.wa_3_z * J.wa_4_z) + mb.I *
+    K[6] = -ma.I * (J.fa_y_x_fb_x_x * J.ra_d_x_fa_z_x + J.fa_y_x_fb_x_y * J.ra_d_x_fa_z_y +
+        J.fa_y_x_fb_x_z * J.ra_d_x_fa_z_z) - mb.I *
+        (J.fa_y_x_fb_x_x * J.rb_x_fa_z_x + J.fa_y_x_fb_x_y * J.rb_x_fa_z_y + J.fa_y_x_fb_x_z *
+        J.rb_x_fa_z_z);
+    K[7] = -ma.I * (J.fa_z_x_fb_x_x * J.ra_d_x_fa_z_x + J.fa_z_x_fb_x_y * J.ra_d_x_fa_z_y +
+        J.fa_z_x_fb_x_z * J.ra_d_x_fa_z_z) - mb.I *
+        (J.fa_z_x_fb_x_x * J.rb_x_fa_z_x + J.fa_z_x_fb_x_y * J.rb_x_fa_z_y + J.fa_z_x_fb_x_z *
+        J.rb_x_fa_z_z);
+    K[8] = ma.I * (J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y * J.ra_d_x_fa_z_y +
+        J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z) + mb.I *
         (J.rb_x_fa_y_x * J.rb_x_fa_z_x + J.rb_x_fa_y_y * J.rb_x_fa_z_y + J.rb_x_fa_y_z *
         J.rb_x_fa_z_z) + (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z) * K33_1;
-    K[9] = ma.I * (J.wa_4_x * J.wa_4_x + J.wa_4_y * J.wa_4_y + J.wa_4_z * J.wa_4_z) + mb.I *
+    K[9] = ma.I * (J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y * J.ra_d_x_fa_z_y +
+        J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z) + mb.I *
         (J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y * J.rb_x_fa_z_y + J.rb_x_fa_z_z *
         J.rb_x_fa_z_z) + (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) * K33_1;
     K[10] = ma.I * (J.fa_y_x_fb_x_x * J.wa_5_x + J.fa_y_x_fb_x_y * J.wa_5_y + J.fa_y_x_fb_x_z *
@@ -659,11 +651,13 @@ struct screw {
     K[11] = ma.I * (J.fa_z_x_fb_x_x * J.wa_5_x + J.fa_z_x_fb_x_y * J.wa_5_y + J.fa_z_x_fb_x_z *
         J.wa_5_z) - mb.I * (J.fa_z_x_fb_x_x * J.wb_5_x + J.fa_z_x_fb_x_y * J.wb_5_y +
         J.fa_z_x_fb_x_z * J.wb_5_z);
-    K[12] = ma.I * (J.wa_3_x * J.wa_5_x + J.wa_3_y * J.wa_5_y + J.wa_3_z * J.wa_5_z) + mb.I *
-        (J.rb_x_fa_y_x * J.wb_5_x + J.rb_x_fa_y_y * J.wb_5_y + J.rb_x_fa_y_z * J.wb_5_z) +
+    K[12] = mb.I * (J.rb_x_fa_y_x * J.wb_5_x + J.rb_x_fa_y_y * J.wb_5_y + J.rb_x_fa_y_z *
+        J.wb_5_z) - ma.I * (J.ra_d_x_fa_y_x * J.wa_5_x + J.ra_d_x_fa_y_y * J.wa_5_y +
+        J.ra_d_x_fa_y_z * J.wa_5_z) +
         (J.fa_y_x * J.va_5_x + J.fa_y_y * J.va_5_y + J.fa_y_z * J.va_5_z) * K33_1;
-    K[13] = ma.I * (J.wa_4_x * J.wa_5_x + J.wa_4_y * J.wa_5_y + J.wa_4_z * J.wa_5_z) + mb.I *
-        (J.rb_x_fa_z_x * J.wb_5_x + J.rb_x_fa_z_y * J.wb_5_y + J.rb_x_fa_z_z * J.wb_5_z) +
+    K[13] = mb.I * (J.rb_x_fa_z_x * J.wb_5_x + J.rb_x_fa_z_y * J.wb_5_y + J.rb_x_fa_z_z *
+        J.wb_5_z) - ma.I * (J.ra_d_x_fa_z_x * J.wa_5_x + J.ra_d_x_fa_z_y * J.wa_5_y +
+        J.ra_d_x_fa_z_z * J.wa_5_z) +
         (J.fa_z_x * J.va_5_x + J.fa_z_y * J.va_5_y + J.fa_z_z * J.va_5_z) * K33_1;
     K[14] = ma.I * (J.wa_5_x * J.wa_5_x + J.wa_5_y * J.wa_5_y + J.wa_5_z * J.wa_5_z) + mb.I *
         (J.wb_5_x * J.wb_5_x + J.wb_5_y * J.wb_5_y + J.wb_5_z * J.wb_5_z) +
@@ -687,12 +681,12 @@ struct screw {
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.I * (v1_1_4 + J.wa_3_x * lambda[2] + J.wa_4_x * lambda[3] + J.wa_5_x *
-        lambda[4]);
-    v[0].wy = va.wy + ma.I * (v1_1_5 + J.wa_3_y * lambda[2] + J.wa_4_y * lambda[3] + J.wa_5_y *
-        lambda[4]);
-    v[0].wz = va.wz + ma.I * (v1_1_6 + J.wa_3_z * lambda[2] + J.wa_4_z * lambda[3] + J.wa_5_z *
-        lambda[4]);
+    v[0].wx = va.wx + ma.I * (v1_1_4 - J.ra_d_x_fa_y_x * lambda[2] - J.ra_d_x_fa_z_x * lambda[3] +
+        J.wa_5_x * lambda[4]);
+    v[0].wy = va.wy + ma.I * (v1_1_5 - J.ra_d_x_fa_y_y * lambda[2] - J.ra_d_x_fa_z_y * lambda[3] +
+        J.wa_5_y * lambda[4]);
+    v[0].wz = va.wz + ma.I * (v1_1_6 - J.ra_d_x_fa_y_z * lambda[2] - J.ra_d_x_fa_z_z * lambda[3] +
+        J.wa_5_z * lambda[4]);
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -704,7 +698,7 @@ struct screw {
         J.wb_5_z * lambda[4]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 15 +, 48 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 21 +, 48 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -728,9 +722,9 @@ struct screw {
     D[2][0] = -ma.m * J.fa_y_x;
     D[2][1] = -ma.m * J.fa_y_y;
     D[2][2] = -ma.m * J.fa_y_z;
-    D[2][3] = ma.I * J.wa_3_x;
-    D[2][4] = ma.I * J.wa_3_y;
-    D[2][5] = ma.I * J.wa_3_z;
+    D[2][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[2][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[2][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[2][6] = mb.m * J.fa_y_x;
     D[2][7] = mb.m * J.fa_y_y;
     D[2][8] = mb.m * J.fa_y_z;
@@ -740,9 +734,9 @@ struct screw {
     D[3][0] = -ma.m * J.fa_z_x;
     D[3][1] = -ma.m * J.fa_z_y;
     D[3][2] = -ma.m * J.fa_z_z;
-    D[3][3] = ma.I * J.wa_4_x;
-    D[3][4] = ma.I * J.wa_4_y;
-    D[3][5] = ma.I * J.wa_4_z;
+    D[3][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[3][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[3][5] = -ma.I * J.ra_d_x_fa_z_z;
     D[3][6] = mb.m * J.fa_z_x;
     D[3][7] = mb.m * J.fa_z_y;
     D[3][8] = mb.m * J.fa_z_z;
@@ -763,7 +757,7 @@ struct screw {
     D[4][11] = mb.I * J.wb_5_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 75 +, 90 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 81 +, 90 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -786,9 +780,9 @@ struct screw {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
-    D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
-    D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
+    D[2][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[2][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[2][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[2][6] = J.fa_y_x;
     D[2][7] = J.fa_y_y;
     D[2][8] = J.fa_y_z;
@@ -798,9 +792,9 @@ struct screw {
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = J.wa_4_x * a.xx + J.wa_4_y * a.yx + J.wa_4_z * a.zx;
-    D[3][4] = J.wa_4_x * a.xy + J.wa_4_y * a.yy + J.wa_4_z * a.zy;
-    D[3][5] = J.wa_4_x * a.xz + J.wa_4_y * a.yz + J.wa_4_z * a.zz;
+    D[3][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[3][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[3][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
     D[3][6] = J.fa_z_x;
     D[3][7] = J.fa_z_y;
     D[3][8] = J.fa_z_z;
@@ -848,10 +842,10 @@ struct screw {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
+    D[2][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[2][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[2][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[2][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[2][7] = J.fa_y_x;
     D[2][8] = J.fa_y_y;
     D[2][9] = J.fa_y_z;
@@ -862,10 +856,10 @@ struct screw {
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = -T(2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
-    D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
-    D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
-    D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
+    D[3][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[3][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[3][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[3][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
     D[3][7] = J.fa_z_x;
     D[3][8] = J.fa_z_y;
     D[3][9] = J.fa_z_z;
@@ -1053,7 +1047,7 @@ struct screw {
     C_t[4] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 473 +, 605 *, 1 /, 1 <, 2 call
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 454 +, 578 *, 1 /, 1 <, 2 call
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[5],
       T (&H)[12][12]) {
@@ -1192,135 +1186,118 @@ struct screw {
     const T H3_2_5 = fb_z_x * H3_1_7 - fb_z_z * H3_1_8 + H3_3_3 * rb_x_fa_x_y;
     const T H3_1_9 = fb_z_x * H3_2_4 + fb_z_y * H3_1_8 + H3_3_3 * rb_x_fa_x_z;
     const T H4_1 = lambda[4] * H1_5;
-    const T H4_2 = fa_y_y * fb_z_z;
-    const T H4_3 = fb_z_y * fa_y_z;
-    const T fa_y_x_fb_z_x = H4_2 - H4_3;
-    const T H4_4 = fa_y_x * fb_z_z;
-    const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - H4_4;
-    const T H4_5 = lambda[4] * H1_2;
-    const T H4_6 = fb_z_z * fa_z_y;
-    const T H4_7 = fb_z_y * fa_z_z;
-    const T fa_z_x_fb_z_x = H4_6 - H4_7;
-    const T H4_8 = fb_z_z * fa_z_x;
-    const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - H4_8;
-    const T H4_9 = H4_1 * fa_y_x_fb_z_x - H4_5 * fa_z_x_fb_z_x;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T H4_10 = lambda[4] * (d_x_fa_x_x + ra_x_fa_x_x);
-    const T H4_11 = inv_pitch * H1_2;
-    const T H4_12 = H4_10 * H4_11;
-    const T H4_13 = inv_pitch * H1_5;
-    const T H4_14 = H4_10 * H4_13;
-    const T H4_15 = H4_12 * dot_fa_y_fb_z - H4_9 + H4_14 * dot_fa_z_fb_z;
-    const T H4_16 = H1_1 * H4_15;
+    const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
+    const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
+    const T H4_2 = lambda[4] * H1_2;
+    const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
+    const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
+    const T H4_3 = H4_1 * fa_y_x_fb_z_x - H4_2 * fa_z_x_fb_z_x;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
+    const T ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    const T ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    const T H4_4 = ra_d_x_fa_x_x * H1_7 - H4_3;
+    const T H4_5 = H1_1 * H4_4;
     const T H4_1_2 = H1_5_3 * fa_x_z + lambda[2] * fa_y_z + lambda[3] * fa_z_z;
-    const T H4_2_2 = H4_1_2 - H1_1_2 * H4_15;
+    const T H4_2_2 = H4_1_2 - H1_1_2 * H4_4;
     const T H4_1_3 = H1_5_3 * fa_x_y + lambda[2] * fa_y_y + lambda[3] * fa_z_y;
-    const T H4_2_3 = H4_1_3 + H1_1_3 * H4_15;
-    const T H4_1_4 = ra_y + d_y;
-    const T H4_2_4 = H1_5_3 * H4_1_4;
-    const T H4_3_2 = H3_5 * H4_15 - H4_2_4;
+    const T H4_2_3 = H4_1_3 + H1_1_3 * H4_4;
+    const T H4_1_4 = H1_5_3 * ra_d_y;
+    const T H4_2_4 = H3_5 * H4_4 - H4_1_4;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_4_2 = lambda[0] * fb_x_y + H4_5 * fb_z_y;
-    const T H4_5_2 = H4_4_2 + lambda[2] * H4_1_4;
-    const T H4_6_2 = H4_5_2 - H4_14 * fb_z_z;
-    const T H4_7_2 = lambda[1] * fb_x_y + H4_1 * fb_z_y;
-    const T H4_8_2 = H4_7_2 + lambda[3] * H4_1_4;
-    const T H4_9_2 = H4_8_2 + H4_12 * fb_z_z;
-    const T H4_10_2 = ra_z + d_z;
-    const T H4_11_2 = H1_5_3 * H4_10_2;
-    const T H4_12_2 = H4_11_2 + H2_5 * H4_15;
+    const T H4_3_2 = lambda[0] * fb_x_y + H4_2 * fb_z_y;
+    const T H4_4_2 = lambda[2] * ra_d_y + H4_3_2;
+    const T H4_5_2 = H3_1_4 * ra_d_x_fa_x_x - H4_4_2;
+    const T H4_6 = lambda[1] * fb_x_y + H4_1 * fb_z_y;
+    const T H4_7 = lambda[3] * ra_d_y + H4_6;
+    const T H4_8 = H4_7 + H3_3 * ra_d_x_fa_x_x;
+    const T H4_9 = H1_5_3 * ra_d_z;
+    const T H4_10 = H4_9 + H2_5 * H4_4;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H4_13_2 = lambda[0] * fb_x_z + H4_5 * fb_z_z;
-    const T H4_14_2 = H4_13_2 + lambda[2] * H4_10_2;
-    const T H4_15_2 = H4_14_2 + H4_14 * fb_z_y;
-    const T H4_16_2 = lambda[1] * fb_x_z + H4_1 * fb_z_z;
-    const T H4_17 = H4_16_2 + lambda[3] * H4_10_2;
-    const T H4_18 = H4_17 - H4_12 * fb_z_y;
-    const T H4_1_5 = fb_z_x * H4_14;
-    const T H4_2_5 = fb_z_x * H4_12;
+    const T H4_11 = lambda[0] * fb_x_z + H4_2 * fb_z_z;
+    const T H4_12 = lambda[2] * ra_d_z + H4_11;
+    const T H4_13 = H4_12 + H2_1_4 * ra_d_x_fa_x_x;
+    const T H4_14 = lambda[1] * fb_x_z + H4_1 * fb_z_z;
+    const T H4_15 = lambda[3] * ra_d_z + H4_14;
+    const T H4_16 = H4_15 - H2_3 * ra_d_x_fa_x_x;
+    const T H4_1_5 = fb_z_x * ra_d_x_fa_x_x;
     const T H4_1_6 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
-    const T H4_2_6 = fb_x_y * H4_1_6;
+    const T H4_2_5 = fb_x_y * H4_1_6;
     const T H4_3_3 = lambda[0] * fa_y_z + lambda[1] * fa_z_z;
     const T H4_4_3 = fb_x_z * H4_3_3;
-    const T H4_5_3 = H4_2_6 + H4_4_3;
-    const T H4_6_3 = H4_5 * fa_y_y + H4_1 * fa_z_y;
-    const T H4_7_3 = H4_6_3 + H4_14 * fa_y_z - H4_12 * fa_z_z;
-    const T H4_8_3 = H4_5 * fa_y_z + H4_1 * fa_z_z;
-    const T H4_9_3 = H4_14 * fa_y_y - H4_8_3 - H4_12 * fa_z_y;
+    const T H4_5_3 = H4_2_5 + H4_4_3;
+    const T H4_6_2 = H4_2 * fa_y_y + H4_1 * fa_z_y;
+    const T H4_7_2 = H4_6_2 - ra_d_x_fa_x_x * H1_7_2;
+    const T H4_8_2 = H4_2 * fa_y_z + H4_1 * fa_z_z;
+    const T H4_9_2 = ra_d_x_fa_x_x * H1_5_2 - H4_8_2;
     const T H4_1_7 = fb_x_x * H4_1_6;
-    const T H4_2_7 = H4_14 * fa_y_x - H4_12 * fa_z_x;
+    const T H4_2_6 = ra_d_x_fa_x_x * H1_10;
     const T H4_1_8 = fb_x_x * H4_3_3;
-    const T H5_1 = H4_1 * fa_y_x_fb_z_y - H4_5 * fa_z_x_fb_z_y;
-    const T H5_2 = lambda[4] * (d_x_fa_x_y + ra_x_fa_x_y);
-    const T H5_3 = H4_11 * H5_2;
-    const T H5_4 = H4_13 * H5_2;
-    const T H5_5 = H5_3 * dot_fa_y_fb_z - H5_1 + H5_4 * dot_fa_z_fb_z;
-    const T H5_6 = H4_1_2 + H1_1 * H5_5;
-    const T H5_1_2 = H1_1_2 * H5_5;
+    const T H5_1 = H4_1 * fa_y_x_fb_z_y - H4_2 * fa_z_x_fb_z_y;
+    const T H5_2 = ra_d_x_fa_x_y * H1_7 - H5_1;
+    const T H5_3 = H4_1_2 + H1_1 * H5_2;
+    const T H5_1_2 = H1_1_2 * H5_2;
     const T H5_1_3 = H1_5_3 * fa_x_x + lambda[2] * fa_y_x + lambda[3] * fa_z_x;
-    const T H5_2_2 = H5_1_3 - H1_1_3 * H5_5;
-    const T H5_1_4 = ra_x + d_x;
-    const T H5_2_3 = H1_5_3 * H5_1_4;
-    const T H5_3_2 = H5_2_3 + H3_5 * H5_5;
-    const T H5_4_2 = lambda[0] * fb_x_x + H4_5 * fb_z_x;
-    const T H5_5_2 = H5_4_2 + lambda[2] * H5_1_4;
-    const T H5_6_2 = H5_5_2 + H5_4 * fb_z_z;
-    const T H5_7 = lambda[1] * fb_x_x + H4_1 * fb_z_x;
-    const T H5_8 = H5_7 + lambda[3] * H5_1_4;
-    const T H5_9 = H5_8 - H5_3 * fb_z_z;
-    const T H5_1_5 = H1_6_3 * H5_5 - H4_11_2;
-    const T H5_2_4 = H4_14_2 - H5_4 * fb_z_x;
-    const T H5_3_3 = H4_17 + H5_3 * fb_z_x;
-    const T H5_1_6 = fa_y_x * H5_4 - fa_z_x * H5_3;
-    const T H5_1_7 = lambda[0] * fa_y_x + lambda[1] * fa_z_x;
-    const T H5_2_5 = fb_x_y * H5_1_7;
-    const T H5_3_4 = H4_5 * fa_y_x + H4_1 * fa_z_x;
-    const T H5_4_3 = H5_4 * fa_y_z - H5_3_4 - H5_3 * fa_z_z;
-    const T H5_5_3 = H5_4 * fa_y_y - H5_3 * fa_z_y;
-    const T H5_1_8 = fb_x_x * H5_1_7;
-    const T H5_2_6 = H4_4_3 + H5_1_8;
-    const T H5_3_5 = H5_1_6 + H4_8_3;
-    const T H5_1_9 = fb_x_y * H4_3_3;
+    const T H5_2_2 = H5_1_3 - H1_1_3 * H5_2;
+    const T H5_1_4 = H1_5_3 * ra_d_x;
+    const T H5_2_3 = H5_1_4 + H3_5 * H5_2;
+    const T H5_3_2 = lambda[0] * fb_x_x + H4_2 * fb_z_x;
+    const T H5_4 = lambda[2] * ra_d_x + H5_3_2;
+    const T H5_5 = H5_4 + H3_1_4 * ra_d_x_fa_x_y;
+    const T H5_6 = lambda[1] * fb_x_x + H4_1 * fb_z_x;
+    const T H5_7 = lambda[3] * ra_d_x + H5_6;
+    const T H5_8 = H5_7 - H3_3 * ra_d_x_fa_x_y;
+    const T H5_9 = fb_z_y * ra_d_x_fa_x_y;
+    const T H5_1_5 = H1_6_3 * H5_2 - H4_9;
+    const T H5_2_4 = H1_1_5 * ra_d_x_fa_x_y - H4_12;
+    const T H5_3_3 = H4_15 + H1_3_3 * ra_d_x_fa_x_y;
+    const T H5_1_6 = lambda[0] * fa_y_x + lambda[1] * fa_z_x;
+    const T H5_2_5 = fb_x_y * H5_1_6;
+    const T H5_3_4 = H4_2 * fa_y_x + H4_1 * fa_z_x;
+    const T H5_4_2 = H5_3_4 + ra_d_x_fa_x_y * H1_7_2;
+    const T H5_5_2 = ra_d_x_fa_x_y * H1_5_2;
+    const T H5_1_7 = fb_x_x * H5_1_6;
+    const T H5_2_6 = H4_4_3 + H5_1_7;
+    const T H5_3_5 = H4_8_2 - ra_d_x_fa_x_y * H1_10;
+    const T H5_1_8 = fb_x_y * H4_3_3;
     const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
     const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-    const T H6_1 = H4_1 * fa_y_x_fb_z_z - H4_5 * fa_z_x_fb_z_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T H6_2 = lambda[4] * (d_x_fa_x_z + ra_x_fa_x_z);
-    const T H6_3 = H4_11 * H6_2;
-    const T H6_4 = H4_13 * H6_2;
-    const T H6_5 = H6_3 * dot_fa_y_fb_z - H6_1 + H6_4 * dot_fa_z_fb_z;
-    const T H6_6 = H4_1_3 - H1_1 * H6_5;
-    const T H6_1_2 = H5_1_3 + H1_1_2 * H6_5;
-    const T H6_1_3 = H1_1_3 * H6_5;
-    const T H6_1_4 = H2_5 * H6_5 - H5_2_3;
-    const T H6_2_2 = H5_5_2 - H6_4 * fb_z_y;
-    const T H6_3_2 = H5_8 + H6_3 * fb_z_y;
-    const T H6_1_5 = H4_2_4 + H1_6_3 * H6_5;
-    const T H6_2_3 = H4_5_2 + H6_4 * fb_z_x;
-    const T H6_3_3 = H4_8_2 - H6_3 * fb_z_x;
-    const T H6_1_6 = H6_4 * fa_y_z - H6_3 * fa_z_z;
-    const T H6_2_4 = fb_x_z * H5_1_7;
-    const T H6_3_4 = H5_3_4 + H6_4 * fa_y_y - H6_3 * fa_z_y;
+    const T H6_1 = H4_1 * fa_y_x_fb_z_z - H4_2 * fa_z_x_fb_z_z;
+    const T ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
+    const T H6_2 = ra_d_x_fa_x_z * H1_7 - H6_1;
+    const T H6_3 = H4_1_3 - H1_1 * H6_2;
+    const T H6_1_2 = H5_1_3 + H1_1_2 * H6_2;
+    const T H6_1_3 = H1_1_3 * H6_2;
+    const T H6_1_4 = H2_5 * H6_2 - H5_1_4;
+    const T H6_2_2 = H2_1_4 * ra_d_x_fa_x_z - H5_4;
+    const T H6_3_2 = H5_7 + H2_3 * ra_d_x_fa_x_z;
+    const T H6_4 = fb_z_z * ra_d_x_fa_x_z;
+    const T H6_1_5 = H4_1_4 + H1_6_3 * H6_2;
+    const T H6_2_3 = H4_4_2 + H1_1_5 * ra_d_x_fa_x_z;
+    const T H6_3_3 = H4_7 - H1_3_3 * ra_d_x_fa_x_z;
+    const T H6_1_6 = ra_d_x_fa_x_z * H1_7_2;
+    const T H6_2_4 = fb_x_z * H5_1_6;
+    const T H6_3_4 = H5_3_4 + ra_d_x_fa_x_z * H1_5_2;
     const T H6_1_7 = fb_x_z * H4_1_6;
-    const T H6_2_5 = H6_4 * fa_y_x - H4_6_3 - H6_3 * fa_z_x;
-    const T H6_1_8 = H4_2_6 + H5_1_8;
-    const T H10_1 = H4_9 - rb_x_fa_x_x * H1_7;
+    const T H6_2_5 = H4_6_2 + ra_d_x_fa_x_z * H1_10;
+    const T H6_1_8 = H4_2_5 + H5_1_7;
+    const T H10_1 = H4_3 - rb_x_fa_x_x * H1_7;
     const T H10_2 = H1_1 * H10_1;
     const T H10_1_2 = H1_1_2 * H10_1;
     const T H10_1_3 = H1_1_3 * H10_1;
     const T H10_1_4 = H1_5_3 * rb_y;
     const T H10_2_2 = H10_1_4 + H3_5 * H10_1;
-    const T H10_3 = H4_4_2 + lambda[2] * rb_y;
+    const T H10_3 = H4_3_2 + lambda[2] * rb_y;
     const T H10_4 = H10_3 - H3_1_4 * rb_x_fa_x_x;
-    const T H10_5 = H4_7_2 + lambda[3] * rb_y;
+    const T H10_5 = H4_6 + lambda[3] * rb_y;
     const T H10_6 = H10_5 + H3_3 * rb_x_fa_x_x;
     const T H10_7 = H1_5_3 * rb_z;
     const T H10_8 = H2_5 * H10_1 - H10_7;
-    const T H10_9 = H4_13_2 + lambda[2] * rb_z;
+    const T H10_9 = H4_11 + lambda[2] * rb_z;
     const T H10_10 = H10_9 + H2_1_4 * rb_x_fa_x_x;
-    const T H10_11 = H4_16_2 + lambda[3] * rb_z;
+    const T H10_11 = H4_14 + lambda[3] * rb_z;
     const T H10_12 = H2_3 * rb_x_fa_x_x - H10_11;
     const T H10_1_5 = fb_z_x * rb_x_fa_x_x;
     const T turned_x = fa_y_x * H1_2 + fa_z_x * H1_5;
@@ -1339,9 +1316,9 @@ struct screw {
     const T H11_1_3 = H1_1_3 * H11_1;
     const T H11_1_4 = H1_5_3 * rb_x;
     const T H11_2_2 = H3_5 * H11_1 - H11_1_4;
-    const T H11_3 = H5_4_2 + lambda[2] * rb_x;
+    const T H11_3 = H5_3_2 + lambda[2] * rb_x;
     const T H11_4 = H11_3 + H3_1_4 * rb_x_fa_x_y;
-    const T H11_5 = H5_7 + lambda[3] * rb_x;
+    const T H11_5 = H5_6 + lambda[3] * rb_x;
     const T H11_6 = H3_3 * rb_x_fa_x_y - H11_5;
     const T H11_7 = fb_z_y * rb_x_fa_x_y;
     const T H11_1_5 = H10_7 + H1_6_3 * H11_1;
@@ -1405,50 +1382,45 @@ struct screw {
     H[2][9] = H3_4_2;
     H[2][10] = H3_2_5;
     H[2][11] = H3_1_9;
-    H[3][0] = -H4_16;
+    H[3][0] = -H4_5;
     H[3][1] = H4_2_2;
     H[3][2] = -H4_2_3;
-    H[3][3] = fa_x_y * H4_3_2 - fa_y_y * H4_6_2 - fa_z_y * H4_9_2 - fa_x_z * H4_12_2 - fa_y_z *
-        H4_15_2 - fa_z_z * H4_18 - H1_1_4 * H4_15;
-    H[3][4] = fa_y_x * H4_6_2 - fa_x_x * H4_3_2 + fa_z_x * H4_9_2 + H4_1_5 * fa_y_z - H4_2_5 *
-        fa_z_z + H4_15 * H3_1_5;
-    H[3][5] = fa_x_x * H4_12_2 + fa_y_x * H4_15_2 + fa_z_x * H4_18 - H4_1_5 * fa_y_y + H4_2_5 *
-        fa_z_y - H4_15 * H2_1_6;
-    H[3][6] = H4_16;
+    H[3][3] = fa_x_y * H4_2_4 + fa_y_y * H4_5_2 - fa_z_y * H4_8 - fa_x_z * H4_10 - fa_y_z * H4_13 -
+        fa_z_z * H4_16 - H1_1_4 * H4_4;
+    H[3][4] = fa_z_x * H4_8 - fa_x_x * H4_2_4 - fa_y_x * H4_5_2 + H4_4 * H3_1_5 - H4_1_5 * H1_7_2;
+    H[3][5] = fa_x_x * H4_10 + fa_y_x * H4_13 + fa_z_x * H4_16 - H4_4 * H2_1_6 - H4_1_5 * H1_5_2;
+    H[3][6] = H4_5;
     H[3][7] = -H4_2_2;
     H[3][8] = H4_2_3;
-    H[3][9] = H4_5_3 + fb_z_y * H4_7_3 + rb_y * H4_2_3 - fb_z_z * H4_9_3 + rb_z * H4_2_2;
-    H[3][10] = H4_16 * rb_z - H4_1_7 - fb_z_x * H4_7_3 - rb_x * H4_2_3 + fb_z_z * H4_2_7;
-    H[3][11] = fb_z_x * H4_9_3 - H4_16 * rb_y - H4_1_8 - rb_x * H4_2_2 - fb_z_y * H4_2_7;
-    H[4][0] = -H5_6;
+    H[3][9] = H4_5_3 + fb_z_y * H4_7_2 + rb_y * H4_2_3 - fb_z_z * H4_9_2 + rb_z * H4_2_2;
+    H[3][10] = H4_5 * rb_z - H4_1_7 - fb_z_x * H4_7_2 - rb_x * H4_2_3 - fb_z_z * H4_2_6;
+    H[3][11] = fb_z_x * H4_9_2 - H4_5 * rb_y - H4_1_8 - rb_x * H4_2_2 + fb_z_y * H4_2_6;
+    H[4][0] = -H5_3;
     H[4][1] = -H5_1_2;
     H[4][2] = H5_2_2;
-    H[4][3] = fa_x_y * H5_3_2 + fa_y_y * H5_6_2 + fa_z_y * H5_9 - H4_3 * H5_4 + H4_7 * H5_3 -
-        H5_5 * H3_7;
-    H[4][4] = fa_x_z * H5_1_5 - fa_x_x * H5_3_2 - fa_y_x * H5_6_2 - fa_z_x * H5_9 - fa_y_z *
-        H5_2_4 - fa_z_z * H5_3_3 - H1_8_3 * H5_5;
-    H[4][5] = fa_y_y * H5_2_4 - fa_x_y * H5_1_5 + fa_z_y * H5_3_3 + fb_z_y * H5_1_6 + H5_5 * H1_3_4;
-    H[4][6] = H5_6;
+    H[4][3] = fa_x_y * H5_2_3 + fa_y_y * H5_5 + fa_z_y * H5_8 - H5_2 * H3_7 + H5_9 * H1_7_2;
+    H[4][4] = fa_x_z * H5_1_5 - fa_x_x * H5_2_3 - fa_y_x * H5_5 - fa_z_x * H5_8 + fa_y_z * H5_2_4 -
+        fa_z_z * H5_3_3 - H1_8_3 * H5_2;
+    H[4][5] = fa_z_y * H5_3_3 - fa_x_y * H5_1_5 - fa_y_y * H5_2_4 + H5_2 * H1_3_4 - H5_9 * H1_10;
+    H[4][6] = H5_3;
     H[4][7] = H5_1_2;
     H[4][8] = -H5_2_2;
-    H[4][9] = fb_z_y * H5_4_3 - H5_1_2 * rb_z - H5_2_5 - rb_y * H5_2_2 - fb_z_z * H5_5_3;
-    H[4][10] = H5_2_6 - fb_z_x * H5_4_3 + rb_x * H5_2_2 + fb_z_z * H5_3_5 + rb_z * H5_6;
-    H[4][11] = H5_1_2 * rb_x + fb_z_x * H5_5_3 - H5_1_9 - fb_z_y * H5_3_5 - rb_y * H5_6;
-    H[5][0] = H6_6;
+    H[4][9] = -H5_1_2 * rb_z - H5_2_5 - fb_z_y * H5_4_2 - rb_y * H5_2_2 - fb_z_z * H5_5_2;
+    H[4][10] = H5_2_6 + fb_z_x * H5_4_2 + rb_x * H5_2_2 + fb_z_z * H5_3_5 + rb_z * H5_3;
+    H[4][11] = H5_1_2 * rb_x + fb_z_x * H5_5_2 - H5_1_8 - fb_z_y * H5_3_5 - rb_y * H5_3;
+    H[5][0] = H6_3;
     H[5][1] = -H6_1_2;
     H[5][2] = -H6_1_3;
-    H[5][3] = H4_2 * H6_4 - H4_6 * H6_3 - fa_x_z * H6_1_4 + fa_y_z * H6_2_2 + fa_z_z * H6_3_2 +
-        H6_5 * H1_2_4;
-    H[5][4] = H4_8 * H6_3 - H4_4 * H6_4 + fa_x_z * H6_1_5 + fa_y_z * H6_2_3 + fa_z_z * H6_3_3 -
-        H6_5 * H1_9_2;
-    H[5][5] = fa_x_x * H6_1_4 - fa_y_x * H6_2_2 - fa_z_x * H6_3_2 - fa_x_y * H6_1_5 - fa_y_y *
-        H6_2_3 - fa_z_y * H6_3_3 - H1_2_6 * H6_5;
-    H[5][6] = -H6_6;
+    H[5][3] = fa_z_z * H6_3_2 - fa_x_z * H6_1_4 - fa_y_z * H6_2_2 + H6_2 * H1_2_4 + H6_4 * H1_5_2;
+    H[5][4] = fa_x_z * H6_1_5 + fa_y_z * H6_2_3 + fa_z_z * H6_3_3 - H6_2 * H1_9_2 + H6_4 * H1_10;
+    H[5][5] = fa_x_x * H6_1_4 + fa_y_x * H6_2_2 - fa_z_x * H6_3_2 - fa_x_y * H6_1_5 - fa_y_y *
+        H6_2_3 - fa_z_y * H6_3_3 - H1_2_6 * H6_2;
+    H[5][6] = -H6_3;
     H[5][7] = H6_1_2;
     H[5][8] = H6_1_3;
-    H[5][9] = H6_1_3 * rb_y + fb_z_y * H6_1_6 - H6_2_4 - fb_z_z * H6_3_4 - rb_z * H6_1_2;
-    H[5][10] = fb_z_z * H6_2_5 - H6_1_3 * rb_x - fb_z_x * H6_1_6 - H6_1_7 - rb_z * H6_6;
-    H[5][11] = H6_1_8 + fb_z_x * H6_3_4 + rb_x * H6_1_2 - fb_z_y * H6_2_5 + rb_y * H6_6;
+    H[5][9] = H6_1_3 * rb_y - fb_z_y * H6_1_6 - H6_2_4 - fb_z_z * H6_3_4 - rb_z * H6_1_2;
+    H[5][10] = fb_z_x * H6_1_6 - H6_1_3 * rb_x - H6_1_7 - fb_z_z * H6_2_5 - rb_z * H6_3;
+    H[5][11] = H6_1_8 + fb_z_x * H6_3_4 + rb_x * H6_1_2 + fb_z_y * H6_2_5 + rb_y * H6_3;
     H[6][0] = H1_9;
     H[6][1] = H1_2_2;
     H[6][2] = H1_2_3;
@@ -1513,7 +1485,7 @@ struct screw {
     H[10][8] = H11_1_3;
     H[10][9] = H5_2_5 - H11_1_2 * rb_z + fb_z_y * H11_2_4 + rb_y * H11_3_3 + fb_z_z * H11_4_2;
     H[10][10] = fb_z_z * H11_1_7 - H5_2_6 - fb_z_x * H11_2_4 - rb_x * H11_3_3 - rb_z * H11_2_5;
-    H[10][11] = H11_1_2 * rb_x - fb_z_x * H11_4_2 + H5_1_9 - fb_z_y * H11_1_7 + rb_y * H11_2_5;
+    H[10][11] = H11_1_2 * rb_x - fb_z_x * H11_4_2 + H5_1_8 - fb_z_y * H11_1_7 + rb_y * H11_2_5;
     H[11][0] = -H12_2;
     H[11][1] = -H12_1_2;
     H[11][2] = -H12_1_3;
@@ -1971,7 +1943,8 @@ struct screw {
 
     template <class T>
     struct Jacobian {
-      T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z, rb_x_fa_x_x, rb_x_fa_x_y, rb_x_fa_x_z;
+      T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z, rb_x_fa_x_x,
+          rb_x_fa_x_y, rb_x_fa_x_z;
     };
 
     // C: 29 +, 30 *
@@ -1994,7 +1967,7 @@ struct screw {
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -2012,19 +1985,16 @@ struct screw {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-      const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-      const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-      const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-      const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-      const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
       J.fa_x_x = fa_x_x;
       J.fa_x_y = fa_x_y;
       J.fa_x_z = fa_x_z;
-      J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-      J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-      J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+      J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+      J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+      J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
       J.rb_x_fa_x_x = fa_x_z * rb_y - fa_x_y * rb_z;
       J.rb_x_fa_x_y = fa_x_x * rb_z - fa_x_z * rb_x;
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
@@ -2035,14 +2005,16 @@ struct screw {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_x_x *
-          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_y * (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_z *
-          (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
+          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
+          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
+          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
+          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
+          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
+          J.rb_x_fa_x_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -2062,9 +2034,9 @@ struct screw {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_x_x * vb.wx + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_x_x * (vb.x - va.x) + J.fa_x_y *
-          (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_x_x * vb.wx - J.ra_d_x_fa_x_x * va.wx - J.ra_d_x_fa_x_y * va.wy -
+          J.ra_d_x_fa_x_z * va.wz + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.fa_x_x *
+          (vb.x - va.x) + J.fa_x_y * (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -2076,9 +2048,9 @@ struct screw {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_x_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_x_y;
@@ -2086,9 +2058,9 @@ struct screw {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -2097,7 +2069,7 @@ struct screw {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -2106,9 +2078,9 @@ struct screw {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_x_x;
+      D[0][4] = -J.ra_d_x_fa_x_y;
+      D[0][5] = -J.ra_d_x_fa_x_z;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -2117,7 +2089,7 @@ struct screw {
       D[0][11] = J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -2129,9 +2101,9 @@ struct screw {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -2146,10 +2118,11 @@ struct screw {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+          J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
       const T dot_rb_x_fa_x_rb_x_fa_x = J.rb_x_fa_x_x * J.rb_x_fa_x_x + J.rb_x_fa_x_y *
           J.rb_x_fa_x_y + J.rb_x_fa_x_z * J.rb_x_fa_x_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_x_rb_x_fa_x;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x + mb.I * dot_rb_x_fa_x_rb_x_fa_x;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -2167,9 +2140,9 @@ struct screw {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -2178,7 +2151,7 @@ struct screw {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -2190,9 +2163,9 @@ struct screw {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -2201,7 +2174,7 @@ struct screw {
       D[0][11] = mb.I * J.rb_x_fa_x_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -2212,9 +2185,9 @@ struct screw {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -2234,10 +2207,10 @@ struct screw {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
@@ -2327,27 +2300,27 @@ struct screw {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_x_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_x_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_x_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_x_z;
       const T H4_1_2 = fa_x_y * rb_y;
       const T H4_2_2 = fa_x_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_x_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_x_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_x_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_x_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -2356,29 +2329,29 @@ struct screw {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_x_x * H4_1;
-      H[3][5] = fa_x_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_x_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_x_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_x_z * H5_1;
-      H[5][4] = fa_x_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -2390,18 +2363,18 @@ struct screw {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -3097,11 +3070,12 @@ struct screw::b_immovable : screw {
   template <class T>
   struct Jacobian {
     T fa_y_x_fb_x_x, fa_y_x_fb_x_y, fa_y_x_fb_x_z, fa_z_x_fb_x_x, fa_z_x_fb_x_y, fa_z_x_fb_x_z,
-        fa_y_x, fa_y_y, fa_y_z, wa_3_x, wa_3_y, wa_3_z, fa_z_x, fa_z_y, fa_z_z, wa_4_x, wa_4_y,
-        wa_4_z, va_5_x, va_5_y, va_5_z, wa_5_x, wa_5_y, wa_5_z;
+        fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, fa_z_x, fa_z_y,
+        fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z, va_5_x, va_5_y, va_5_z, wa_5_x,
+        wa_5_y, wa_5_z;
   };
 
-  // C and J: 122 +, 169 *, 1 /, 1 <, 2 call
+  // C and J: 101 +, 151 *, 1 /, 1 <, 2 call
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[5],
       Jacobian<T>& J) {
@@ -3142,33 +3116,21 @@ struct screw::b_immovable : screw {
     const T turned_y = fa_y_y * C5_1 + fa_z_y * C5_2;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T turned_z = fa_y_z * C5_1 + fa_z_z * C5_2;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
     const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
     const T va_5_x_1 = inv_pitch * (dot_fa_z_fb_z * C5_1 - dot_fa_y_fb_z * C5_2);
+    const T ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    const T ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
     const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
     const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
     const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
     const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
+    const T ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
     const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
     const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
     C[0] = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
     C[1] = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
     C[2] = dot_d_fa_y;
@@ -3183,24 +3145,24 @@ struct screw::b_immovable : screw {
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_3_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_3_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_3_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_4_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_4_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_4_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
     J.va_5_x = va_5_x_1 * fa_x_x;
     J.va_5_y = va_5_x_1 * fa_x_y;
     J.va_5_z = va_5_x_1 * fa_x_z;
-    J.wa_5_x = fa_y_x_fb_z_x * C5_1 + fa_z_x_fb_z_x * C5_2 - va_5_x_1 * (d_x_fa_x_x + ra_x_fa_x_x);
-    J.wa_5_y = fa_y_x_fb_z_y * C5_1 + fa_z_x_fb_z_y * C5_2 - va_5_x_1 * (d_x_fa_x_y + ra_x_fa_x_y);
-    J.wa_5_z = fa_y_x_fb_z_z * C5_1 + fa_z_x_fb_z_z * C5_2 - va_5_x_1 * (d_x_fa_x_z + ra_x_fa_x_z);
+    J.wa_5_x = fa_y_x_fb_z_x * C5_1 - va_5_x_1 * ra_d_x_fa_x_x + fa_z_x_fb_z_x * C5_2;
+    J.wa_5_y = fa_y_x_fb_z_y * C5_1 - va_5_x_1 * ra_d_x_fa_x_y + fa_z_x_fb_z_y * C5_2;
+    J.wa_5_z = fa_y_x_fb_z_z * C5_1 - va_5_x_1 * ra_d_x_fa_x_z + fa_z_x_fb_z_z * C5_2;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 78 +, 114 *
+  // K = J M^-1 J^T, lower triangle, from J: 82 +, 114 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[15]) {
     const InverseMass<T>& ma = m[0];
@@ -3210,47 +3172,47 @@ struct screw::b_immovable : screw {
     const T K22_1 = ma.Ixx * J.fa_z_x_fb_x_x + ma.Ixy * J.fa_z_x_fb_x_y + ma.Ixz * J.fa_z_x_fb_x_z;
     const T K22_2 = ma.Ixy * J.fa_z_x_fb_x_x + ma.Iyy * J.fa_z_x_fb_x_y + ma.Iyz * J.fa_z_x_fb_x_z;
     const T K22_3 = ma.Ixz * J.fa_z_x_fb_x_x + ma.Iyz * J.fa_z_x_fb_x_y + ma.Izz * J.fa_z_x_fb_x_z;
-    const T K33_1 = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    const T K33_2 = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    const T K33_3 = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
-    const T K44_1 = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    const T K44_2 = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    const T K44_3 = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
+    const T K33_1 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K33_2 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K33_3 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    const T K44_1 = ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z;
+    const T K44_2 = ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz * J.ra_d_x_fa_z_z;
+    const T K44_3 = ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z;
     K[0] = J.fa_y_x_fb_x_x * K11_1 + J.fa_y_x_fb_x_y * K11_2 + J.fa_y_x_fb_x_z * K11_3;
     K[1] = J.fa_z_x_fb_x_x * K11_1 + J.fa_z_x_fb_x_y * K11_2 + J.fa_z_x_fb_x_z * K11_3;
     K[2] = J.fa_z_x_fb_x_x * K22_1 + J.fa_z_x_fb_x_y * K22_2 + J.fa_z_x_fb_x_z * K22_3;
-    K[3] = J.wa_3_x * K11_1 + J.wa_3_y * K11_2 + J.wa_3_z * K11_3;
-    K[4] = J.wa_3_x * K22_1 + J.wa_3_y * K22_2 + J.wa_3_z * K22_3;
-    K[5] = J.wa_3_x * K33_1 + J.wa_3_y * K33_2 + J.wa_3_z * K33_3 + ma.m *
+    K[3] = -J.ra_d_x_fa_y_x * K11_1 - J.ra_d_x_fa_y_y * K11_2 - J.ra_d_x_fa_y_z * K11_3;
+    K[4] = -J.ra_d_x_fa_y_x * K22_1 - J.ra_d_x_fa_y_y * K22_2 - J.ra_d_x_fa_y_z * K22_3;
+    K[5] = J.ra_d_x_fa_y_x * K33_1 + J.ra_d_x_fa_y_y * K33_2 + J.ra_d_x_fa_y_z * K33_3 + ma.m *
         (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z);
-    K[6] = J.wa_4_x * K11_1 + J.wa_4_y * K11_2 + J.wa_4_z * K11_3;
-    K[7] = J.wa_4_x * K22_1 + J.wa_4_y * K22_2 + J.wa_4_z * K22_3;
-    K[8] = J.wa_4_x * K33_1 + J.wa_4_y * K33_2 + J.wa_4_z * K33_3 + ma.m *
+    K[6] = -J.ra_d_x_fa_z_x * K11_1 - J.ra_d_x_fa_z_y * K11_2 - J.ra_d_x_fa_z_z * K11_3;
+    K[7] = -J.ra_d_x_fa_z_x * K22_1 - J.ra_d_x_fa_z_y * K22_2 - J.ra_d_x_fa_z_z * K22_3;
+    K[8] = J.ra_d_x_fa_z_x * K33_1 + J.ra_d_x_fa_z_y * K33_2 + J.ra_d_x_fa_z_z * K33_3 + ma.m *
         (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z);
-    K[9] = J.wa_4_x * K44_1 + J.wa_4_y * K44_2 + J.wa_4_z * K44_3 + ma.m *
+    K[9] = J.ra_d_x_fa_z_x * K44_1 + J.ra_d_x_fa_z_y * K44_2 + J.ra_d_x_fa_z_z * K44_3 + ma.m *
         (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z);
     K[10] = J.wa_5_x * K11_1 + J.wa_5_y * K11_2 + J.wa_5_z * K11_3;
     K[11] = J.wa_5_x * K22_1 + J.wa_5_y * K22_2 + J.wa_5_z * K22_3;
-    K[12] = J.wa_5_x * K33_1 + J.wa_5_y * K33_2 + J.wa_5_z * K33_3 + ma.m *
-        (J.fa_y_x * J.va_5_x + J.fa_y_y * J.va_5_y + J.fa_y_z * J.va_5_z);
-    K[13] = J.wa_5_x * K44_1 + J.wa_5_y * K44_2 + J.wa_5_z * K44_3 + ma.m *
-        (J.fa_z_x * J.va_5_x + J.fa_z_y * J.va_5_y + J.fa_z_z * J.va_5_z);
+    K[12] = ma.m * (J.fa_y_x * J.va_5_x + J.fa_y_y * J.va_5_y + J.fa_y_z * J.va_5_z) - J.wa_5_x *
+        K33_1 - J.wa_5_y * K33_2 - J.wa_5_z * K33_3;
+    K[13] = ma.m * (J.fa_z_x * J.va_5_x + J.fa_z_y * J.va_5_y + J.fa_z_z * J.va_5_z) - J.wa_5_x *
+        K44_1 - J.wa_5_y * K44_2 - J.wa_5_z * K44_3;
     K[14] = J.wa_5_x * (ma.Ixx * J.wa_5_x + ma.Ixy * J.wa_5_y + ma.Ixz * J.wa_5_z) + J.wa_5_y *
         (ma.Ixy * J.wa_5_x + ma.Iyy * J.wa_5_y + ma.Iyz * J.wa_5_z) + J.wa_5_z *
         (ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z) + ma.m *
         (J.va_5_x * J.va_5_x + J.va_5_y * J.va_5_y + J.va_5_z * J.va_5_z);
   }
 
-  // J v: 19 +, 24 *
+  // J v: 21 +, 24 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[5]) {
     const Velocity<T>& va = v[0];
     Jv[0] = J.fa_y_x_fb_x_x * va.wx + J.fa_y_x_fb_x_y * va.wy + J.fa_y_x_fb_x_z * va.wz;
     Jv[1] = J.fa_z_x_fb_x_x * va.wx + J.fa_z_x_fb_x_y * va.wy + J.fa_z_x_fb_x_z * va.wz;
-    Jv[2] = J.wa_3_x * va.wx - J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z + J.wa_3_y *
-        va.wy + J.wa_3_z * va.wz;
-    Jv[3] = J.wa_4_x * va.wx - J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z + J.wa_4_y *
-        va.wy + J.wa_4_z * va.wz;
+    Jv[2] = -J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z - J.ra_d_x_fa_y_x * va.wx -
+        J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
+    Jv[3] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
+        J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
     Jv[4] = J.wa_5_x * va.wx - J.va_5_x * va.x - J.va_5_y * va.y - J.va_5_z * va.z + J.wa_5_y *
         va.wy + J.wa_5_z * va.wz;
   }
@@ -3261,12 +3223,12 @@ struct screw::b_immovable : screw {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] + J.wa_3_x *
-        lambda[2] + J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4];
-    const T v1_2 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] + J.wa_3_y *
-        lambda[2] + J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4];
-    const T v1_3 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] + J.wa_3_z *
-        lambda[2] + J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4];
+    const T v1_1 = J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] - J.ra_d_x_fa_y_x *
+        lambda[2] - J.ra_d_x_fa_z_x * lambda[3] + J.wa_5_x * lambda[4];
+    const T v1_2 = J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] - J.ra_d_x_fa_y_y *
+        lambda[2] - J.ra_d_x_fa_z_y * lambda[3] + J.wa_5_y * lambda[4];
+    const T v1_3 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] - J.ra_d_x_fa_y_z *
+        lambda[2] - J.ra_d_x_fa_z_z * lambda[3] + J.wa_5_z * lambda[4];
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[2] + J.fa_z_x * lambda[3] + J.va_5_x * lambda[4]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[2] + J.fa_z_y * lambda[3] + J.va_5_y * lambda[4]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[2] + J.fa_z_z * lambda[3] + J.va_5_z * lambda[4]);
@@ -3275,7 +3237,7 @@ struct screw::b_immovable : screw {
     v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
   }
 
-  // J with its zeros: v, w of each body: 9 +
+  // J with its zeros: v, w of each body: 15 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -3290,15 +3252,15 @@ struct screw::b_immovable : screw {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = J.wa_3_x;
-    D[2][4] = J.wa_3_y;
-    D[2][5] = J.wa_3_z;
+    D[2][3] = -J.ra_d_x_fa_y_x;
+    D[2][4] = -J.ra_d_x_fa_y_y;
+    D[2][5] = -J.ra_d_x_fa_y_z;
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = J.wa_4_x;
-    D[3][4] = J.wa_4_y;
-    D[3][5] = J.wa_4_z;
+    D[3][3] = -J.ra_d_x_fa_z_x;
+    D[3][4] = -J.ra_d_x_fa_z_y;
+    D[3][5] = -J.ra_d_x_fa_z_z;
     D[4][0] = -J.va_5_x;
     D[4][1] = -J.va_5_y;
     D[4][2] = -J.va_5_z;
@@ -3307,7 +3269,7 @@ struct screw::b_immovable : screw {
     D[4][5] = J.wa_5_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 39 +, 54 *
+  // (M^-1 J^T)^T, laid out like dense: 45 +, 54 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -3324,15 +3286,15 @@ struct screw::b_immovable : screw {
     D[2][0] = -ma.m * J.fa_y_x;
     D[2][1] = -ma.m * J.fa_y_y;
     D[2][2] = -ma.m * J.fa_y_z;
-    D[2][3] = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    D[2][4] = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    D[2][5] = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    D[2][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[2][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[2][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[3][0] = -ma.m * J.fa_z_x;
     D[3][1] = -ma.m * J.fa_z_y;
     D[3][2] = -ma.m * J.fa_z_z;
-    D[3][3] = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    D[3][4] = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    D[3][5] = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
+    D[3][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[3][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[3][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
     D[4][0] = -ma.m * J.va_5_x;
     D[4][1] = -ma.m * J.va_5_y;
     D[4][2] = -ma.m * J.va_5_z;
@@ -3341,7 +3303,7 @@ struct screw::b_immovable : screw {
     D[4][5] = ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 48 +, 83 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 52 +, 83 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[15]) {
@@ -3355,37 +3317,41 @@ struct screw::b_immovable : screw {
     const T ma_fa_y_x = ma.m * J.fa_y_x;
     const T ma_fa_y_y = ma.m * J.fa_y_y;
     const T ma_fa_y_z = ma.m * J.fa_y_z;
-    const T ia_wa_3_x = ma.I * J.wa_3_x;
-    const T ia_wa_3_y = ma.I * J.wa_3_y;
-    const T ia_wa_3_z = ma.I * J.wa_3_z;
+    const T ia_ra_d_x_fa_y_x = ma.I * J.ra_d_x_fa_y_x;
+    const T ia_ra_d_x_fa_y_y = ma.I * J.ra_d_x_fa_y_y;
+    const T ia_ra_d_x_fa_y_z = ma.I * J.ra_d_x_fa_y_z;
     const T ma_fa_z_x = ma.m * J.fa_z_x;
     const T ma_fa_z_y = ma.m * J.fa_z_y;
     const T ma_fa_z_z = ma.m * J.fa_z_z;
-    const T ia_wa_4_x = ma.I * J.wa_4_x;
-    const T ia_wa_4_y = ma.I * J.wa_4_y;
-    const T ia_wa_4_z = ma.I * J.wa_4_z;
+    const T ia_ra_d_x_fa_z_x = ma.I * J.ra_d_x_fa_z_x;
+    const T ia_ra_d_x_fa_z_y = ma.I * J.ra_d_x_fa_z_y;
+    const T ia_ra_d_x_fa_z_z = ma.I * J.ra_d_x_fa_z_z;
     K[0] = ia_fa_y_x_fb_x_x * J.fa_y_x_fb_x_x + ia_fa_y_x_fb_x_y * J.fa_y_x_fb_x_y +
         ia_fa_y_x_fb_x_z * J.fa_y_x_fb_x_z;
     K[1] = ia_fa_y_x_fb_x_x * J.fa_z_x_fb_x_x + ia_fa_y_x_fb_x_y * J.fa_z_x_fb_x_y +
         ia_fa_y_x_fb_x_z * J.fa_z_x_fb_x_z;
     K[2] = ia_fa_z_x_fb_x_x * J.fa_z_x_fb_x_x + ia_fa_z_x_fb_x_y * J.fa_z_x_fb_x_y +
         ia_fa_z_x_fb_x_z * J.fa_z_x_fb_x_z;
-    K[3] = ia_fa_y_x_fb_x_x * J.wa_3_x + ia_fa_y_x_fb_x_y * J.wa_3_y + ia_fa_y_x_fb_x_z * J.wa_3_z;
-    K[4] = ia_fa_z_x_fb_x_x * J.wa_3_x + ia_fa_z_x_fb_x_y * J.wa_3_y + ia_fa_z_x_fb_x_z * J.wa_3_z;
-    K[5] = ma_fa_y_x * J.fa_y_x + ma_fa_y_y * J.fa_y_y + ma_fa_y_z * J.fa_y_z + ia_wa_3_x *
-        J.wa_3_x + ia_wa_3_y * J.wa_3_y + ia_wa_3_z * J.wa_3_z;
-    K[6] = ia_fa_y_x_fb_x_x * J.wa_4_x + ia_fa_y_x_fb_x_y * J.wa_4_y + ia_fa_y_x_fb_x_z * J.wa_4_z;
-    K[7] = ia_fa_z_x_fb_x_x * J.wa_4_x + ia_fa_z_x_fb_x_y * J.wa_4_y + ia_fa_z_x_fb_x_z * J.wa_4_z;
-    K[8] = ma_fa_y_x * J.fa_z_x + ma_fa_y_y * J.fa_z_y + ma_fa_y_z * J.fa_z_z + ia_wa_3_x *
-        J.wa_4_x + ia_wa_3_y * J.wa_4_y + ia_wa_3_z * J.wa_4_z;
-    K[9] = ma_fa_z_x * J.fa_z_x + ma_fa_z_y * J.fa_z_y + ma_fa_z_z * J.fa_z_z + ia_wa_4_x *
-        J.wa_4_x + ia_wa_4_y * J.wa_4_y + ia_wa_4_z * J.wa_4_z;
+    K[3] = -ia_fa_y_x_fb_x_x * J.ra_d_x_fa_y_x - ia_fa_y_x_fb_x_y * J.ra_d_x_fa_y_y -
+        ia_fa_y_x_fb_x_z * J.ra_d_x_fa_y_z;
+    K[4] = -ia_fa_z_x_fb_x_x * J.ra_d_x_fa_y_x - ia_fa_z_x_fb_x_y * J.ra_d_x_fa_y_y -
+        ia_fa_z_x_fb_x_z * J.ra_d_x_fa_y_z;
+    K[5] = ma_fa_y_x * J.fa_y_x + ma_fa_y_y * J.fa_y_y + ma_fa_y_z * J.fa_y_z + ia_ra_d_x_fa_y_x *
+        J.ra_d_x_fa_y_x + ia_ra_d_x_fa_y_y * J.ra_d_x_fa_y_y + ia_ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
+    K[6] = -ia_fa_y_x_fb_x_x * J.ra_d_x_fa_z_x - ia_fa_y_x_fb_x_y * J.ra_d_x_fa_z_y -
+        ia_fa_y_x_fb_x_z * J.ra_d_x_fa_z_z;
+    K[7] = -ia_fa_z_x_fb_x_x * J.ra_d_x_fa_z_x - ia_fa_z_x_fb_x_y * J.ra_d_x_fa_z_y -
+        ia_fa_z_x_fb_x_z * J.ra_d_x_fa_z_z;
+    K[8] = ma_fa_y_x * J.fa_z_x + ma_fa_y_y * J.fa_z_y + ma_fa_y_z * J.fa_z_z + ia_ra_d_x_fa_y_x *
+        J.ra_d_x_fa_z_x + ia_ra_d_x_fa_y_y * J.ra_d_x_fa_z_y + ia_ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
+    K[9] = ma_fa_z_x * J.fa_z_x + ma_fa_z_y * J.fa_z_y + ma_fa_z_z * J.fa_z_z + ia_ra_d_x_fa_z_x *
+        J.ra_d_x_fa_z_x + ia_ra_d_x_fa_z_y * J.ra_d_x_fa_z_y + ia_ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
     K[10] = ia_fa_y_x_fb_x_x * J.wa_5_x + ia_fa_y_x_fb_x_y * J.wa_5_y + ia_fa_y_x_fb_x_z * J.wa_5_z;
     K[11] = ia_fa_z_x_fb_x_x * J.wa_5_x + ia_fa_z_x_fb_x_y * J.wa_5_y + ia_fa_z_x_fb_x_z * J.wa_5_z;
-    K[12] = ma_fa_y_x * J.va_5_x + ma_fa_y_y * J.va_5_y + ma_fa_y_z * J.va_5_z + ia_wa_3_x *
-        J.wa_5_x + ia_wa_3_y * J.wa_5_y + ia_wa_3_z * J.wa_5_z;
-    K[13] = ma_fa_z_x * J.va_5_x + ma_fa_z_y * J.va_5_y + ma_fa_z_z * J.va_5_z + ia_wa_4_x *
-        J.wa_5_x + ia_wa_4_y * J.wa_5_y + ia_wa_4_z * J.wa_5_z;
+    K[12] = ma_fa_y_x * J.va_5_x + ma_fa_y_y * J.va_5_y + ma_fa_y_z * J.va_5_z - ia_ra_d_x_fa_y_x *
+        J.wa_5_x - ia_ra_d_x_fa_y_y * J.wa_5_y - ia_ra_d_x_fa_y_z * J.wa_5_z;
+    K[13] = ma_fa_z_x * J.va_5_x + ma_fa_z_y * J.va_5_y + ma_fa_z_z * J.va_5_z - ia_ra_d_x_fa_z_x *
+        J.wa_5_x - ia_ra_d_x_fa_z_y * J.wa_5_y - ia_ra_d_x_fa_z_z * J.wa_5_z;
     K[14] = ma.I * (J.wa_5_x * J.wa_5_x + J.wa_5_y * J.wa_5_y + J.wa_5_z * J.wa_5_z) + ma.m *
         (J.va_5_x * J.va_5_x + J.va_5_y * J.va_5_y + J.va_5_z * J.va_5_z);
   }
@@ -3399,15 +3365,15 @@ struct screw::b_immovable : screw {
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[2] + J.fa_z_x * lambda[3] + J.va_5_x * lambda[4]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[2] + J.fa_z_y * lambda[3] + J.va_5_y * lambda[4]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[2] + J.fa_z_z * lambda[3] + J.va_5_z * lambda[4]);
-    v[0].wx = va.wx + ma.I * (J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] +
-        J.wa_3_x * lambda[2] + J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4]);
-    v[0].wy = va.wy + ma.I * (J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] +
-        J.wa_3_y * lambda[2] + J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4]);
-    v[0].wz = va.wz + ma.I * (J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] +
-        J.wa_3_z * lambda[2] + J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4]);
+    v[0].wx = va.wx + ma.I * (J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] -
+        J.ra_d_x_fa_y_x * lambda[2] - J.ra_d_x_fa_z_x * lambda[3] + J.wa_5_x * lambda[4]);
+    v[0].wy = va.wy + ma.I * (J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] -
+        J.ra_d_x_fa_y_y * lambda[2] - J.ra_d_x_fa_z_y * lambda[3] + J.wa_5_y * lambda[4]);
+    v[0].wz = va.wz + ma.I * (J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] -
+        J.ra_d_x_fa_y_z * lambda[2] - J.ra_d_x_fa_z_z * lambda[3] + J.wa_5_z * lambda[4]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 9 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 15 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -3424,15 +3390,15 @@ struct screw::b_immovable : screw {
     D[2][0] = -ma.m * J.fa_y_x;
     D[2][1] = -ma.m * J.fa_y_y;
     D[2][2] = -ma.m * J.fa_y_z;
-    D[2][3] = ma.I * J.wa_3_x;
-    D[2][4] = ma.I * J.wa_3_y;
-    D[2][5] = ma.I * J.wa_3_z;
+    D[2][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[2][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[2][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[3][0] = -ma.m * J.fa_z_x;
     D[3][1] = -ma.m * J.fa_z_y;
     D[3][2] = -ma.m * J.fa_z_z;
-    D[3][3] = ma.I * J.wa_4_x;
-    D[3][4] = ma.I * J.wa_4_y;
-    D[3][5] = ma.I * J.wa_4_z;
+    D[3][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[3][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[3][5] = -ma.I * J.ra_d_x_fa_z_z;
     D[4][0] = -ma.m * J.va_5_x;
     D[4][1] = -ma.m * J.va_5_y;
     D[4][2] = -ma.m * J.va_5_z;
@@ -3441,7 +3407,7 @@ struct screw::b_immovable : screw {
     D[4][5] = ma.I * J.wa_5_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 39 +, 45 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 45 +, 45 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -3457,15 +3423,15 @@ struct screw::b_immovable : screw {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
-    D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
-    D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
+    D[2][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[2][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[2][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = J.wa_4_x * a.xx + J.wa_4_y * a.yx + J.wa_4_z * a.zx;
-    D[3][4] = J.wa_4_x * a.xy + J.wa_4_y * a.yy + J.wa_4_z * a.zy;
-    D[3][5] = J.wa_4_x * a.xz + J.wa_4_y * a.yz + J.wa_4_z * a.zz;
+    D[3][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[3][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[3][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
     D[4][0] = -J.va_5_x;
     D[4][1] = -J.va_5_y;
     D[4][2] = -J.va_5_z;
@@ -3492,17 +3458,17 @@ struct screw::b_immovable : screw {
     D[2][0] = -J.fa_y_x;
     D[2][1] = -J.fa_y_y;
     D[2][2] = -J.fa_y_z;
-    D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
+    D[2][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[2][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[2][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[2][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[3][0] = -J.fa_z_x;
     D[3][1] = -J.fa_z_y;
     D[3][2] = -J.fa_z_z;
-    D[3][3] = -T(2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
-    D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
-    D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
-    D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
+    D[3][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[3][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[3][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[3][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
     D[4][0] = -J.va_5_x;
     D[4][1] = -J.va_5_y;
     D[4][2] = -J.va_5_z;
@@ -3622,7 +3588,7 @@ struct screw::b_immovable : screw {
     g[4] = -dot_turned_dot_dot_fb_z;
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 256 +, 344 *, 1 /, 1 <, 2 call
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 242 +, 326 *, 1 /, 1 <, 2 call
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[5],
       T (&H)[12][12]) {
@@ -3635,6 +3601,13 @@ struct screw::b_immovable : screw {
     const Pose<T>& b = q[1];
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+    const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
     const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
@@ -3651,192 +3624,166 @@ struct screw::b_immovable : screw {
     const T H1_1 = cos(s);
     const T H1_2 = lambda[4] * inv_pitch;
     const T H1_3 = H1_1 * H1_2;
-    const T H1_4 = fa_x_x * H1_3;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
-    const T H1_5 = sin(s);
-    const T H1_6 = H1_2 * H1_5;
-    const T H1_7 = fa_x_x * H1_6;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T H1_8 = H1_4 * dot_fa_y_fb_z + H1_7 * dot_fa_z_fb_z;
-    const T H1_9 = fa_x_x * inv_pitch;
-    const T H1_10 = H1_8 * H1_9;
+    const T H1_4 = sin(s);
+    const T H1_5 = H1_2 * H1_4;
+    const T H1_6 = dot_fa_y_fb_z * H1_3 + dot_fa_z_fb_z * H1_5;
+    const T H1_7 = fa_x_x * H1_6;
+    const T H1_8 = fa_x_x * inv_pitch;
+    const T H1_9 = H1_7 * H1_8;
     const T H1_1_2 = fa_x_y * inv_pitch;
-    const T H1_2_2 = H1_8 * H1_1_2;
+    const T H1_2_2 = H1_7 * H1_1_2;
     const T H1_1_3 = fa_x_z * inv_pitch;
-    const T H1_2_3 = H1_8 * H1_1_3;
+    const T H1_2_3 = H1_7 * H1_1_3;
     const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
     const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
     const T H1_1_4 = inv_pitch * ra_x_fa_x_x;
-    const T H1_2_4 = fb_z_z * fa_z_y;
-    const T H1_3_2 = fb_z_y * fa_z_z;
-    const T H1_4_2 = H1_3_2 - H1_2_4;
-    const T H1_5_2 = fa_y_y * fb_z_z;
-    const T H1_6_2 = fb_z_y * fa_y_z;
-    const T fa_y_x_fb_z_x = H1_5_2 - H1_6_2;
-    const T H1_7_2 = fa_y_x * fb_z_z;
-    const T H1_8_2 = fb_z_x * fa_y_z;
-    const T fa_y_x_fb_z_y = H1_8_2 - H1_7_2;
-    const T H1_1_5 = fb_z_z * fa_z_x;
-    const T H1_2_5 = H1_7 * fb_z_x - lambda[2];
-    const T H1_3_3 = lambda[3] + H1_4 * fb_z_x;
-    const T H1_4_3 = H1_2 * (dot_fa_z_fb_z * H1_1 - dot_fa_y_fb_z * H1_5);
-    const T H1_5_3 = d_x * inv_pitch;
-    const T H1_6_3 = H1_5_3 * H1_8 - H1_4_3;
-    const T H1_7_3 = inv_pitch * ra_x_fa_x_y;
-    const T H1_1_6 = fa_y_x * fb_z_y;
-    const T H1_2_6 = fb_z_y * fa_z_x;
+    const T H1_2_4 = fb_z_y * H1_5;
+    const T H1_3_2 = fb_z_y * H1_3;
+    const T H1_4_2 = fa_y_z * H1_2_4 - fa_z_z * H1_3_2;
+    const T H1_5_2 = fb_z_z * H1_5;
+    const T H1_6_2 = fb_z_z * H1_3;
+    const T H1_7_2 = fa_y_y * H1_5_2 - fa_z_y * H1_6_2;
+    const T H1_1_5 = fb_z_x * H1_5;
+    const T H1_2_5 = H1_1_5 * fa_x_x - lambda[2];
+    const T H1_3_3 = fb_z_x * H1_3;
+    const T H1_4_3 = lambda[3] + H1_3_3 * fa_x_x;
+    const T H1_5_3 = H1_2 * (dot_fa_z_fb_z * H1_1 - dot_fa_y_fb_z * H1_4);
+    const T H1_6_3 = d_x * inv_pitch;
+    const T H1_7_3 = H1_6_3 * H1_7 - H1_5_3;
+    const T H1_8_2 = inv_pitch * ra_x_fa_x_y;
+    const T H1_9_2 = fa_y_x * H1_5_2 - fa_z_x * H1_6_2;
     const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
-    const T H1_3_4 = inv_pitch * ra_x_fa_x_z;
-    const T H2_1 = fa_x_y * H1_3;
-    const T H2_2 = fa_x_y * H1_6;
-    const T H2_3 = H2_1 * dot_fa_y_fb_z + H2_2 * dot_fa_z_fb_z;
-    const T H2_4 = H1_9 * H2_3;
-    const T H2_1_2 = H1_1_2 * H2_3;
-    const T H2_1_3 = H1_1_3 * H2_3;
-    const T H2_1_4 = H2_2 * fb_z_y - lambda[2];
-    const T H2_2_2 = lambda[3] + H2_1 * fb_z_y;
-    const T H2_3_2 = d_y * inv_pitch;
-    const T H2_4_2 = H2_3_2 * H2_3 - H1_4_3;
-    const T H2_1_5 = fb_z_x * fa_z_z;
-    const T H2_2_3 = H1_1_5 - H2_1_5;
-    const T H2_1_6 = fb_z_x * fa_y_y;
-    const T H2_2_4 = fb_z_x * fa_z_y;
-    const T H3_1 = fa_x_z * H1_3;
-    const T H3_2 = fa_x_z * H1_6;
-    const T H3_3 = H3_1 * dot_fa_y_fb_z + H3_2 * dot_fa_z_fb_z;
-    const T H3_4 = H1_9 * H3_3;
-    const T H3_1_2 = H1_1_2 * H3_3;
-    const T H3_1_3 = H1_1_3 * H3_3;
-    const T H3_1_4 = H3_2 * fb_z_z - lambda[2];
-    const T H3_2_2 = lambda[3] + H3_1 * fb_z_z;
-    const T H3_3_2 = d_z * inv_pitch;
-    const T H3_4_2 = H3_3_2 * H3_3 - H1_4_3;
-    const T H3_1_5 = H2_2_4 - H1_2_6;
-    const T fa_y_x_fb_z_z = H1_1_6 - H2_1_6;
-    const T H4_1 = lambda[4] * H1_5;
+    const T H1_1_6 = inv_pitch * ra_x_fa_x_z;
+    const T H1_2_6 = fa_y_x * H1_2_4 - fa_z_x * H1_3_2;
+    const T H2_1 = fa_x_y * H1_6;
+    const T H2_2 = H1_8 * H2_1;
+    const T H2_1_2 = H1_1_2 * H2_1;
+    const T H2_1_3 = H1_1_3 * H2_1;
+    const T H2_1_4 = H1_2_4 * fa_x_y - lambda[2];
+    const T H2_2_2 = lambda[3] + H1_3_2 * fa_x_y;
+    const T H2_3 = d_y * inv_pitch;
+    const T H2_4 = H2_3 * H2_1 - H1_5_3;
+    const T H2_1_5 = fa_y_z * H1_1_5 - fa_z_z * H1_3_3;
+    const T H2_1_6 = fa_y_y * H1_1_5 - fa_z_y * H1_3_3;
+    const T H3_1 = fa_x_z * H1_6;
+    const T H3_2 = H1_8 * H3_1;
+    const T H3_1_2 = H1_1_2 * H3_1;
+    const T H3_1_3 = H1_1_3 * H3_1;
+    const T H3_1_4 = H1_5_2 * fa_x_z - lambda[2];
+    const T H3_2_2 = lambda[3] + H1_6_2 * fa_x_z;
+    const T H3_3 = d_z * inv_pitch;
+    const T H3_4 = H3_3 * H3_1 - H1_5_3;
+    const T H4_1 = lambda[4] * H1_4;
+    const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
+    const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
     const T H4_2 = lambda[4] * H1_1;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T H4_3 = lambda[4] * (d_x_fa_x_x + ra_x_fa_x_x);
-    const T H4_4 = inv_pitch * H1_1;
-    const T H4_5 = H4_3 * H4_4;
-    const T H4_6 = inv_pitch * H1_5;
-    const T H4_7 = H4_3 * H4_6;
-    const T H4_8 = H4_5 * dot_fa_y_fb_z - H4_1 * fa_y_x_fb_z_x - H4_2 * H1_4_2 + H4_7 *
-        dot_fa_z_fb_z;
-    const T H4_1_2 = H1_4_3 * fa_x_z + lambda[2] * fa_y_z + lambda[3] * fa_z_z;
-    const T H4_2_2 = H1_1_2 * H4_8;
-    const T H4_1_3 = H1_4_3 * fa_x_y + lambda[2] * fa_y_y + lambda[3] * fa_z_y;
-    const T H4_2_3 = H1_1_3 * H4_8;
-    const T H4_1_4 = ra_y + d_y;
-    const T H4_2_4 = H1_4_3 * H4_1_4;
-    const T H4_3_2 = H3_3_2 * H4_8 - H4_2_4;
+    const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
+    const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
+    const T ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    const T ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    const T H4_3 = H4_2 * fa_z_x_fb_z_x - H4_1 * fa_y_x_fb_z_x + ra_d_x_fa_x_x * H1_6;
+    const T H4_1_2 = H1_5_3 * fa_x_z + lambda[2] * fa_y_z + lambda[3] * fa_z_z;
+    const T H4_2_2 = H1_1_2 * H4_3;
+    const T H4_1_3 = H1_5_3 * fa_x_y + lambda[2] * fa_y_y + lambda[3] * fa_z_y;
+    const T H4_2_3 = H1_1_3 * H4_3;
+    const T H4_1_4 = H1_5_3 * ra_d_y;
+    const T H4_2_4 = H3_3 * H4_3 - H4_1_4;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_4_2 = H4_2 * fb_z_y + lambda[0] * fb_x_y + lambda[2] * H4_1_4;
-    const T H4_5_2 = H4_4_2 - H4_7 * fb_z_z;
-    const T H4_6_2 = H4_1 * fb_z_y + lambda[1] * fb_x_y + lambda[3] * H4_1_4;
-    const T H4_7_2 = H4_6_2 + H4_5 * fb_z_z;
-    const T H4_8_2 = ra_z + d_z;
-    const T H4_9 = H1_4_3 * H4_8_2;
-    const T H4_10 = H4_9 + H2_3_2 * H4_8;
+    const T H4_3_2 = H4_2 * fb_z_y + lambda[0] * fb_x_y + lambda[2] * ra_d_y;
+    const T H4_4 = H1_5_2 * ra_d_x_fa_x_x - H4_3_2;
+    const T H4_5 = H4_1 * fb_z_y + lambda[1] * fb_x_y + lambda[3] * ra_d_y;
+    const T H4_6 = H4_5 + H1_6_2 * ra_d_x_fa_x_x;
+    const T H4_7 = H1_5_3 * ra_d_z;
+    const T H4_8 = H4_7 + H2_3 * H4_3;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H4_11 = H4_2 * fb_z_z + lambda[0] * fb_x_z + lambda[2] * H4_8_2;
-    const T H4_12 = H4_11 + H4_7 * fb_z_y;
-    const T H4_13 = H4_1 * fb_z_z + lambda[1] * fb_x_z + lambda[3] * H4_8_2;
-    const T H4_14 = H4_13 - H4_5 * fb_z_y;
-    const T H5_1 = lambda[4] * (d_x_fa_x_y + ra_x_fa_x_y);
-    const T H5_2 = H4_4 * H5_1;
-    const T H5_3 = H4_6 * H5_1;
-    const T H5_4 = H5_2 * dot_fa_y_fb_z - H4_1 * fa_y_x_fb_z_y - H4_2 * H2_2_3 + H5_3 *
-        dot_fa_z_fb_z;
-    const T H5_5 = H1_9 * H5_4;
-    const T H5_1_2 = H1_4_3 * fa_x_x + lambda[2] * fa_y_x + lambda[3] * fa_z_x;
-    const T H5_2_2 = H1_1_3 * H5_4;
-    const T H5_1_3 = ra_x + d_x;
-    const T H5_2_3 = H1_4_3 * H5_1_3;
-    const T H5_3_2 = H5_2_3 + H3_3_2 * H5_4;
-    const T H5_4_2 = H4_2 * fb_z_x + lambda[0] * fb_x_x + lambda[2] * H5_1_3;
-    const T H5_5_2 = H5_4_2 + H5_3 * fb_z_z;
-    const T H5_6 = H4_1 * fb_z_x + lambda[1] * fb_x_x + lambda[3] * H5_1_3;
-    const T H5_7 = H5_6 - H5_2 * fb_z_z;
-    const T H5_1_4 = H1_5_3 * H5_4 - H4_9;
-    const T H5_2_4 = H4_11 - H5_3 * fb_z_x;
-    const T H5_3_3 = H4_13 + H5_2 * fb_z_x;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T H6_1 = lambda[4] * (d_x_fa_x_z + ra_x_fa_x_z);
-    const T H6_2 = H4_4 * H6_1;
-    const T H6_3 = H4_6 * H6_1;
-    const T H6_4 = H6_2 * dot_fa_y_fb_z - H4_1 * fa_y_x_fb_z_z - H4_2 * H3_1_5 + H6_3 *
-        dot_fa_z_fb_z;
-    const T H6_5 = H1_9 * H6_4;
-    const T H6_1_2 = H1_1_2 * H6_4;
-    const T H6_1_3 = H2_3_2 * H6_4 - H5_2_3;
-    const T H6_2_2 = H5_4_2 - H6_3 * fb_z_y;
-    const T H6_3_2 = H5_6 + H6_2 * fb_z_y;
-    const T H6_1_4 = H4_2_4 + H1_5_3 * H6_4;
-    const T H6_2_3 = H4_4_2 + H6_3 * fb_z_x;
-    const T H6_3_3 = H4_6_2 - H6_2 * fb_z_x;
-    H[0][0] = -H1_10;
+    const T H4_9 = H4_2 * fb_z_z + lambda[0] * fb_x_z + lambda[2] * ra_d_z;
+    const T H4_10 = H4_9 + H1_2_4 * ra_d_x_fa_x_x;
+    const T H4_11 = H4_1 * fb_z_z + lambda[1] * fb_x_z + lambda[3] * ra_d_z;
+    const T H4_12 = H4_11 - H1_3_2 * ra_d_x_fa_x_x;
+    const T H5_1 = H4_2 * fa_z_x_fb_z_y - H4_1 * fa_y_x_fb_z_y + ra_d_x_fa_x_y * H1_6;
+    const T H5_2 = H1_8 * H5_1;
+    const T H5_1_2 = H1_5_3 * fa_x_x + lambda[2] * fa_y_x + lambda[3] * fa_z_x;
+    const T H5_2_2 = H1_1_3 * H5_1;
+    const T H5_1_3 = H1_5_3 * ra_d_x;
+    const T H5_2_3 = H5_1_3 + H3_3 * H5_1;
+    const T H5_3 = H4_2 * fb_z_x + lambda[0] * fb_x_x + lambda[2] * ra_d_x;
+    const T H5_4 = H5_3 + H1_5_2 * ra_d_x_fa_x_y;
+    const T H5_5 = H4_1 * fb_z_x + lambda[1] * fb_x_x + lambda[3] * ra_d_x;
+    const T H5_6 = H5_5 - H1_6_2 * ra_d_x_fa_x_y;
+    const T H5_1_4 = H1_6_3 * H5_1 - H4_7;
+    const T H5_2_4 = H1_1_5 * ra_d_x_fa_x_y - H4_9;
+    const T H5_3_2 = H4_11 + H1_3_3 * ra_d_x_fa_x_y;
+    const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
+    const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
+    const T ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
+    const T H6_1 = H4_2 * fa_z_x_fb_z_z - H4_1 * fa_y_x_fb_z_z + ra_d_x_fa_x_z * H1_6;
+    const T H6_2 = H1_8 * H6_1;
+    const T H6_1_2 = H1_1_2 * H6_1;
+    const T H6_1_3 = H2_3 * H6_1 - H5_1_3;
+    const T H6_2_2 = H1_2_4 * ra_d_x_fa_x_z - H5_3;
+    const T H6_3 = H5_5 + H1_3_2 * ra_d_x_fa_x_z;
+    const T H6_1_4 = H4_1_4 + H1_6_3 * H6_1;
+    const T H6_2_3 = H4_3_2 + H1_1_5 * ra_d_x_fa_x_z;
+    const T H6_3_2 = H4_5 - H1_3_3 * ra_d_x_fa_x_z;
+    H[0][0] = -H1_9;
     H[0][1] = -H1_2_2;
     H[0][2] = -H1_2_3;
-    H[0][3] = H1_2_2 * d_z - H1_2_3 * d_y - H1_1_4 * H1_8 + H1_4 * H1_4_2 + H1_7 * fa_y_x_fb_z_x;
-    H[0][4] = H1_1_5 * H1_4 - H1_7_2 * H1_7 - H1_10 * d_z + H1_2_5 * fa_y_z - H1_3_3 * fa_z_z +
-        fa_x_z * H1_6_3 - H1_7_3 * H1_8;
-    H[0][5] = H1_1_6 * H1_7 - H1_2_6 * H1_4 + H1_10 * d_y - H1_2_5 * fa_y_y + H1_3_3 * fa_z_y -
-        fa_x_y * H1_6_3 - H1_3_4 * H1_8;
-    H[1][0] = -H2_4;
+    H[0][3] = H1_2_2 * d_z - H1_2_3 * d_y - H1_1_4 * H1_7 + fa_x_x * (H1_7_2 - H1_4_2);
+    H[0][4] = H1_2_5 * fa_y_z - H1_9 * d_z - H1_4_3 * fa_z_z + fa_x_z * H1_7_3 - H1_8_2 * H1_7 -
+        fa_x_x * H1_9_2;
+    H[0][5] = H1_9 * d_y - H1_2_5 * fa_y_y + H1_4_3 * fa_z_y - fa_x_y * H1_7_3 - H1_1_6 * H1_7 +
+        fa_x_x * H1_2_6;
+    H[1][0] = -H2_2;
     H[1][1] = -H2_1_2;
     H[1][2] = -H2_1_3;
-    H[1][3] = H1_5_2 * H2_2 - H1_2_4 * H2_1 + H2_1_2 * d_z - H2_1_4 * fa_y_z + H2_2_2 * fa_z_z -
-        fa_x_z * H2_4_2 - H1_1_4 * H2_3;
-    H[1][4] = H2_1_3 * d_x - H2_4 * d_z - H1_7_3 * H2_3 + H2_1 * H2_2_3 + H2_2 * fa_y_x_fb_z_y;
-    H[1][5] = H2_2_4 * H2_1 - H2_1_6 * H2_2 - H2_1_2 * d_x + H2_1_4 * fa_y_x - H2_2_2 * fa_z_x +
-        fa_x_x * H2_4_2 - H1_3_4 * H2_3;
-    H[2][0] = -H3_4;
+    H[1][3] = H2_1_2 * d_z - H2_1_4 * fa_y_z + H2_2_2 * fa_z_z - fa_x_z * H2_4 - H1_1_4 * H2_1 +
+        fa_x_y * H1_7_2;
+    H[1][4] = H2_1_3 * d_x - H2_2 * d_z - H1_8_2 * H2_1 + fa_x_y * (H2_1_5 - H1_9_2);
+    H[1][5] = H2_1_4 * fa_y_x - H2_1_2 * d_x - H2_2_2 * fa_z_x + fa_x_x * H2_4 - H1_1_6 * H2_1 -
+        fa_x_y * H2_1_6;
+    H[2][0] = -H3_2;
     H[2][1] = -H3_1_2;
     H[2][2] = -H3_1_3;
-    H[2][3] = H1_3_2 * H3_1 - H1_6_2 * H3_2 - H3_1_3 * d_y + H3_1_4 * fa_y_y - H3_2_2 * fa_z_y +
-        fa_x_y * H3_4_2 - H1_1_4 * H3_3;
-    H[2][4] = H1_8_2 * H3_2 - H2_1_5 * H3_1 + H3_1_3 * d_x - H3_1_4 * fa_y_x + H3_2_2 * fa_z_x -
-        fa_x_x * H3_4_2 - H1_7_3 * H3_3;
-    H[2][5] = H3_4 * d_y - H3_1_2 * d_x - H1_3_4 * H3_3 + H3_1 * H3_1_5 + H3_2 * fa_y_x_fb_z_z;
-    H[3][0] = -H1_9 * H4_8;
+    H[2][3] = H3_1_4 * fa_y_y - H3_1_3 * d_y - H3_2_2 * fa_z_y + fa_x_y * H3_4 - H1_1_4 * H3_1 -
+        fa_x_z * H1_4_2;
+    H[2][4] = H3_1_3 * d_x - H3_1_4 * fa_y_x + H3_2_2 * fa_z_x - fa_x_x * H3_4 - H1_8_2 * H3_1 +
+        fa_x_z * H2_1_5;
+    H[2][5] = H3_2 * d_y - H3_1_2 * d_x - H1_1_6 * H3_1 + fa_x_z * (H1_2_6 - H2_1_6);
+    H[3][0] = -H1_8 * H4_3;
     H[3][1] = H4_1_2 - H4_2_2;
     H[3][2] = -H4_1_3 - H4_2_3;
-    H[3][3] = fa_x_y * H4_3_2 - fa_y_y * H4_5_2 - fa_z_y * H4_7_2 - fa_x_z * H4_10 - fa_y_z *
-        H4_12 - fa_z_z * H4_14 - H1_1_4 * H4_8;
-    H[3][4] = H4_2_3 * d_x - fa_x_x * H4_3_2 + fa_y_x * H4_5_2 + fa_z_x * H4_7_2 + H1_8_2 * H4_7 -
-        H2_1_5 * H4_5 - H1_7_3 * H4_8;
-    H[3][5] = fa_x_x * H4_10 - H4_2_2 * d_x + fa_y_x * H4_12 + fa_z_x * H4_14 - H2_1_6 * H4_7 +
-        H2_2_4 * H4_5 - H1_3_4 * H4_8;
-    H[4][0] = -H4_1_2 - H5_5;
-    H[4][1] = -H1_1_2 * H5_4;
+    H[3][3] = fa_x_y * H4_2_4 + fa_y_y * H4_4 - fa_z_y * H4_6 - fa_x_z * H4_8 - fa_y_z * H4_10 -
+        fa_z_z * H4_12 - H1_1_4 * H4_3;
+    H[3][4] = H4_2_3 * d_x - fa_x_x * H4_2_4 - fa_y_x * H4_4 + fa_z_x * H4_6 - H1_8_2 * H4_3 +
+        ra_d_x_fa_x_x * H2_1_5;
+    H[3][5] = fa_x_x * H4_8 - H4_2_2 * d_x + fa_y_x * H4_10 + fa_z_x * H4_12 - H1_1_6 * H4_3 -
+        ra_d_x_fa_x_x * H2_1_6;
+    H[4][0] = -H4_1_2 - H5_2;
+    H[4][1] = -H1_1_2 * H5_1;
     H[4][2] = H5_1_2 - H5_2_2;
-    H[4][3] = fa_x_y * H5_3_2 - H5_2_2 * d_y + fa_y_y * H5_5_2 + fa_z_y * H5_7 - H1_6_2 * H5_3 +
-        H1_3_2 * H5_2 - H1_1_4 * H5_4;
-    H[4][4] = fa_x_z * H5_1_4 - fa_x_x * H5_3_2 - fa_y_x * H5_5_2 - fa_z_x * H5_7 - fa_y_z *
-        H5_2_4 - fa_z_z * H5_3_3 - H1_7_3 * H5_4;
-    H[4][5] = H5_5 * d_y + H1_1_6 * H5_3 - H1_2_6 * H5_2 - fa_x_y * H5_1_4 + fa_y_y * H5_2_4 +
-        fa_z_y * H5_3_3 - H1_3_4 * H5_4;
-    H[5][0] = H4_1_3 - H6_5;
+    H[4][3] = fa_x_y * H5_2_3 - H5_2_2 * d_y + fa_y_y * H5_4 + fa_z_y * H5_6 - H1_1_4 * H5_1 -
+        ra_d_x_fa_x_y * H1_4_2;
+    H[4][4] = fa_x_z * H5_1_4 - fa_x_x * H5_2_3 - fa_y_x * H5_4 - fa_z_x * H5_6 + fa_y_z * H5_2_4 -
+        fa_z_z * H5_3_2 - H1_8_2 * H5_1;
+    H[4][5] = H5_2 * d_y - fa_x_y * H5_1_4 - fa_y_y * H5_2_4 + fa_z_y * H5_3_2 - H1_1_6 * H5_1 +
+        ra_d_x_fa_x_y * H1_2_6;
+    H[5][0] = H4_1_3 - H6_2;
     H[5][1] = -H5_1_2 - H6_1_2;
-    H[5][2] = -H1_1_3 * H6_4;
-    H[5][3] = H6_1_2 * d_z + H1_5_2 * H6_3 - H1_2_4 * H6_2 - fa_x_z * H6_1_3 + fa_y_z * H6_2_2 +
-        fa_z_z * H6_3_2 - H1_1_4 * H6_4;
-    H[5][4] = H1_1_5 * H6_2 - H6_5 * d_z - H1_7_2 * H6_3 + fa_x_z * H6_1_4 + fa_y_z * H6_2_3 +
-        fa_z_z * H6_3_3 - H1_7_3 * H6_4;
-    H[5][5] = fa_x_x * H6_1_3 - fa_y_x * H6_2_2 - fa_z_x * H6_3_2 - fa_x_y * H6_1_4 - fa_y_y *
-        H6_2_3 - fa_z_y * H6_3_3 - H1_3_4 * H6_4;
+    H[5][2] = -H1_1_3 * H6_1;
+    H[5][3] = H6_1_2 * d_z - fa_x_z * H6_1_3 - fa_y_z * H6_2_2 + fa_z_z * H6_3 - H1_1_4 * H6_1 +
+        ra_d_x_fa_x_z * H1_7_2;
+    H[5][4] = fa_x_z * H6_1_4 - H6_2 * d_z + fa_y_z * H6_2_3 + fa_z_z * H6_3_2 - H1_8_2 * H6_1 -
+        ra_d_x_fa_x_z * H1_9_2;
+    H[5][5] = fa_x_x * H6_1_3 + fa_y_x * H6_2_2 - fa_z_x * H6_3 - fa_x_y * H6_1_4 - fa_y_y *
+        H6_2_3 - fa_z_y * H6_3_2 - H1_1_6 * H6_1;
   }
 };
 
@@ -4497,10 +4444,10 @@ struct screw::slide::b_immovable : screw::slide {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -4518,36 +4465,35 @@ struct screw::slide::b_immovable : screw::slide {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z - J.ra_d_x_fa_x_x * va.wx -
+        J.ra_d_x_fa_x_y * va.wy - J.ra_d_x_fa_x_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -4557,18 +4503,18 @@ struct screw::slide::b_immovable : screw::slide {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -4577,12 +4523,12 @@ struct screw::slide::b_immovable : screw::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_x_x;
+    D[0][4] = -J.ra_d_x_fa_x_y;
+    D[0][5] = -J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -4593,9 +4539,9 @@ struct screw::slide::b_immovable : screw::slide {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -4603,7 +4549,9 @@ struct screw::slide::b_immovable : screw::slide {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -4617,12 +4565,12 @@ struct screw::slide::b_immovable : screw::slide {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -4633,12 +4581,12 @@ struct screw::slide::b_immovable : screw::slide {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -4648,9 +4596,9 @@ struct screw::slide::b_immovable : screw::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -4663,10 +4611,10 @@ struct screw::slide::b_immovable : screw::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -4733,15 +4681,15 @@ struct screw::slide::b_immovable : screw::slide {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_x_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_x_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_x_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_x_z;
+    const T H5_1 = ra_d_x * fa_x_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -4750,19 +4698,19 @@ struct screw::slide::b_immovable : screw::slide {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_x_x * H4_1;
-    H[3][5] = fa_x_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_x_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_x_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1;
-    H[5][4] = fa_x_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 

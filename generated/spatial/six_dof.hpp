@@ -7,25 +7,24 @@
 // rxz = fa_x · fb_z
 // ryz = fa_y · fb_z
 // rzz = fa_z · fb_z
-// J =                                                             (columns v_a | w_a | v_b | w_b)
 //
 // coordinate slide_x = fa_x · d
-// J_slide_x = [ -fa_x' | (-(ra × fa_x) - d × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide_x = inv_m_a + inv_m_b + (-(ra × fa_x) - d × fa_x)' inv_I_a (-(ra × fa_x) - d × fa_x)
-//             + (rb × fa_x)' inv_I_b (rb × fa_x)
+// J_slide_x = [ -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide_x = inv_m_a + inv_m_b + (rb × fa_x)' inv_I_b (rb × fa_x)
+//             + ((ra + d) × fa_x)' inv_I_a ((ra + d) × fa_x)
 //
 // coordinate slide_y = fa_y · d
-// J_slide_y = [ -fa_y' | (-(ra × fa_y) - d × fa_y)' | fa_y' | (rb × fa_y)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide_y = inv_m_a + inv_m_b + (-(ra × fa_y) - d × fa_y)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//             + (rb × fa_y)' inv_I_b (rb × fa_y)
+// J_slide_y = [ -fa_y' | -((ra + d) × fa_y)' | fa_y' | (rb × fa_y)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide_y = inv_m_a + inv_m_b + (rb × fa_y)' inv_I_b (rb × fa_y)
+//             + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
 //
 // coordinate slide_z = fa_z · d
-// J_slide_z = [ -fa_z' | (-(ra × fa_z) - d × fa_z)' | fa_z' | (rb × fa_z)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide_z = inv_m_a + inv_m_b + (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_z) - d × fa_z)
-//             + (rb × fa_z)' inv_I_b (rb × fa_z)
+// J_slide_z = [ -fa_z' | -((ra + d) × fa_z)' | fa_z' | (rb × fa_z)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide_z = inv_m_a + inv_m_b + (rb × fa_z)' inv_I_b (rb × fa_z)
+//             + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
 //
 // coordinate turn_x = atan2(-ryz, rzz)
 // J_turn_x = [ 0
@@ -167,7 +166,8 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z, rb_x_fa_x_x, rb_x_fa_x_y, rb_x_fa_x_z;
+      T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z, rb_x_fa_x_x,
+          rb_x_fa_x_y, rb_x_fa_x_z;
     };
 
     // C: 29 +, 30 *
@@ -190,7 +190,7 @@ struct six_dof {
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -208,19 +208,16 @@ struct six_dof {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-      const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-      const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-      const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-      const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-      const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
       J.fa_x_x = fa_x_x;
       J.fa_x_y = fa_x_y;
       J.fa_x_z = fa_x_z;
-      J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-      J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-      J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+      J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+      J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+      J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
       J.rb_x_fa_x_x = fa_x_z * rb_y - fa_x_y * rb_z;
       J.rb_x_fa_x_y = fa_x_x * rb_z - fa_x_z * rb_x;
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
@@ -231,14 +228,16 @@ struct six_dof {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_x_x *
-          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_y * (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_z *
-          (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
+          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
+          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
+          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
+          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
+          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
+          J.rb_x_fa_x_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -258,9 +257,9 @@ struct six_dof {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_x_x * vb.wx + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_x_x * (vb.x - va.x) + J.fa_x_y *
-          (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_x_x * vb.wx - J.ra_d_x_fa_x_x * va.wx - J.ra_d_x_fa_x_y * va.wy -
+          J.ra_d_x_fa_x_z * va.wz + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.fa_x_x *
+          (vb.x - va.x) + J.fa_x_y * (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -272,9 +271,9 @@ struct six_dof {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_x_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_x_y;
@@ -282,9 +281,9 @@ struct six_dof {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -293,7 +292,7 @@ struct six_dof {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -302,9 +301,9 @@ struct six_dof {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_x_x;
+      D[0][4] = -J.ra_d_x_fa_x_y;
+      D[0][5] = -J.ra_d_x_fa_x_z;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -313,7 +312,7 @@ struct six_dof {
       D[0][11] = J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -325,9 +324,9 @@ struct six_dof {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -342,10 +341,11 @@ struct six_dof {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+          J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
       const T dot_rb_x_fa_x_rb_x_fa_x = J.rb_x_fa_x_x * J.rb_x_fa_x_x + J.rb_x_fa_x_y *
           J.rb_x_fa_x_y + J.rb_x_fa_x_z * J.rb_x_fa_x_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_x_rb_x_fa_x;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x + mb.I * dot_rb_x_fa_x_rb_x_fa_x;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -363,9 +363,9 @@ struct six_dof {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -374,7 +374,7 @@ struct six_dof {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -386,9 +386,9 @@ struct six_dof {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -397,7 +397,7 @@ struct six_dof {
       D[0][11] = mb.I * J.rb_x_fa_x_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -408,9 +408,9 @@ struct six_dof {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -430,10 +430,10 @@ struct six_dof {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
@@ -523,27 +523,27 @@ struct six_dof {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_x_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_x_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_x_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_x_z;
       const T H4_1_2 = fa_x_y * rb_y;
       const T H4_2_2 = fa_x_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_x_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_x_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_x_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_x_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -552,29 +552,29 @@ struct six_dof {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_x_x * H4_1;
-      H[3][5] = fa_x_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_x_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_x_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_x_z * H5_1;
-      H[5][4] = fa_x_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -586,18 +586,18 @@ struct six_dof {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -623,7 +623,8 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T fa_y_x, fa_y_y, fa_y_z, wa_x, wa_y, wa_z, rb_x_fa_y_x, rb_x_fa_y_y, rb_x_fa_y_z;
+      T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, rb_x_fa_y_x,
+          rb_x_fa_y_y, rb_x_fa_y_z;
     };
 
     // C: 29 +, 30 *
@@ -646,7 +647,7 @@ struct six_dof {
       C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -664,19 +665,16 @@ struct six_dof {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-      const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-      const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-      const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-      const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-      const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
       J.fa_y_x = fa_y_x;
       J.fa_y_y = fa_y_y;
       J.fa_y_z = fa_y_z;
-      J.wa_x = -d_x_fa_y_x - ra_x_fa_y_x;
-      J.wa_y = -d_x_fa_y_y - ra_x_fa_y_y;
-      J.wa_z = -d_x_fa_y_z - ra_x_fa_y_z;
+      J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+      J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+      J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
       J.rb_x_fa_y_x = fa_y_z * rb_y - fa_y_y * rb_z;
       J.rb_x_fa_y_y = fa_y_x * rb_z - fa_y_z * rb_x;
       J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
@@ -687,14 +685,16 @@ struct six_dof {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_y_x *
-          (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z) +
-          J.rb_x_fa_y_y * (mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz *
-          J.rb_x_fa_y_z) + J.rb_x_fa_y_z *
-          (mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_y_x *
+          (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z) +
+          J.ra_d_x_fa_y_y * (ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz *
+          J.ra_d_x_fa_y_z) + J.ra_d_x_fa_y_z *
+          (ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z) +
+          J.rb_x_fa_y_x * (mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz *
+          J.rb_x_fa_y_z) + J.rb_x_fa_y_y *
+          (mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z) +
+          J.rb_x_fa_y_z * (mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz *
+          J.rb_x_fa_y_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -714,9 +714,9 @@ struct six_dof {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_y_x * vb.wx + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_y_x * (vb.x - va.x) + J.fa_y_y *
-          (vb.y - va.y) + J.fa_y_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_y_x * vb.wx - J.ra_d_x_fa_y_x * va.wx - J.ra_d_x_fa_y_y * va.wy -
+          J.ra_d_x_fa_y_z * va.wz + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.fa_y_x *
+          (vb.x - va.x) + J.fa_y_y * (vb.y - va.y) + J.fa_y_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -728,9 +728,9 @@ struct six_dof {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_y_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_y_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_y_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_y_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_y_y;
@@ -738,9 +738,9 @@ struct six_dof {
       v[0].x = va.x - v1_1 * J.fa_y_x;
       v[0].y = va.y - v1_1 * J.fa_y_y;
       v[0].z = va.z - v1_1 * J.fa_y_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_y_x;
       v[1].y = vb.y + v2_1 * J.fa_y_y;
       v[1].z = vb.z + v2_1 * J.fa_y_z;
@@ -749,7 +749,7 @@ struct six_dof {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -758,9 +758,9 @@ struct six_dof {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_y_x;
+      D[0][4] = -J.ra_d_x_fa_y_y;
+      D[0][5] = -J.ra_d_x_fa_y_z;
       D[0][6] = J.fa_y_x;
       D[0][7] = J.fa_y_y;
       D[0][8] = J.fa_y_z;
@@ -769,7 +769,7 @@ struct six_dof {
       D[0][11] = J.rb_x_fa_y_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -781,9 +781,9 @@ struct six_dof {
       D[0][0] = -ma.m * J.fa_y_x;
       D[0][1] = -ma.m * J.fa_y_y;
       D[0][2] = -ma.m * J.fa_y_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
       D[0][6] = mb.m * J.fa_y_x;
       D[0][7] = mb.m * J.fa_y_y;
       D[0][8] = mb.m * J.fa_y_z;
@@ -798,10 +798,11 @@ struct six_dof {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+          J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
       const T dot_rb_x_fa_y_rb_x_fa_y = J.rb_x_fa_y_x * J.rb_x_fa_y_x + J.rb_x_fa_y_y *
           J.rb_x_fa_y_y + J.rb_x_fa_y_z * J.rb_x_fa_y_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_y_rb_x_fa_y;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y + mb.I * dot_rb_x_fa_y_rb_x_fa_y;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -819,9 +820,9 @@ struct six_dof {
       v[0].x = va.x - v1_1 * J.fa_y_x;
       v[0].y = va.y - v1_1 * J.fa_y_y;
       v[0].z = va.z - v1_1 * J.fa_y_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_y_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_y_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_y_z;
       v[1].x = vb.x + v2_1 * J.fa_y_x;
       v[1].y = vb.y + v2_1 * J.fa_y_y;
       v[1].z = vb.z + v2_1 * J.fa_y_z;
@@ -830,7 +831,7 @@ struct six_dof {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_y_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -842,9 +843,9 @@ struct six_dof {
       D[0][0] = -ma.m * J.fa_y_x;
       D[0][1] = -ma.m * J.fa_y_y;
       D[0][2] = -ma.m * J.fa_y_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
       D[0][6] = mb.m * J.fa_y_x;
       D[0][7] = mb.m * J.fa_y_y;
       D[0][8] = mb.m * J.fa_y_z;
@@ -853,7 +854,7 @@ struct six_dof {
       D[0][11] = mb.I * J.rb_x_fa_y_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -864,9 +865,9 @@ struct six_dof {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
       D[0][6] = J.fa_y_x;
       D[0][7] = J.fa_y_y;
       D[0][8] = J.fa_y_z;
@@ -886,10 +887,10 @@ struct six_dof {
       D[0][0] = -J.fa_y_x;
       D[0][1] = -J.fa_y_y;
       D[0][2] = -J.fa_y_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
       D[0][7] = J.fa_y_x;
       D[0][8] = J.fa_y_y;
       D[0][9] = J.fa_y_z;
@@ -979,27 +980,27 @@ struct six_dof {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_y_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_y_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_y_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_y_z;
       const T H4_1_2 = fa_y_y * rb_y;
       const T H4_2_2 = fa_y_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_y_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_y_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_y_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_y_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -1008,29 +1009,29 @@ struct six_dof {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_y_x * H4_1;
-      H[3][5] = fa_y_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_y_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_y_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_y_z * H5_1;
-      H[5][4] = fa_y_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -1042,18 +1043,18 @@ struct six_dof {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -1079,7 +1080,8 @@ struct six_dof {
 
     template <class T>
     struct Jacobian {
-      T fa_z_x, fa_z_y, fa_z_z, wa_x, wa_y, wa_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z;
+      T fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z, rb_x_fa_z_x,
+          rb_x_fa_z_y, rb_x_fa_z_z;
     };
 
     // C: 29 +, 30 *
@@ -1102,7 +1104,7 @@ struct six_dof {
       C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1120,19 +1122,16 @@ struct six_dof {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-      const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-      const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-      const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-      const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-      const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
       J.fa_z_x = fa_z_x;
       J.fa_z_y = fa_z_y;
       J.fa_z_z = fa_z_z;
-      J.wa_x = -d_x_fa_z_x - ra_x_fa_z_x;
-      J.wa_y = -d_x_fa_z_y - ra_x_fa_z_y;
-      J.wa_z = -d_x_fa_z_z - ra_x_fa_z_z;
+      J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+      J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+      J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
       J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
       J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
       J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
@@ -1143,14 +1142,16 @@ struct six_dof {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_z_x *
-          (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z) +
-          J.rb_x_fa_z_y * (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz *
-          J.rb_x_fa_z_z) + J.rb_x_fa_z_z *
-          (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_z_x *
+          (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+          J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+          J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+          (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z) +
+          J.rb_x_fa_z_x * (mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz *
+          J.rb_x_fa_z_z) + J.rb_x_fa_z_y *
+          (mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z) +
+          J.rb_x_fa_z_z * (mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz *
+          J.rb_x_fa_z_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1170,9 +1171,9 @@ struct six_dof {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_z_x * vb.wx + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_z_x * (vb.x - va.x) + J.fa_z_y *
-          (vb.y - va.y) + J.fa_z_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_z_x * vb.wx - J.ra_d_x_fa_z_x * va.wx - J.ra_d_x_fa_z_y * va.wy -
+          J.ra_d_x_fa_z_z * va.wz + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.fa_z_x *
+          (vb.x - va.x) + J.fa_z_y * (vb.y - va.y) + J.fa_z_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -1184,9 +1185,9 @@ struct six_dof {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_z_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_z_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_z_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_z_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_z_y;
@@ -1194,9 +1195,9 @@ struct six_dof {
       v[0].x = va.x - v1_1 * J.fa_z_x;
       v[0].y = va.y - v1_1 * J.fa_z_y;
       v[0].z = va.z - v1_1 * J.fa_z_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_z_x;
       v[1].y = vb.y + v2_1 * J.fa_z_y;
       v[1].z = vb.z + v2_1 * J.fa_z_z;
@@ -1205,7 +1206,7 @@ struct six_dof {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1214,9 +1215,9 @@ struct six_dof {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_z_x;
+      D[0][4] = -J.ra_d_x_fa_z_y;
+      D[0][5] = -J.ra_d_x_fa_z_z;
       D[0][6] = J.fa_z_x;
       D[0][7] = J.fa_z_y;
       D[0][8] = J.fa_z_z;
@@ -1225,7 +1226,7 @@ struct six_dof {
       D[0][11] = J.rb_x_fa_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1237,9 +1238,9 @@ struct six_dof {
       D[0][0] = -ma.m * J.fa_z_x;
       D[0][1] = -ma.m * J.fa_z_y;
       D[0][2] = -ma.m * J.fa_z_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
       D[0][6] = mb.m * J.fa_z_x;
       D[0][7] = mb.m * J.fa_z_y;
       D[0][8] = mb.m * J.fa_z_z;
@@ -1254,10 +1255,11 @@ struct six_dof {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+          J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
       const T dot_rb_x_fa_z_rb_x_fa_z = J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y *
           J.rb_x_fa_z_y + J.rb_x_fa_z_z * J.rb_x_fa_z_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_z_rb_x_fa_z;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z + mb.I * dot_rb_x_fa_z_rb_x_fa_z;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -1275,9 +1277,9 @@ struct six_dof {
       v[0].x = va.x - v1_1 * J.fa_z_x;
       v[0].y = va.y - v1_1 * J.fa_z_y;
       v[0].z = va.z - v1_1 * J.fa_z_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_z_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_z_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_z_z;
       v[1].x = vb.x + v2_1 * J.fa_z_x;
       v[1].y = vb.y + v2_1 * J.fa_z_y;
       v[1].z = vb.z + v2_1 * J.fa_z_z;
@@ -1286,7 +1288,7 @@ struct six_dof {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_z_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1298,9 +1300,9 @@ struct six_dof {
       D[0][0] = -ma.m * J.fa_z_x;
       D[0][1] = -ma.m * J.fa_z_y;
       D[0][2] = -ma.m * J.fa_z_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_z_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_z_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_z_z;
       D[0][6] = mb.m * J.fa_z_x;
       D[0][7] = mb.m * J.fa_z_y;
       D[0][8] = mb.m * J.fa_z_z;
@@ -1309,7 +1311,7 @@ struct six_dof {
       D[0][11] = mb.I * J.rb_x_fa_z_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1320,9 +1322,9 @@ struct six_dof {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
       D[0][6] = J.fa_z_x;
       D[0][7] = J.fa_z_y;
       D[0][8] = J.fa_z_z;
@@ -1342,10 +1344,10 @@ struct six_dof {
       D[0][0] = -J.fa_z_x;
       D[0][1] = -J.fa_z_y;
       D[0][2] = -J.fa_z_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
       D[0][7] = J.fa_z_x;
       D[0][8] = J.fa_z_y;
       D[0][9] = J.fa_z_z;
@@ -1435,27 +1437,27 @@ struct six_dof {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_z_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_z_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_z_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_z_z;
       const T H4_1_2 = fa_z_y * rb_y;
       const T H4_2_2 = fa_z_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_z_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_z_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_z_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_z_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -1464,29 +1466,29 @@ struct six_dof {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_z_x * H4_1;
-      H[3][5] = fa_z_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_z_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_z_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_z_z * H5_1;
-      H[5][4] = fa_z_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -1498,18 +1500,18 @@ struct six_dof {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -3211,10 +3213,10 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -3232,36 +3234,35 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z - J.ra_d_x_fa_x_x * va.wx -
+        J.ra_d_x_fa_x_y * va.wy - J.ra_d_x_fa_x_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -3271,18 +3272,18 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3291,12 +3292,12 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_x_x;
+    D[0][4] = -J.ra_d_x_fa_x_y;
+    D[0][5] = -J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3307,9 +3308,9 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -3317,7 +3318,9 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -3331,12 +3334,12 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3347,12 +3350,12 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3362,9 +3365,9 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -3377,10 +3380,10 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -3447,15 +3450,15 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_x_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_x_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_x_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_x_z;
+    const T H5_1 = ra_d_x * fa_x_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -3464,19 +3467,19 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_x_x * H4_1;
-    H[3][5] = fa_x_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_x_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_x_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1;
-    H[5][4] = fa_x_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 
@@ -3716,10 +3719,10 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_x, wa_y, wa_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -3737,36 +3740,35 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_y_x *
+        (ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z) +
+        J.ra_d_x_fa_y_y * (ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz *
+        J.ra_d_x_fa_y_z) + J.ra_d_x_fa_y_z *
+        (ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z - J.ra_d_x_fa_y_x * va.wx -
+        J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -3776,18 +3778,18 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_y_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_y_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_y_z;
     v[0].x = va.x - v1_1 * J.fa_y_x;
     v[0].y = va.y - v1_1 * J.fa_y_y;
     v[0].z = va.z - v1_1 * J.fa_y_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3796,12 +3798,12 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3812,9 +3814,9 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -3822,7 +3824,9 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -3836,12 +3840,12 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     v[0].x = va.x - v1_1 * J.fa_y_x;
     v[0].y = va.y - v1_1 * J.fa_y_y;
     v[0].z = va.z - v1_1 * J.fa_y_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_y_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_y_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_y_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3852,12 +3856,12 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3867,9 +3871,9 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -3882,10 +3886,10 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -3952,15 +3956,15 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_y_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_y_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_y_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_y_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_y_z;
+    const T H5_1 = ra_d_x * fa_y_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -3969,19 +3973,19 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_y_x * H4_1;
-    H[3][5] = fa_y_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_y_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_y_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_y_z * H5_1;
-    H[5][4] = fa_y_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 
@@ -4221,10 +4225,10 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
 
   template <class T>
   struct Jacobian {
-    T fa_z_x, fa_z_y, fa_z_z, wa_x, wa_y, wa_z;
+    T fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -4242,36 +4246,35 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_z_x *
+        (ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z) +
+        J.ra_d_x_fa_z_y * (ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz *
+        J.ra_d_x_fa_z_z) + J.ra_d_x_fa_z_z *
+        (ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
+        J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -4281,18 +4284,18 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_z_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_z_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_z_z;
     v[0].x = va.x - v1_1 * J.fa_z_x;
     v[0].y = va.y - v1_1 * J.fa_z_y;
     v[0].z = va.z - v1_1 * J.fa_z_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -4301,12 +4304,12 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_z_x;
+    D[0][4] = -J.ra_d_x_fa_z_y;
+    D[0][5] = -J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -4317,9 +4320,9 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     D[0][0] = -ma.m * J.fa_z_x;
     D[0][1] = -ma.m * J.fa_z_y;
     D[0][2] = -ma.m * J.fa_z_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -4327,7 +4330,9 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -4341,12 +4346,12 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     v[0].x = va.x - v1_1 * J.fa_z_x;
     v[0].y = va.y - v1_1 * J.fa_z_y;
     v[0].z = va.z - v1_1 * J.fa_z_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_z_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_z_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_z_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -4357,12 +4362,12 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     D[0][0] = -ma.m * J.fa_z_x;
     D[0][1] = -ma.m * J.fa_z_y;
     D[0][2] = -ma.m * J.fa_z_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -4372,9 +4377,9 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -4387,10 +4392,10 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     D[0][0] = -J.fa_z_x;
     D[0][1] = -J.fa_z_y;
     D[0][2] = -J.fa_z_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -4457,15 +4462,15 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_z_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_z_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_z_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_z_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_z_z;
+    const T H5_1 = ra_d_x * fa_z_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -4474,19 +4479,19 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_z_x * H4_1;
-    H[3][5] = fa_z_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_z_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_z_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_z_z * H5_1;
-    H[5][4] = fa_z_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 

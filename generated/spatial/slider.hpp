@@ -8,34 +8,24 @@
 // C_line_y = fa_y · d
 // C_line_z = fa_z · d
 // C_angular = (fa_x × fb_x)/2 + (fa_y × fb_y)/2 + (fa_z × fb_z)/2
-// J = [ -fa_y'
-//     | (-(ra × fa_y) - d × fa_y)'
-//     | fa_y'
-//     | (rb × fa_y)'
-//     ; -fa_z'
-//     | (-(ra × fa_z) - d × fa_z)'
-//     | fa_z'
-//     | (rb × fa_z)'
-//     ; 0
-//     | S(fb_x) S(fa_x)/2 + S(fb_y) S(fa_y)/2 + S(fb_z) S(fa_z)/2
-//     | 0
-//     | -S(fa_x) S(fb_x)/2 - S(fa_y) S(fb_y)/2 - S(fa_z) S(fb_z)/2 ]  (columns v_a | w_a | v_b |
-//         w_b)
+// J = [ -fa_y' | -((ra + d) × fa_y)'                                       | fa_y' | (rb × fa_y)'
+//       -fa_z' | -((ra + d) × fa_z)'                                       | fa_z' | (rb × fa_z)'
+//       0      | S(fb_x) S(fa_x)/2 + S(fb_y) S(fa_y)/2 + S(fb_z) S(fa_z)/2 | 0     | -S(fa_x)
+//           S(fb_x)/2 - S(fa_y) S(fb_y)/2 - S(fa_z) S(fb_z)/2 ]
+//       (columns v_a | w_a | v_b | w_b)
 // S(r) u = r × u
-// K[line_y, line_y] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_y) - d × fa_y)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_y)' inv_I_b (rb × fa_y)
-// K[line_y, line_z] = (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_y) - d × fa_y)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_y)
-// K[line_y, angular] = (-(ra × fa_y) - d × fa_y)' inv_I_a (S(fa_x)' S(fb_x)'/2 + S(fa_y)'
-//     S(fb_y)'/2 + S(fa_z)' S(fb_z)'/2)
+// K[line_y, line_y] = inv_m_a + inv_m_b + (rb × fa_y)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
+// K[line_y, line_z] = (rb × fa_z)' inv_I_b (rb × fa_y)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_y)
+// K[line_y, angular] = -((ra + d) × fa_y)' inv_I_a (S(fa_x)' S(fb_x)'/2 + S(fa_y)' S(fb_y)'/2 +
+//     S(fa_z)' S(fb_z)'/2)
 //                      + (rb × fa_y)' inv_I_b (-S(fb_x)' S(fa_x)'/2 - S(fb_y)' S(fa_y)'/2 -
 //                          S(fb_z)' S(fa_z)'/2)
-// K[line_z, line_z] = inv_m_a + inv_m_b
-//                     + (-(ra × fa_z) - d × fa_z)' inv_I_a (-(ra × fa_z) - d × fa_z)
-//                     + (rb × fa_z)' inv_I_b (rb × fa_z)
-// K[line_z, angular] = (-(ra × fa_z) - d × fa_z)' inv_I_a (S(fa_x)' S(fb_x)'/2 + S(fa_y)'
-//     S(fb_y)'/2 + S(fa_z)' S(fb_z)'/2)
+// K[line_z, line_z] = inv_m_a + inv_m_b + (rb × fa_z)' inv_I_b (rb × fa_z)
+//                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
+// K[line_z, angular] = -((ra + d) × fa_z)' inv_I_a (S(fa_x)' S(fb_x)'/2 + S(fa_y)' S(fb_y)'/2 +
+//     S(fa_z)' S(fb_z)'/2)
 //                      + (rb × fa_z)' inv_I_b (-S(fb_x)' S(fa_x)'/2 - S(fb_y)' S(fa_y)'/2 -
 //                          S(fb_z)' S(fa_z)'/2)
 // K[angular, angular] = (S(fb_x) S(fa_x)/2 + S(fb_y) S(fa_y)/2 + S(fb_z) S(fa_z)/2) inv_I_a
@@ -44,10 +34,10 @@
 //                           (-S(fb_x)' S(fa_x)'/2 - S(fb_y)' S(fa_y)'/2 - S(fb_z)' S(fa_z)'/2)
 //
 // coordinate slide = fa_x · d
-// J_slide = [ -fa_x' | (-(ra × fa_x) - d × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a |
-//     v_b | w_b)
-// K_slide = inv_m_a + inv_m_b + (-(ra × fa_x) - d × fa_x)' inv_I_a (-(ra × fa_x) - d × fa_x)
-//           + (rb × fa_x)' inv_I_b (rb × fa_x)
+// J_slide = [ -fa_x' | -((ra + d) × fa_x)' | fa_x' | (rb × fa_x)' ]  (columns v_a | w_a | v_b |
+//     w_b)
+// K_slide = inv_m_a + inv_m_b + (rb × fa_x)' inv_I_b (rb × fa_x)
+//           + ((ra + d) × fa_x)' inv_I_a ((ra + d) × fa_x)
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -85,10 +75,11 @@ struct slider {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_1_x, wa_1_y, wa_1_z, rb_x_fa_y_x, rb_x_fa_y_y, rb_x_fa_y_z,
-        fa_z_x, fa_z_y, fa_z_z, wa_2_x, wa_2_y, wa_2_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z,
-        wa_3_x, wa_3_y, wa_3_z, wb_3_x, wb_3_y, wb_3_z, wa_4_x, wa_4_y, wa_4_z, wb_4_x, wb_4_y,
-        wb_4_z, wa_5_x, wa_5_y, wa_5_z, wb_5_x, wb_5_y, wb_5_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, rb_x_fa_y_x,
+        rb_x_fa_y_y, rb_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y,
+        ra_d_x_fa_z_z, rb_x_fa_z_x, rb_x_fa_z_y, rb_x_fa_z_z, wa_3_x, wa_3_y, wa_3_z, wb_3_x,
+        wb_3_y, wb_3_z, wa_4_x, wa_4_y, wa_4_z, wb_4_x, wb_4_y, wb_4_z, wa_5_x, wa_5_y, wa_5_z,
+        wb_5_x, wb_5_y, wb_5_z;
   };
 
   // C: 76 +, 99 *
@@ -139,7 +130,7 @@ struct slider {
     C[4] = T(0.5) * (fa_x_x_fb_x_z + fa_y_x_fb_y_z + fa_z_x_fb_z_z);
   }
 
-  // C and J: 127 +, 162 *
+  // C and J: 112 +, 150 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[5],
       Jacobian<T>& J) {
@@ -199,18 +190,9 @@ struct slider {
     const T C5_5 = fa_z_x * fb_z_y;
     const T C5_6 = fa_z_y * fb_z_x;
     const T fa_z_x_fb_z_z = C5_5 - C5_6;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     const T wa_3_x_1 = fa_z_y * fb_z_y + fa_x_y * fb_x_y + fa_y_y * fb_y_y;
     const T wa_3_x_2 = fa_z_z * fb_z_z + fa_x_z * fb_x_z + fa_y_z * fb_y_z;
     const T wa_3_x_3 = wa_3_x_1 + wa_3_x_2;
@@ -231,18 +213,18 @@ struct slider {
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_1_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_1_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_1_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.rb_x_fa_y_x = fa_y_z * rb_y - fa_y_y * rb_z;
     J.rb_x_fa_y_y = fa_y_x * rb_z - fa_y_z * rb_x;
     J.rb_x_fa_y_z = fa_y_y * rb_x - fa_y_x * rb_y;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_2_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_2_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_2_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
     J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
     J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
     J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
@@ -272,18 +254,18 @@ struct slider {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
-    const T K11_2 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
-    const T K11_3 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
-    const T K11_4 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
-    const T K11_5 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_6 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_7 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
-    const T K22_1 = mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z;
-    const T K22_2 = mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z;
-    const T K22_3 = mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z;
-    const T K22_4 = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    const T K22_5 = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    const T K22_6 = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
+    const T K11_2 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K11_3 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K11_4 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    const T K11_5 = mb.Ixx * J.rb_x_fa_y_x + mb.Ixy * J.rb_x_fa_y_y + mb.Ixz * J.rb_x_fa_y_z;
+    const T K11_6 = mb.Ixy * J.rb_x_fa_y_x + mb.Iyy * J.rb_x_fa_y_y + mb.Iyz * J.rb_x_fa_y_z;
+    const T K11_7 = mb.Ixz * J.rb_x_fa_y_x + mb.Iyz * J.rb_x_fa_y_y + mb.Izz * J.rb_x_fa_y_z;
+    const T K22_1 = ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z;
+    const T K22_2 = ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz * J.ra_d_x_fa_z_z;
+    const T K22_3 = ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z;
+    const T K22_4 = mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z;
+    const T K22_5 = mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z;
+    const T K22_6 = mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z;
     const T K33_1 = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
     const T K33_2 = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
     const T K33_3 = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
@@ -296,30 +278,30 @@ struct slider {
     const T K44_4 = mb.Ixx * J.wb_4_x + mb.Ixy * J.wb_4_y + mb.Ixz * J.wb_4_z;
     const T K44_5 = mb.Ixy * J.wb_4_x + mb.Iyy * J.wb_4_y + mb.Iyz * J.wb_4_z;
     const T K44_6 = mb.Ixz * J.wb_4_x + mb.Iyz * J.wb_4_y + mb.Izz * J.wb_4_z;
-    K[0] = K11_1 + J.rb_x_fa_y_x * K11_2 + J.rb_x_fa_y_y * K11_3 + J.rb_x_fa_y_z * K11_4 +
-        J.wa_1_x * K11_5 + J.wa_1_y * K11_6 + J.wa_1_z * K11_7;
-    K[1] = J.rb_x_fa_z_x * K11_2 + J.rb_x_fa_z_y * K11_3 + J.rb_x_fa_z_z * K11_4 + J.wa_2_x *
-        K11_5 + J.wa_2_y * K11_6 + J.wa_2_z * K11_7;
-    K[2] = K11_1 + J.rb_x_fa_z_x * K22_1 + J.rb_x_fa_z_y * K22_2 + J.rb_x_fa_z_z * K22_3 +
-        J.wa_2_x * K22_4 + J.wa_2_y * K22_5 + J.wa_2_z * K22_6;
-    K[3] = J.wa_3_x * K11_5 + J.wa_3_y * K11_6 + J.wa_3_z * K11_7 + J.wb_3_x * K11_2 + J.wb_3_y *
-        K11_3 + J.wb_3_z * K11_4;
-    K[4] = J.wa_3_x * K22_4 + J.wa_3_y * K22_5 + J.wa_3_z * K22_6 + J.wb_3_x * K22_1 + J.wb_3_y *
-        K22_2 + J.wb_3_z * K22_3;
+    K[0] = K11_1 + J.ra_d_x_fa_y_x * K11_2 + J.ra_d_x_fa_y_y * K11_3 + J.ra_d_x_fa_y_z * K11_4 +
+        J.rb_x_fa_y_x * K11_5 + J.rb_x_fa_y_y * K11_6 + J.rb_x_fa_y_z * K11_7;
+    K[1] = J.ra_d_x_fa_z_x * K11_2 + J.ra_d_x_fa_z_y * K11_3 + J.ra_d_x_fa_z_z * K11_4 +
+        J.rb_x_fa_z_x * K11_5 + J.rb_x_fa_z_y * K11_6 + J.rb_x_fa_z_z * K11_7;
+    K[2] = K11_1 + J.ra_d_x_fa_z_x * K22_1 + J.ra_d_x_fa_z_y * K22_2 + J.ra_d_x_fa_z_z * K22_3 +
+        J.rb_x_fa_z_x * K22_4 + J.rb_x_fa_z_y * K22_5 + J.rb_x_fa_z_z * K22_6;
+    K[3] = J.wb_3_x * K11_5 - J.wa_3_x * K11_2 - J.wa_3_y * K11_3 - J.wa_3_z * K11_4 + J.wb_3_y *
+        K11_6 + J.wb_3_z * K11_7;
+    K[4] = J.wb_3_x * K22_4 - J.wa_3_x * K22_1 - J.wa_3_y * K22_2 - J.wa_3_z * K22_3 + J.wb_3_y *
+        K22_5 + J.wb_3_z * K22_6;
     K[5] = J.wa_3_x * K33_1 + J.wa_3_y * K33_2 + J.wa_3_z * K33_3 + J.wb_3_x * K33_4 + J.wb_3_y *
         K33_5 + J.wb_3_z * K33_6;
-    K[6] = J.wa_4_x * K11_5 + J.wa_4_y * K11_6 + J.wa_4_z * K11_7 + J.wb_4_x * K11_2 + J.wb_4_y *
-        K11_3 + J.wb_4_z * K11_4;
-    K[7] = J.wa_4_x * K22_4 + J.wa_4_y * K22_5 + J.wa_4_z * K22_6 + J.wb_4_x * K22_1 + J.wb_4_y *
-        K22_2 + J.wb_4_z * K22_3;
+    K[6] = J.wb_4_x * K11_5 - J.wa_4_x * K11_2 - J.wa_4_y * K11_3 - J.wa_4_z * K11_4 + J.wb_4_y *
+        K11_6 + J.wb_4_z * K11_7;
+    K[7] = J.wb_4_x * K22_4 - J.wa_4_x * K22_1 - J.wa_4_y * K22_2 - J.wa_4_z * K22_3 + J.wb_4_y *
+        K22_5 + J.wb_4_z * K22_6;
     K[8] = J.wa_4_x * K33_1 + J.wa_4_y * K33_2 + J.wa_4_z * K33_3 + J.wb_4_x * K33_4 + J.wb_4_y *
         K33_5 + J.wb_4_z * K33_6;
     K[9] = J.wa_4_x * K44_1 + J.wa_4_y * K44_2 + J.wa_4_z * K44_3 + J.wb_4_x * K44_4 + J.wb_4_y *
         K44_5 + J.wb_4_z * K44_6;
-    K[10] = J.wa_5_x * K11_5 + J.wa_5_y * K11_6 + J.wa_5_z * K11_7 + J.wb_5_x * K11_2 + J.wb_5_y *
-        K11_3 + J.wb_5_z * K11_4;
-    K[11] = J.wa_5_x * K22_4 + J.wa_5_y * K22_5 + J.wa_5_z * K22_6 + J.wb_5_x * K22_1 + J.wb_5_y *
-        K22_2 + J.wb_5_z * K22_3;
+    K[10] = J.wb_5_x * K11_5 - J.wa_5_x * K11_2 - J.wa_5_y * K11_3 - J.wa_5_z * K11_4 + J.wb_5_y *
+        K11_6 + J.wb_5_z * K11_7;
+    K[11] = J.wb_5_x * K22_4 - J.wa_5_x * K22_1 - J.wa_5_y * K22_2 - J.wa_5_z * K22_3 + J.wb_5_y *
+        K22_5 + J.wb_5_z * K22_6;
     K[12] = J.wa_5_x * K33_1 + J.wa_5_y * K33_2 + J.wa_5_z * K33_3 + J.wb_5_x * K33_4 + J.wb_5_y *
         K33_5 + J.wb_5_z * K33_6;
     K[13] = J.wa_5_x * K44_1 + J.wa_5_y * K44_2 + J.wa_5_z * K44_3 + J.wb_5_x * K44_4 + J.wb_5_y *
@@ -402,12 +384,12 @@ struct slider {
     const T Jv1_1 = vb.x - va.x;
     const T Jv1_2 = vb.y - va.y;
     const T Jv1_3 = vb.z - va.z;
-    Jv[0] = J.rb_x_fa_y_x * vb.wx + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.wa_1_x *
-        va.wx + J.wa_1_y * va.wy + J.wa_1_z * va.wz + J.fa_y_x * Jv1_1 + J.fa_y_y * Jv1_2 +
-        J.fa_y_z * Jv1_3;
-    Jv[1] = J.rb_x_fa_z_x * vb.wx + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.wa_2_x *
-        va.wx + J.wa_2_y * va.wy + J.wa_2_z * va.wz + J.fa_z_x * Jv1_1 + J.fa_z_y * Jv1_2 +
-        J.fa_z_z * Jv1_3;
+    Jv[0] = J.rb_x_fa_y_x * vb.wx - J.ra_d_x_fa_y_x * va.wx - J.ra_d_x_fa_y_y * va.wy -
+        J.ra_d_x_fa_y_z * va.wz + J.rb_x_fa_y_y * vb.wy + J.rb_x_fa_y_z * vb.wz + J.fa_y_x *
+        Jv1_1 + J.fa_y_y * Jv1_2 + J.fa_y_z * Jv1_3;
+    Jv[1] = J.rb_x_fa_z_x * vb.wx - J.ra_d_x_fa_z_x * va.wx - J.ra_d_x_fa_z_y * va.wy -
+        J.ra_d_x_fa_z_z * va.wz + J.rb_x_fa_z_y * vb.wy + J.rb_x_fa_z_z * vb.wz + J.fa_z_x *
+        Jv1_1 + J.fa_z_y * Jv1_2 + J.fa_z_z * Jv1_3;
     Jv[2] = J.wa_3_x * va.wx + J.wa_3_y * va.wy + J.wa_3_z * va.wz + J.wb_3_x * vb.wx + J.wb_3_y *
         vb.wy + J.wb_3_z * vb.wz;
     Jv[3] = J.wa_4_x * va.wx + J.wa_4_y * va.wy + J.wa_4_z * va.wz + J.wb_4_x * vb.wx + J.wb_4_y *
@@ -427,12 +409,12 @@ struct slider {
     const T v1_1 = J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1];
     const T v1_1_2 = J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1];
     const T v1_1_3 = J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1];
-    const T v1_1_4 = J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1] + J.wa_3_x * lambda[2] +
-        J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4];
-    const T v1_2 = J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1] + J.wa_3_y * lambda[2] + J.wa_4_y *
-        lambda[3] + J.wa_5_y * lambda[4];
-    const T v1_3 = J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1] + J.wa_3_z * lambda[2] + J.wa_4_z *
-        lambda[3] + J.wa_5_z * lambda[4];
+    const T v1_1_4 = J.wa_3_x * lambda[2] - J.ra_d_x_fa_y_x * lambda[0] - J.ra_d_x_fa_z_x *
+        lambda[1] + J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4];
+    const T v1_2 = J.wa_3_y * lambda[2] - J.ra_d_x_fa_y_y * lambda[0] - J.ra_d_x_fa_z_y *
+        lambda[1] + J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4];
+    const T v1_3 = J.wa_3_z * lambda[2] - J.ra_d_x_fa_y_z * lambda[0] - J.ra_d_x_fa_z_z *
+        lambda[1] + J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4];
     const T v2_1 = J.rb_x_fa_y_x * lambda[0] + J.rb_x_fa_z_x * lambda[1] + J.wb_3_x * lambda[2] +
         J.wb_4_x * lambda[3] + J.wb_5_x * lambda[4];
     const T v2_2 = J.rb_x_fa_y_y * lambda[0] + J.rb_x_fa_z_y * lambda[1] + J.wb_3_y * lambda[2] +
@@ -453,7 +435,7 @@ struct slider {
     v[1].wz = vb.wz + mb.Ixz * v2_1 + mb.Iyz * v2_2 + mb.Izz * v2_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -462,9 +444,9 @@ struct slider {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x;
-    D[0][4] = J.wa_1_y;
-    D[0][5] = J.wa_1_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
     D[0][6] = J.fa_y_x;
     D[0][7] = J.fa_y_y;
     D[0][8] = J.fa_y_z;
@@ -474,9 +456,9 @@ struct slider {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x;
-    D[1][4] = J.wa_2_y;
-    D[1][5] = J.wa_2_z;
+    D[1][3] = -J.ra_d_x_fa_z_x;
+    D[1][4] = -J.ra_d_x_fa_z_y;
+    D[1][5] = -J.ra_d_x_fa_z_z;
     D[1][6] = J.fa_z_x;
     D[1][7] = J.fa_z_y;
     D[1][8] = J.fa_z_z;
@@ -503,7 +485,7 @@ struct slider {
     D[4][11] = J.wb_5_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 66 +, 102 *
+  // (M^-1 J^T)^T, laid out like dense: 72 +, 102 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -515,9 +497,9 @@ struct slider {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    D[0][4] = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    D[0][5] = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[0][6] = mb.m * J.fa_y_x;
     D[0][7] = mb.m * J.fa_y_y;
     D[0][8] = mb.m * J.fa_y_z;
@@ -527,9 +509,9 @@ struct slider {
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    D[1][4] = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    D[1][5] = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
+    D[1][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[1][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[1][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
     D[1][6] = mb.m * J.fa_z_x;
     D[1][7] = mb.m * J.fa_z_y;
     D[1][8] = mb.m * J.fa_z_z;
@@ -563,36 +545,45 @@ struct slider {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
     const T K11_1 = ma.m + mb.m;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
     const T dot_rb_x_fa_y_rb_x_fa_y = J.rb_x_fa_y_x * J.rb_x_fa_y_x + J.rb_x_fa_y_y *
         J.rb_x_fa_y_y + J.rb_x_fa_y_z * J.rb_x_fa_y_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_z = J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_y_rb_x_fa_z = J.rb_x_fa_y_x * J.rb_x_fa_z_x + J.rb_x_fa_y_y *
         J.rb_x_fa_z_y + J.rb_x_fa_y_z * J.rb_x_fa_z_z;
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_z_rb_x_fa_z = J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y *
         J.rb_x_fa_z_y + J.rb_x_fa_z_z * J.rb_x_fa_z_z;
-    K[0] = K11_1 + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z) +
-        mb.I * dot_rb_x_fa_y_rb_x_fa_y;
-    K[1] = ma.I * (J.wa_1_x * J.wa_2_x + J.wa_1_y * J.wa_2_y + J.wa_1_z * J.wa_2_z) + mb.I *
-        dot_rb_x_fa_y_rb_x_fa_z;
-    K[2] = K11_1 + ma.I * (J.wa_2_x * J.wa_2_x + J.wa_2_y * J.wa_2_y + J.wa_2_z * J.wa_2_z) +
-        mb.I * dot_rb_x_fa_z_rb_x_fa_z;
-    K[3] = ma.I * (J.wa_1_x * J.wa_3_x + J.wa_1_y * J.wa_3_y + J.wa_1_z * J.wa_3_z) + mb.I *
-        (J.rb_x_fa_y_x * J.wb_3_x + J.rb_x_fa_y_y * J.wb_3_y + J.rb_x_fa_y_z * J.wb_3_z);
-    K[4] = ma.I * (J.wa_2_x * J.wa_3_x + J.wa_2_y * J.wa_3_y + J.wa_2_z * J.wa_3_z) + mb.I *
-        (J.rb_x_fa_z_x * J.wb_3_x + J.rb_x_fa_z_y * J.wb_3_y + J.rb_x_fa_z_z * J.wb_3_z);
+    K[0] = K11_1 + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y + mb.I * dot_rb_x_fa_y_rb_x_fa_y;
+    K[1] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z + mb.I * dot_rb_x_fa_y_rb_x_fa_z;
+    K[2] = K11_1 + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z + mb.I * dot_rb_x_fa_z_rb_x_fa_z;
+    K[3] = mb.I * (J.rb_x_fa_y_x * J.wb_3_x + J.rb_x_fa_y_y * J.wb_3_y + J.rb_x_fa_y_z *
+        J.wb_3_z) - ma.I * (J.ra_d_x_fa_y_x * J.wa_3_x + J.ra_d_x_fa_y_y * J.wa_3_y +
+        J.ra_d_x_fa_y_z * J.wa_3_z);
+    K[4] = mb.I * (J.rb_x_fa_z_x * J.wb_3_x + J.rb_x_fa_z_y * J.wb_3_y + J.rb_x_fa_z_z *
+        J.wb_3_z) - ma.I * (J.ra_d_x_fa_z_x * J.wa_3_x + J.ra_d_x_fa_z_y * J.wa_3_y +
+        J.ra_d_x_fa_z_z * J.wa_3_z);
     K[5] = ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z) + mb.I *
         (J.wb_3_x * J.wb_3_x + J.wb_3_y * J.wb_3_y + J.wb_3_z * J.wb_3_z);
-    K[6] = ma.I * (J.wa_1_x * J.wa_4_x + J.wa_1_y * J.wa_4_y + J.wa_1_z * J.wa_4_z) + mb.I *
-        (J.rb_x_fa_y_x * J.wb_4_x + J.rb_x_fa_y_y * J.wb_4_y + J.rb_x_fa_y_z * J.wb_4_z);
-    K[7] = ma.I * (J.wa_2_x * J.wa_4_x + J.wa_2_y * J.wa_4_y + J.wa_2_z * J.wa_4_z) + mb.I *
-        (J.rb_x_fa_z_x * J.wb_4_x + J.rb_x_fa_z_y * J.wb_4_y + J.rb_x_fa_z_z * J.wb_4_z);
+    K[6] = mb.I * (J.rb_x_fa_y_x * J.wb_4_x + J.rb_x_fa_y_y * J.wb_4_y + J.rb_x_fa_y_z *
+        J.wb_4_z) - ma.I * (J.ra_d_x_fa_y_x * J.wa_4_x + J.ra_d_x_fa_y_y * J.wa_4_y +
+        J.ra_d_x_fa_y_z * J.wa_4_z);
+    K[7] = mb.I * (J.rb_x_fa_z_x * J.wb_4_x + J.rb_x_fa_z_y * J.wb_4_y + J.rb_x_fa_z_z *
+        J.wb_4_z) - ma.I * (J.ra_d_x_fa_z_x * J.wa_4_x + J.ra_d_x_fa_z_y * J.wa_4_y +
+        J.ra_d_x_fa_z_z * J.wa_4_z);
     K[8] = ma.I * (J.wa_3_x * J.wa_4_x + J.wa_3_y * J.wa_4_y + J.wa_3_z * J.wa_4_z) + mb.I *
         (J.wb_3_x * J.wb_4_x + J.wb_3_y * J.wb_4_y + J.wb_3_z * J.wb_4_z);
     K[9] = ma.I * (J.wa_4_x * J.wa_4_x + J.wa_4_y * J.wa_4_y + J.wa_4_z * J.wa_4_z) + mb.I *
         (J.wb_4_x * J.wb_4_x + J.wb_4_y * J.wb_4_y + J.wb_4_z * J.wb_4_z);
-    K[10] = ma.I * (J.wa_1_x * J.wa_5_x + J.wa_1_y * J.wa_5_y + J.wa_1_z * J.wa_5_z) + mb.I *
-        (J.rb_x_fa_y_x * J.wb_5_x + J.rb_x_fa_y_y * J.wb_5_y + J.rb_x_fa_y_z * J.wb_5_z);
-    K[11] = ma.I * (J.wa_2_x * J.wa_5_x + J.wa_2_y * J.wa_5_y + J.wa_2_z * J.wa_5_z) + mb.I *
-        (J.rb_x_fa_z_x * J.wb_5_x + J.rb_x_fa_z_y * J.wb_5_y + J.rb_x_fa_z_z * J.wb_5_z);
+    K[10] = mb.I * (J.rb_x_fa_y_x * J.wb_5_x + J.rb_x_fa_y_y * J.wb_5_y + J.rb_x_fa_y_z *
+        J.wb_5_z) - ma.I * (J.ra_d_x_fa_y_x * J.wa_5_x + J.ra_d_x_fa_y_y * J.wa_5_y +
+        J.ra_d_x_fa_y_z * J.wa_5_z);
+    K[11] = mb.I * (J.rb_x_fa_z_x * J.wb_5_x + J.rb_x_fa_z_y * J.wb_5_y + J.rb_x_fa_z_z *
+        J.wb_5_z) - ma.I * (J.ra_d_x_fa_z_x * J.wa_5_x + J.ra_d_x_fa_z_y * J.wa_5_y +
+        J.ra_d_x_fa_z_z * J.wa_5_z);
     K[12] = ma.I * (J.wa_3_x * J.wa_5_x + J.wa_3_y * J.wa_5_y + J.wa_3_z * J.wa_5_z) + mb.I *
         (J.wb_3_x * J.wb_5_x + J.wb_3_y * J.wb_5_y + J.wb_3_z * J.wb_5_z);
     K[13] = ma.I * (J.wa_4_x * J.wa_5_x + J.wa_4_y * J.wa_5_y + J.wa_4_z * J.wa_5_z) + mb.I *
@@ -615,12 +606,12 @@ struct slider {
     v[0].x = va.x - ma.m * v1_1;
     v[0].y = va.y - ma.m * v1_1_2;
     v[0].z = va.z - ma.m * v1_1_3;
-    v[0].wx = va.wx + ma.I * (J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1] + J.wa_3_x * lambda[2] +
-        J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4]);
-    v[0].wy = va.wy + ma.I * (J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1] + J.wa_3_y * lambda[2] +
-        J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4]);
-    v[0].wz = va.wz + ma.I * (J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1] + J.wa_3_z * lambda[2] +
-        J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4]);
+    v[0].wx = va.wx + ma.I * (J.wa_3_x * lambda[2] - J.ra_d_x_fa_y_x * lambda[0] -
+        J.ra_d_x_fa_z_x * lambda[1] + J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4]);
+    v[0].wy = va.wy + ma.I * (J.wa_3_y * lambda[2] - J.ra_d_x_fa_y_y * lambda[0] -
+        J.ra_d_x_fa_z_y * lambda[1] + J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4]);
+    v[0].wz = va.wz + ma.I * (J.wa_3_z * lambda[2] - J.ra_d_x_fa_y_z * lambda[0] -
+        J.ra_d_x_fa_z_z * lambda[1] + J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4]);
     v[1].x = vb.x + mb.m * v1_1;
     v[1].y = vb.y + mb.m * v1_1_2;
     v[1].z = vb.z + mb.m * v1_1_3;
@@ -632,7 +623,7 @@ struct slider {
         lambda[2] + J.wb_4_z * lambda[3] + J.wb_5_z * lambda[4]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 42 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 42 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -644,9 +635,9 @@ struct slider {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_1_x;
-    D[0][4] = ma.I * J.wa_1_y;
-    D[0][5] = ma.I * J.wa_1_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[0][6] = mb.m * J.fa_y_x;
     D[0][7] = mb.m * J.fa_y_y;
     D[0][8] = mb.m * J.fa_y_z;
@@ -656,9 +647,9 @@ struct slider {
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.I * J.wa_2_x;
-    D[1][4] = ma.I * J.wa_2_y;
-    D[1][5] = ma.I * J.wa_2_z;
+    D[1][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[1][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[1][5] = -ma.I * J.ra_d_x_fa_z_z;
     D[1][6] = mb.m * J.fa_z_x;
     D[1][7] = mb.m * J.fa_z_y;
     D[1][8] = mb.m * J.fa_z_z;
@@ -685,7 +676,7 @@ struct slider {
     D[4][11] = mb.I * J.wb_5_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 66 +, 90 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 72 +, 90 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -696,9 +687,9 @@ struct slider {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[0][6] = J.fa_y_x;
     D[0][7] = J.fa_y_y;
     D[0][8] = J.fa_y_z;
@@ -708,9 +699,9 @@ struct slider {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x * a.xx + J.wa_2_y * a.yx + J.wa_2_z * a.zx;
-    D[1][4] = J.wa_2_x * a.xy + J.wa_2_y * a.yy + J.wa_2_z * a.zy;
-    D[1][5] = J.wa_2_x * a.xz + J.wa_2_y * a.yz + J.wa_2_z * a.zz;
+    D[1][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[1][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[1][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
     D[1][6] = J.fa_z_x;
     D[1][7] = J.fa_z_y;
     D[1][8] = J.fa_z_z;
@@ -748,10 +739,10 @@ struct slider {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
@@ -762,10 +753,10 @@ struct slider {
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = -T(2) * (J.wa_2_x * a.e1 + J.wa_2_y * a.e2 + J.wa_2_z * a.e3);
-    D[1][4] = T(2) * (J.wa_2_x * a.e0 + J.wa_2_y * a.e3 - J.wa_2_z * a.e2);
-    D[1][5] = T(2) * (J.wa_2_y * a.e0 - J.wa_2_x * a.e3 + J.wa_2_z * a.e1);
-    D[1][6] = T(2) * (J.wa_2_x * a.e2 - J.wa_2_y * a.e1 + J.wa_2_z * a.e0);
+    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
@@ -969,53 +960,54 @@ struct slider {
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T H1_1_2 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
     const T H2_1 = lambda[0] * fa_y_x + lambda[1] * fa_z_x;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T H4_1 = lambda[2] * fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T H4_2 = lambda[4] * fb_z_x;
     const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_3 = d_y + ra_y;
-    const T H4_4 = T(0.5) * H4_2 - T(0.5) * H4_1 - lambda[1] * H4_3;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+    const T H4_1 = lambda[2] * fb_z_z;
+    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+    const T H4_2 = lambda[4] * fb_z_x;
+    const T H4_3 = T(0.5) * H4_2 - lambda[1] * ra_d_y - T(0.5) * H4_1;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H4_5 = lambda[2] * fb_x_z;
+    const T H4_4 = lambda[2] * fb_x_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_6 = lambda[4] * fb_x_x;
-    const T H4_7 = H4_6 - H4_5;
+    const T H4_5 = lambda[4] * fb_x_x;
+    const T H4_6 = H4_5 - H4_4;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T H4_8 = lambda[2] * fb_y_z;
+    const T H4_7 = lambda[2] * fb_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H4_9 = lambda[4] * fb_y_x;
-    const T H4_10 = T(0.5) * H4_9 - T(0.5) * H4_8 - lambda[0] * H4_3;
-    const T H4_11 = fa_z_y * H4_4 + T(0.5) * (fa_x_y * H4_7 + T(2) * fa_y_y * H4_10);
-    const T H4_12 = lambda[2] * fb_z_y;
-    const T H4_13 = lambda[3] * fb_z_x;
+    const T H4_8 = lambda[4] * fb_y_x;
+    const T H4_9 = T(0.5) * H4_8 - lambda[0] * ra_d_y - T(0.5) * H4_7;
+    const T H4_10 = fa_z_y * H4_3 + T(0.5) * (fa_x_y * H4_6 + T(2) * fa_y_y * H4_9);
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_14 = d_z + ra_z;
-    const T H4_15 = T(0.5) * H4_13 - T(0.5) * H4_12 + lambda[1] * H4_14;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_11 = lambda[2] * fb_z_y;
+    const T H4_12 = lambda[3] * fb_z_x;
+    const T H4_13 = lambda[1] * ra_d_z - T(0.5) * H4_11 + T(0.5) * H4_12;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H4_16 = lambda[2] * fb_x_y;
-    const T H4_17 = fb_x_x * lambda[3];
-    const T H4_18 = H4_17 - H4_16;
-    const T H4_19 = lambda[2] * fb_y_y;
-    const T H4_20 = lambda[3] * fb_y_x;
-    const T H4_21 = T(0.5) * H4_20 - T(0.5) * H4_19 + lambda[0] * H4_14;
-    const T H4_22 = fa_z_z * H4_15 + T(0.5) * (fa_x_z * H4_18 + T(2) * fa_y_z * H4_21);
+    const T H4_14 = lambda[2] * fb_x_y;
+    const T H4_15 = fb_x_x * lambda[3];
+    const T H4_16 = H4_15 - H4_14;
+    const T H4_17 = lambda[2] * fb_y_y;
+    const T H4_18 = lambda[3] * fb_y_x;
+    const T H4_19 = lambda[0] * ra_d_z - T(0.5) * H4_17 + T(0.5) * H4_18;
+    const T H4_20 = fa_z_z * H4_13 + T(0.5) * (fa_x_z * H4_16 + T(2) * fa_y_z * H4_19);
     const T H4_1_2 = rb_y * H1_1_2;
     const T H4_2_2 = rb_z * H1_1;
     const T H4_3_2 = H4_1_2 + H4_2_2;
-    const T H4_4_2 = H4_5 * fa_x_y - H4_16 * fa_x_z;
+    const T H4_4_2 = H4_4 * fa_x_y - H4_14 * fa_x_z;
     const T H4_5_2 = fa_y_y * fb_y_z + fa_z_y * fb_z_z;
     const T H4_6_2 = fa_y_z * fb_y_y + fa_z_z * fb_z_y;
     const T H4_1_3 = rb_x * H1_1_2;
@@ -1036,12 +1028,11 @@ struct slider {
     const T H5_3 = H5_2 - H5_1;
     const T H5_4 = lambda[3] * fb_y_z;
     const T H5_5 = lambda[4] * fb_y_y;
-    const T H5_6 = d_x + ra_x;
-    const T H5_7 = T(0.5) * H5_5 - T(0.5) * H5_4 + lambda[0] * H5_6;
-    const T H5_8 = lambda[3] * fb_z_z;
-    const T H5_9 = lambda[4] * fb_z_y;
-    const T H5_10 = T(0.5) * H5_9 - T(0.5) * H5_8 + lambda[1] * H5_6;
-    const T H5_1_2 = fa_z_x * H5_10 + T(0.5) * (fa_x_x * H5_3 + T(2) * fa_y_x * H5_7);
+    const T H5_6 = lambda[0] * ra_d_x - T(0.5) * H5_4 + T(0.5) * H5_5;
+    const T H5_7 = lambda[3] * fb_z_z;
+    const T H5_8 = lambda[4] * fb_z_y;
+    const T H5_9 = lambda[1] * ra_d_x - T(0.5) * H5_7 + T(0.5) * H5_8;
+    const T H5_1_2 = fa_z_x * H5_9 + T(0.5) * (fa_x_x * H5_3 + T(2) * fa_y_x * H5_6);
     const T H5_1_3 = rb_y * H2_1;
     const T H5_2_2 = lambda[2] * fa_x_x;
     const T H5_3_2 = H5_2_2 + H4_3_3;
@@ -1051,7 +1042,7 @@ struct slider {
     const T H5_7_2 = H5_6_2 + H4_9_2;
     const T H5_1_4 = rb_x * H2_1;
     const T H5_2_3 = H4_2_2 + H5_1_4;
-    const T H5_3_3 = H5_1 * fa_x_x - H4_17 * fa_x_z;
+    const T H5_3_3 = H5_1 * fa_x_x - H4_15 * fa_x_z;
     const T H5_4_3 = fa_y_x * fb_y_z + fa_z_x * fb_z_z;
     const T H5_1_5 = rb_y * H1_1;
     const T H5_2_4 = fa_y_x * fb_y_y + fa_z_x * fb_z_y;
@@ -1061,15 +1052,15 @@ struct slider {
     const T H6_4 = rb_z * H2_1;
     const T H6_1_2 = rb_z * H1_1_2;
     const T H6_1_3 = H4_1_2 + H5_1_4;
-    const T H6_2_2 = H5_2 * fa_x_x - H4_6 * fa_x_y;
+    const T H6_2_2 = H5_2 * fa_x_x - H4_5 * fa_x_y;
     const T H10_1 = lambda[0] * rb_y;
-    const T H10_2 = H10_1 + T(0.5) * H4_8;
+    const T H10_2 = H10_1 + T(0.5) * H4_7;
     const T H10_3 = lambda[1] * rb_y;
     const T H10_4 = H10_3 + T(0.5) * H4_1;
     const T H10_5 = lambda[0] * rb_z;
-    const T H10_6 = T(0.5) * H4_19 - H10_5;
+    const T H10_6 = T(0.5) * H4_17 - H10_5;
     const T H10_7 = lambda[1] * rb_z;
-    const T H10_8 = T(0.5) * H4_12 - H10_7;
+    const T H10_8 = T(0.5) * H4_11 - H10_7;
     const T H10_1_2 = lambda[3] * fb_x_y;
     const T H10_2_2 = lambda[4] * fb_x_z;
     const T H10_3_2 = H10_1_2 + H10_2_2;
@@ -1090,15 +1081,15 @@ struct slider {
     const T H11_1 = lambda[0] * rb_x;
     const T H11_2 = T(0.5) * H5_4 - H11_1;
     const T H11_3 = lambda[1] * rb_x;
-    const T H11_4 = T(0.5) * H5_8 - H11_3;
+    const T H11_4 = T(0.5) * H5_7 - H11_3;
     const T H11_5 = lambda[2] * fb_x_x;
     const T H11_6 = H11_5 + H10_2_2;
     const T H11_7 = lambda[2] * fb_y_x;
     const T H11_8 = H11_7 + H10_5_2;
     const T H11_9 = lambda[2] * fb_z_x;
     const T H11_10 = H11_9 + H10_8_2;
-    const T H11_1_2 = H10_5 + T(0.5) * H4_20;
-    const T H11_2_2 = H10_7 + T(0.5) * H4_13;
+    const T H11_1_2 = H10_5 + T(0.5) * H4_18;
+    const T H11_2_2 = H10_7 + T(0.5) * H4_12;
     const T H11_1_3 = lambda[3] * fa_x_z - lambda[4] * fa_x_y;
     const T H11_2_3 = lambda[3] * fa_y_z - lambda[4] * fa_y_y;
     const T H11_3_2 = lambda[3] * fa_z_z - lambda[4] * fa_z_y;
@@ -1107,8 +1098,8 @@ struct slider {
     const T H12_2 = H11_7 + H10_4_2;
     const T H12_3 = H11_9 + H10_7_2;
     const T H12_4 = H11_1 + T(0.5) * H5_5;
-    const T H12_5 = H11_3 + T(0.5) * H5_9;
-    const T H12_1_2 = T(0.5) * H4_9 - H10_1;
+    const T H12_5 = H11_3 + T(0.5) * H5_8;
+    const T H12_1_2 = T(0.5) * H4_8 - H10_1;
     const T H12_2_2 = T(0.5) * H4_2 - H10_3;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
@@ -1118,9 +1109,9 @@ struct slider {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = H4_11 - H4_22;
-    H[3][4] = -T(0.5) * fa_x_x * H4_7 - fa_y_x * H4_10 - fa_z_x * H4_4;
-    H[3][5] = T(0.5) * fa_x_x * H4_18 + fa_y_x * H4_21 + fa_z_x * H4_15;
+    H[3][3] = H4_10 - H4_20;
+    H[3][4] = -T(0.5) * fa_x_x * H4_6 - fa_y_x * H4_9 - fa_z_x * H4_3;
+    H[3][5] = T(0.5) * fa_x_x * H4_16 + fa_y_x * H4_19 + fa_z_x * H4_13;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
     H[3][9] = H4_3_2 + T(0.5) * H4_4_2 + T(0.5) * lambda[2] * (H4_5_2 - H4_6_2);
@@ -1130,9 +1121,9 @@ struct slider {
         H4_10_2 - T(0.5) * lambda[2] * (H4_2_4 + fa_x_y * fb_x_x);
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = T(0.5) * fa_x_y * H5_3 + fa_y_y * H5_7 + fa_z_y * H5_10;
-    H[4][4] = -H5_1_2 - H4_22;
-    H[4][5] = T(0.5) * fa_x_y * H4_18 + fa_y_y * H4_21 + fa_z_y * H4_15;
+    H[4][3] = T(0.5) * fa_x_y * H5_3 + fa_y_y * H5_6 + fa_z_y * H5_9;
+    H[4][4] = -H5_1_2 - H4_20;
+    H[4][5] = T(0.5) * fa_x_y * H4_16 + fa_y_y * H4_19 + fa_z_y * H4_13;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
     H[4][9] = -H5_1_3 - T(0.5) * fb_x_z * H5_3_2 - T(0.5) * fb_y_z * H5_5_2 - T(0.5) * fb_z_z *
@@ -1142,9 +1133,9 @@ struct slider {
         H5_1_5 + T(0.5) * lambda[3] * (H5_2_4 + fa_x_x * fb_x_y);
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = T(0.5) * fa_x_z * H5_3 + fa_y_z * H5_7 + fa_z_z * H5_10;
-    H[5][4] = -T(0.5) * fa_x_z * H4_7 - fa_y_z * H4_10 - fa_z_z * H4_4;
-    H[5][5] = H4_11 - H5_1_2;
+    H[5][3] = T(0.5) * fa_x_z * H5_3 + fa_y_z * H5_6 + fa_z_z * H5_9;
+    H[5][4] = -T(0.5) * fa_x_z * H4_6 - fa_y_z * H4_9 - fa_z_z * H4_3;
+    H[5][5] = H4_10 - H5_1_2;
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
     H[5][9] = T(0.5) * fb_x_y * H6_1 + T(0.5) * fb_y_y * H6_2 + T(0.5) * fb_z_y * H6_3 - H6_4 +
@@ -1159,9 +1150,9 @@ struct slider {
     H[8][3] = H1_1_2;
     H[8][4] = H[1][5];
     H[9][3] = T(0.5) * H4_4_2 + fa_y_y * H10_2 + fa_z_y * H10_4 - fa_y_z * H10_6 - fa_z_z * H10_8;
-    H[9][4] = -T(0.5) * H4_5 * fa_x_x - fa_y_x * H10_2 - fa_z_x * H10_4 - T(0.5) * fa_x_z *
+    H[9][4] = -T(0.5) * H4_4 * fa_x_x - fa_y_x * H10_2 - fa_z_x * H10_4 - T(0.5) * fa_x_z *
         H10_3_2 - T(0.5) * fa_y_z * H10_6_2 - T(0.5) * fa_z_z * H10_9;
-    H[9][5] = T(0.5) * H4_16 * fa_x_x + fa_y_x * H10_6 + fa_z_x * H10_8 + T(0.5) * fa_x_y *
+    H[9][5] = T(0.5) * H4_14 * fa_x_x + fa_y_x * H10_6 + fa_z_x * H10_8 + T(0.5) * fa_x_y *
         H10_3_2 + T(0.5) * fa_y_y * H10_6_2 + T(0.5) * fa_z_y * H10_9;
     H[9][9] = T(0.5) * H10_4_3 - T(0.5) * H10_8_3 - H4_3_2;
     H[9][10] = H4_1_3 - T(0.5) * fb_x_x * H10_2_3 - T(0.5) * fb_y_x * H10_3_3 - T(0.5) * fb_z_x *
@@ -1172,7 +1163,7 @@ struct slider {
         T(0.5) * fa_y_z * H11_8 + T(0.5) * fa_z_z * H11_10;
     H[10][4] = fa_y_z * H11_1_2 - T(0.5) * H5_3_3 - fa_y_x * H11_2 - fa_z_x * H11_4 + fa_z_z *
         H11_2_2;
-    H[10][5] = -T(0.5) * H4_17 * fa_x_y - T(0.5) * fa_x_x * H11_6 - T(0.5) * fa_y_x * H11_8 -
+    H[10][5] = -T(0.5) * H4_15 * fa_x_y - T(0.5) * fa_x_x * H11_6 - T(0.5) * fa_y_x * H11_8 -
         T(0.5) * fa_z_x * H11_10 - fa_y_y * H11_1_2 - fa_z_y * H11_2_2;
     H[10][9] = T(0.5) * fb_x_y * H11_1_3 + T(0.5) * fb_y_y * H11_2_3 + T(0.5) * fb_z_y * H11_3_2 +
         H5_1_3;
@@ -1181,7 +1172,7 @@ struct slider {
         H5_1_5;
     H[11][3] = -T(0.5) * H5_2 * fa_x_z - T(0.5) * fa_x_y * H12_1 - T(0.5) * fa_y_y * H12_2 -
         T(0.5) * fa_z_y * H12_3 - fa_y_z * H12_4 - fa_z_z * H12_5;
-    H[11][4] = T(0.5) * H4_6 * fa_x_z + T(0.5) * fa_x_x * H12_1 + T(0.5) * fa_y_x * H12_2 +
+    H[11][4] = T(0.5) * H4_5 * fa_x_z + T(0.5) * fa_x_x * H12_1 + T(0.5) * fa_y_x * H12_2 +
         T(0.5) * fa_z_x * H12_3 + fa_y_z * H12_1_2 + fa_z_z * H12_2_2;
     H[11][5] = T(0.5) * H6_2_2 + fa_y_x * H12_4 + fa_z_x * H12_5 - fa_y_y * H12_1_2 - fa_z_y *
         H12_2_2;
@@ -1249,7 +1240,8 @@ struct slider {
 
     template <class T>
     struct Jacobian {
-      T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z, rb_x_fa_x_x, rb_x_fa_x_y, rb_x_fa_x_z;
+      T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z, rb_x_fa_x_x,
+          rb_x_fa_x_y, rb_x_fa_x_z;
     };
 
     // C: 29 +, 30 *
@@ -1272,7 +1264,7 @@ struct slider {
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     }
 
-    // C and J: 44 +, 48 *
+    // C and J: 38 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -1290,19 +1282,16 @@ struct slider {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
       const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-      const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-      const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-      const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-      const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-      const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-      const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
       J.fa_x_x = fa_x_x;
       J.fa_x_y = fa_x_y;
       J.fa_x_z = fa_x_z;
-      J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-      J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-      J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+      J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+      J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+      J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
       J.rb_x_fa_x_x = fa_x_z * rb_y - fa_x_y * rb_z;
       J.rb_x_fa_x_y = fa_x_x * rb_z - fa_x_z * rb_x;
       J.rb_x_fa_x_z = fa_x_y * rb_x - fa_x_x * rb_y;
@@ -1313,14 +1302,16 @@ struct slider {
     static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
       const InverseMass<T>& ma = m[0];
       const InverseMass<T>& mb = m[1];
-      K[0] = ma.m + mb.m + J.rb_x_fa_x_x *
-          (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz * J.rb_x_fa_x_z) +
-          J.rb_x_fa_x_y * (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz *
-          J.rb_x_fa_x_z) + J.rb_x_fa_x_z *
-          (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz * J.rb_x_fa_x_z) + J.wa_x *
-          (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+      K[0] = ma.m + mb.m + J.ra_d_x_fa_x_x *
+          (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+          J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+          J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+          (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z) +
+          J.rb_x_fa_x_x * (mb.Ixx * J.rb_x_fa_x_x + mb.Ixy * J.rb_x_fa_x_y + mb.Ixz *
+          J.rb_x_fa_x_z) + J.rb_x_fa_x_y *
+          (mb.Ixy * J.rb_x_fa_x_x + mb.Iyy * J.rb_x_fa_x_y + mb.Iyz * J.rb_x_fa_x_z) +
+          J.rb_x_fa_x_z * (mb.Ixz * J.rb_x_fa_x_x + mb.Iyz * J.rb_x_fa_x_y + mb.Izz *
+          J.rb_x_fa_x_z);
     }
 
     // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
@@ -1340,9 +1331,9 @@ struct slider {
     static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
       const Velocity<T>& va = v[0];
       const Velocity<T>& vb = v[1];
-      Jv[0] = J.rb_x_fa_x_x * vb.wx + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.wa_x *
-          va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.fa_x_x * (vb.x - va.x) + J.fa_x_y *
-          (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
+      Jv[0] = J.rb_x_fa_x_x * vb.wx - J.ra_d_x_fa_x_x * va.wx - J.ra_d_x_fa_x_y * va.wy -
+          J.ra_d_x_fa_x_z * va.wz + J.rb_x_fa_x_y * vb.wy + J.rb_x_fa_x_z * vb.wz + J.fa_x_x *
+          (vb.x - va.x) + J.fa_x_y * (vb.y - va.y) + J.fa_x_z * (vb.z - va.z);
     }
 
     // v += M^-1 J^T lambda: 24 +, 32 *
@@ -1354,9 +1345,9 @@ struct slider {
       const Velocity<T> vb = v[1];
       const InverseMass<T>& mb = m[1];
       const T v1_1 = ma.m * lambda[0];
-      const T v1_1_2 = lambda[0] * J.wa_x;
-      const T v1_2 = lambda[0] * J.wa_y;
-      const T v1_3 = lambda[0] * J.wa_z;
+      const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+      const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+      const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
       const T v2_1 = lambda[0] * mb.m;
       const T v2_1_2 = lambda[0] * J.rb_x_fa_x_x;
       const T v2_2 = lambda[0] * J.rb_x_fa_x_y;
@@ -1364,9 +1355,9 @@ struct slider {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-      v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-      v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+      v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+      v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -1375,7 +1366,7 @@ struct slider {
       v[1].wz = vb.wz + v2_1_2 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
     }
 
-    // J with its zeros: v, w of each body: 3 +
+    // J with its zeros: v, w of each body: 6 +
     template <class T>
     static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1384,9 +1375,9 @@ struct slider {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x;
-      D[0][4] = J.wa_y;
-      D[0][5] = J.wa_z;
+      D[0][3] = -J.ra_d_x_fa_x_x;
+      D[0][4] = -J.ra_d_x_fa_x_y;
+      D[0][5] = -J.ra_d_x_fa_x_z;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -1395,7 +1386,7 @@ struct slider {
       D[0][11] = J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense: 15 +, 24 *
+    // (M^-1 J^T)^T, laid out like dense: 18 +, 24 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1407,9 +1398,9 @@ struct slider {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+      D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+      D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -1424,10 +1415,11 @@ struct slider {
         T (&K)[1]) {
       const IsotropicInverseMass<T>& ma = m[0];
       const IsotropicInverseMass<T>& mb = m[1];
+      const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+          J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
       const T dot_rb_x_fa_x_rb_x_fa_x = J.rb_x_fa_x_x * J.rb_x_fa_x_x + J.rb_x_fa_x_y *
           J.rb_x_fa_x_y + J.rb_x_fa_x_z * J.rb_x_fa_x_z;
-      K[0] = ma.m + mb.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
-          dot_rb_x_fa_x_rb_x_fa_x;
+      K[0] = ma.m + mb.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x + mb.I * dot_rb_x_fa_x_rb_x_fa_x;
     }
 
     // v += M^-1 J^T lambda, for sphere-like bodies: 12 +, 16 *
@@ -1445,9 +1437,9 @@ struct slider {
       v[0].x = va.x - v1_1 * J.fa_x_x;
       v[0].y = va.y - v1_1 * J.fa_x_y;
       v[0].z = va.z - v1_1 * J.fa_x_z;
-      v[0].wx = va.wx + v1_1_2 * J.wa_x;
-      v[0].wy = va.wy + v1_1_2 * J.wa_y;
-      v[0].wz = va.wz + v1_1_2 * J.wa_z;
+      v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+      v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+      v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
       v[1].x = vb.x + v2_1 * J.fa_x_x;
       v[1].y = vb.y + v2_1 * J.fa_x_y;
       v[1].z = vb.z + v2_1 * J.fa_x_z;
@@ -1456,7 +1448,7 @@ struct slider {
       v[1].wz = vb.wz + v2_1_2 * J.rb_x_fa_x_z;
     }
 
-    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 12 *
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 12 *
     template <class T>
     static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
         T (&D)[1][12]) {
@@ -1468,9 +1460,9 @@ struct slider {
       D[0][0] = -ma.m * J.fa_x_x;
       D[0][1] = -ma.m * J.fa_x_y;
       D[0][2] = -ma.m * J.fa_x_z;
-      D[0][3] = ma.I * J.wa_x;
-      D[0][4] = ma.I * J.wa_y;
-      D[0][5] = ma.I * J.wa_z;
+      D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+      D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+      D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
       D[0][6] = mb.m * J.fa_x_x;
       D[0][7] = mb.m * J.fa_x_y;
       D[0][8] = mb.m * J.fa_x_z;
@@ -1479,7 +1471,7 @@ struct slider {
       D[0][11] = mb.I * J.rb_x_fa_x_z;
     }
 
-    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 18 *
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
     template <class T>
     static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
       for (auto& row : D) {
@@ -1490,9 +1482,9 @@ struct slider {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+      D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+      D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
       D[0][6] = J.fa_x_x;
       D[0][7] = J.fa_x_y;
       D[0][8] = J.fa_x_z;
@@ -1512,10 +1504,10 @@ struct slider {
       D[0][0] = -J.fa_x_x;
       D[0][1] = -J.fa_x_y;
       D[0][2] = -J.fa_x_z;
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+      D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+      D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+      D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
@@ -1605,27 +1597,27 @@ struct slider {
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
       const T d_x = b.x - a.x - ra_x + rb_x;
       const T d_y = b.y - a.y - ra_y + rb_y;
-      const T H4_1 = lambda[0] * (d_y + ra_y);
-      const T H4_2 = fa_x_y * H4_1;
+      const T ra_d_x = d_x + ra_x;
+      const T ra_d_y = d_y + ra_y;
+      const T H4_1 = ra_d_y * fa_x_y;
       const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T d_z = b.z - a.z - ra_z + rb_z;
-      const T H4_3 = lambda[0] * (d_z + ra_z);
-      const T H4_4 = fa_x_z * H4_3;
+      const T ra_d_z = d_z + ra_z;
+      const T H4_2 = ra_d_z * fa_x_z;
       const T H4_1_2 = fa_x_y * rb_y;
       const T H4_2_2 = fa_x_z * rb_z;
-      const T H4_3_2 = lambda[0] * (H4_1_2 + H4_2_2);
+      const T H4_3 = lambda[0] * (H4_1_2 + H4_2_2);
       const T H4_1_3 = H1_1_2 * rb_x;
       const T H4_1_4 = H1_1 * rb_x;
-      const T H5_1 = lambda[0] * (d_x + ra_x);
-      const T H5_1_2 = fa_x_x * H5_1;
-      const T H5_1_3 = H2_1 * rb_y;
-      const T H5_1_4 = fa_x_x * rb_x;
-      const T H5_2 = lambda[0] * (H5_1_4 + H4_2_2);
-      const T H5_1_5 = H1_1 * rb_y;
+      const T H5_1 = ra_d_x * fa_x_x;
+      const T H5_1_2 = H2_1 * rb_y;
+      const T H5_1_3 = fa_x_x * rb_x;
+      const T H5_2 = lambda[0] * (H5_1_3 + H4_2_2);
+      const T H5_1_4 = H1_1 * rb_y;
       const T H6_1 = H2_1 * rb_z;
       const T H6_1_2 = H1_1_2 * rb_z;
-      const T H6_1_3 = lambda[0] * (H5_1_4 + H4_1_2);
+      const T H6_1_3 = lambda[0] * (H5_1_3 + H4_1_2);
       H[0][4] = -H1_1;
       H[0][5] = H1_1_2;
       H[1][3] = H1_1;
@@ -1634,29 +1626,29 @@ struct slider {
       H[2][4] = H2_1;
       H[3][1] = H1_1;
       H[3][2] = H[2][3];
-      H[3][3] = -H4_2 - H4_4;
-      H[3][4] = fa_x_x * H4_1;
-      H[3][5] = fa_x_x * H4_3;
+      H[3][3] = -lambda[0] * (H4_1 + H4_2);
+      H[3][4] = H2_1 * ra_d_y;
+      H[3][5] = H2_1 * ra_d_z;
       H[3][7] = H[0][4];
       H[3][8] = H1_1_2;
-      H[3][9] = H4_3_2;
+      H[3][9] = H4_3;
       H[3][10] = -H4_1_3;
       H[3][11] = -H4_1_4;
       H[4][0] = H[0][4];
       H[4][2] = H2_1;
-      H[4][3] = fa_x_y * H5_1;
-      H[4][4] = -H5_1_2 - H4_4;
-      H[4][5] = fa_x_y * H4_3;
+      H[4][3] = H1_1_2 * ra_d_x;
+      H[4][4] = -lambda[0] * (H5_1 + H4_2);
+      H[4][5] = H1_1_2 * ra_d_z;
       H[4][6] = H1_1;
       H[4][8] = H[1][5];
-      H[4][9] = -H5_1_3;
+      H[4][9] = -H5_1_2;
       H[4][10] = H5_2;
-      H[4][11] = -H5_1_5;
+      H[4][11] = -H5_1_4;
       H[5][0] = H1_1_2;
       H[5][1] = H[1][5];
-      H[5][3] = fa_x_z * H5_1;
-      H[5][4] = fa_x_z * H4_1;
-      H[5][5] = -H5_1_2 - H4_2;
+      H[5][3] = H1_1 * ra_d_x;
+      H[5][4] = H1_1 * ra_d_y;
+      H[5][5] = -lambda[0] * (H5_1 + H4_1);
       H[5][6] = H[2][3];
       H[5][7] = H2_1;
       H[5][9] = -H6_1;
@@ -1668,18 +1660,18 @@ struct slider {
       H[7][5] = H2_1;
       H[8][3] = H1_1_2;
       H[8][4] = H[1][5];
-      H[9][3] = H4_3_2;
+      H[9][3] = H4_3;
       H[9][4] = H[4][9];
       H[9][5] = H[5][9];
-      H[9][9] = -H4_3_2;
+      H[9][9] = -H4_3;
       H[9][10] = H4_1_3;
       H[9][11] = H4_1_4;
       H[10][3] = H[3][10];
       H[10][4] = H5_2;
       H[10][5] = H[5][10];
-      H[10][9] = H5_1_3;
+      H[10][9] = H5_1_2;
       H[10][10] = -H5_2;
-      H[10][11] = H5_1_5;
+      H[10][11] = H5_1_4;
       H[11][3] = H[3][11];
       H[11][4] = H[4][11];
       H[11][5] = H6_1_3;
@@ -2205,11 +2197,12 @@ struct slider::b_immovable : slider {
 
   template <class T>
   struct Jacobian {
-    T fa_y_x, fa_y_y, fa_y_z, wa_1_x, wa_1_y, wa_1_z, fa_z_x, fa_z_y, fa_z_z, wa_2_x, wa_2_y,
-        wa_2_z, wa_3_x, wa_3_y, wa_3_z, wa_4_x, wa_4_y, wa_4_z, wa_5_x, wa_5_y, wa_5_z;
+    T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z, fa_z_x, fa_z_y, fa_z_z,
+        ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z, wa_3_x, wa_3_y, wa_3_z, wa_4_x, wa_4_y,
+        wa_4_z, wa_5_x, wa_5_y, wa_5_z;
   };
 
-  // C and J: 121 +, 141 *
+  // C and J: 106 +, 129 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[5],
       Jacobian<T>& J) {
@@ -2269,18 +2262,9 @@ struct slider::b_immovable : slider {
     const T C5_5 = fa_z_x * fb_z_y;
     const T C5_6 = fa_z_y * fb_z_x;
     const T fa_z_x_fb_z_z = C5_5 - C5_6;
-    const T d_x_fa_y_x = d_y * fa_y_z - d_z * fa_y_y;
-    const T d_x_fa_y_y = d_z * fa_y_x - d_x * fa_y_z;
-    const T ra_x_fa_y_x = ra_y * fa_y_z - fa_y_y * ra_z;
-    const T ra_x_fa_y_y = fa_y_x * ra_z - ra_x * fa_y_z;
-    const T d_x_fa_y_z = d_x * fa_y_y - d_y * fa_y_x;
-    const T ra_x_fa_y_z = ra_x * fa_y_y - fa_y_x * ra_y;
-    const T d_x_fa_z_x = d_y * fa_z_z - d_z * fa_z_y;
-    const T d_x_fa_z_y = d_z * fa_z_x - d_x * fa_z_z;
-    const T ra_x_fa_z_x = ra_y * fa_z_z - fa_z_y * ra_z;
-    const T ra_x_fa_z_y = fa_z_x * ra_z - ra_x * fa_z_z;
-    const T d_x_fa_z_z = d_x * fa_z_y - d_y * fa_z_x;
-    const T ra_x_fa_z_z = ra_x * fa_z_y - fa_z_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     const T wa_3_x_1 = fa_z_y * fb_z_y + fa_x_y * fb_x_y + fa_y_y * fb_y_y;
     const T wa_3_x_2 = fa_z_z * fb_z_z + fa_x_z * fb_x_z + fa_y_z * fb_y_z;
     const T wa_4_y_1 = fa_z_x * fb_z_x + fa_x_x * fb_x_x + fa_y_x * fb_y_x;
@@ -2292,15 +2276,15 @@ struct slider::b_immovable : slider {
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
     J.fa_y_z = fa_y_z;
-    J.wa_1_x = -d_x_fa_y_x - ra_x_fa_y_x;
-    J.wa_1_y = -d_x_fa_y_y - ra_x_fa_y_y;
-    J.wa_1_z = -d_x_fa_y_z - ra_x_fa_y_z;
+    J.ra_d_x_fa_y_x = ra_d_y * fa_y_z - ra_d_z * fa_y_y;
+    J.ra_d_x_fa_y_y = ra_d_z * fa_y_x - ra_d_x * fa_y_z;
+    J.ra_d_x_fa_y_z = ra_d_x * fa_y_y - ra_d_y * fa_y_x;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;
     J.fa_z_z = fa_z_z;
-    J.wa_2_x = -d_x_fa_z_x - ra_x_fa_z_x;
-    J.wa_2_y = -d_x_fa_z_y - ra_x_fa_z_y;
-    J.wa_2_z = -d_x_fa_z_z - ra_x_fa_z_z;
+    J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
+    J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
+    J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
     J.wa_3_x = -T(0.5) * (wa_3_x_1 + wa_3_x_2);
     J.wa_3_y = T(0.5) * (C5_1 + C5_3 + C5_5);
     J.wa_3_z = T(0.5) * (C3_3 + C3_7 + C3_11);
@@ -2312,34 +2296,34 @@ struct slider::b_immovable : slider {
     J.wa_5_z = -T(0.5) * (wa_3_x_1 + wa_4_y_1);
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 62 +, 90 *
+  // K = J M^-1 J^T, lower triangle, from J: 68 +, 90 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[15]) {
     const InverseMass<T>& ma = m[0];
-    const T K11_1 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_2 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_3 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
-    const T K22_1 = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    const T K22_2 = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    const T K22_3 = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
+    const T K11_1 = ma.Ixx * J.ra_d_x_fa_y_x + ma.Ixy * J.ra_d_x_fa_y_y + ma.Ixz * J.ra_d_x_fa_y_z;
+    const T K11_2 = ma.Ixy * J.ra_d_x_fa_y_x + ma.Iyy * J.ra_d_x_fa_y_y + ma.Iyz * J.ra_d_x_fa_y_z;
+    const T K11_3 = ma.Ixz * J.ra_d_x_fa_y_x + ma.Iyz * J.ra_d_x_fa_y_y + ma.Izz * J.ra_d_x_fa_y_z;
+    const T K22_1 = ma.Ixx * J.ra_d_x_fa_z_x + ma.Ixy * J.ra_d_x_fa_z_y + ma.Ixz * J.ra_d_x_fa_z_z;
+    const T K22_2 = ma.Ixy * J.ra_d_x_fa_z_x + ma.Iyy * J.ra_d_x_fa_z_y + ma.Iyz * J.ra_d_x_fa_z_z;
+    const T K22_3 = ma.Ixz * J.ra_d_x_fa_z_x + ma.Iyz * J.ra_d_x_fa_z_y + ma.Izz * J.ra_d_x_fa_z_z;
     const T K33_1 = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
     const T K33_2 = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
     const T K33_3 = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
     const T K44_1 = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
     const T K44_2 = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
     const T K44_3 = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
-    K[0] = ma.m + J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3;
-    K[1] = J.wa_2_x * K11_1 + J.wa_2_y * K11_2 + J.wa_2_z * K11_3;
-    K[2] = ma.m + J.wa_2_x * K22_1 + J.wa_2_y * K22_2 + J.wa_2_z * K22_3;
-    K[3] = J.wa_3_x * K11_1 + J.wa_3_y * K11_2 + J.wa_3_z * K11_3;
-    K[4] = J.wa_3_x * K22_1 + J.wa_3_y * K22_2 + J.wa_3_z * K22_3;
+    K[0] = ma.m + J.ra_d_x_fa_y_x * K11_1 + J.ra_d_x_fa_y_y * K11_2 + J.ra_d_x_fa_y_z * K11_3;
+    K[1] = J.ra_d_x_fa_z_x * K11_1 + J.ra_d_x_fa_z_y * K11_2 + J.ra_d_x_fa_z_z * K11_3;
+    K[2] = ma.m + J.ra_d_x_fa_z_x * K22_1 + J.ra_d_x_fa_z_y * K22_2 + J.ra_d_x_fa_z_z * K22_3;
+    K[3] = -J.wa_3_x * K11_1 - J.wa_3_y * K11_2 - J.wa_3_z * K11_3;
+    K[4] = -J.wa_3_x * K22_1 - J.wa_3_y * K22_2 - J.wa_3_z * K22_3;
     K[5] = J.wa_3_x * K33_1 + J.wa_3_y * K33_2 + J.wa_3_z * K33_3;
-    K[6] = J.wa_4_x * K11_1 + J.wa_4_y * K11_2 + J.wa_4_z * K11_3;
-    K[7] = J.wa_4_x * K22_1 + J.wa_4_y * K22_2 + J.wa_4_z * K22_3;
+    K[6] = -J.wa_4_x * K11_1 - J.wa_4_y * K11_2 - J.wa_4_z * K11_3;
+    K[7] = -J.wa_4_x * K22_1 - J.wa_4_y * K22_2 - J.wa_4_z * K22_3;
     K[8] = J.wa_4_x * K33_1 + J.wa_4_y * K33_2 + J.wa_4_z * K33_3;
     K[9] = J.wa_4_x * K44_1 + J.wa_4_y * K44_2 + J.wa_4_z * K44_3;
-    K[10] = J.wa_5_x * K11_1 + J.wa_5_y * K11_2 + J.wa_5_z * K11_3;
-    K[11] = J.wa_5_x * K22_1 + J.wa_5_y * K22_2 + J.wa_5_z * K22_3;
+    K[10] = -J.wa_5_x * K11_1 - J.wa_5_y * K11_2 - J.wa_5_z * K11_3;
+    K[11] = -J.wa_5_x * K22_1 - J.wa_5_y * K22_2 - J.wa_5_z * K22_3;
     K[12] = J.wa_5_x * K33_1 + J.wa_5_y * K33_2 + J.wa_5_z * K33_3;
     K[13] = J.wa_5_x * K44_1 + J.wa_5_y * K44_2 + J.wa_5_z * K44_3;
     K[14] = J.wa_5_x * (ma.Ixx * J.wa_5_x + ma.Ixy * J.wa_5_y + ma.Ixz * J.wa_5_z) + J.wa_5_y *
@@ -2347,14 +2331,14 @@ struct slider::b_immovable : slider {
         (ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z);
   }
 
-  // J v: 16 +, 21 *
+  // J v: 18 +, 21 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[5]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_1_x * va.wx - J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z + J.wa_1_y *
-        va.wy + J.wa_1_z * va.wz;
-    Jv[1] = J.wa_2_x * va.wx - J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z + J.wa_2_y *
-        va.wy + J.wa_2_z * va.wz;
+    Jv[0] = -J.fa_y_x * va.x - J.fa_y_y * va.y - J.fa_y_z * va.z - J.ra_d_x_fa_y_x * va.wx -
+        J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
+    Jv[1] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
+        J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
     Jv[2] = J.wa_3_x * va.wx + J.wa_3_y * va.wy + J.wa_3_z * va.wz;
     Jv[3] = J.wa_4_x * va.wx + J.wa_4_y * va.wy + J.wa_4_z * va.wz;
     Jv[4] = J.wa_5_x * va.wx + J.wa_5_y * va.wy + J.wa_5_z * va.wz;
@@ -2366,12 +2350,12 @@ struct slider::b_immovable : slider {
       Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
-    const T v1_1 = J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1] + J.wa_3_x * lambda[2] + J.wa_4_x *
-        lambda[3] + J.wa_5_x * lambda[4];
-    const T v1_2 = J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1] + J.wa_3_y * lambda[2] + J.wa_4_y *
-        lambda[3] + J.wa_5_y * lambda[4];
-    const T v1_3 = J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1] + J.wa_3_z * lambda[2] + J.wa_4_z *
-        lambda[3] + J.wa_5_z * lambda[4];
+    const T v1_1 = J.wa_3_x * lambda[2] - J.ra_d_x_fa_y_x * lambda[0] - J.ra_d_x_fa_z_x *
+        lambda[1] + J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4];
+    const T v1_2 = J.wa_3_y * lambda[2] - J.ra_d_x_fa_y_y * lambda[0] - J.ra_d_x_fa_z_y *
+        lambda[1] + J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4];
+    const T v1_3 = J.wa_3_z * lambda[2] - J.ra_d_x_fa_y_z * lambda[0] - J.ra_d_x_fa_z_z *
+        lambda[1] + J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4];
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1]);
@@ -2380,7 +2364,7 @@ struct slider::b_immovable : slider {
     v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
   }
 
-  // J with its zeros: v, w of each body: 6 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -2389,15 +2373,15 @@ struct slider::b_immovable : slider {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x;
-    D[0][4] = J.wa_1_y;
-    D[0][5] = J.wa_1_z;
+    D[0][3] = -J.ra_d_x_fa_y_x;
+    D[0][4] = -J.ra_d_x_fa_y_y;
+    D[0][5] = -J.ra_d_x_fa_y_z;
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x;
-    D[1][4] = J.wa_2_y;
-    D[1][5] = J.wa_2_z;
+    D[1][3] = -J.ra_d_x_fa_z_x;
+    D[1][4] = -J.ra_d_x_fa_z_y;
+    D[1][5] = -J.ra_d_x_fa_z_z;
     D[2][3] = J.wa_3_x;
     D[2][4] = J.wa_3_y;
     D[2][5] = J.wa_3_z;
@@ -2409,7 +2393,7 @@ struct slider::b_immovable : slider {
     D[4][5] = J.wa_5_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 36 +, 51 *
+  // (M^-1 J^T)^T, laid out like dense: 42 +, 51 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -2420,15 +2404,15 @@ struct slider::b_immovable : slider {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    D[0][4] = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    D[0][5] = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_y_x - ma.Ixy * J.ra_d_x_fa_y_y - ma.Ixz * J.ra_d_x_fa_y_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_y_x - ma.Iyy * J.ra_d_x_fa_y_y - ma.Iyz * J.ra_d_x_fa_y_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_y_x - ma.Iyz * J.ra_d_x_fa_y_y - ma.Izz * J.ra_d_x_fa_y_z;
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    D[1][4] = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    D[1][5] = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
+    D[1][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
+    D[1][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
+    D[1][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
     D[2][3] = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
     D[2][4] = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
     D[2][5] = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
@@ -2440,23 +2424,35 @@ struct slider::b_immovable : slider {
     D[4][5] = ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 32 +, 60 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 38 +, 60 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[15]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
-    K[1] = ma.I * (J.wa_1_x * J.wa_2_x + J.wa_1_y * J.wa_2_y + J.wa_1_z * J.wa_2_z);
-    K[2] = ma.m + ma.I * (J.wa_2_x * J.wa_2_x + J.wa_2_y * J.wa_2_y + J.wa_2_z * J.wa_2_z);
-    K[3] = ma.I * (J.wa_1_x * J.wa_3_x + J.wa_1_y * J.wa_3_y + J.wa_1_z * J.wa_3_z);
-    K[4] = ma.I * (J.wa_2_x * J.wa_3_x + J.wa_2_y * J.wa_3_y + J.wa_2_z * J.wa_3_z);
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_y = J.ra_d_x_fa_y_x * J.ra_d_x_fa_y_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_y_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_y_z;
+    const T dot_ra_d_x_fa_y_ra_d_x_fa_z = J.ra_d_x_fa_y_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_y_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_y_z * J.ra_d_x_fa_z_z;
+    const T dot_ra_d_x_fa_z_ra_d_x_fa_z = J.ra_d_x_fa_z_x * J.ra_d_x_fa_z_x + J.ra_d_x_fa_z_y *
+        J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y;
+    K[1] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z;
+    K[2] = ma.m + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z;
+    K[3] = -ma.I * (J.ra_d_x_fa_y_x * J.wa_3_x + J.ra_d_x_fa_y_y * J.wa_3_y + J.ra_d_x_fa_y_z *
+        J.wa_3_z);
+    K[4] = -ma.I * (J.ra_d_x_fa_z_x * J.wa_3_x + J.ra_d_x_fa_z_y * J.wa_3_y + J.ra_d_x_fa_z_z *
+        J.wa_3_z);
     K[5] = ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z);
-    K[6] = ma.I * (J.wa_1_x * J.wa_4_x + J.wa_1_y * J.wa_4_y + J.wa_1_z * J.wa_4_z);
-    K[7] = ma.I * (J.wa_2_x * J.wa_4_x + J.wa_2_y * J.wa_4_y + J.wa_2_z * J.wa_4_z);
+    K[6] = -ma.I * (J.ra_d_x_fa_y_x * J.wa_4_x + J.ra_d_x_fa_y_y * J.wa_4_y + J.ra_d_x_fa_y_z *
+        J.wa_4_z);
+    K[7] = -ma.I * (J.ra_d_x_fa_z_x * J.wa_4_x + J.ra_d_x_fa_z_y * J.wa_4_y + J.ra_d_x_fa_z_z *
+        J.wa_4_z);
     K[8] = ma.I * (J.wa_3_x * J.wa_4_x + J.wa_3_y * J.wa_4_y + J.wa_3_z * J.wa_4_z);
     K[9] = ma.I * (J.wa_4_x * J.wa_4_x + J.wa_4_y * J.wa_4_y + J.wa_4_z * J.wa_4_z);
-    K[10] = ma.I * (J.wa_1_x * J.wa_5_x + J.wa_1_y * J.wa_5_y + J.wa_1_z * J.wa_5_z);
-    K[11] = ma.I * (J.wa_2_x * J.wa_5_x + J.wa_2_y * J.wa_5_y + J.wa_2_z * J.wa_5_z);
+    K[10] = -ma.I * (J.ra_d_x_fa_y_x * J.wa_5_x + J.ra_d_x_fa_y_y * J.wa_5_y + J.ra_d_x_fa_y_z *
+        J.wa_5_z);
+    K[11] = -ma.I * (J.ra_d_x_fa_z_x * J.wa_5_x + J.ra_d_x_fa_z_y * J.wa_5_y + J.ra_d_x_fa_z_z *
+        J.wa_5_z);
     K[12] = ma.I * (J.wa_3_x * J.wa_5_x + J.wa_3_y * J.wa_5_y + J.wa_3_z * J.wa_5_z);
     K[13] = ma.I * (J.wa_4_x * J.wa_5_x + J.wa_4_y * J.wa_5_y + J.wa_4_z * J.wa_5_z);
     K[14] = ma.I * (J.wa_5_x * J.wa_5_x + J.wa_5_y * J.wa_5_y + J.wa_5_z * J.wa_5_z);
@@ -2471,15 +2467,15 @@ struct slider::b_immovable : slider {
     v[0].x = va.x - ma.m * (J.fa_y_x * lambda[0] + J.fa_z_x * lambda[1]);
     v[0].y = va.y - ma.m * (J.fa_y_y * lambda[0] + J.fa_z_y * lambda[1]);
     v[0].z = va.z - ma.m * (J.fa_y_z * lambda[0] + J.fa_z_z * lambda[1]);
-    v[0].wx = va.wx + ma.I * (J.wa_1_x * lambda[0] + J.wa_2_x * lambda[1] + J.wa_3_x * lambda[2] +
-        J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4]);
-    v[0].wy = va.wy + ma.I * (J.wa_1_y * lambda[0] + J.wa_2_y * lambda[1] + J.wa_3_y * lambda[2] +
-        J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4]);
-    v[0].wz = va.wz + ma.I * (J.wa_1_z * lambda[0] + J.wa_2_z * lambda[1] + J.wa_3_z * lambda[2] +
-        J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4]);
+    v[0].wx = va.wx + ma.I * (J.wa_3_x * lambda[2] - J.ra_d_x_fa_y_x * lambda[0] -
+        J.ra_d_x_fa_z_x * lambda[1] + J.wa_4_x * lambda[3] + J.wa_5_x * lambda[4]);
+    v[0].wy = va.wy + ma.I * (J.wa_3_y * lambda[2] - J.ra_d_x_fa_y_y * lambda[0] -
+        J.ra_d_x_fa_z_y * lambda[1] + J.wa_4_y * lambda[3] + J.wa_5_y * lambda[4]);
+    v[0].wz = va.wz + ma.I * (J.wa_3_z * lambda[2] - J.ra_d_x_fa_y_z * lambda[0] -
+        J.ra_d_x_fa_z_z * lambda[1] + J.wa_4_z * lambda[3] + J.wa_5_z * lambda[4]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 21 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 21 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -2490,15 +2486,15 @@ struct slider::b_immovable : slider {
     D[0][0] = -ma.m * J.fa_y_x;
     D[0][1] = -ma.m * J.fa_y_y;
     D[0][2] = -ma.m * J.fa_y_z;
-    D[0][3] = ma.I * J.wa_1_x;
-    D[0][4] = ma.I * J.wa_1_y;
-    D[0][5] = ma.I * J.wa_1_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
     D[1][0] = -ma.m * J.fa_z_x;
     D[1][1] = -ma.m * J.fa_z_y;
     D[1][2] = -ma.m * J.fa_z_z;
-    D[1][3] = ma.I * J.wa_2_x;
-    D[1][4] = ma.I * J.wa_2_y;
-    D[1][5] = ma.I * J.wa_2_z;
+    D[1][3] = -ma.I * J.ra_d_x_fa_z_x;
+    D[1][4] = -ma.I * J.ra_d_x_fa_z_y;
+    D[1][5] = -ma.I * J.ra_d_x_fa_z_z;
     D[2][3] = ma.I * J.wa_3_x;
     D[2][4] = ma.I * J.wa_3_y;
     D[2][5] = ma.I * J.wa_3_z;
@@ -2510,7 +2506,7 @@ struct slider::b_immovable : slider {
     D[4][5] = ma.I * J.wa_5_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 36 +, 45 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 42 +, 45 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -2520,15 +2516,15 @@ struct slider::b_immovable : slider {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = J.wa_2_x * a.xx + J.wa_2_y * a.yx + J.wa_2_z * a.zx;
-    D[1][4] = J.wa_2_x * a.xy + J.wa_2_y * a.yy + J.wa_2_z * a.zy;
-    D[1][5] = J.wa_2_x * a.xz + J.wa_2_y * a.yz + J.wa_2_z * a.zz;
+    D[1][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
+    D[1][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
+    D[1][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
     D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
     D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
     D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
@@ -2550,17 +2546,17 @@ struct slider::b_immovable : slider {
     D[0][0] = -J.fa_y_x;
     D[0][1] = -J.fa_y_y;
     D[0][2] = -J.fa_y_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
     D[1][0] = -J.fa_z_x;
     D[1][1] = -J.fa_z_y;
     D[1][2] = -J.fa_z_z;
-    D[1][3] = -T(2) * (J.wa_2_x * a.e1 + J.wa_2_y * a.e2 + J.wa_2_z * a.e3);
-    D[1][4] = T(2) * (J.wa_2_x * a.e0 + J.wa_2_y * a.e3 - J.wa_2_z * a.e2);
-    D[1][5] = T(2) * (J.wa_2_y * a.e0 - J.wa_2_x * a.e3 + J.wa_2_z * a.e1);
-    D[1][6] = T(2) * (J.wa_2_x * a.e2 - J.wa_2_y * a.e1 + J.wa_2_z * a.e0);
+    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
+    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
+    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
+    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
     D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
     D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
     D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
@@ -2667,7 +2663,7 @@ struct slider::b_immovable : slider {
         w_a_x_w_a_x_fa_z_x_fb_z_z);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 108 +, 147 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 107 +, 147 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[5],
       T (&H)[12][12]) {
@@ -2685,42 +2681,42 @@ struct slider::b_immovable : slider {
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T H1_1_2 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
     const T H2_1 = -lambda[0] * fa_y_x - lambda[1] * fa_z_x;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
     const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
     const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = -d_y - ra_y;
-    const T H4_2 = T(0.5) * lambda[4] * fb_z_x - T(0.5) * lambda[2] * fb_z_z + lambda[1] * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+    const T H4_1 = T(0.5) * lambda[4] * fb_z_x - lambda[1] * ra_d_y - T(0.5) * lambda[2] * fb_z_z;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_3 = T(0.5) * lambda[4] * fb_x_x - T(0.5) * lambda[2] * fb_x_z;
+    const T H4_2 = T(0.5) * lambda[4] * fb_x_x - T(0.5) * lambda[2] * fb_x_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H4_4 = T(0.5) * lambda[4] * fb_y_x - T(0.5) * lambda[2] * fb_y_z + lambda[0] * H4_1;
-    const T H4_5 = fa_z_y * H4_2 + fa_x_y * H4_3 + fa_y_y * H4_4;
+    const T H4_3 = T(0.5) * lambda[4] * fb_y_x - lambda[0] * ra_d_y - T(0.5) * lambda[2] * fb_y_z;
+    const T H4_4 = fa_z_y * H4_1 + fa_x_y * H4_2 + fa_y_y * H4_3;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_6 = d_z + ra_z;
-    const T H4_7 = T(0.5) * lambda[3] * fb_z_x - T(0.5) * lambda[2] * fb_z_y + lambda[1] * H4_6;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_5 = lambda[1] * ra_d_z - T(0.5) * lambda[2] * fb_z_y + T(0.5) * lambda[3] * fb_z_x;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H4_8 = T(0.5) * lambda[3] * fb_x_x - T(0.5) * lambda[2] * fb_x_y;
-    const T H4_9 = T(0.5) * lambda[3] * fb_y_x - T(0.5) * lambda[2] * fb_y_y + lambda[0] * H4_6;
-    const T H4_10 = fa_z_z * H4_7 + fa_x_z * H4_8 + fa_y_z * H4_9;
+    const T H4_6 = T(0.5) * lambda[3] * fb_x_x - T(0.5) * lambda[2] * fb_x_y;
+    const T H4_7 = lambda[0] * ra_d_z - T(0.5) * lambda[2] * fb_y_y + T(0.5) * lambda[3] * fb_y_x;
+    const T H4_8 = fa_z_z * H4_5 + fa_x_z * H4_6 + fa_y_z * H4_7;
     const T H5_1 = T(0.5) * lambda[4] * fb_x_y - T(0.5) * lambda[3] * fb_x_z;
-    const T H5_2 = d_x + ra_x;
-    const T H5_3 = T(0.5) * lambda[4] * fb_y_y - T(0.5) * lambda[3] * fb_y_z + lambda[0] * H5_2;
-    const T H5_4 = T(0.5) * lambda[4] * fb_z_y - T(0.5) * lambda[3] * fb_z_z + lambda[1] * H5_2;
-    const T H5_1_2 = fa_z_x * H5_4 + fa_x_x * H5_1 + fa_y_x * H5_3;
+    const T H5_2 = lambda[0] * ra_d_x - T(0.5) * lambda[3] * fb_y_z + T(0.5) * lambda[4] * fb_y_y;
+    const T H5_3 = lambda[1] * ra_d_x - T(0.5) * lambda[3] * fb_z_z + T(0.5) * lambda[4] * fb_z_y;
+    const T H5_1_2 = fa_z_x * H5_3 + fa_x_x * H5_1 + fa_y_x * H5_2;
     H[0][4] = H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = -H1_1;
@@ -2729,19 +2725,19 @@ struct slider::b_immovable : slider {
     H[2][4] = -H2_1;
     H[3][1] = H[1][3];
     H[3][2] = H[2][3];
-    H[3][3] = H4_5 - H4_10;
-    H[3][4] = -fa_x_x * H4_3 - fa_y_x * H4_4 - fa_z_x * H4_2;
-    H[3][5] = fa_x_x * H4_8 + fa_y_x * H4_9 + fa_z_x * H4_7;
+    H[3][3] = H4_4 - H4_8;
+    H[3][4] = -fa_x_x * H4_2 - fa_y_x * H4_3 - fa_z_x * H4_1;
+    H[3][5] = fa_x_x * H4_6 + fa_y_x * H4_7 + fa_z_x * H4_5;
     H[4][0] = H1_1;
     H[4][2] = H[2][4];
-    H[4][3] = fa_x_y * H5_1 + fa_y_y * H5_3 + fa_z_y * H5_4;
-    H[4][4] = -H5_1_2 - H4_10;
-    H[4][5] = fa_x_y * H4_8 + fa_y_y * H4_9 + fa_z_y * H4_7;
+    H[4][3] = fa_x_y * H5_1 + fa_y_y * H5_2 + fa_z_y * H5_3;
+    H[4][4] = -H5_1_2 - H4_8;
+    H[4][5] = fa_x_y * H4_6 + fa_y_y * H4_7 + fa_z_y * H4_5;
     H[5][0] = H1_1_2;
     H[5][1] = H2_1;
-    H[5][3] = fa_x_z * H5_1 + fa_y_z * H5_3 + fa_z_z * H5_4;
-    H[5][4] = -fa_x_z * H4_3 - fa_y_z * H4_4 - fa_z_z * H4_2;
-    H[5][5] = H4_5 - H5_1_2;
+    H[5][3] = fa_x_z * H5_1 + fa_y_z * H5_2 + fa_z_z * H5_3;
+    H[5][4] = -fa_x_z * H4_2 - fa_y_z * H4_3 - fa_z_z * H4_1;
+    H[5][5] = H4_4 - H5_1_2;
   }
 };
 
@@ -2981,10 +2977,10 @@ struct slider::slide::b_immovable : slider::slide {
 
   template <class T>
   struct Jacobian {
-    T fa_x_x, fa_x_y, fa_x_z, wa_x, wa_y, wa_z;
+    T fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z;
   };
 
-  // C and J: 41 +, 42 *
+  // C and J: 35 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -3002,36 +2998,35 @@ struct slider::slide::b_immovable : slider::slide {
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T d_x_fa_x_x = d_y * fa_x_z - d_z * fa_x_y;
-    const T d_x_fa_x_y = d_z * fa_x_x - d_x * fa_x_z;
-    const T ra_x_fa_x_x = ra_y * fa_x_z - fa_x_y * ra_z;
-    const T ra_x_fa_x_y = fa_x_x * ra_z - ra_x * fa_x_z;
-    const T d_x_fa_x_z = d_x * fa_x_y - d_y * fa_x_x;
-    const T ra_x_fa_x_z = ra_x * fa_x_y - fa_x_x * ra_y;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
     J.fa_x_x = fa_x_x;
     J.fa_x_y = fa_x_y;
     J.fa_x_z = fa_x_z;
-    J.wa_x = -d_x_fa_x_x - ra_x_fa_x_x;
-    J.wa_y = -d_x_fa_x_y - ra_x_fa_x_y;
-    J.wa_z = -d_x_fa_x_z - ra_x_fa_x_z;
+    J.ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
+    J.ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
+    J.ra_d_x_fa_x_z = ra_d_x * fa_x_y - ra_d_y * fa_x_x;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 9 +, 12 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
     const InverseMass<T>& ma = m[0];
-    K[0] = ma.m + J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
-        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
-        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+    K[0] = ma.m + J.ra_d_x_fa_x_x *
+        (ma.Ixx * J.ra_d_x_fa_x_x + ma.Ixy * J.ra_d_x_fa_x_y + ma.Ixz * J.ra_d_x_fa_x_z) +
+        J.ra_d_x_fa_x_y * (ma.Ixy * J.ra_d_x_fa_x_x + ma.Iyy * J.ra_d_x_fa_x_y + ma.Iyz *
+        J.ra_d_x_fa_x_z) + J.ra_d_x_fa_x_z *
+        (ma.Ixz * J.ra_d_x_fa_x_x + ma.Iyz * J.ra_d_x_fa_x_y + ma.Izz * J.ra_d_x_fa_x_z);
   }
 
-  // J v: 5 +, 6 *
+  // J v: 6 +, 6 *
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
-    Jv[0] = J.wa_x * va.wx - J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z + J.wa_y * va.wy +
-        J.wa_z * va.wz;
+    Jv[0] = -J.fa_x_x * va.x - J.fa_x_y * va.y - J.fa_x_z * va.z - J.ra_d_x_fa_x_x * va.wx -
+        J.ra_d_x_fa_x_y * va.wy - J.ra_d_x_fa_x_z * va.wz;
   }
 
   // v += M^-1 J^T lambda: 12 +, 16 *
@@ -3041,18 +3036,18 @@ struct slider::slide::b_immovable : slider::slide {
     const Velocity<T> va = v[0];
     const InverseMass<T>& ma = m[0];
     const T v1_1 = ma.m * lambda[0];
-    const T v1_1_2 = lambda[0] * J.wa_x;
-    const T v1_2 = lambda[0] * J.wa_y;
-    const T v1_3 = lambda[0] * J.wa_z;
+    const T v1_1_2 = lambda[0] * J.ra_d_x_fa_x_x;
+    const T v1_2 = lambda[0] * J.ra_d_x_fa_x_y;
+    const T v1_3 = lambda[0] * J.ra_d_x_fa_x_z;
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
-    v[0].wy = va.wy + v1_1_2 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
-    v[0].wz = va.wz + v1_1_2 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+    v[0].wx = va.wx - v1_1_2 * ma.Ixx - v1_2 * ma.Ixy - v1_3 * ma.Ixz;
+    v[0].wy = va.wy - v1_1_2 * ma.Ixy - v1_2 * ma.Iyy - v1_3 * ma.Iyz;
+    v[0].wz = va.wz - v1_1_2 * ma.Ixz - v1_2 * ma.Iyz - v1_3 * ma.Izz;
   }
 
-  // J with its zeros: v, w of each body: 3 +
+  // J with its zeros: v, w of each body: 6 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3061,12 +3056,12 @@ struct slider::slide::b_immovable : slider::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x;
-    D[0][4] = J.wa_y;
-    D[0][5] = J.wa_z;
+    D[0][3] = -J.ra_d_x_fa_x_x;
+    D[0][4] = -J.ra_d_x_fa_x_y;
+    D[0][5] = -J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 9 +, 12 *
+  // (M^-1 J^T)^T, laid out like dense: 12 +, 12 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3077,9 +3072,9 @@ struct slider::slide::b_immovable : slider::slide {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
-    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
-    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+    D[0][3] = -ma.Ixx * J.ra_d_x_fa_x_x - ma.Ixy * J.ra_d_x_fa_x_y - ma.Ixz * J.ra_d_x_fa_x_z;
+    D[0][4] = -ma.Ixy * J.ra_d_x_fa_x_x - ma.Iyy * J.ra_d_x_fa_x_y - ma.Iyz * J.ra_d_x_fa_x_z;
+    D[0][5] = -ma.Ixz * J.ra_d_x_fa_x_x - ma.Iyz * J.ra_d_x_fa_x_y - ma.Izz * J.ra_d_x_fa_x_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 3 +, 4 *
@@ -3087,7 +3082,9 @@ struct slider::slide::b_immovable : slider::slide {
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[1]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m + ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+    const T dot_ra_d_x_fa_x_ra_d_x_fa_x = J.ra_d_x_fa_x_x * J.ra_d_x_fa_x_x + J.ra_d_x_fa_x_y *
+        J.ra_d_x_fa_x_y + J.ra_d_x_fa_x_z * J.ra_d_x_fa_x_z;
+    K[0] = ma.m + ma.I * dot_ra_d_x_fa_x_ra_d_x_fa_x;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
@@ -3101,12 +3098,12 @@ struct slider::slide::b_immovable : slider::slide {
     v[0].x = va.x - v1_1 * J.fa_x_x;
     v[0].y = va.y - v1_1 * J.fa_x_y;
     v[0].z = va.z - v1_1 * J.fa_x_z;
-    v[0].wx = va.wx + v1_1_2 * J.wa_x;
-    v[0].wy = va.wy + v1_1_2 * J.wa_y;
-    v[0].wz = va.wz + v1_1_2 * J.wa_z;
+    v[0].wx = va.wx - v1_1_2 * J.ra_d_x_fa_x_x;
+    v[0].wy = va.wy - v1_1_2 * J.ra_d_x_fa_x_y;
+    v[0].wz = va.wz - v1_1_2 * J.ra_d_x_fa_x_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 +, 6 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 +, 6 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[1][12]) {
@@ -3117,12 +3114,12 @@ struct slider::slide::b_immovable : slider::slide {
     D[0][0] = -ma.m * J.fa_x_x;
     D[0][1] = -ma.m * J.fa_x_y;
     D[0][2] = -ma.m * J.fa_x_z;
-    D[0][3] = ma.I * J.wa_x;
-    D[0][4] = ma.I * J.wa_y;
-    D[0][5] = ma.I * J.wa_z;
+    D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
+    D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
+    D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
 
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
+  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
   template <class T>
   static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
     for (auto& row : D) {
@@ -3132,9 +3129,9 @@ struct slider::slide::b_immovable : slider::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
+    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
+    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
   }
 
   // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
@@ -3147,10 +3144,10 @@ struct slider::slide::b_immovable : slider::slide {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
+    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
+    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
+    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 
   // -Jdot v - d/dt(dC/dt): 51 +, 61 *
@@ -3217,15 +3214,15 @@ struct slider::slide::b_immovable : slider::slide {
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
     const T d_x = b.x - a.x - ra_x + rb_x;
     const T d_y = b.y - a.y - ra_y + rb_y;
-    const T H4_1 = lambda[0] * (d_y + ra_y);
-    const T H4_2 = fa_x_y * H4_1;
+    const T ra_d_x = d_x + ra_x;
+    const T ra_d_y = d_y + ra_y;
+    const T H4_1 = ra_d_y * fa_x_y;
     const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
     const T d_z = b.z - a.z - ra_z + rb_z;
-    const T H4_3 = lambda[0] * (d_z + ra_z);
-    const T H4_4 = fa_x_z * H4_3;
-    const T H5_1 = lambda[0] * (d_x + ra_x);
-    const T H5_1_2 = fa_x_x * H5_1;
+    const T ra_d_z = d_z + ra_z;
+    const T H4_2 = ra_d_z * fa_x_z;
+    const T H5_1 = ra_d_x * fa_x_x;
     H[0][4] = -H1_1;
     H[0][5] = H1_1_2;
     H[1][3] = H1_1;
@@ -3234,19 +3231,19 @@ struct slider::slide::b_immovable : slider::slide {
     H[2][4] = H2_1;
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
-    H[3][3] = -H4_2 - H4_4;
-    H[3][4] = fa_x_x * H4_1;
-    H[3][5] = fa_x_x * H4_3;
+    H[3][3] = -lambda[0] * (H4_1 + H4_2);
+    H[3][4] = H2_1 * ra_d_y;
+    H[3][5] = H2_1 * ra_d_z;
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
-    H[4][3] = fa_x_y * H5_1;
-    H[4][4] = -H5_1_2 - H4_4;
-    H[4][5] = fa_x_y * H4_3;
+    H[4][3] = H1_1_2 * ra_d_x;
+    H[4][4] = -lambda[0] * (H5_1 + H4_2);
+    H[4][5] = H1_1_2 * ra_d_z;
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
-    H[5][3] = fa_x_z * H5_1;
-    H[5][4] = fa_x_z * H4_1;
-    H[5][5] = -H5_1_2 - H4_2;
+    H[5][3] = H1_1 * ra_d_x;
+    H[5][4] = H1_1 * ra_d_y;
+    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 
