@@ -173,7 +173,7 @@ struct constant_velocity {
     J.wb_4_z = -wa_4_z_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 72 +, 96 *
+  // K = J M^-1 J^T, lower triangle, from J: 69 +, 75 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[10]) {
     const InverseMass<T>& ma = m[0];
@@ -201,24 +201,22 @@ struct constant_velocity {
     const T K33_2 = ma.Ixx * J.ra_y - ma.Ixy * J.ra_x;
     const T K33_3 = mb.Ixy * J.rb_y - mb.Iyy * J.rb_x;
     const T K33_4 = mb.Ixx * J.rb_y - mb.Ixy * J.rb_x;
+    const T K44_1 = ma.Ixy + mb.Ixy;
+    const T K44_2 = ma.Ixz + mb.Ixz;
+    const T K44_3 = ma.Iyz + mb.Iyz;
     K[0] = K11_1 - J.ra_y * K11_2 + J.ra_z * K11_3 - J.rb_y * K11_4 + J.rb_z * K11_5;
     K[1] = J.ra_x * K11_2 - J.ra_z * K21_3 + J.rb_x * K11_4 - J.rb_z * K21_6;
     K[2] = K11_1 + J.ra_x * K22_1 - J.ra_z * K22_2 + J.rb_x * K22_3 - J.rb_z * K22_4;
     K[3] = J.ra_y * K21_3 - J.ra_x * K11_3 - J.rb_x * K11_5 + J.rb_y * K21_6;
     K[4] = J.ra_y * K22_2 - J.ra_x * K32_2 - J.rb_x * K32_4 + J.rb_y * K22_4;
     K[5] = K11_1 - J.ra_x * K33_1 + J.ra_y * K33_2 - J.rb_x * K33_3 + J.rb_y * K33_4;
-    K[6] = J.wa_4_x * K21_3 + J.wa_4_y * K11_3 + J.wa_4_z * K11_2 - J.wb_4_x * K21_6 - J.wb_4_y *
-        K11_5 - J.wb_4_z * K11_4;
-    K[7] = J.wa_4_x * K22_2 + J.wa_4_y * K32_2 + J.wa_4_z * K22_1 - J.wb_4_x * K22_4 - J.wb_4_y *
-        K32_4 - J.wb_4_z * K22_3;
-    K[8] = J.wa_4_x * K33_2 + J.wa_4_y * K33_1 + J.wa_4_z * (K21_2 - K32_1) - J.wb_4_x * K33_4 -
-        J.wb_4_y * K33_3 - J.wb_4_z * (K21_5 - K32_3);
-    K[9] = J.wa_4_x * (ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z) + J.wa_4_y *
-        (ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z) + J.wa_4_z *
-        (ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z) + J.wb_4_x *
-        (mb.Ixx * J.wb_4_x + mb.Ixy * J.wb_4_y + mb.Ixz * J.wb_4_z) + J.wb_4_y *
-        (mb.Ixy * J.wb_4_x + mb.Iyy * J.wb_4_y + mb.Iyz * J.wb_4_z) + J.wb_4_z *
-        (mb.Ixz * J.wb_4_x + mb.Iyz * J.wb_4_y + mb.Izz * J.wb_4_z);
+    K[6] = J.wa_4_x * (K21_3 + K21_6) + J.wa_4_y * (K11_3 + K11_5) + J.wa_4_z * (K11_2 + K11_4);
+    K[7] = J.wa_4_x * (K22_2 + K22_4) + J.wa_4_y * (K32_2 + K32_4) + J.wa_4_z * (K22_1 + K22_3);
+    K[8] = J.wa_4_x * (K33_2 + K33_4) + J.wa_4_y * (K33_1 + K33_3) + J.wa_4_z *
+        (K21_2 - K32_1 + K21_5 - K32_3);
+    K[9] = J.wa_4_x * (J.wa_4_x * (ma.Ixx + mb.Ixx) + J.wa_4_y * K44_1 + J.wa_4_z * K44_2) +
+        J.wa_4_y * (J.wa_4_x * K44_1 + J.wa_4_y * (ma.Iyy + mb.Iyy) + J.wa_4_z * K44_3) +
+        J.wa_4_z * (J.wa_4_x * K44_2 + J.wa_4_y * K44_3 + J.wa_4_z * (ma.Izz + mb.Izz));
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 10 +, 26 *, 4 /, 4 <
@@ -2009,94 +2007,6 @@ struct constant_velocity::a_immovable : constant_velocity {
     D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
     D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 53 +, 87 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[4]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
-    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
-    const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y * w_b_x_w_b_x_fb_z_y +
-        fa_y_z * w_b_x_w_b_x_fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
-    const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-    const T dot_w_b_x_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_w_b_x_fb_y_x + fa_z_y * w_b_x_w_b_x_fb_y_y +
-        fa_z_z * w_b_x_w_b_x_fb_y_z;
-    g[0] = vb.wz * rb_x_w_b_y - vb.wy * rb_x_w_b_z;
-    g[1] = vb.wx * rb_x_w_b_z - vb.wz * rb_x_w_b_x;
-    g[2] = vb.wy * rb_x_w_b_x - vb.wx * rb_x_w_b_y;
-    g[3] = dot_w_b_x_w_b_x_fb_z_fa_y - dot_w_b_x_w_b_x_fb_y_fa_z;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 54 +, 81 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[4],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T H10_1 = lambda[1] * rb_y;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T H10_2 = lambda[2] * rb_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H10_3 = fa_y_y * fb_z_y - fa_z_y * fb_y_y;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T H10_4 = fa_y_z * fb_z_z - fa_z_z * fb_y_z;
-    const T H11_1 = lambda[0] * rb_x;
-    const T H11_2 = fa_y_x * fb_z_x - fa_z_x * fb_y_x;
-    H[9][9] = H10_1 + H10_2 + lambda[3] * (H10_3 + H10_4);
-    H[9][10] = lambda[3] * (fa_z_y * fb_y_x - fa_y_y * fb_z_x) - lambda[1] * rb_x;
-    H[9][11] = lambda[3] * (fa_z_z * fb_y_x - fa_y_z * fb_z_x) - lambda[2] * rb_x;
-    H[10][9] = lambda[3] * (fa_z_x * fb_y_y - fa_y_x * fb_z_y) - lambda[0] * rb_y;
-    H[10][10] = H11_1 + H10_2 + lambda[3] * (H11_2 + H10_4);
-    H[10][11] = lambda[3] * (fa_z_z * fb_y_y - fa_y_z * fb_z_y) - lambda[2] * rb_y;
-    H[11][9] = lambda[3] * (fa_z_x * fb_y_z - fa_y_x * fb_z_z) - lambda[0] * rb_z;
-    H[11][10] = lambda[3] * (fa_z_y * fb_y_z - fa_y_y * fb_z_z) - lambda[1] * rb_z;
-    H[11][11] = H11_1 + H10_1 + lambda[3] * (H10_3 + H11_2);
-  }
 };
 
 // constant_velocity with b immovable: its velocity and inverse mass are zero and gone.
@@ -2381,94 +2291,6 @@ struct constant_velocity::b_immovable : constant_velocity {
     D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
     D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 53 +, 87 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[4]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_w_a_x_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_w_a_x_fa_z_x + fb_y_y * w_a_x_w_a_x_fa_z_y +
-        fb_y_z * w_a_x_w_a_x_fa_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-    const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y * w_a_x_w_a_x_fa_y_y +
-        fb_z_z * w_a_x_w_a_x_fa_y_z;
-    g[0] = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    g[1] = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    g[2] = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    g[3] = dot_w_a_x_w_a_x_fa_y_fb_z - dot_w_a_x_w_a_x_fa_z_fb_y;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 54 +, 81 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[4],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T H4_1 = lambda[1] * ra_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T H4_2 = lambda[2] * ra_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H4_3 = fa_y_y * fb_z_y - fa_z_y * fb_y_y;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T H4_4 = fa_y_z * fb_z_z - fa_z_z * fb_y_z;
-    const T H5_1 = lambda[0] * ra_x;
-    const T H5_2 = fa_y_x * fb_z_x - fa_z_x * fb_y_x;
-    H[3][3] = lambda[3] * (H4_3 + H4_4) - H4_1 - H4_2;
-    H[3][4] = lambda[1] * ra_x + lambda[3] * (fa_z_x * fb_y_y - fa_y_x * fb_z_y);
-    H[3][5] = lambda[2] * ra_x + lambda[3] * (fa_z_x * fb_y_z - fa_y_x * fb_z_z);
-    H[4][3] = lambda[0] * ra_y + lambda[3] * (fa_z_y * fb_y_x - fa_y_y * fb_z_x);
-    H[4][4] = lambda[3] * (H5_2 + H4_4) - H5_1 - H4_2;
-    H[4][5] = lambda[2] * ra_y + lambda[3] * (fa_z_y * fb_y_z - fa_y_y * fb_z_z);
-    H[5][3] = lambda[0] * ra_z + lambda[3] * (fa_z_z * fb_y_x - fa_y_z * fb_z_x);
-    H[5][4] = lambda[1] * ra_z + lambda[3] * (fa_z_z * fb_y_y - fa_y_z * fb_z_y);
-    H[5][5] = lambda[3] * (H4_3 + H5_2) - H5_1 - H4_1;
-  }
 };
 
 // constant_velocity::bend_y with a immovable: its velocity and inverse mass are zero and gone.
@@ -2620,109 +2442,6 @@ struct constant_velocity::bend_y::a_immovable : constant_velocity::bend_y {
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 41 +, 69 *, 1 /, 1 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-    const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x * dot_fa_z_fb_x);
-    const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-    const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-        w_b_x_fb_x_z;
-    const T dot_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_fb_x_x + fa_z_y * w_b_x_fb_x_y + fa_z_z *
-        w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y * w_b_x_w_b_x_fb_x_y +
-        fa_z_z * w_b_x_w_b_x_fb_x_z;
-    const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y * w_b_x_w_b_x_fb_x_y +
-        fa_x_z * w_b_x_w_b_x_fb_x_z;
-    g[0] = g1_1 * (T(2) * (dot_fa_x_fb_x * dot_w_b_x_fb_x_fa_x + dot_fa_z_fb_x *
-        dot_w_b_x_fb_x_fa_z) * (dot_w_b_x_fb_x_fa_x * dot_fa_z_fb_x - dot_fa_x_fb_x *
-        dot_w_b_x_fb_x_fa_z) * g1_1 + dot_fa_x_fb_x * dot_w_b_x_w_b_x_fb_x_fa_z -
-        dot_w_b_x_w_b_x_fb_x_fa_x * dot_fa_z_fb_x);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 65 +, 121 *, 1 /, 1 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T H10_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x * dot_fa_z_fb_x);
-    const T H10_2 = dot_fa_z_fb_x * H10_1;
-    const T H10_3 = dot_fa_x_fb_x * H10_1;
-    const T H10_4 = lambda[0] * (H10_3 * fa_z_y - H10_2 * fa_x_y);
-    const T H10_5 = lambda[0] * H10_1;
-    const T H10_6 = fa_z_z * fb_x_y - fa_z_y * fb_x_z;
-    const T H10_7 = H10_3 * H10_5;
-    const T H10_8 = H10_2 * H10_5;
-    const T H10_9 = fa_x_z * fb_x_y - fa_x_y * fb_x_z;
-    const T H10_10 = T(2) * H10_7 * H10_6 - T(2) * H10_8 * H10_9;
-    const T H10_11 = H10_10 * dot_fa_x_fb_x - H10_5 * H10_6;
-    const T H10_12 = H10_5 * H10_9 + H10_10 * dot_fa_z_fb_x;
-    const T H10_13 = H10_4 + fa_x_z * H10_11 + fa_z_z * H10_12;
-    const T H10_14 = lambda[0] * (H10_2 * fa_x_z - H10_3 * fa_z_z);
-    const T H10_15 = H10_14 + fa_x_y * H10_11 + fa_z_y * H10_12;
-    const T H10_1_2 = fa_x_x * H10_11 + fa_z_x * H10_12;
-    const T H11_1 = lambda[0] * (H10_2 * fa_x_x - H10_3 * fa_z_x);
-    const T H11_2 = fa_z_x * fb_x_z - fa_z_z * fb_x_x;
-    const T H11_3 = fa_x_x * fb_x_z - fa_x_z * fb_x_x;
-    const T H11_4 = T(2) * H10_7 * H11_2 - T(2) * H10_8 * H11_3;
-    const T H11_5 = H11_4 * dot_fa_x_fb_x - H10_5 * H11_2;
-    const T H11_6 = H10_5 * H11_3 + H11_4 * dot_fa_z_fb_x;
-    const T H11_7 = H11_1 + fa_x_z * H11_5 + fa_z_z * H11_6;
-    const T H11_8 = fa_x_y * H11_5 + fa_z_y * H11_6;
-    const T H11_1_2 = fa_x_x * H11_5 - H10_14 + fa_z_x * H11_6;
-    const T H12_1 = fa_z_y * fb_x_x - fa_z_x * fb_x_y;
-    const T H12_2 = fa_x_y * fb_x_x - fa_x_x * fb_x_y;
-    const T H12_3 = T(2) * H10_7 * H12_1 - T(2) * H10_8 * H12_2;
-    const T H12_4 = H12_3 * dot_fa_x_fb_x - H10_5 * H12_1;
-    const T H12_5 = H10_5 * H12_2 + H12_3 * dot_fa_z_fb_x;
-    const T H12_6 = fa_x_z * H12_4 + fa_z_z * H12_5;
-    const T H12_7 = fa_x_y * H12_4 - H11_1 + fa_z_y * H12_5;
-    const T H12_1_2 = fa_x_x * H12_4 - H10_4 + fa_z_x * H12_5;
-    H[9][9] = fb_x_y * H10_13 - fb_x_z * H10_15;
-    H[9][10] = fb_x_z * H10_1_2 - fb_x_x * H10_13;
-    H[9][11] = fb_x_x * H10_15 - fb_x_y * H10_1_2;
-    H[10][9] = fb_x_y * H11_7 - fb_x_z * H11_8;
-    H[10][10] = fb_x_z * H11_1_2 - fb_x_x * H11_7;
-    H[10][11] = fb_x_x * H11_8 - fb_x_y * H11_1_2;
-    H[11][9] = fb_x_y * H12_6 - fb_x_z * H12_7;
-    H[11][10] = fb_x_z * H12_1_2 - fb_x_x * H12_6;
-    H[11][11] = fb_x_x * H12_7 - fb_x_y * H12_1_2;
   }
 };
 
@@ -2879,131 +2598,6 @@ struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 47 +, 81 *, 1 /, 1 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-    const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x * dot_fa_z_fb_x);
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-        w_a_x_fa_x_z;
-    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T dot_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_fa_z_x + fb_x_y * w_a_x_fa_z_y + fb_x_z *
-        w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y * w_a_x_w_a_x_fa_z_y +
-        fb_x_z * w_a_x_w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y * w_a_x_w_a_x_fa_x_y +
-        fb_x_z * w_a_x_w_a_x_fa_x_z;
-    g[0] = g1_1 * (T(2) * (dot_fa_x_fb_x * dot_w_a_x_fa_x_fb_x + dot_fa_z_fb_x *
-        dot_w_a_x_fa_z_fb_x) * (dot_fa_z_fb_x * dot_w_a_x_fa_x_fb_x - dot_fa_x_fb_x *
-        dot_w_a_x_fa_z_fb_x) * g1_1 + dot_fa_x_fb_x * dot_w_a_x_w_a_x_fa_z_fb_x - dot_fa_z_fb_x *
-        dot_w_a_x_w_a_x_fa_x_fb_x);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 77 +, 132 *, 1 /, 1 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T H4_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_z_fb_x * dot_fa_z_fb_x);
-    const T H4_2 = lambda[0] * H4_1;
-    const T H4_3 = dot_fa_z_fb_x * H4_2;
-    const T H4_4 = H4_3 * fb_x_y;
-    const T H4_5 = fa_z_y * fb_x_z;
-    const T H4_6 = fb_x_y * fa_z_z;
-    const T fa_z_x_fb_x_x = H4_5 - H4_6;
-    const T H4_7 = fa_z_x * fb_x_z;
-    const T fa_z_x_fb_x_y = fa_z_z * fb_x_x - H4_7;
-    const T H4_8 = dot_fa_x_fb_x * H4_2;
-    const T H4_9 = H4_1 * H4_8;
-    const T H4_10 = H4_1 * H4_3;
-    const T H4_11 = fa_x_y * fb_x_z;
-    const T H4_12 = fb_x_y * fa_x_z;
-    const T fa_x_x_fb_x_x = H4_11 - H4_12;
-    const T H4_13 = fb_x_z * fa_x_x;
-    const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - H4_13;
-    const T H4_14 = T(2) * H4_9 * fa_z_x_fb_x_x - T(2) * H4_10 * fa_x_x_fb_x_x;
-    const T H4_15 = H4_14 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_x;
-    const T H4_16 = fb_x_z * H4_15 - H4_4;
-    const T H4_17 = H4_8 * fb_x_y;
-    const T H4_18 = H4_2 * fa_x_x_fb_x_x + H4_14 * dot_fa_z_fb_x;
-    const T H4_19 = H4_17 + fb_x_z * H4_18;
-    const T H4_20 = H4_3 * fb_x_z;
-    const T H4_21 = H4_20 + fb_x_y * H4_15;
-    const T H4_22 = H4_8 * fb_x_z;
-    const T H4_23 = fb_x_y * H4_18 - H4_22;
-    const T H4_1_2 = fb_x_x * H4_15;
-    const T H4_2_2 = fb_x_x * H4_18;
-    const T H5_1 = H4_3 * fb_x_x;
-    const T H5_2 = T(2) * H4_9 * fa_z_x_fb_x_y - T(2) * H4_10 * fa_x_x_fb_x_y;
-    const T H5_3 = H5_2 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_y;
-    const T H5_4 = H5_1 + fb_x_z * H5_3;
-    const T H5_5 = H4_8 * fb_x_x;
-    const T H5_6 = H4_2 * fa_x_x_fb_x_y + H5_2 * dot_fa_z_fb_x;
-    const T H5_7 = fb_x_z * H5_6 - H5_5;
-    const T H5_1_2 = fb_x_x * H5_3 - H4_20;
-    const T H5_2_2 = H4_22 + fb_x_x * H5_6;
-    const T H5_1_3 = fb_x_y * fa_x_x;
-    const T H5_2_3 = fb_x_y * fa_z_x;
-    const T fa_z_x_fb_x_z = H5_2_3 - fa_z_y * fb_x_x;
-    const T fa_x_x_fb_x_z = H5_1_3 - fa_x_y * fb_x_x;
-    const T H6_1 = T(2) * H4_9 * fa_z_x_fb_x_z - T(2) * H4_10 * fa_x_x_fb_x_z;
-    const T H6_2 = H6_1 * dot_fa_x_fb_x - H4_2 * fa_z_x_fb_x_z;
-    const T H6_3 = H4_2 * fa_x_x_fb_x_z + H6_1 * dot_fa_z_fb_x;
-    const T H6_4 = fb_x_y * H6_2 - H5_1;
-    const T H6_5 = H5_5 + fb_x_y * H6_3;
-    const T H6_1_2 = H4_4 + fb_x_x * H6_2;
-    const T H6_2_2 = fb_x_x * H6_3 - H4_17;
-    H[3][3] = fa_x_y * H4_16 + fa_z_y * H4_19 - fa_x_z * H4_21 - fa_z_z * H4_23;
-    H[3][4] = H4_1_2 * fa_x_z - fa_x_x * H4_16 - fa_z_x * H4_19 + H4_2_2 * fa_z_z;
-    H[3][5] = fa_x_x * H4_21 + fa_z_x * H4_23 - H4_1_2 * fa_x_y - H4_2_2 * fa_z_y;
-    H[4][3] = fa_x_y * H5_4 + fa_z_y * H5_7 - H4_12 * H5_3 - H4_6 * H5_6;
-    H[4][4] = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_z_x * H5_7 + fa_z_z * H5_2_2;
-    H[4][5] = H5_1_3 * H5_3 + H5_2_3 * H5_6 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
-    H[5][3] = H4_11 * H6_2 + H4_5 * H6_3 - fa_x_z * H6_4 - fa_z_z * H6_5;
-    H[5][4] = fa_x_z * H6_1_2 - H4_13 * H6_2 - H4_7 * H6_3 + fa_z_z * H6_2_2;
-    H[5][5] = fa_x_x * H6_4 + fa_z_x * H6_5 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
-  }
 };
 
 // constant_velocity::bend_z with a immovable: its velocity and inverse mass are zero and gone.
@@ -3155,109 +2749,6 @@ struct constant_velocity::bend_z::a_immovable : constant_velocity::bend_z {
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 41 +, 69 *, 1 /, 1 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-    const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x * dot_fa_y_fb_x);
-    const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-    const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
-        w_b_x_fb_x_z;
-    const T dot_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_x_y + fa_y_z *
-        w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y * w_b_x_w_b_x_fb_x_y +
-        fa_x_z * w_b_x_w_b_x_fb_x_z;
-    const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y * w_b_x_w_b_x_fb_x_y +
-        fa_y_z * w_b_x_w_b_x_fb_x_z;
-    g[0] = g1_1 * (T(2) * (dot_fa_x_fb_x * dot_w_b_x_fb_x_fa_x + dot_fa_y_fb_x *
-        dot_w_b_x_fb_x_fa_y) * (dot_fa_x_fb_x * dot_w_b_x_fb_x_fa_y - dot_w_b_x_fb_x_fa_x *
-        dot_fa_y_fb_x) * g1_1 - dot_fa_x_fb_x * dot_w_b_x_w_b_x_fb_x_fa_y +
-        dot_w_b_x_w_b_x_fb_x_fa_x * dot_fa_y_fb_x);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 65 +, 121 *, 1 /, 1 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T H10_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x * dot_fa_y_fb_x);
-    const T H10_2 = dot_fa_y_fb_x * H10_1;
-    const T H10_3 = dot_fa_x_fb_x * H10_1;
-    const T H10_4 = lambda[0] * (H10_2 * fa_x_y - H10_3 * fa_y_y);
-    const T H10_5 = lambda[0] * H10_1;
-    const T H10_6 = fa_y_z * fb_x_y - fa_y_y * fb_x_z;
-    const T H10_7 = H10_3 * H10_5;
-    const T H10_8 = H10_2 * H10_5;
-    const T H10_9 = fa_x_z * fb_x_y - fa_x_y * fb_x_z;
-    const T H10_10 = T(2) * H10_8 * H10_9 - T(2) * H10_7 * H10_6;
-    const T H10_11 = H10_5 * H10_6 + H10_10 * dot_fa_x_fb_x;
-    const T H10_12 = H10_10 * dot_fa_y_fb_x - H10_5 * H10_9;
-    const T H10_13 = H10_4 + fa_x_z * H10_11 + fa_y_z * H10_12;
-    const T H10_14 = lambda[0] * (H10_3 * fa_y_z - H10_2 * fa_x_z);
-    const T H10_15 = H10_14 + fa_x_y * H10_11 + fa_y_y * H10_12;
-    const T H10_1_2 = fa_x_x * H10_11 + fa_y_x * H10_12;
-    const T H11_1 = lambda[0] * (H10_3 * fa_y_x - H10_2 * fa_x_x);
-    const T H11_2 = fa_y_x * fb_x_z - fa_y_z * fb_x_x;
-    const T H11_3 = fa_x_x * fb_x_z - fa_x_z * fb_x_x;
-    const T H11_4 = T(2) * H10_8 * H11_3 - T(2) * H10_7 * H11_2;
-    const T H11_5 = H10_5 * H11_2 + H11_4 * dot_fa_x_fb_x;
-    const T H11_6 = H11_4 * dot_fa_y_fb_x - H10_5 * H11_3;
-    const T H11_7 = H11_1 + fa_x_z * H11_5 + fa_y_z * H11_6;
-    const T H11_8 = fa_x_y * H11_5 + fa_y_y * H11_6;
-    const T H11_1_2 = fa_x_x * H11_5 - H10_14 + fa_y_x * H11_6;
-    const T H12_1 = fa_y_y * fb_x_x - fa_y_x * fb_x_y;
-    const T H12_2 = fa_x_y * fb_x_x - fa_x_x * fb_x_y;
-    const T H12_3 = T(2) * H10_8 * H12_2 - T(2) * H10_7 * H12_1;
-    const T H12_4 = H10_5 * H12_1 + H12_3 * dot_fa_x_fb_x;
-    const T H12_5 = H12_3 * dot_fa_y_fb_x - H10_5 * H12_2;
-    const T H12_6 = fa_x_z * H12_4 + fa_y_z * H12_5;
-    const T H12_7 = fa_x_y * H12_4 - H11_1 + fa_y_y * H12_5;
-    const T H12_1_2 = fa_x_x * H12_4 - H10_4 + fa_y_x * H12_5;
-    H[9][9] = fb_x_y * H10_13 - fb_x_z * H10_15;
-    H[9][10] = fb_x_z * H10_1_2 - fb_x_x * H10_13;
-    H[9][11] = fb_x_x * H10_15 - fb_x_y * H10_1_2;
-    H[10][9] = fb_x_y * H11_7 - fb_x_z * H11_8;
-    H[10][10] = fb_x_z * H11_1_2 - fb_x_x * H11_7;
-    H[10][11] = fb_x_x * H11_8 - fb_x_y * H11_1_2;
-    H[11][9] = fb_x_y * H12_6 - fb_x_z * H12_7;
-    H[11][10] = fb_x_z * H12_1_2 - fb_x_x * H12_6;
-    H[11][11] = fb_x_x * H12_7 - fb_x_y * H12_1_2;
   }
 };
 
@@ -3413,131 +2904,6 @@ struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 47 +, 81 *, 1 /, 1 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-    const T g1_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x * dot_fa_y_fb_x);
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
-        w_a_x_fa_x_z;
-    const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-    const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T dot_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_fa_y_x + fb_x_y * w_a_x_fa_y_y + fb_x_z *
-        w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y * w_a_x_w_a_x_fa_y_y +
-        fb_x_z * w_a_x_w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y * w_a_x_w_a_x_fa_x_y +
-        fb_x_z * w_a_x_w_a_x_fa_x_z;
-    g[0] = g1_1 * (T(2) * (dot_fa_x_fb_x * dot_w_a_x_fa_x_fb_x + dot_fa_y_fb_x *
-        dot_w_a_x_fa_y_fb_x) * (dot_fa_x_fb_x * dot_w_a_x_fa_y_fb_x - dot_fa_y_fb_x *
-        dot_w_a_x_fa_x_fb_x) * g1_1 - dot_fa_x_fb_x * dot_w_a_x_w_a_x_fa_y_fb_x + dot_fa_y_fb_x *
-        dot_w_a_x_w_a_x_fa_x_fb_x);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 77 +, 132 *, 1 /, 1 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
-    const T H4_1 = inverse(dot_fa_x_fb_x * dot_fa_x_fb_x + dot_fa_y_fb_x * dot_fa_y_fb_x);
-    const T H4_2 = lambda[0] * H4_1;
-    const T H4_3 = dot_fa_y_fb_x * H4_2;
-    const T H4_4 = H4_3 * fb_x_y;
-    const T H4_5 = fa_y_y * fb_x_z;
-    const T H4_6 = fb_x_y * fa_y_z;
-    const T fa_y_x_fb_x_x = H4_5 - H4_6;
-    const T H4_7 = fa_y_x * fb_x_z;
-    const T fa_y_x_fb_x_y = fa_y_z * fb_x_x - H4_7;
-    const T H4_8 = dot_fa_x_fb_x * H4_2;
-    const T H4_9 = H4_1 * H4_8;
-    const T H4_10 = H4_1 * H4_3;
-    const T H4_11 = fa_x_y * fb_x_z;
-    const T H4_12 = fb_x_y * fa_x_z;
-    const T fa_x_x_fb_x_x = H4_11 - H4_12;
-    const T H4_13 = fb_x_z * fa_x_x;
-    const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - H4_13;
-    const T H4_14 = T(2) * H4_10 * fa_x_x_fb_x_x - T(2) * H4_9 * fa_y_x_fb_x_x;
-    const T H4_15 = H4_2 * fa_y_x_fb_x_x + H4_14 * dot_fa_x_fb_x;
-    const T H4_16 = H4_4 + fb_x_z * H4_15;
-    const T H4_17 = H4_8 * fb_x_y;
-    const T H4_18 = H4_14 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_x;
-    const T H4_19 = fb_x_z * H4_18 - H4_17;
-    const T H4_20 = H4_3 * fb_x_z;
-    const T H4_21 = fb_x_y * H4_15 - H4_20;
-    const T H4_22 = H4_8 * fb_x_z;
-    const T H4_23 = H4_22 + fb_x_y * H4_18;
-    const T H4_1_2 = fb_x_x * H4_15;
-    const T H4_2_2 = fb_x_x * H4_18;
-    const T H5_1 = H4_3 * fb_x_x;
-    const T H5_2 = T(2) * H4_10 * fa_x_x_fb_x_y - T(2) * H4_9 * fa_y_x_fb_x_y;
-    const T H5_3 = H4_2 * fa_y_x_fb_x_y + H5_2 * dot_fa_x_fb_x;
-    const T H5_4 = fb_x_z * H5_3 - H5_1;
-    const T H5_5 = H4_8 * fb_x_x;
-    const T H5_6 = H5_2 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_y;
-    const T H5_7 = H5_5 + fb_x_z * H5_6;
-    const T H5_1_2 = H4_20 + fb_x_x * H5_3;
-    const T H5_2_2 = fb_x_x * H5_6 - H4_22;
-    const T H5_1_3 = fb_x_y * fa_x_x;
-    const T H5_2_3 = fb_x_y * fa_y_x;
-    const T fa_y_x_fb_x_z = H5_2_3 - fa_y_y * fb_x_x;
-    const T fa_x_x_fb_x_z = H5_1_3 - fa_x_y * fb_x_x;
-    const T H6_1 = T(2) * H4_10 * fa_x_x_fb_x_z - T(2) * H4_9 * fa_y_x_fb_x_z;
-    const T H6_2 = H4_2 * fa_y_x_fb_x_z + H6_1 * dot_fa_x_fb_x;
-    const T H6_3 = H6_1 * dot_fa_y_fb_x - H4_2 * fa_x_x_fb_x_z;
-    const T H6_4 = H5_1 + fb_x_y * H6_2;
-    const T H6_5 = fb_x_y * H6_3 - H5_5;
-    const T H6_1_2 = fb_x_x * H6_2 - H4_4;
-    const T H6_2_2 = H4_17 + fb_x_x * H6_3;
-    H[3][3] = fa_x_y * H4_16 + fa_y_y * H4_19 - fa_x_z * H4_21 - fa_y_z * H4_23;
-    H[3][4] = H4_1_2 * fa_x_z - fa_x_x * H4_16 - fa_y_x * H4_19 + H4_2_2 * fa_y_z;
-    H[3][5] = fa_x_x * H4_21 + fa_y_x * H4_23 - H4_1_2 * fa_x_y - H4_2_2 * fa_y_y;
-    H[4][3] = fa_x_y * H5_4 + fa_y_y * H5_7 - H4_12 * H5_3 - H4_6 * H5_6;
-    H[4][4] = fa_x_z * H5_1_2 - fa_x_x * H5_4 - fa_y_x * H5_7 + fa_y_z * H5_2_2;
-    H[4][5] = H5_1_3 * H5_3 + H5_2_3 * H5_6 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2;
-    H[5][3] = H4_11 * H6_2 + H4_5 * H6_3 - fa_x_z * H6_4 - fa_y_z * H6_5;
-    H[5][4] = fa_x_z * H6_1_2 - H4_13 * H6_2 - H4_7 * H6_3 + fa_y_z * H6_2_2;
-    H[5][5] = fa_x_x * H6_4 + fa_y_x * H6_5 - fa_x_y * H6_1_2 - fa_y_y * H6_2_2;
   }
 };
 

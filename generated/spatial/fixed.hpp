@@ -208,7 +208,7 @@ struct fixed {
     J.wb_6_z = T(0.5) * wa_6_z_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 151 +, 198 *
+  // K = J M^-1 J^T, lower triangle, from J: 151 +, 182 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[21]) {
     const InverseMass<T>& ma = m[0];
@@ -238,58 +238,58 @@ struct fixed {
     const T K33_4 = mb.Ixx * J.rb_y - mb.Ixy * J.rb_x;
     const T K43_1 = K21_2 - K32_1;
     const T K43_2 = K21_5 - K32_3;
-    const T K44_1 = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    const T K44_2 = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    const T K44_3 = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
-    const T K44_4 = mb.Ixx * J.wb_4_x + mb.Ixy * J.wb_4_y + mb.Ixz * J.wb_4_z;
-    const T K44_5 = mb.Ixy * J.wb_4_x + mb.Iyy * J.wb_4_y + mb.Iyz * J.wb_4_z;
-    const T K44_6 = mb.Ixz * J.wb_4_x + mb.Iyz * J.wb_4_y + mb.Izz * J.wb_4_z;
-    const T K55_1 = ma.Ixx * J.wa_5_x + ma.Ixy * J.wa_5_y + ma.Ixz * J.wa_5_z;
-    const T K55_2 = ma.Ixy * J.wa_5_x + ma.Iyy * J.wa_5_y + ma.Iyz * J.wa_5_z;
-    const T K55_3 = ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z;
-    const T K55_4 = mb.Ixx * J.wb_5_x + mb.Ixy * J.wb_5_y + mb.Ixz * J.wb_5_z;
-    const T K55_5 = mb.Ixy * J.wb_5_x + mb.Iyy * J.wb_5_y + mb.Iyz * J.wb_5_z;
-    const T K55_6 = mb.Ixz * J.wb_5_x + mb.Iyz * J.wb_5_y + mb.Izz * J.wb_5_z;
+    const T K44_1 = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
+    const T K44_2 = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
+    const T K44_3 = mb.Iyy * J.wb_4_y - mb.Ixy * J.wa_4_x + mb.Iyz * J.wb_4_z;
+    const T K44_4 = mb.Iyz * J.wb_4_y - mb.Ixz * J.wa_4_x + mb.Izz * J.wb_4_z;
+    const T K44_5 = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
+    const T K44_6 = mb.Ixy * J.wb_4_y - mb.Ixx * J.wa_4_x + mb.Ixz * J.wb_4_z;
+    const T K55_1 = mb.Ixz * J.wb_5_z - mb.Ixx * J.wa_4_y - mb.Ixy * J.wa_5_y;
+    const T K55_2 = ma.Iyz * J.wa_5_y - ma.Ixz * J.wb_4_y + ma.Izz * J.wa_5_z;
+    const T K55_3 = ma.Ixy * J.wa_5_y - ma.Ixx * J.wb_4_y + ma.Ixz * J.wa_5_z;
+    const T K55_4 = mb.Izz * J.wb_5_z - mb.Ixz * J.wa_4_y - mb.Iyz * J.wa_5_y;
+    const T K55_5 = ma.Iyy * J.wa_5_y - ma.Ixy * J.wb_4_y + ma.Iyz * J.wa_5_z;
+    const T K55_6 = mb.Iyz * J.wb_5_z - mb.Ixy * J.wa_4_y - mb.Iyy * J.wa_5_y;
     K[0] = K11_1 - J.ra_y * K11_2 + J.ra_z * K11_3 - J.rb_y * K11_4 + J.rb_z * K11_5;
     K[1] = J.ra_x * K11_2 - J.ra_z * K21_3 + J.rb_x * K11_4 - J.rb_z * K21_6;
     K[2] = K11_1 + J.ra_x * K22_1 - J.ra_z * K22_2 + J.rb_x * K22_3 - J.rb_z * K22_4;
     K[3] = J.ra_y * K21_3 - J.ra_x * K11_3 - J.rb_x * K11_5 + J.rb_y * K21_6;
     K[4] = J.ra_y * K22_2 - J.ra_x * K32_2 - J.rb_x * K32_4 + J.rb_y * K22_4;
     K[5] = K11_1 - J.ra_x * K33_1 + J.ra_y * K33_2 - J.rb_x * K33_3 + J.rb_y * K33_4;
-    K[6] = J.wa_4_x * K21_3 + J.wa_4_y * K11_3 + J.wa_4_z * K11_2 - J.wb_4_x * K21_6 - J.wb_4_y *
-        K11_5 - J.wb_4_z * K11_4;
-    K[7] = J.wa_4_x * K22_2 + J.wa_4_y * K32_2 + J.wa_4_z * K22_1 - J.wb_4_x * K22_4 - J.wb_4_y *
-        K32_4 - J.wb_4_z * K22_3;
-    K[8] = J.wa_4_x * K33_2 + J.wa_4_y * K33_1 + J.wa_4_z * K43_1 - J.wb_4_x * K33_4 - J.wb_4_y *
-        K33_3 - J.wb_4_z * K43_2;
-    K[9] = J.wa_4_x * K44_1 + J.wa_4_y * K44_2 + J.wa_4_z * K44_3 + J.wb_4_x * K44_4 + J.wb_4_y *
-        K44_5 + J.wb_4_z * K44_6;
-    K[10] = J.wa_5_x * K21_3 + J.wa_5_y * K11_3 + J.wa_5_z * K11_2 - J.wb_5_x * K21_6 - J.wb_5_y *
-        K11_5 - J.wb_5_z * K11_4;
-    K[11] = J.wa_5_x * K22_2 + J.wa_5_y * K32_2 + J.wa_5_z * K22_1 - J.wb_5_x * K22_4 - J.wb_5_y *
-        K32_4 - J.wb_5_z * K22_3;
-    K[12] = J.wa_5_x * K33_2 + J.wa_5_y * K33_1 + J.wa_5_z * K43_1 - J.wb_5_x * K33_4 - J.wb_5_y *
-        K33_3 - J.wb_5_z * K43_2;
-    K[13] = J.wa_5_x * K44_1 + J.wa_5_y * K44_2 + J.wa_5_z * K44_3 + J.wb_5_x * K44_4 + J.wb_5_y *
-        K44_5 + J.wb_5_z * K44_6;
-    K[14] = J.wa_5_x * K55_1 + J.wa_5_y * K55_2 + J.wa_5_z * K55_3 + J.wb_5_x * K55_4 + J.wb_5_y *
-        K55_5 + J.wb_5_z * K55_6;
-    K[15] = J.wa_6_x * K21_3 + J.wa_6_y * K11_3 + J.wa_6_z * K11_2 - J.wb_6_x * K21_6 - J.wb_6_y *
-        K11_5 - J.wb_6_z * K11_4;
-    K[16] = J.wa_6_x * K22_2 + J.wa_6_y * K32_2 + J.wa_6_z * K22_1 - J.wb_6_x * K22_4 - J.wb_6_y *
-        K32_4 - J.wb_6_z * K22_3;
-    K[17] = J.wa_6_x * K33_2 + J.wa_6_y * K33_1 + J.wa_6_z * K43_1 - J.wb_6_x * K33_4 - J.wb_6_y *
-        K33_3 - J.wb_6_z * K43_2;
-    K[18] = J.wa_6_x * K44_1 + J.wa_6_y * K44_2 + J.wa_6_z * K44_3 + J.wb_6_x * K44_4 + J.wb_6_y *
-        K44_5 + J.wb_6_z * K44_6;
-    K[19] = J.wa_6_x * K55_1 + J.wa_6_y * K55_2 + J.wa_6_z * K55_3 + J.wb_6_x * K55_4 + J.wb_6_y *
-        K55_5 + J.wb_6_z * K55_6;
-    K[20] = J.wa_6_x * (ma.Ixx * J.wa_6_x + ma.Ixy * J.wa_6_y + ma.Ixz * J.wa_6_z) + J.wa_6_y *
-        (ma.Ixy * J.wa_6_x + ma.Iyy * J.wa_6_y + ma.Iyz * J.wa_6_z) + J.wa_6_z *
-        (ma.Ixz * J.wa_6_x + ma.Iyz * J.wa_6_y + ma.Izz * J.wa_6_z) + J.wb_6_x *
-        (mb.Ixx * J.wb_6_x + mb.Ixy * J.wb_6_y + mb.Ixz * J.wb_6_z) + J.wb_6_y *
-        (mb.Ixy * J.wb_6_x + mb.Iyy * J.wb_6_y + mb.Iyz * J.wb_6_z) + J.wb_6_z *
-        (mb.Ixz * J.wb_6_x + mb.Iyz * J.wb_6_y + mb.Izz * J.wb_6_z);
+    K[6] = J.wa_4_y * K11_3 + J.wa_4_z * K11_2 - J.wb_4_y * K11_5 - J.wb_4_z * K11_4 + J.wa_4_x *
+        (K21_3 + K21_6);
+    K[7] = J.wa_4_y * K32_2 + J.wa_4_z * K22_1 - J.wb_4_y * K32_4 - J.wb_4_z * K22_3 + J.wa_4_x *
+        (K22_2 + K22_4);
+    K[8] = J.wa_4_y * K33_1 + J.wa_4_z * K43_1 - J.wb_4_y * K33_3 - J.wb_4_z * K43_2 + J.wa_4_x *
+        (K33_2 + K33_4);
+    K[9] = J.wa_4_y * K44_1 + J.wa_4_z * K44_2 + J.wb_4_y * K44_3 + J.wb_4_z * K44_4 + J.wa_4_x *
+        (K44_5 - K44_6);
+    K[10] = J.wa_4_y * K21_6 + J.wa_5_z * K11_2 - J.wb_4_y * K21_3 - J.wb_5_z * K11_4 + J.wa_5_y *
+        (K11_3 + K11_5);
+    K[11] = J.wa_4_y * K22_4 + J.wa_5_z * K22_1 - J.wb_4_y * K22_2 - J.wb_5_z * K22_3 + J.wa_5_y *
+        (K32_2 + K32_4);
+    K[12] = J.wa_4_y * K33_4 + J.wa_5_z * K43_1 - J.wb_4_y * K33_2 - J.wb_5_z * K43_2 + J.wa_5_y *
+        (K33_1 + K33_3);
+    K[13] = J.wa_5_z * K44_2 - J.wa_4_y * K44_6 - J.wb_4_y * K44_5 + J.wb_5_z * K44_4 + J.wa_5_y *
+        (K44_1 - K44_3);
+    K[14] = J.wa_5_z * K55_2 - J.wa_4_y * K55_1 - J.wb_4_y * K55_3 + J.wb_5_z * K55_4 + J.wa_5_y *
+        (K55_5 - K55_6);
+    K[15] = J.wa_4_z * K21_6 + J.wa_5_z * K11_5 - J.wb_4_z * K21_3 - J.wb_5_z * K11_3 + J.wa_6_z *
+        (K11_2 + K11_4);
+    K[16] = J.wa_4_z * K22_4 + J.wa_5_z * K32_4 - J.wb_4_z * K22_2 - J.wb_5_z * K32_2 + J.wa_6_z *
+        (K22_1 + K22_3);
+    K[17] = J.wa_4_z * K33_4 + J.wa_5_z * K33_3 - J.wb_4_z * K33_2 - J.wb_5_z * K33_1 + J.wa_6_z *
+        (K43_1 + K43_2);
+    K[18] = J.wa_6_z * (K44_2 - K44_4) - J.wa_4_z * K44_6 - J.wa_5_z * K44_3 - J.wb_4_z * K44_5 -
+        J.wb_5_z * K44_1;
+    K[19] = J.wa_6_z * (K55_2 - K55_4) - J.wa_4_z * K55_1 - J.wa_5_z * K55_6 - J.wb_4_z * K55_3 -
+        J.wb_5_z * K55_5;
+    K[20] = J.wa_4_z * (mb.Ixx * J.wa_4_z + mb.Ixy * J.wa_5_z + mb.Ixz * J.wa_6_z) + J.wa_5_z *
+        (mb.Ixy * J.wa_4_z + mb.Iyy * J.wa_5_z + mb.Iyz * J.wa_6_z) - J.wb_4_z *
+        (ma.Ixz * J.wa_6_z - ma.Ixx * J.wb_4_z - ma.Ixy * J.wb_5_z) - J.wb_5_z *
+        (ma.Iyz * J.wa_6_z - ma.Ixy * J.wb_4_z - ma.Iyy * J.wb_5_z) + J.wa_6_z *
+        (mb.Ixz * J.wa_4_z - ma.Ixz * J.wb_4_z - ma.Iyz * J.wb_5_z + mb.Iyz * J.wa_5_z + J.wa_6_z *
+        (ma.Izz + mb.Izz));
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 35 +, 71 *, 6 /, 6 <
@@ -1544,128 +1544,6 @@ struct fixed::a_immovable : fixed {
     D[5][12] = T(2) * (J.wb_6_y * b.e0 - J.wb_6_x * b.e3 + J.wb_6_z * b.e1);
     D[5][13] = T(2) * (J.wb_6_x * b.e2 - J.wb_6_y * b.e1 + J.wb_6_z * b.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 81 +, 132 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[6]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
-    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-    const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_w_b_x_fb_x_y - fa_x_y * w_b_x_w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_w_b_x_fb_x_z - fa_x_z * w_b_x_w_b_x_fb_x_x;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
-    const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-    const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-    const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_x = fa_y_z * w_b_x_w_b_x_fb_y_y - fa_y_y * w_b_x_w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_y = fa_y_x * w_b_x_w_b_x_fb_y_z - fa_y_z * w_b_x_w_b_x_fb_y_x;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
-    const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_x = fa_z_z * w_b_x_w_b_x_fb_z_y - fa_z_y * w_b_x_w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_y = fa_z_x * w_b_x_w_b_x_fb_z_z - fa_z_z * w_b_x_w_b_x_fb_z_x;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_w_b_x_fb_x_x - fa_x_x * w_b_x_w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_z = fa_y_y * w_b_x_w_b_x_fb_y_x - fa_y_x * w_b_x_w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_z = fa_z_y * w_b_x_w_b_x_fb_z_x - fa_z_x * w_b_x_w_b_x_fb_z_y;
-    g[0] = vb.wz * rb_x_w_b_y - vb.wy * rb_x_w_b_z;
-    g[1] = vb.wx * rb_x_w_b_z - vb.wz * rb_x_w_b_x;
-    g[2] = vb.wy * rb_x_w_b_x - vb.wx * rb_x_w_b_y;
-    g[3] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_x + w_b_x_w_b_x_fb_y_x_fa_y_x +
-        w_b_x_w_b_x_fb_z_x_fa_z_x);
-    g[4] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_y + w_b_x_w_b_x_fb_y_x_fa_y_y +
-        w_b_x_w_b_x_fb_z_x_fa_z_y);
-    g[5] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_z + w_b_x_w_b_x_fb_y_x_fa_y_z +
-        w_b_x_w_b_x_fb_z_x_fa_z_z);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 84 +, 135 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[6],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T H10_1 = T(0.5) * lambda[3] * fa_z_z - T(0.5) * lambda[5] * fa_z_x;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T H10_2 = T(0.5) * lambda[3] * fa_y_z - T(0.5) * lambda[5] * fa_y_x;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T H10_3 = T(0.5) * lambda[3] * fa_x_z - T(0.5) * lambda[5] * fa_x_x;
-    const T H10_4 = fb_z_y * H10_1 + fb_y_y * H10_2 + lambda[1] * rb_y + fb_x_y * H10_3;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T H10_5 = T(0.5) * lambda[3] * fa_z_y - T(0.5) * lambda[4] * fa_z_x;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T H10_6 = T(0.5) * lambda[3] * fa_y_y - T(0.5) * lambda[4] * fa_y_x;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H10_7 = T(0.5) * lambda[3] * fa_x_y - T(0.5) * lambda[4] * fa_x_x;
-    const T H10_8 = fb_z_z * H10_5 + fb_y_z * H10_6 - lambda[2] * rb_z + fb_x_z * H10_7;
-    const T H11_1 = T(0.5) * lambda[4] * fa_x_z - T(0.5) * lambda[5] * fa_x_y;
-    const T H11_2 = T(0.5) * lambda[4] * fa_y_z - T(0.5) * lambda[5] * fa_y_y;
-    const T H11_3 = T(0.5) * lambda[4] * fa_z_z - T(0.5) * lambda[5] * fa_z_y;
-    const T H11_1_2 = fb_z_x * H11_3 + fb_y_x * H11_2 - lambda[0] * rb_x + fb_x_x * H11_1;
-    H[9][9] = H10_4 - H10_8;
-    H[9][10] = -lambda[1] * rb_x - fb_x_x * H10_3 - fb_y_x * H10_2 - fb_z_x * H10_1;
-    H[9][11] = fb_x_x * H10_7 - lambda[2] * rb_x + fb_y_x * H10_6 + fb_z_x * H10_5;
-    H[10][9] = fb_x_y * H11_1 - lambda[0] * rb_y + fb_y_y * H11_2 + fb_z_y * H11_3;
-    H[10][10] = -H11_1_2 - H10_8;
-    H[10][11] = fb_x_y * H10_7 - lambda[2] * rb_y + fb_y_y * H10_6 + fb_z_y * H10_5;
-    H[11][9] = fb_x_z * H11_1 - lambda[0] * rb_z + fb_y_z * H11_2 + fb_z_z * H11_3;
-    H[11][10] = -lambda[1] * rb_z - fb_x_z * H10_3 - fb_y_z * H10_2 - fb_z_z * H10_1;
-    H[11][11] = H10_4 - H11_1_2;
-  }
 };
 
 // fixed with b immovable: its velocity and inverse mass are zero and gone.
@@ -2060,128 +1938,6 @@ struct fixed::b_immovable : fixed {
     D[5][4] = T(2) * (J.wa_6_x * a.e0 + J.wa_6_y * a.e3 - J.wa_6_z * a.e2);
     D[5][5] = T(2) * (J.wa_6_y * a.e0 - J.wa_6_x * a.e3 + J.wa_6_z * a.e1);
     D[5][6] = T(2) * (J.wa_6_x * a.e2 - J.wa_6_y * a.e1 + J.wa_6_z * a.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 81 +, 132 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[6]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_w_a_x_fa_x_y - fb_x_y * w_a_x_w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_w_a_x_fa_x_z - fb_x_z * w_a_x_w_a_x_fa_x_x;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-    const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_x = fb_y_z * w_a_x_w_a_x_fa_y_y - fb_y_y * w_a_x_w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_y = fb_y_x * w_a_x_w_a_x_fa_y_z - fb_y_z * w_a_x_w_a_x_fa_y_x;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_x = fb_z_z * w_a_x_w_a_x_fa_z_y - fb_z_y * w_a_x_w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_y = fb_z_x * w_a_x_w_a_x_fa_z_z - fb_z_z * w_a_x_w_a_x_fa_z_x;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_w_a_x_fa_x_x - fb_x_x * w_a_x_w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_z = fb_y_y * w_a_x_w_a_x_fa_y_x - fb_y_x * w_a_x_w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_z = fb_z_y * w_a_x_w_a_x_fa_z_x - fb_z_x * w_a_x_w_a_x_fa_z_y;
-    g[0] = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    g[1] = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    g[2] = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    g[3] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_x + w_a_x_w_a_x_fa_y_x_fb_y_x +
-        w_a_x_w_a_x_fa_z_x_fb_z_x);
-    g[4] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_y + w_a_x_w_a_x_fa_y_x_fb_y_y +
-        w_a_x_w_a_x_fa_z_x_fb_z_y);
-    g[5] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_z + w_a_x_w_a_x_fa_y_x_fb_y_z +
-        w_a_x_w_a_x_fa_z_x_fb_z_z);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 82 +, 135 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[6],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T H4_1 = T(0.5) * lambda[5] * fb_z_x - T(0.5) * lambda[3] * fb_z_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H4_2 = T(0.5) * lambda[5] * fb_y_x - T(0.5) * lambda[3] * fb_y_z;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_3 = T(0.5) * lambda[5] * fb_x_x - T(0.5) * lambda[3] * fb_x_z;
-    const T H4_4 = fa_z_y * H4_1 + fa_y_y * H4_2 - lambda[1] * ra_y + fa_x_y * H4_3;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T H4_5 = T(0.5) * lambda[4] * fb_z_x - T(0.5) * lambda[3] * fb_z_y;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T H4_6 = T(0.5) * lambda[4] * fb_y_x - T(0.5) * lambda[3] * fb_y_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H4_7 = T(0.5) * lambda[4] * fb_x_x - T(0.5) * lambda[3] * fb_x_y;
-    const T H4_8 = fa_z_z * H4_5 + fa_y_z * H4_6 + lambda[2] * ra_z + fa_x_z * H4_7;
-    const T H5_1 = T(0.5) * lambda[5] * fb_x_y - T(0.5) * lambda[4] * fb_x_z;
-    const T H5_2 = T(0.5) * lambda[5] * fb_y_y - T(0.5) * lambda[4] * fb_y_z;
-    const T H5_3 = T(0.5) * lambda[5] * fb_z_y - T(0.5) * lambda[4] * fb_z_z;
-    const T H5_1_2 = fa_z_x * H5_3 + fa_y_x * H5_2 + lambda[0] * ra_x + fa_x_x * H5_1;
-    H[3][3] = H4_4 - H4_8;
-    H[3][4] = lambda[1] * ra_x - fa_x_x * H4_3 - fa_y_x * H4_2 - fa_z_x * H4_1;
-    H[3][5] = lambda[2] * ra_x + fa_x_x * H4_7 + fa_y_x * H4_6 + fa_z_x * H4_5;
-    H[4][3] = lambda[0] * ra_y + fa_x_y * H5_1 + fa_y_y * H5_2 + fa_z_y * H5_3;
-    H[4][4] = -H5_1_2 - H4_8;
-    H[4][5] = lambda[2] * ra_y + fa_x_y * H4_7 + fa_y_y * H4_6 + fa_z_y * H4_5;
-    H[5][3] = lambda[0] * ra_z + fa_x_z * H5_1 + fa_y_z * H5_2 + fa_z_z * H5_3;
-    H[5][4] = lambda[1] * ra_z - fa_x_z * H4_3 - fa_y_z * H4_2 - fa_z_z * H4_1;
-    H[5][5] = H4_4 - H5_1_2;
   }
 };
 

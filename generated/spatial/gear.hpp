@@ -1204,69 +1204,6 @@ struct gear::a_immovable : gear {
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 19 +, 28 *, 1 /, 1 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T gb_x_fb_x_x = p.gb_x_x + fb_x_x;
-    const T gb_x_fb_x_y = p.gb_x_y + fb_x_y;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T gb_x_fb_x_z = p.gb_x_z + fb_x_z;
-    const T dot_w_b_gb_x_fb_x = vb.wx * gb_x_fb_x_x + vb.wy * gb_x_fb_x_y + vb.wz * gb_x_fb_x_z;
-    const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-    const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T dot_w_b_x_fb_x_gb_x = p.gb_x_x * w_b_x_fb_x_x + p.gb_x_y * w_b_x_fb_x_y + p.gb_x_z *
-        w_b_x_fb_x_z;
-    const T dot_gb_x_fb_x = p.gb_x_x * fb_x_x + p.gb_x_y * fb_x_y + p.gb_x_z * fb_x_z;
-    const T g1_1 = inverse(dot_gb_x_fb_x + T(1));
-    g[0] = p.ratio * dot_w_b_gb_x_fb_x * dot_w_b_x_fb_x_gb_x * g1_1 * g1_1;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 27 +, 45 *, 1 /, 1 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T gb_x_fb_x_x = p.gb_x_x + fb_x_x;
-    const T gb_x_fb_x_y = p.gb_x_y + fb_x_y;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T dot_gb_x_fb_x = p.gb_x_x * fb_x_x + p.gb_x_y * fb_x_y + p.gb_x_z * fb_x_z;
-    const T H10_1 = inverse(dot_gb_x_fb_x + T(1));
-    const T H10_2 = H10_1 * lambda[0] * p.ratio;
-    const T H10_3 = H10_1 * H10_2;
-    const T H10_4 = gb_x_fb_x_x * H10_3;
-    const T H10_5 = p.gb_x_y * H10_4;
-    const T H10_6 = p.gb_x_z * H10_4;
-    const T H10_1_2 = H10_2 - H10_4 * p.gb_x_x;
-    const T H11_1 = H10_3 * gb_x_fb_x_y;
-    const T H11_2 = p.gb_x_z * H11_1;
-    const T H11_3 = H10_2 - H11_1 * p.gb_x_y;
-    const T H11_1_2 = p.gb_x_x * H11_1;
-    const T gb_x_fb_x_z = p.gb_x_z + fb_x_z;
-    const T H12_1 = H10_3 * gb_x_fb_x_z;
-    const T H12_2 = fb_x_z * H12_1;
-    const T H12_3 = H10_2 - H12_1 * p.gb_x_z;
-    H[9][9] = H10_5 * fb_x_z - H10_6 * fb_x_y;
-    H[9][10] = H10_6 * fb_x_x + fb_x_z * H10_1_2;
-    H[9][11] = -H10_5 * fb_x_x - fb_x_y * H10_1_2;
-    H[10][9] = -H11_2 * fb_x_y - fb_x_z * H11_3;
-    H[10][10] = H11_2 * fb_x_x - H11_1_2 * fb_x_z;
-    H[10][11] = H11_1_2 * fb_x_y + fb_x_x * H11_3;
-    H[11][9] = H12_2 * p.gb_x_y + fb_x_y * H12_3;
-    H[11][10] = -H12_2 * p.gb_x_x - fb_x_x * H12_3;
-    H[11][11] = H12_1 * (p.gb_x_x * fb_x_y - p.gb_x_y * fb_x_x);
-  }
 };
 
 // gear with b immovable: its velocity and inverse mass are zero and gone.
@@ -1433,69 +1370,6 @@ struct gear::b_immovable : gear {
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 19 +, 27 *, 1 /, 1 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T ga_x_fa_x_x = p.ga_x_x + fa_x_x;
-    const T ga_x_fa_x_y = p.ga_x_y + fa_x_y;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T ga_x_fa_x_z = p.ga_x_z + fa_x_z;
-    const T dot_w_a_ga_x_fa_x = va.wx * ga_x_fa_x_x + va.wy * ga_x_fa_x_y + va.wz * ga_x_fa_x_z;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T dot_w_a_x_fa_x_ga_x = p.ga_x_x * w_a_x_fa_x_x + p.ga_x_y * w_a_x_fa_x_y + p.ga_x_z *
-        w_a_x_fa_x_z;
-    const T dot_ga_x_fa_x = p.ga_x_x * fa_x_x + p.ga_x_y * fa_x_y + p.ga_x_z * fa_x_z;
-    const T g1_1 = inverse(dot_ga_x_fa_x + T(1));
-    g[0] = dot_w_a_ga_x_fa_x * dot_w_a_x_fa_x_ga_x * g1_1 * g1_1;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 27 +, 44 *, 1 /, 1 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T ga_x_fa_x_x = p.ga_x_x + fa_x_x;
-    const T ga_x_fa_x_y = p.ga_x_y + fa_x_y;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T dot_ga_x_fa_x = p.ga_x_x * fa_x_x + p.ga_x_y * fa_x_y + p.ga_x_z * fa_x_z;
-    const T H4_1 = inverse(dot_ga_x_fa_x + T(1));
-    const T H4_2 = lambda[0] * H4_1;
-    const T H4_3 = H4_1 * H4_2;
-    const T H4_4 = ga_x_fa_x_x * H4_3;
-    const T H4_5 = p.ga_x_y * H4_4;
-    const T H4_6 = p.ga_x_z * H4_4;
-    const T H4_1_2 = H4_2 - H4_4 * p.ga_x_x;
-    const T H5_1 = H4_3 * ga_x_fa_x_y;
-    const T H5_2 = p.ga_x_z * H5_1;
-    const T H5_3 = H4_2 - H5_1 * p.ga_x_y;
-    const T H5_1_2 = p.ga_x_x * H5_1;
-    const T ga_x_fa_x_z = p.ga_x_z + fa_x_z;
-    const T H6_1 = H4_3 * ga_x_fa_x_z;
-    const T H6_2 = fa_x_z * H6_1;
-    const T H6_3 = H4_2 - H6_1 * p.ga_x_z;
-    H[3][3] = H4_5 * fa_x_z - H4_6 * fa_x_y;
-    H[3][4] = H4_6 * fa_x_x + fa_x_z * H4_1_2;
-    H[3][5] = -H4_5 * fa_x_x - fa_x_y * H4_1_2;
-    H[4][3] = -H5_2 * fa_x_y - fa_x_z * H5_3;
-    H[4][4] = H5_2 * fa_x_x - H5_1_2 * fa_x_z;
-    H[4][5] = H5_1_2 * fa_x_y + fa_x_x * H5_3;
-    H[5][3] = H6_2 * p.ga_x_y + fa_x_y * H6_3;
-    H[5][4] = -H6_2 * p.ga_x_x - fa_x_x * H6_3;
-    H[5][5] = H6_1 * (p.ga_x_x * fa_x_y - p.ga_x_y * fa_x_x);
   }
 };
 

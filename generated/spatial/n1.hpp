@@ -473,62 +473,6 @@ struct n1::a_immovable : n1 {
     D[0][12] = T(2) * (J.na_x_nb_x * b.e3 - J.na_x_nb_y * b.e0 - J.na_x_nb_z * b.e1);
     D[0][13] = T(2) * (J.na_x_nb_y * b.e1 - J.na_x_nb_x * b.e2 - J.na_x_nb_z * b.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 21 +, 33 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T na_x = a.xx * p.na_x + a.xy * p.na_y + a.xz * p.na_z;
-    const T na_y = a.yx * p.na_x + a.yy * p.na_y + a.yz * p.na_z;
-    const T nb_x = b.xx * p.nb_x + b.xy * p.nb_y + b.xz * p.nb_z;
-    const T nb_y = b.yx * p.nb_x + b.yy * p.nb_y + b.yz * p.nb_z;
-    const T w_b_x_nb_z = vb.wx * nb_y - vb.wy * nb_x;
-    const T nb_z = b.zx * p.nb_x + b.zy * p.nb_y + b.zz * p.nb_z;
-    const T w_b_x_nb_x = vb.wy * nb_z - vb.wz * nb_y;
-    const T w_b_x_nb_y = vb.wz * nb_x - vb.wx * nb_z;
-    const T w_b_x_w_b_x_nb_x = vb.wy * w_b_x_nb_z - vb.wz * w_b_x_nb_y;
-    const T w_b_x_w_b_x_nb_y = vb.wz * w_b_x_nb_x - vb.wx * w_b_x_nb_z;
-    const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
-    const T w_b_x_w_b_x_nb_z = vb.wx * w_b_x_nb_y - vb.wy * w_b_x_nb_x;
-    const T dot_w_b_x_w_b_x_nb_na = na_x * w_b_x_w_b_x_nb_x + na_y * w_b_x_w_b_x_nb_y + na_z *
-        w_b_x_w_b_x_nb_z;
-    g[0] = -dot_w_b_x_w_b_x_nb_na;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 18 +, 33 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T na_x = a.xx * p.na_x + a.xy * p.na_y + a.xz * p.na_z;
-    const T na_y = a.yx * p.na_x + a.yy * p.na_y + a.yz * p.na_z;
-    const T nb_x = b.xx * p.nb_x + b.xy * p.nb_y + b.xz * p.nb_z;
-    const T nb_y = b.yx * p.nb_x + b.yy * p.nb_y + b.yz * p.nb_z;
-    const T H10_1 = na_y * nb_y;
-    const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
-    const T nb_z = b.zx * p.nb_x + b.zy * p.nb_y + b.zz * p.nb_z;
-    const T H10_2 = na_z * nb_z;
-    const T H10_1_2 = lambda[0] * nb_x;
-    const T H11_1 = lambda[0] * nb_y;
-    const T H11_1_2 = na_x * nb_x;
-    const T H12_1 = lambda[0] * nb_z;
-    H[9][9] = lambda[0] * (-H10_1 - H10_2);
-    H[9][10] = H10_1_2 * na_y;
-    H[9][11] = H10_1_2 * na_z;
-    H[10][9] = H11_1 * na_x;
-    H[10][10] = lambda[0] * (-H11_1_2 - H10_2);
-    H[10][11] = H11_1 * na_z;
-    H[11][9] = H12_1 * na_x;
-    H[11][10] = H12_1 * na_y;
-    H[11][11] = lambda[0] * (-H11_1_2 - H10_1);
-  }
 };
 
 // n1 with b immovable: its velocity and inverse mass are zero and gone.
@@ -647,62 +591,6 @@ struct n1::b_immovable : n1 {
     D[0][4] = T(2) * (J.na_x_nb_x * a.e0 + J.na_x_nb_y * a.e3 - J.na_x_nb_z * a.e2);
     D[0][5] = T(2) * (J.na_x_nb_y * a.e0 - J.na_x_nb_x * a.e3 + J.na_x_nb_z * a.e1);
     D[0][6] = T(2) * (J.na_x_nb_x * a.e2 - J.na_x_nb_y * a.e1 + J.na_x_nb_z * a.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 21 +, 33 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T nb_x = b.xx * p.nb_x + b.xy * p.nb_y + b.xz * p.nb_z;
-    const T nb_y = b.yx * p.nb_x + b.yy * p.nb_y + b.yz * p.nb_z;
-    const T na_x = a.xx * p.na_x + a.xy * p.na_y + a.xz * p.na_z;
-    const T na_y = a.yx * p.na_x + a.yy * p.na_y + a.yz * p.na_z;
-    const T w_a_x_na_z = va.wx * na_y - va.wy * na_x;
-    const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
-    const T w_a_x_na_x = va.wy * na_z - va.wz * na_y;
-    const T w_a_x_na_y = va.wz * na_x - va.wx * na_z;
-    const T w_a_x_w_a_x_na_x = va.wy * w_a_x_na_z - va.wz * w_a_x_na_y;
-    const T w_a_x_w_a_x_na_y = va.wz * w_a_x_na_x - va.wx * w_a_x_na_z;
-    const T nb_z = b.zx * p.nb_x + b.zy * p.nb_y + b.zz * p.nb_z;
-    const T w_a_x_w_a_x_na_z = va.wx * w_a_x_na_y - va.wy * w_a_x_na_x;
-    const T dot_w_a_x_w_a_x_na_nb = nb_x * w_a_x_w_a_x_na_x + nb_y * w_a_x_w_a_x_na_y + nb_z *
-        w_a_x_w_a_x_na_z;
-    g[0] = -dot_w_a_x_w_a_x_na_nb;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 18 +, 33 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T na_x = a.xx * p.na_x + a.xy * p.na_y + a.xz * p.na_z;
-    const T na_y = a.yx * p.na_x + a.yy * p.na_y + a.yz * p.na_z;
-    const T nb_x = b.xx * p.nb_x + b.xy * p.nb_y + b.xz * p.nb_z;
-    const T nb_y = b.yx * p.nb_x + b.yy * p.nb_y + b.yz * p.nb_z;
-    const T H4_1 = na_y * nb_y;
-    const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
-    const T nb_z = b.zx * p.nb_x + b.zy * p.nb_y + b.zz * p.nb_z;
-    const T H4_2 = na_z * nb_z;
-    const T H4_1_2 = lambda[0] * na_x;
-    const T H5_1 = lambda[0] * na_y;
-    const T H5_1_2 = na_x * nb_x;
-    const T H6_1 = lambda[0] * na_z;
-    H[3][3] = lambda[0] * (-H4_1 - H4_2);
-    H[3][4] = H4_1_2 * nb_y;
-    H[3][5] = H4_1_2 * nb_z;
-    H[4][3] = H5_1 * nb_x;
-    H[4][4] = lambda[0] * (-H5_1_2 - H4_2);
-    H[4][5] = H5_1 * nb_z;
-    H[5][3] = H6_1 * nb_x;
-    H[5][4] = H6_1 * nb_y;
-    H[5][5] = lambda[0] * (-H5_1_2 - H4_1);
   }
 };
 

@@ -249,7 +249,7 @@ struct prismatic {
     J.wb_5_z = T(0.5) * wa_5_z_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 138 +, 180 *
+  // K = J M^-1 J^T, lower triangle, from J: 138 +, 167 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[15]) {
     const InverseMass<T>& ma = m[0];
@@ -267,52 +267,52 @@ struct prismatic {
     const T K22_4 = mb.Ixx * J.rb_x_fa_z_x + mb.Ixy * J.rb_x_fa_z_y + mb.Ixz * J.rb_x_fa_z_z;
     const T K22_5 = mb.Ixy * J.rb_x_fa_z_x + mb.Iyy * J.rb_x_fa_z_y + mb.Iyz * J.rb_x_fa_z_z;
     const T K22_6 = mb.Ixz * J.rb_x_fa_z_x + mb.Iyz * J.rb_x_fa_z_y + mb.Izz * J.rb_x_fa_z_z;
-    const T K33_1 = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
-    const T K33_2 = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
-    const T K33_3 = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
-    const T K33_4 = mb.Ixx * J.wb_3_x + mb.Ixy * J.wb_3_y + mb.Ixz * J.wb_3_z;
-    const T K33_5 = mb.Ixy * J.wb_3_x + mb.Iyy * J.wb_3_y + mb.Iyz * J.wb_3_z;
-    const T K33_6 = mb.Ixz * J.wb_3_x + mb.Iyz * J.wb_3_y + mb.Izz * J.wb_3_z;
-    const T K44_1 = ma.Ixx * J.wa_4_x + ma.Ixy * J.wa_4_y + ma.Ixz * J.wa_4_z;
-    const T K44_2 = ma.Ixy * J.wa_4_x + ma.Iyy * J.wa_4_y + ma.Iyz * J.wa_4_z;
-    const T K44_3 = ma.Ixz * J.wa_4_x + ma.Iyz * J.wa_4_y + ma.Izz * J.wa_4_z;
-    const T K44_4 = mb.Ixx * J.wb_4_x + mb.Ixy * J.wb_4_y + mb.Ixz * J.wb_4_z;
-    const T K44_5 = mb.Ixy * J.wb_4_x + mb.Iyy * J.wb_4_y + mb.Iyz * J.wb_4_z;
-    const T K44_6 = mb.Ixz * J.wb_4_x + mb.Iyz * J.wb_4_y + mb.Izz * J.wb_4_z;
+    const T K33_1 = ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z;
+    const T K33_2 = ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z;
+    const T K33_3 = mb.Iyy * J.wb_3_y - mb.Ixy * J.wa_3_x + mb.Iyz * J.wb_3_z;
+    const T K33_4 = mb.Iyz * J.wb_3_y - mb.Ixz * J.wa_3_x + mb.Izz * J.wb_3_z;
+    const T K33_5 = ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z;
+    const T K33_6 = mb.Ixy * J.wb_3_y - mb.Ixx * J.wa_3_x + mb.Ixz * J.wb_3_z;
+    const T K44_1 = mb.Ixz * J.wb_4_z - mb.Ixx * J.wa_3_y - mb.Ixy * J.wa_4_y;
+    const T K44_2 = ma.Iyz * J.wa_4_y - ma.Ixz * J.wb_3_y + ma.Izz * J.wa_4_z;
+    const T K44_3 = ma.Ixy * J.wa_4_y - ma.Ixx * J.wb_3_y + ma.Ixz * J.wa_4_z;
+    const T K44_4 = mb.Izz * J.wb_4_z - mb.Ixz * J.wa_3_y - mb.Iyz * J.wa_4_y;
+    const T K44_5 = ma.Iyy * J.wa_4_y - ma.Ixy * J.wb_3_y + ma.Iyz * J.wa_4_z;
+    const T K44_6 = mb.Iyz * J.wb_4_z - mb.Ixy * J.wa_3_y - mb.Iyy * J.wa_4_y;
     K[0] = K11_1 + J.ra_d_x_fa_y_x * K11_2 + J.ra_d_x_fa_y_y * K11_3 + J.ra_d_x_fa_y_z * K11_4 +
         J.rb_x_fa_y_x * K11_5 + J.rb_x_fa_y_y * K11_6 + J.rb_x_fa_y_z * K11_7;
     K[1] = J.ra_d_x_fa_z_x * K11_2 + J.ra_d_x_fa_z_y * K11_3 + J.ra_d_x_fa_z_z * K11_4 +
         J.rb_x_fa_z_x * K11_5 + J.rb_x_fa_z_y * K11_6 + J.rb_x_fa_z_z * K11_7;
     K[2] = K11_1 + J.ra_d_x_fa_z_x * K22_1 + J.ra_d_x_fa_z_y * K22_2 + J.ra_d_x_fa_z_z * K22_3 +
         J.rb_x_fa_z_x * K22_4 + J.rb_x_fa_z_y * K22_5 + J.rb_x_fa_z_z * K22_6;
-    K[3] = J.wb_3_x * K11_5 - J.wa_3_x * K11_2 - J.wa_3_y * K11_3 - J.wa_3_z * K11_4 + J.wb_3_y *
-        K11_6 + J.wb_3_z * K11_7;
-    K[4] = J.wb_3_x * K22_4 - J.wa_3_x * K22_1 - J.wa_3_y * K22_2 - J.wa_3_z * K22_3 + J.wb_3_y *
-        K22_5 + J.wb_3_z * K22_6;
-    K[5] = J.wa_3_x * K33_1 + J.wa_3_y * K33_2 + J.wa_3_z * K33_3 + J.wb_3_x * K33_4 + J.wb_3_y *
-        K33_5 + J.wb_3_z * K33_6;
-    K[6] = J.wb_4_x * K11_5 - J.wa_4_x * K11_2 - J.wa_4_y * K11_3 - J.wa_4_z * K11_4 + J.wb_4_y *
-        K11_6 + J.wb_4_z * K11_7;
-    K[7] = J.wb_4_x * K22_4 - J.wa_4_x * K22_1 - J.wa_4_y * K22_2 - J.wa_4_z * K22_3 + J.wb_4_y *
-        K22_5 + J.wb_4_z * K22_6;
-    K[8] = J.wa_4_x * K33_1 + J.wa_4_y * K33_2 + J.wa_4_z * K33_3 + J.wb_4_x * K33_4 + J.wb_4_y *
-        K33_5 + J.wb_4_z * K33_6;
-    K[9] = J.wa_4_x * K44_1 + J.wa_4_y * K44_2 + J.wa_4_z * K44_3 + J.wb_4_x * K44_4 + J.wb_4_y *
-        K44_5 + J.wb_4_z * K44_6;
-    K[10] = J.wb_5_x * K11_5 - J.wa_5_x * K11_2 - J.wa_5_y * K11_3 - J.wa_5_z * K11_4 + J.wb_5_y *
-        K11_6 + J.wb_5_z * K11_7;
-    K[11] = J.wb_5_x * K22_4 - J.wa_5_x * K22_1 - J.wa_5_y * K22_2 - J.wa_5_z * K22_3 + J.wb_5_y *
-        K22_5 + J.wb_5_z * K22_6;
-    K[12] = J.wa_5_x * K33_1 + J.wa_5_y * K33_2 + J.wa_5_z * K33_3 + J.wb_5_x * K33_4 + J.wb_5_y *
-        K33_5 + J.wb_5_z * K33_6;
-    K[13] = J.wa_5_x * K44_1 + J.wa_5_y * K44_2 + J.wa_5_z * K44_3 + J.wb_5_x * K44_4 + J.wb_5_y *
-        K44_5 + J.wb_5_z * K44_6;
-    K[14] = J.wa_5_x * (ma.Ixx * J.wa_5_x + ma.Ixy * J.wa_5_y + ma.Ixz * J.wa_5_z) + J.wa_5_y *
-        (ma.Ixy * J.wa_5_x + ma.Iyy * J.wa_5_y + ma.Iyz * J.wa_5_z) + J.wa_5_z *
-        (ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z) + J.wb_5_x *
-        (mb.Ixx * J.wb_5_x + mb.Ixy * J.wb_5_y + mb.Ixz * J.wb_5_z) + J.wb_5_y *
-        (mb.Ixy * J.wb_5_x + mb.Iyy * J.wb_5_y + mb.Iyz * J.wb_5_z) + J.wb_5_z *
-        (mb.Ixz * J.wb_5_x + mb.Iyz * J.wb_5_y + mb.Izz * J.wb_5_z);
+    K[3] = J.wb_3_y * K11_6 - J.wa_3_y * K11_3 - J.wa_3_z * K11_4 + J.wb_3_z * K11_7 - J.wa_3_x *
+        (K11_2 + K11_5);
+    K[4] = J.wb_3_y * K22_5 - J.wa_3_y * K22_2 - J.wa_3_z * K22_3 + J.wb_3_z * K22_6 - J.wa_3_x *
+        (K22_1 + K22_4);
+    K[5] = J.wa_3_y * K33_1 + J.wa_3_z * K33_2 + J.wb_3_y * K33_3 + J.wb_3_z * K33_4 + J.wa_3_x *
+        (K33_5 - K33_6);
+    K[6] = J.wb_3_y * K11_2 - J.wa_3_y * K11_5 - J.wa_4_z * K11_4 + J.wb_4_z * K11_7 - J.wa_4_y *
+        (K11_3 + K11_6);
+    K[7] = J.wb_3_y * K22_1 - J.wa_3_y * K22_4 - J.wa_4_z * K22_3 + J.wb_4_z * K22_6 - J.wa_4_y *
+        (K22_2 + K22_5);
+    K[8] = J.wa_4_z * K33_2 - J.wa_3_y * K33_6 - J.wb_3_y * K33_5 + J.wb_4_z * K33_4 + J.wa_4_y *
+        (K33_1 - K33_3);
+    K[9] = J.wa_4_z * K44_2 - J.wa_3_y * K44_1 - J.wb_3_y * K44_3 + J.wb_4_z * K44_4 + J.wa_4_y *
+        (K44_5 - K44_6);
+    K[10] = J.wb_3_z * K11_2 - J.wa_3_z * K11_5 - J.wa_4_z * K11_6 + J.wb_4_z * K11_3 - J.wa_5_z *
+        (K11_4 + K11_7);
+    K[11] = J.wb_3_z * K22_1 - J.wa_3_z * K22_4 - J.wa_4_z * K22_5 + J.wb_4_z * K22_2 - J.wa_5_z *
+        (K22_3 + K22_6);
+    K[12] = J.wa_5_z * (K33_2 - K33_4) - J.wa_3_z * K33_6 - J.wa_4_z * K33_3 - J.wb_3_z * K33_5 -
+        J.wb_4_z * K33_1;
+    K[13] = J.wa_5_z * (K44_2 - K44_4) - J.wa_3_z * K44_1 - J.wa_4_z * K44_6 - J.wb_3_z * K44_3 -
+        J.wb_4_z * K44_5;
+    K[14] = J.wa_3_z * (mb.Ixx * J.wa_3_z + mb.Ixy * J.wa_4_z + mb.Ixz * J.wa_5_z) + J.wa_4_z *
+        (mb.Ixy * J.wa_3_z + mb.Iyy * J.wa_4_z + mb.Iyz * J.wa_5_z) - J.wb_3_z *
+        (ma.Ixz * J.wa_5_z - ma.Ixx * J.wb_3_z - ma.Ixy * J.wb_4_z) - J.wb_4_z *
+        (ma.Iyz * J.wa_5_z - ma.Ixy * J.wb_3_z - ma.Iyy * J.wb_4_z) + J.wa_5_z *
+        (mb.Ixz * J.wa_3_z - ma.Ixz * J.wb_3_z - ma.Iyz * J.wb_4_z + mb.Iyz * J.wa_4_z + J.wa_5_z *
+        (ma.Izz + mb.Izz));
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 20 +, 45 *, 5 /, 5 <
@@ -539,7 +539,7 @@ struct prismatic {
     D[4][11] = mb.Ixz * J.wb_5_x + mb.Iyz * J.wb_5_y + mb.Izz * J.wb_5_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 78 +, 120 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 80 +, 111 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[15]) {
@@ -558,39 +558,45 @@ struct prismatic {
         J.ra_d_x_fa_z_y + J.ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
     const T dot_rb_x_fa_z_rb_x_fa_z = J.rb_x_fa_z_x * J.rb_x_fa_z_x + J.rb_x_fa_z_y *
         J.rb_x_fa_z_y + J.rb_x_fa_z_z * J.rb_x_fa_z_z;
+    const T K33_1 = J.wa_3_x * J.wa_3_x;
+    const T K33_2 = J.wa_3_y * J.wa_3_y;
+    const T K33_3 = J.wa_3_z * J.wa_3_z;
+    const T K33_4 = J.wb_3_y * J.wb_3_y;
+    const T K33_5 = J.wb_3_z * J.wb_3_z;
+    const T K44_1 = J.wa_4_y * J.wa_4_y;
+    const T K44_2 = J.wa_4_z * J.wa_4_z;
+    const T K44_3 = J.wb_4_z * J.wb_4_z;
+    const T K55_1 = J.wa_5_z * J.wa_5_z;
     K[0] = K11_1 + ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_y + mb.I * dot_rb_x_fa_y_rb_x_fa_y;
     K[1] = ma.I * dot_ra_d_x_fa_y_ra_d_x_fa_z + mb.I * dot_rb_x_fa_y_rb_x_fa_z;
     K[2] = K11_1 + ma.I * dot_ra_d_x_fa_z_ra_d_x_fa_z + mb.I * dot_rb_x_fa_z_rb_x_fa_z;
-    K[3] = mb.I * (J.rb_x_fa_y_x * J.wb_3_x + J.rb_x_fa_y_y * J.wb_3_y + J.rb_x_fa_y_z *
+    K[3] = mb.I * (J.rb_x_fa_y_y * J.wb_3_y - J.rb_x_fa_y_x * J.wa_3_x + J.rb_x_fa_y_z *
         J.wb_3_z) - ma.I * (J.ra_d_x_fa_y_x * J.wa_3_x + J.ra_d_x_fa_y_y * J.wa_3_y +
         J.ra_d_x_fa_y_z * J.wa_3_z);
-    K[4] = mb.I * (J.rb_x_fa_z_x * J.wb_3_x + J.rb_x_fa_z_y * J.wb_3_y + J.rb_x_fa_z_z *
+    K[4] = mb.I * (J.rb_x_fa_z_y * J.wb_3_y - J.rb_x_fa_z_x * J.wa_3_x + J.rb_x_fa_z_z *
         J.wb_3_z) - ma.I * (J.ra_d_x_fa_z_x * J.wa_3_x + J.ra_d_x_fa_z_y * J.wa_3_y +
         J.ra_d_x_fa_z_z * J.wa_3_z);
-    K[5] = ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z) + mb.I *
-        (J.wb_3_x * J.wb_3_x + J.wb_3_y * J.wb_3_y + J.wb_3_z * J.wb_3_z);
-    K[6] = mb.I * (J.rb_x_fa_y_x * J.wb_4_x + J.rb_x_fa_y_y * J.wb_4_y + J.rb_x_fa_y_z *
-        J.wb_4_z) - ma.I * (J.ra_d_x_fa_y_x * J.wa_4_x + J.ra_d_x_fa_y_y * J.wa_4_y +
+    K[5] = ma.I * (K33_1 + K33_2 + K33_3) + mb.I * (K33_1 + K33_4 + K33_5);
+    K[6] = mb.I * (J.rb_x_fa_y_z * J.wb_4_z - J.rb_x_fa_y_x * J.wa_3_y - J.rb_x_fa_y_y *
+        J.wa_4_y) - ma.I * (J.ra_d_x_fa_y_y * J.wa_4_y - J.ra_d_x_fa_y_x * J.wb_3_y +
         J.ra_d_x_fa_y_z * J.wa_4_z);
-    K[7] = mb.I * (J.rb_x_fa_z_x * J.wb_4_x + J.rb_x_fa_z_y * J.wb_4_y + J.rb_x_fa_z_z *
-        J.wb_4_z) - ma.I * (J.ra_d_x_fa_z_x * J.wa_4_x + J.ra_d_x_fa_z_y * J.wa_4_y +
+    K[7] = mb.I * (J.rb_x_fa_z_z * J.wb_4_z - J.rb_x_fa_z_x * J.wa_3_y - J.rb_x_fa_z_y *
+        J.wa_4_y) - ma.I * (J.ra_d_x_fa_z_y * J.wa_4_y - J.ra_d_x_fa_z_x * J.wb_3_y +
         J.ra_d_x_fa_z_z * J.wa_4_z);
-    K[8] = ma.I * (J.wa_3_x * J.wa_4_x + J.wa_3_y * J.wa_4_y + J.wa_3_z * J.wa_4_z) + mb.I *
-        (J.wb_3_x * J.wb_4_x + J.wb_3_y * J.wb_4_y + J.wb_3_z * J.wb_4_z);
-    K[9] = ma.I * (J.wa_4_x * J.wa_4_x + J.wa_4_y * J.wa_4_y + J.wa_4_z * J.wa_4_z) + mb.I *
-        (J.wb_4_x * J.wb_4_x + J.wb_4_y * J.wb_4_y + J.wb_4_z * J.wb_4_z);
-    K[10] = mb.I * (J.rb_x_fa_y_x * J.wb_5_x + J.rb_x_fa_y_y * J.wb_5_y + J.rb_x_fa_y_z *
-        J.wb_5_z) - ma.I * (J.ra_d_x_fa_y_x * J.wa_5_x + J.ra_d_x_fa_y_y * J.wa_5_y +
-        J.ra_d_x_fa_y_z * J.wa_5_z);
-    K[11] = mb.I * (J.rb_x_fa_z_x * J.wb_5_x + J.rb_x_fa_z_y * J.wb_5_y + J.rb_x_fa_z_z *
-        J.wb_5_z) - ma.I * (J.ra_d_x_fa_z_x * J.wa_5_x + J.ra_d_x_fa_z_y * J.wa_5_y +
-        J.ra_d_x_fa_z_z * J.wa_5_z);
-    K[12] = ma.I * (J.wa_3_x * J.wa_5_x + J.wa_3_y * J.wa_5_y + J.wa_3_z * J.wa_5_z) + mb.I *
-        (J.wb_3_x * J.wb_5_x + J.wb_3_y * J.wb_5_y + J.wb_3_z * J.wb_5_z);
-    K[13] = ma.I * (J.wa_4_x * J.wa_5_x + J.wa_4_y * J.wa_5_y + J.wa_4_z * J.wa_5_z) + mb.I *
-        (J.wb_4_x * J.wb_5_x + J.wb_4_y * J.wb_5_y + J.wb_4_z * J.wb_5_z);
-    K[14] = ma.I * (J.wa_5_x * J.wa_5_x + J.wa_5_y * J.wa_5_y + J.wa_5_z * J.wa_5_z) + mb.I *
-        (J.wb_5_x * J.wb_5_x + J.wb_5_y * J.wb_5_y + J.wb_5_z * J.wb_5_z);
+    K[8] = ma.I * (J.wa_3_y * J.wa_4_y - J.wa_3_x * J.wb_3_y + J.wa_3_z * J.wa_4_z) + mb.I *
+        (J.wa_3_x * J.wa_3_y - J.wa_4_y * J.wb_3_y + J.wb_3_z * J.wb_4_z);
+    K[9] = ma.I * (K44_1 + K44_2 + K33_4) + mb.I * (K33_2 + K44_1 + K44_3);
+    K[10] = mb.I * (-J.rb_x_fa_y_x * J.wa_3_z - J.rb_x_fa_y_y * J.wa_4_z - J.rb_x_fa_y_z *
+        J.wa_5_z) - ma.I * (J.ra_d_x_fa_y_z * J.wa_5_z - J.ra_d_x_fa_y_x * J.wb_3_z -
+        J.ra_d_x_fa_y_y * J.wb_4_z);
+    K[11] = mb.I * (-J.rb_x_fa_z_x * J.wa_3_z - J.rb_x_fa_z_y * J.wa_4_z - J.rb_x_fa_z_z *
+        J.wa_5_z) - ma.I * (J.ra_d_x_fa_z_z * J.wa_5_z - J.ra_d_x_fa_z_x * J.wb_3_z -
+        J.ra_d_x_fa_z_y * J.wb_4_z);
+    K[12] = ma.I * (J.wa_3_z * J.wa_5_z - J.wa_3_x * J.wb_3_z - J.wa_3_y * J.wb_4_z) + mb.I *
+        (J.wa_3_x * J.wa_3_z - J.wa_4_z * J.wb_3_y - J.wa_5_z * J.wb_3_z);
+    K[13] = ma.I * (J.wa_4_z * J.wa_5_z - J.wa_4_y * J.wb_4_z + J.wb_3_y * J.wb_3_z) + mb.I *
+        (J.wa_3_y * J.wa_3_z + J.wa_4_y * J.wa_4_z - J.wa_5_z * J.wb_4_z);
+    K[14] = ma.I * (K55_1 + K33_5 + K44_3) + mb.I * (K33_3 + K44_2 + K55_1);
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 39 +, 48 *
@@ -2063,133 +2069,6 @@ struct prismatic::a_immovable : prismatic {
     D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
     D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 85 +, 138 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[5]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
-    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-    const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-    const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_w_b_x_fb_x_y - fa_x_y * w_b_x_w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_w_b_x_fb_x_z - fa_x_z * w_b_x_w_b_x_fb_x_x;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
-    const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-    const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-    const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-    const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_x = fa_y_z * w_b_x_w_b_x_fb_y_y - fa_y_y * w_b_x_w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_y = fa_y_x * w_b_x_w_b_x_fb_y_z - fa_y_z * w_b_x_w_b_x_fb_y_x;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
-    const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_x = fa_z_z * w_b_x_w_b_x_fb_z_y - fa_z_y * w_b_x_w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_y = fa_z_x * w_b_x_w_b_x_fb_z_z - fa_z_z * w_b_x_w_b_x_fb_z_x;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_w_b_x_fb_x_x - fa_x_x * w_b_x_w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_z = fa_y_y * w_b_x_w_b_x_fb_y_x - fa_y_x * w_b_x_w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_z = fa_z_y * w_b_x_w_b_x_fb_z_x - fa_z_x * w_b_x_w_b_x_fb_z_y;
-    g[0] = fa_y_x * w_b_x_rb_x_w_b_x + fa_y_y * w_b_x_rb_x_w_b_y + fa_y_z * w_b_x_rb_x_w_b_z;
-    g[1] = fa_z_x * w_b_x_rb_x_w_b_x + fa_z_y * w_b_x_rb_x_w_b_y + fa_z_z * w_b_x_rb_x_w_b_z;
-    g[2] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_x + w_b_x_w_b_x_fb_y_x_fa_y_x +
-        w_b_x_w_b_x_fb_z_x_fa_z_x);
-    g[3] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_y + w_b_x_w_b_x_fb_y_x_fa_y_y +
-        w_b_x_w_b_x_fb_z_x_fa_z_y);
-    g[4] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_z + w_b_x_w_b_x_fb_y_x_fa_y_z +
-        w_b_x_w_b_x_fb_z_x_fa_z_z);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 86 +, 141 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[5],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T H10_1 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T H10_2 = T(0.5) * lambda[2] * fa_z_z - T(0.5) * lambda[4] * fa_z_x;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T H10_3 = T(0.5) * lambda[2] * fa_x_z - T(0.5) * lambda[4] * fa_x_x;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T H10_4 = T(0.5) * lambda[2] * fa_y_z - T(0.5) * lambda[4] * fa_y_x;
-    const T H10_5 = rb_y * H10_1 - fb_z_y * H10_2 - fb_x_y * H10_3 - fb_y_y * H10_4;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T H10_6 = -lambda[0] * fa_y_z - lambda[1] * fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T H10_7 = T(0.5) * lambda[2] * fa_z_y - T(0.5) * lambda[3] * fa_z_x;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H10_8 = T(0.5) * lambda[2] * fa_x_y - T(0.5) * lambda[3] * fa_x_x;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T H10_9 = T(0.5) * lambda[2] * fa_y_y - T(0.5) * lambda[3] * fa_y_x;
-    const T H10_10 = rb_z * H10_6 - fb_z_z * H10_7 - fb_x_z * H10_8 - fb_y_z * H10_9;
-    const T H11_1 = T(0.5) * lambda[3] * fa_x_z - T(0.5) * lambda[4] * fa_x_y;
-    const T H11_2 = T(0.5) * lambda[3] * fa_y_z - T(0.5) * lambda[4] * fa_y_y;
-    const T H11_3 = T(0.5) * lambda[3] * fa_z_z - T(0.5) * lambda[4] * fa_z_y;
-    const T H11_4 = -lambda[0] * fa_y_x - lambda[1] * fa_z_x;
-    const T H11_1_2 = rb_x * H11_4 - fb_z_x * H11_3 - fb_x_x * H11_1 - fb_y_x * H11_2;
-    H[9][9] = H10_10 - H10_5;
-    H[9][10] = rb_x * H10_1 - fb_x_x * H10_3 - fb_y_x * H10_4 - fb_z_x * H10_2;
-    H[9][11] = fb_x_x * H10_8 + fb_y_x * H10_9 + fb_z_x * H10_7 - rb_x * H10_6;
-    H[10][9] = fb_x_y * H11_1 + fb_y_y * H11_2 + fb_z_y * H11_3 - rb_y * H11_4;
-    H[10][10] = H11_1_2 + H10_10;
-    H[10][11] = fb_x_y * H10_8 + fb_y_y * H10_9 + fb_z_y * H10_7 - rb_y * H10_6;
-    H[11][9] = fb_x_z * H11_1 + fb_y_z * H11_2 + fb_z_z * H11_3 - rb_z * H11_4;
-    H[11][10] = rb_z * H10_1 - fb_x_z * H10_3 - fb_y_z * H10_4 - fb_z_z * H10_2;
-    H[11][11] = H11_1_2 - H10_5;
-  }
 };
 
 // prismatic with b immovable: its velocity and inverse mass are zero and gone.
@@ -2571,175 +2450,6 @@ struct prismatic::b_immovable : prismatic {
     D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
     D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 117 +, 161 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[5]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-    const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_d_w_a_x_w_a_x_fa_y = d_x * w_a_x_w_a_x_fa_y_x + d_y * w_a_x_w_a_x_fa_y_y + d_z *
-        w_a_x_w_a_x_fa_y_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
-    const T d_dot_x = ra_x_w_a_x - va.x;
-    const T d_dot_y = ra_x_w_a_y - va.y;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
-    const T d_dot_z = ra_x_w_a_z - va.z;
-    const T dot_d_dot_w_a_x_fa_y = d_dot_x * w_a_x_fa_y_x + d_dot_y * w_a_x_fa_y_y + d_dot_z *
-        w_a_x_fa_y_z;
-    const T w_a_x_ra_x_w_a_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    const T w_a_x_ra_x_w_a_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    const T dot_d_dot_dot_fa_y = fa_y_x * w_a_x_ra_x_w_a_x + fa_y_y * w_a_x_ra_x_w_a_y + fa_y_z *
-        w_a_x_ra_x_w_a_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_d_w_a_x_w_a_x_fa_z = d_x * w_a_x_w_a_x_fa_z_x + d_y * w_a_x_w_a_x_fa_z_y + d_z *
-        w_a_x_w_a_x_fa_z_z;
-    const T dot_d_dot_w_a_x_fa_z = d_dot_x * w_a_x_fa_z_x + d_dot_y * w_a_x_fa_z_y + d_dot_z *
-        w_a_x_fa_z_z;
-    const T dot_d_dot_dot_fa_z = fa_z_x * w_a_x_ra_x_w_a_x + fa_z_y * w_a_x_ra_x_w_a_y + fa_z_z *
-        w_a_x_ra_x_w_a_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_w_a_x_fa_x_y - fb_x_y * w_a_x_w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_w_a_x_fa_x_z - fb_x_z * w_a_x_w_a_x_fa_x_x;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_x = fb_y_z * w_a_x_w_a_x_fa_y_y - fb_y_y * w_a_x_w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_y = fb_y_x * w_a_x_w_a_x_fa_y_z - fb_y_z * w_a_x_w_a_x_fa_y_x;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_x = fb_z_z * w_a_x_w_a_x_fa_z_y - fb_z_y * w_a_x_w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_y = fb_z_x * w_a_x_w_a_x_fa_z_z - fb_z_z * w_a_x_w_a_x_fa_z_x;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_w_a_x_fa_x_x - fb_x_x * w_a_x_w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_z = fb_y_y * w_a_x_w_a_x_fa_y_x - fb_y_x * w_a_x_w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_z = fb_z_y * w_a_x_w_a_x_fa_z_x - fb_z_x * w_a_x_w_a_x_fa_z_y;
-    g[0] = -dot_d_w_a_x_w_a_x_fa_y - T(2) * dot_d_dot_w_a_x_fa_y - dot_d_dot_dot_fa_y;
-    g[1] = -dot_d_w_a_x_w_a_x_fa_z - T(2) * dot_d_dot_w_a_x_fa_z - dot_d_dot_dot_fa_z;
-    g[2] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_x + w_a_x_w_a_x_fa_y_x_fb_y_x +
-        w_a_x_w_a_x_fa_z_x_fb_z_x);
-    g[3] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_y + w_a_x_w_a_x_fa_y_x_fb_y_y +
-        w_a_x_w_a_x_fa_z_x_fb_z_y);
-    g[4] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_z + w_a_x_w_a_x_fa_y_x_fb_y_z +
-        w_a_x_w_a_x_fa_z_x_fb_z_z);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 107 +, 147 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[5],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T H1_1 = -lambda[0] * fa_y_z - lambda[1] * fa_z_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T H1_1_2 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
-    const T H2_1 = -lambda[0] * fa_y_x - lambda[1] * fa_z_x;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T H4_1 = T(0.5) * lambda[4] * fb_z_x - lambda[1] * ra_d_y - T(0.5) * lambda[2] * fb_z_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_2 = T(0.5) * lambda[4] * fb_x_x - T(0.5) * lambda[2] * fb_x_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H4_3 = T(0.5) * lambda[4] * fb_y_x - lambda[0] * ra_d_y - T(0.5) * lambda[2] * fb_y_z;
-    const T H4_4 = fa_z_y * H4_1 + fa_x_y * H4_2 + fa_y_y * H4_3;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T ra_d_z = d_z + ra_z;
-    const T H4_5 = lambda[1] * ra_d_z - T(0.5) * lambda[2] * fb_z_y + T(0.5) * lambda[3] * fb_z_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H4_6 = T(0.5) * lambda[3] * fb_x_x - T(0.5) * lambda[2] * fb_x_y;
-    const T H4_7 = lambda[0] * ra_d_z - T(0.5) * lambda[2] * fb_y_y + T(0.5) * lambda[3] * fb_y_x;
-    const T H4_8 = fa_z_z * H4_5 + fa_x_z * H4_6 + fa_y_z * H4_7;
-    const T H5_1 = T(0.5) * lambda[4] * fb_x_y - T(0.5) * lambda[3] * fb_x_z;
-    const T H5_2 = lambda[0] * ra_d_x - T(0.5) * lambda[3] * fb_y_z + T(0.5) * lambda[4] * fb_y_y;
-    const T H5_3 = lambda[1] * ra_d_x - T(0.5) * lambda[3] * fb_z_z + T(0.5) * lambda[4] * fb_z_y;
-    const T H5_1_2 = fa_z_x * H5_3 + fa_x_x * H5_1 + fa_y_x * H5_2;
-    H[0][4] = H1_1;
-    H[0][5] = H1_1_2;
-    H[1][3] = -H1_1;
-    H[1][5] = H2_1;
-    H[2][3] = -H1_1_2;
-    H[2][4] = -H2_1;
-    H[3][1] = H[1][3];
-    H[3][2] = H[2][3];
-    H[3][3] = H4_4 - H4_8;
-    H[3][4] = -fa_x_x * H4_2 - fa_y_x * H4_3 - fa_z_x * H4_1;
-    H[3][5] = fa_x_x * H4_6 + fa_y_x * H4_7 + fa_z_x * H4_5;
-    H[4][0] = H1_1;
-    H[4][2] = H[2][4];
-    H[4][3] = fa_x_y * H5_1 + fa_y_y * H5_2 + fa_z_y * H5_3;
-    H[4][4] = -H5_1_2 - H4_8;
-    H[4][5] = fa_x_y * H4_6 + fa_y_y * H4_7 + fa_z_y * H4_5;
-    H[5][0] = H1_1_2;
-    H[5][1] = H2_1;
-    H[5][3] = fa_x_z * H5_1 + fa_y_z * H5_2 + fa_z_z * H5_3;
-    H[5][4] = -fa_x_z * H4_2 - fa_y_z * H4_3 - fa_z_z * H4_1;
-    H[5][5] = H4_4 - H5_1_2;
-  }
 };
 
 // prismatic::slide with a immovable: its velocity and inverse mass are zero and gone.
@@ -2915,60 +2625,6 @@ struct prismatic::slide::a_immovable : prismatic::slide {
     D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 20 +, 33 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
-    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-    const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-    g[0] = fa_x_x * w_b_x_rb_x_w_b_x + fa_x_y * w_b_x_rb_x_w_b_y + fa_x_z * w_b_x_rb_x_w_b_z;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 18 +, 33 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T H10_1 = fa_x_y * rb_y;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T H10_2 = fa_x_z * rb_z;
-    const T H10_1_2 = lambda[0] * rb_x;
-    const T H11_1 = lambda[0] * rb_y;
-    const T H11_1_2 = fa_x_x * rb_x;
-    const T H12_1 = lambda[0] * rb_z;
-    H[9][9] = -lambda[0] * (H10_1 + H10_2);
-    H[9][10] = H10_1_2 * fa_x_y;
-    H[9][11] = H10_1_2 * fa_x_z;
-    H[10][9] = H11_1 * fa_x_x;
-    H[10][10] = -lambda[0] * (H11_1_2 + H10_2);
-    H[10][11] = H11_1 * fa_x_z;
-    H[11][9] = H12_1 * fa_x_x;
-    H[11][10] = H12_1 * fa_x_y;
-    H[11][11] = -lambda[0] * (H11_1_2 + H10_1);
   }
 };
 
@@ -3149,102 +2805,6 @@ struct prismatic::slide::b_immovable : prismatic::slide {
     D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
     D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
     D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 51 +, 61 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[1]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T dot_d_w_a_x_w_a_x_fa_x = d_x * w_a_x_w_a_x_fa_x_x + d_y * w_a_x_w_a_x_fa_x_y + d_z *
-        w_a_x_w_a_x_fa_x_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
-    const T d_dot_x = ra_x_w_a_x - va.x;
-    const T d_dot_y = ra_x_w_a_y - va.y;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
-    const T d_dot_z = ra_x_w_a_z - va.z;
-    const T dot_d_dot_w_a_x_fa_x = d_dot_x * w_a_x_fa_x_x + d_dot_y * w_a_x_fa_x_y + d_dot_z *
-        w_a_x_fa_x_z;
-    const T w_a_x_ra_x_w_a_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    const T w_a_x_ra_x_w_a_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    const T dot_d_dot_dot_fa_x = fa_x_x * w_a_x_ra_x_w_a_x + fa_x_y * w_a_x_ra_x_w_a_y + fa_x_z *
-        w_a_x_ra_x_w_a_z;
-    g[0] = -dot_d_w_a_x_w_a_x_fa_x - T(2) * dot_d_dot_w_a_x_fa_x - dot_d_dot_dot_fa_x;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 39 +, 42 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H1_1 = lambda[0] * fa_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T H1_1_2 = lambda[0] * fa_x_y;
-    const T H2_1 = lambda[0] * fa_x_x;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T H4_1 = ra_d_y * fa_x_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T ra_d_z = d_z + ra_z;
-    const T H4_2 = ra_d_z * fa_x_z;
-    const T H5_1 = ra_d_x * fa_x_x;
-    H[0][4] = -H1_1;
-    H[0][5] = H1_1_2;
-    H[1][3] = H1_1;
-    H[1][5] = -H2_1;
-    H[2][3] = -H1_1_2;
-    H[2][4] = H2_1;
-    H[3][1] = H1_1;
-    H[3][2] = H[2][3];
-    H[3][3] = -lambda[0] * (H4_1 + H4_2);
-    H[3][4] = H2_1 * ra_d_y;
-    H[3][5] = H2_1 * ra_d_z;
-    H[4][0] = H[0][4];
-    H[4][2] = H2_1;
-    H[4][3] = H1_1_2 * ra_d_x;
-    H[4][4] = -lambda[0] * (H5_1 + H4_2);
-    H[4][5] = H1_1_2 * ra_d_z;
-    H[5][0] = H1_1_2;
-    H[5][1] = H[1][5];
-    H[5][3] = H1_1 * ra_d_x;
-    H[5][4] = H1_1 * ra_d_y;
-    H[5][5] = -lambda[0] * (H5_1 + H4_1);
   }
 };
 

@@ -176,39 +176,39 @@ struct relative_orientation {
     J.wb_3_z = T(0.5) * wa_3_z_1;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 66 +, 90 *
+  // K = J M^-1 J^T, lower triangle, from J: 66 +, 83 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    const T K11_1 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_2 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_3 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
-    const T K11_4 = mb.Ixx * J.wb_1_x + mb.Ixy * J.wb_1_y + mb.Ixz * J.wb_1_z;
-    const T K11_5 = mb.Ixy * J.wb_1_x + mb.Iyy * J.wb_1_y + mb.Iyz * J.wb_1_z;
-    const T K11_6 = mb.Ixz * J.wb_1_x + mb.Iyz * J.wb_1_y + mb.Izz * J.wb_1_z;
-    const T K22_1 = ma.Ixx * J.wa_2_x + ma.Ixy * J.wa_2_y + ma.Ixz * J.wa_2_z;
-    const T K22_2 = ma.Ixy * J.wa_2_x + ma.Iyy * J.wa_2_y + ma.Iyz * J.wa_2_z;
-    const T K22_3 = ma.Ixz * J.wa_2_x + ma.Iyz * J.wa_2_y + ma.Izz * J.wa_2_z;
-    const T K22_4 = mb.Ixx * J.wb_2_x + mb.Ixy * J.wb_2_y + mb.Ixz * J.wb_2_z;
-    const T K22_5 = mb.Ixy * J.wb_2_x + mb.Iyy * J.wb_2_y + mb.Iyz * J.wb_2_z;
-    const T K22_6 = mb.Ixz * J.wb_2_x + mb.Iyz * J.wb_2_y + mb.Izz * J.wb_2_z;
-    K[0] = J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3 + J.wb_1_x * K11_4 + J.wb_1_y *
-        K11_5 + J.wb_1_z * K11_6;
-    K[1] = J.wa_2_x * K11_1 + J.wa_2_y * K11_2 + J.wa_2_z * K11_3 + J.wb_2_x * K11_4 + J.wb_2_y *
-        K11_5 + J.wb_2_z * K11_6;
-    K[2] = J.wa_2_x * K22_1 + J.wa_2_y * K22_2 + J.wa_2_z * K22_3 + J.wb_2_x * K22_4 + J.wb_2_y *
-        K22_5 + J.wb_2_z * K22_6;
-    K[3] = J.wa_3_x * K11_1 + J.wa_3_y * K11_2 + J.wa_3_z * K11_3 + J.wb_3_x * K11_4 + J.wb_3_y *
-        K11_5 + J.wb_3_z * K11_6;
-    K[4] = J.wa_3_x * K22_1 + J.wa_3_y * K22_2 + J.wa_3_z * K22_3 + J.wb_3_x * K22_4 + J.wb_3_y *
-        K22_5 + J.wb_3_z * K22_6;
-    K[5] = J.wa_3_x * (ma.Ixx * J.wa_3_x + ma.Ixy * J.wa_3_y + ma.Ixz * J.wa_3_z) + J.wa_3_y *
-        (ma.Ixy * J.wa_3_x + ma.Iyy * J.wa_3_y + ma.Iyz * J.wa_3_z) + J.wa_3_z *
-        (ma.Ixz * J.wa_3_x + ma.Iyz * J.wa_3_y + ma.Izz * J.wa_3_z) + J.wb_3_x *
-        (mb.Ixx * J.wb_3_x + mb.Ixy * J.wb_3_y + mb.Ixz * J.wb_3_z) + J.wb_3_y *
-        (mb.Ixy * J.wb_3_x + mb.Iyy * J.wb_3_y + mb.Iyz * J.wb_3_z) + J.wb_3_z *
-        (mb.Ixz * J.wb_3_x + mb.Iyz * J.wb_3_y + mb.Izz * J.wb_3_z);
+    const T K11_1 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
+    const T K11_2 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
+    const T K11_3 = mb.Iyy * J.wb_1_y - mb.Ixy * J.wa_1_x + mb.Iyz * J.wb_1_z;
+    const T K11_4 = mb.Iyz * J.wb_1_y - mb.Ixz * J.wa_1_x + mb.Izz * J.wb_1_z;
+    const T K11_5 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
+    const T K11_6 = mb.Ixy * J.wb_1_y - mb.Ixx * J.wa_1_x + mb.Ixz * J.wb_1_z;
+    const T K22_1 = mb.Ixz * J.wb_2_z - mb.Ixx * J.wa_1_y - mb.Ixy * J.wa_2_y;
+    const T K22_2 = ma.Iyz * J.wa_2_y - ma.Ixz * J.wb_1_y + ma.Izz * J.wa_2_z;
+    const T K22_3 = ma.Ixy * J.wa_2_y - ma.Ixx * J.wb_1_y + ma.Ixz * J.wa_2_z;
+    const T K22_4 = mb.Izz * J.wb_2_z - mb.Ixz * J.wa_1_y - mb.Iyz * J.wa_2_y;
+    const T K22_5 = ma.Iyy * J.wa_2_y - ma.Ixy * J.wb_1_y + ma.Iyz * J.wa_2_z;
+    const T K22_6 = mb.Iyz * J.wb_2_z - mb.Ixy * J.wa_1_y - mb.Iyy * J.wa_2_y;
+    K[0] = J.wa_1_y * K11_1 + J.wa_1_z * K11_2 + J.wb_1_y * K11_3 + J.wb_1_z * K11_4 + J.wa_1_x *
+        (K11_5 - K11_6);
+    K[1] = J.wa_2_z * K11_2 - J.wa_1_y * K11_6 - J.wb_1_y * K11_5 + J.wb_2_z * K11_4 + J.wa_2_y *
+        (K11_1 - K11_3);
+    K[2] = J.wa_2_z * K22_2 - J.wa_1_y * K22_1 - J.wb_1_y * K22_3 + J.wb_2_z * K22_4 + J.wa_2_y *
+        (K22_5 - K22_6);
+    K[3] = J.wa_3_z * (K11_2 - K11_4) - J.wa_1_z * K11_6 - J.wa_2_z * K11_3 - J.wb_1_z * K11_5 -
+        J.wb_2_z * K11_1;
+    K[4] = J.wa_3_z * (K22_2 - K22_4) - J.wa_1_z * K22_1 - J.wa_2_z * K22_6 - J.wb_1_z * K22_3 -
+        J.wb_2_z * K22_5;
+    K[5] = J.wa_1_z * (mb.Ixx * J.wa_1_z + mb.Ixy * J.wa_2_z + mb.Ixz * J.wa_3_z) + J.wa_2_z *
+        (mb.Ixy * J.wa_1_z + mb.Iyy * J.wa_2_z + mb.Iyz * J.wa_3_z) - J.wb_1_z *
+        (ma.Ixz * J.wa_3_z - ma.Ixx * J.wb_1_z - ma.Ixy * J.wb_2_z) - J.wb_2_z *
+        (ma.Iyz * J.wa_3_z - ma.Ixy * J.wb_1_z - ma.Iyy * J.wb_2_z) + J.wa_3_z *
+        (mb.Ixz * J.wa_1_z - ma.Ixz * J.wb_1_z - ma.Iyz * J.wb_2_z + mb.Iyz * J.wa_2_z + J.wa_3_z *
+        (ma.Izz + mb.Izz));
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 4 +, 13 *, 3 /, 3 <
@@ -332,24 +332,30 @@ struct relative_orientation {
     D[2][11] = mb.Ixz * J.wb_3_x + mb.Iyz * J.wb_3_y + mb.Izz * J.wb_3_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 30 +, 48 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 30 +, 39 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
-    K[0] = ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z) + mb.I *
-        (J.wb_1_x * J.wb_1_x + J.wb_1_y * J.wb_1_y + J.wb_1_z * J.wb_1_z);
-    K[1] = ma.I * (J.wa_1_x * J.wa_2_x + J.wa_1_y * J.wa_2_y + J.wa_1_z * J.wa_2_z) + mb.I *
-        (J.wb_1_x * J.wb_2_x + J.wb_1_y * J.wb_2_y + J.wb_1_z * J.wb_2_z);
-    K[2] = ma.I * (J.wa_2_x * J.wa_2_x + J.wa_2_y * J.wa_2_y + J.wa_2_z * J.wa_2_z) + mb.I *
-        (J.wb_2_x * J.wb_2_x + J.wb_2_y * J.wb_2_y + J.wb_2_z * J.wb_2_z);
-    K[3] = ma.I * (J.wa_1_x * J.wa_3_x + J.wa_1_y * J.wa_3_y + J.wa_1_z * J.wa_3_z) + mb.I *
-        (J.wb_1_x * J.wb_3_x + J.wb_1_y * J.wb_3_y + J.wb_1_z * J.wb_3_z);
-    K[4] = ma.I * (J.wa_2_x * J.wa_3_x + J.wa_2_y * J.wa_3_y + J.wa_2_z * J.wa_3_z) + mb.I *
-        (J.wb_2_x * J.wb_3_x + J.wb_2_y * J.wb_3_y + J.wb_2_z * J.wb_3_z);
-    K[5] = ma.I * (J.wa_3_x * J.wa_3_x + J.wa_3_y * J.wa_3_y + J.wa_3_z * J.wa_3_z) + mb.I *
-        (J.wb_3_x * J.wb_3_x + J.wb_3_y * J.wb_3_y + J.wb_3_z * J.wb_3_z);
+    const T K11_1 = J.wa_1_x * J.wa_1_x;
+    const T K11_2 = J.wa_1_y * J.wa_1_y;
+    const T K11_3 = J.wa_1_z * J.wa_1_z;
+    const T K11_4 = J.wb_1_y * J.wb_1_y;
+    const T K11_5 = J.wb_1_z * J.wb_1_z;
+    const T K22_1 = J.wa_2_y * J.wa_2_y;
+    const T K22_2 = J.wa_2_z * J.wa_2_z;
+    const T K22_3 = J.wb_2_z * J.wb_2_z;
+    const T K33_1 = J.wa_3_z * J.wa_3_z;
+    K[0] = ma.I * (K11_1 + K11_2 + K11_3) + mb.I * (K11_1 + K11_4 + K11_5);
+    K[1] = ma.I * (J.wa_1_y * J.wa_2_y - J.wa_1_x * J.wb_1_y + J.wa_1_z * J.wa_2_z) + mb.I *
+        (J.wa_1_x * J.wa_1_y - J.wa_2_y * J.wb_1_y + J.wb_1_z * J.wb_2_z);
+    K[2] = ma.I * (K22_1 + K22_2 + K11_4) + mb.I * (K11_2 + K22_1 + K22_3);
+    K[3] = ma.I * (J.wa_1_z * J.wa_3_z - J.wa_1_x * J.wb_1_z - J.wa_1_y * J.wb_2_z) + mb.I *
+        (J.wa_1_x * J.wa_1_z - J.wa_2_z * J.wb_1_y - J.wa_3_z * J.wb_1_z);
+    K[4] = ma.I * (J.wa_2_z * J.wa_3_z - J.wa_2_y * J.wb_2_z + J.wb_1_y * J.wb_1_z) + mb.I *
+        (J.wa_1_y * J.wa_1_z + J.wa_2_y * J.wa_2_z - J.wa_3_z * J.wb_2_z);
+    K[5] = ma.I * (K33_1 + K11_5 + K22_3) + mb.I * (K11_3 + K22_2 + K33_1);
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 18 +, 24 *
@@ -979,116 +985,6 @@ struct relative_orientation::a_immovable : relative_orientation {
     D[2][12] = T(2) * (J.wb_3_y * b.e0 - J.wb_3_x * b.e3 + J.wb_3_z * b.e1);
     D[2][13] = T(2) * (J.wb_3_x * b.e2 - J.wb_3_y * b.e1 + J.wb_3_z * b.e0);
   }
-
-  // -Jdot v - d/dt(dC/dt): 69 +, 111 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[3]) {
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-    const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_w_b_x_fb_x_y - fa_x_y * w_b_x_w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_w_b_x_fb_x_z - fa_x_z * w_b_x_w_b_x_fb_x_x;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
-    const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-    const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-    const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_x = fa_y_z * w_b_x_w_b_x_fb_y_y - fa_y_y * w_b_x_w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_y = fa_y_x * w_b_x_w_b_x_fb_y_z - fa_y_z * w_b_x_w_b_x_fb_y_x;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
-    const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_x = fa_z_z * w_b_x_w_b_x_fb_z_y - fa_z_y * w_b_x_w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_y = fa_z_x * w_b_x_w_b_x_fb_z_z - fa_z_z * w_b_x_w_b_x_fb_z_x;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_w_b_x_fb_x_x - fa_x_x * w_b_x_w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_z = fa_y_y * w_b_x_w_b_x_fb_y_x - fa_y_x * w_b_x_w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_z = fa_z_y * w_b_x_w_b_x_fb_z_x - fa_z_x * w_b_x_w_b_x_fb_z_y;
-    g[0] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_x + w_b_x_w_b_x_fb_y_x_fa_y_x +
-        w_b_x_w_b_x_fb_z_x_fa_z_x);
-    g[1] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_y + w_b_x_w_b_x_fb_y_x_fa_y_y +
-        w_b_x_w_b_x_fb_z_x_fa_z_y);
-    g[2] = T(0.5) * (w_b_x_w_b_x_fb_x_x_fa_x_z + w_b_x_w_b_x_fb_y_x_fa_y_z +
-        w_b_x_w_b_x_fb_z_x_fa_z_z);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 66 +, 108 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T H10_1 = lambda[0] * fa_z_z - lambda[2] * fa_z_x;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T H10_2 = lambda[0] * fa_x_z - lambda[2] * fa_x_x;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T H10_3 = lambda[0] * fa_y_z - lambda[2] * fa_y_x;
-    const T H10_4 = fb_z_y * H10_1 + fb_x_y * H10_2 + fb_y_y * H10_3;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T H10_5 = lambda[0] * fa_z_y - lambda[1] * fa_z_x;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T H10_6 = lambda[0] * fa_x_y - lambda[1] * fa_x_x;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T H10_7 = lambda[0] * fa_y_y - lambda[1] * fa_y_x;
-    const T H10_8 = fb_z_z * H10_5 + fb_x_z * H10_6 + fb_y_z * H10_7;
-    const T H11_1 = lambda[1] * fa_x_z - lambda[2] * fa_x_y;
-    const T H11_2 = lambda[1] * fa_y_z - lambda[2] * fa_y_y;
-    const T H11_3 = lambda[1] * fa_z_z - lambda[2] * fa_z_y;
-    const T H11_1_2 = fb_z_x * H11_3 + fb_x_x * H11_1 + fb_y_x * H11_2;
-    H[9][9] = T(0.5) * (H10_4 - H10_8);
-    H[9][10] = -T(0.5) * (fb_x_x * H10_2 + fb_y_x * H10_3 + fb_z_x * H10_1);
-    H[9][11] = T(0.5) * (fb_x_x * H10_6 + fb_y_x * H10_7 + fb_z_x * H10_5);
-    H[10][9] = T(0.5) * (fb_x_y * H11_1 + fb_y_y * H11_2 + fb_z_y * H11_3);
-    H[10][10] = -T(0.5) * (H11_1_2 + H10_8);
-    H[10][11] = T(0.5) * (fb_x_y * H10_6 + fb_y_y * H10_7 + fb_z_y * H10_5);
-    H[11][9] = T(0.5) * (fb_x_z * H11_1 + fb_y_z * H11_2 + fb_z_z * H11_3);
-    H[11][10] = -T(0.5) * (fb_x_z * H10_2 + fb_y_z * H10_3 + fb_z_z * H10_1);
-    H[11][11] = T(0.5) * (H10_4 - H11_1_2);
-  }
 };
 
 // relative_orientation with b immovable: its velocity and inverse mass are zero and gone.
@@ -1327,116 +1223,6 @@ struct relative_orientation::b_immovable : relative_orientation {
     D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
     D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
     D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 69 +, 111 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[3]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_w_a_x_fa_x_y - fb_x_y * w_a_x_w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_w_a_x_fa_x_z - fb_x_z * w_a_x_w_a_x_fa_x_x;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-    const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_x = fb_y_z * w_a_x_w_a_x_fa_y_y - fb_y_y * w_a_x_w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_y = fb_y_x * w_a_x_w_a_x_fa_y_z - fb_y_z * w_a_x_w_a_x_fa_y_x;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_x = fb_z_z * w_a_x_w_a_x_fa_z_y - fb_z_y * w_a_x_w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_y = fb_z_x * w_a_x_w_a_x_fa_z_z - fb_z_z * w_a_x_w_a_x_fa_z_x;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_w_a_x_fa_x_x - fb_x_x * w_a_x_w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_z = fb_y_y * w_a_x_w_a_x_fa_y_x - fb_y_x * w_a_x_w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_z = fb_z_y * w_a_x_w_a_x_fa_z_x - fb_z_x * w_a_x_w_a_x_fa_z_y;
-    g[0] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_x + w_a_x_w_a_x_fa_y_x_fb_y_x +
-        w_a_x_w_a_x_fa_z_x_fb_z_x);
-    g[1] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_y + w_a_x_w_a_x_fa_y_x_fb_y_y +
-        w_a_x_w_a_x_fa_z_x_fb_z_y);
-    g[2] = -T(0.5) * (w_a_x_w_a_x_fa_x_x_fb_x_z + w_a_x_w_a_x_fa_y_x_fb_y_z +
-        w_a_x_w_a_x_fa_z_x_fb_z_z);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 66 +, 108 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
-    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
-    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
-    const T H4_1 = lambda[2] * fb_z_x - lambda[0] * fb_z_z;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
-    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
-    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
-    const T H4_2 = lambda[2] * fb_x_x - lambda[0] * fb_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
-    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
-    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
-    const T H4_3 = lambda[2] * fb_y_x - lambda[0] * fb_y_z;
-    const T H4_4 = fa_z_y * H4_1 + fa_x_y * H4_2 + fa_y_y * H4_3;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T H4_5 = lambda[1] * fb_z_x - lambda[0] * fb_z_y;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H4_6 = lambda[1] * fb_x_x - lambda[0] * fb_x_y;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T H4_7 = lambda[1] * fb_y_x - lambda[0] * fb_y_y;
-    const T H4_8 = fa_z_z * H4_5 + fa_x_z * H4_6 + fa_y_z * H4_7;
-    const T H5_1 = lambda[2] * fb_x_y - lambda[1] * fb_x_z;
-    const T H5_2 = lambda[2] * fb_y_y - lambda[1] * fb_y_z;
-    const T H5_3 = lambda[2] * fb_z_y - lambda[1] * fb_z_z;
-    const T H5_1_2 = fa_z_x * H5_3 + fa_x_x * H5_1 + fa_y_x * H5_2;
-    H[3][3] = T(0.5) * (H4_4 - H4_8);
-    H[3][4] = -T(0.5) * (fa_x_x * H4_2 + fa_y_x * H4_3 + fa_z_x * H4_1);
-    H[3][5] = T(0.5) * (fa_x_x * H4_6 + fa_y_x * H4_7 + fa_z_x * H4_5);
-    H[4][3] = T(0.5) * (fa_x_y * H5_1 + fa_y_y * H5_2 + fa_z_y * H5_3);
-    H[4][4] = -T(0.5) * (H5_1_2 + H4_8);
-    H[4][5] = T(0.5) * (fa_x_y * H4_6 + fa_y_y * H4_7 + fa_z_y * H4_5);
-    H[5][3] = T(0.5) * (fa_x_z * H5_1 + fa_y_z * H5_2 + fa_z_z * H5_3);
-    H[5][4] = -T(0.5) * (fa_x_z * H4_2 + fa_y_z * H4_3 + fa_z_z * H4_1);
-    H[5][5] = T(0.5) * (H4_4 - H5_1_2);
   }
 };
 

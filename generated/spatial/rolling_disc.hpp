@@ -185,65 +185,60 @@ struct rolling_disc {
     J.k_x_dir_m_x_fa_z_z = fa_z_y * k_x_dir_m_x - fa_z_x * k_x_dir_m_y;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 85 +, 126 *
+  // K = J M^-1 J^T, lower triangle, from J: 70 +, 97 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
     const InverseMass<T>& mb = m[1];
-    const T K11_1 = J.fa_x_x_dir_m_x_k_x * J.radius;
-    const T K11_2 = J.radius * mb.Ixy;
-    const T K11_3 = J.radius * mb.Ixz;
-    const T K11_4 = K11_1 * mb.Ixx + K11_2 * J.fa_x_x_dir_m_x_k_y + K11_3 * J.fa_x_x_dir_m_x_k_z;
-    const T K11_5 = J.radius * J.fa_x_x_dir_m_x_k_y;
-    const T K11_6 = J.radius * mb.Iyz;
-    const T K11_7 = K11_2 * J.fa_x_x_dir_m_x_k_x + K11_5 * mb.Iyy + K11_6 * J.fa_x_x_dir_m_x_k_z;
-    const T K11_8 = J.radius * J.fa_x_x_dir_m_x_k_z;
-    const T K11_9 = K11_3 * J.fa_x_x_dir_m_x_k_x + K11_6 * J.fa_x_x_dir_m_x_k_y + K11_8 * mb.Izz;
-    const T K11_10 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
-    const T K11_11 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
-    const T K11_12 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
-    const T K11_13 = ma.m + mb.m;
-    const T K11_14 = J.fa_x_x * K11_13;
-    const T K11_15 = J.fa_x_y * K11_13;
-    const T K11_16 = J.fa_x_z * K11_13;
-    const T K21_1 = J.radius * J.k_x_dir_m_x_fa_y_x;
-    const T K21_2 = J.radius * J.k_x_dir_m_x_fa_y_y;
-    const T K21_3 = J.radius * J.k_x_dir_m_x_fa_y_z;
+    const T K11_1 = ma.m + mb.m;
+    const T K11_2 = J.radius * J.radius;
+    const T K11_3 = mb.Ixx * J.fa_x_x_dir_m_x_k_x + mb.Ixy * J.fa_x_x_dir_m_x_k_y + mb.Ixz *
+        J.fa_x_x_dir_m_x_k_z;
+    const T K11_4 = mb.Ixy * J.fa_x_x_dir_m_x_k_x + mb.Iyy * J.fa_x_x_dir_m_x_k_y + mb.Iyz *
+        J.fa_x_x_dir_m_x_k_z;
+    const T K11_5 = mb.Ixz * J.fa_x_x_dir_m_x_k_x + mb.Iyz * J.fa_x_x_dir_m_x_k_y + mb.Izz *
+        J.fa_x_x_dir_m_x_k_z;
+    const T K11_6 = ma.Ixx * J.wa_1_x + ma.Ixy * J.wa_1_y + ma.Ixz * J.wa_1_z;
+    const T K11_7 = ma.Ixy * J.wa_1_x + ma.Iyy * J.wa_1_y + ma.Iyz * J.wa_1_z;
+    const T K11_8 = ma.Ixz * J.wa_1_x + ma.Iyz * J.wa_1_y + ma.Izz * J.wa_1_z;
     const T K22_1 = ma.Ixx * J.arm_a_x_fa_y_x + ma.Ixy * J.arm_a_x_fa_y_y + ma.Ixz *
         J.arm_a_x_fa_y_z;
     const T K22_2 = ma.Ixy * J.arm_a_x_fa_y_x + ma.Iyy * J.arm_a_x_fa_y_y + ma.Iyz *
         J.arm_a_x_fa_y_z;
     const T K22_3 = ma.Ixz * J.arm_a_x_fa_y_x + ma.Iyz * J.arm_a_x_fa_y_y + ma.Izz *
         J.arm_a_x_fa_y_z;
-    const T K22_4 = K21_1 * mb.Ixx + K11_2 * J.k_x_dir_m_x_fa_y_y + K11_3 * J.k_x_dir_m_x_fa_y_z;
-    const T K22_5 = K11_2 * J.k_x_dir_m_x_fa_y_x + K21_2 * mb.Iyy + K11_6 * J.k_x_dir_m_x_fa_y_z;
-    const T K22_6 = K11_3 * J.k_x_dir_m_x_fa_y_x + K11_6 * J.k_x_dir_m_x_fa_y_y + K21_3 * mb.Izz;
-    const T K31_1 = J.radius * J.k_x_dir_m_x_fa_z_x;
-    const T K31_2 = J.radius * J.k_x_dir_m_x_fa_z_y;
-    const T K31_3 = J.radius * J.k_x_dir_m_x_fa_z_z;
-    K[0] = K11_1 * K11_4 + K11_5 * K11_7 + K11_8 * K11_9 + J.wa_1_x * K11_10 + J.wa_1_y * K11_11 +
-        J.wa_1_z * K11_12 + J.fa_x_x * K11_14 + J.fa_x_y * K11_15 + J.fa_x_z * K11_16;
-    K[1] = K21_1 * K11_4 - J.arm_a_x_fa_y_x * K11_10 - J.arm_a_x_fa_y_y * K11_11 -
-        J.arm_a_x_fa_y_z * K11_12 + K21_2 * K11_7 + K21_3 * K11_9 + J.fa_y_x * K11_14 + J.fa_y_y *
-        K11_15 + J.fa_y_z * K11_16;
-    K[2] = J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3 + K21_1 *
-        K22_4 + K21_2 * K22_5 + K21_3 * K22_6 +
-        (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) * K11_13;
-    K[3] = K31_1 * K11_4 - J.arm_a_x_fa_z_x * K11_10 - J.arm_a_x_fa_z_y * K11_11 -
-        J.arm_a_x_fa_z_z * K11_12 + K31_2 * K11_7 + K31_3 * K11_9 + J.fa_z_x * K11_14 + J.fa_z_y *
-        K11_15 + J.fa_z_z * K11_16;
-    K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3 + K31_1 *
-        K22_4 + K31_2 * K22_5 + K31_3 * K22_6 +
-        (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z) * K11_13;
-    K[5] = J.arm_a_x_fa_z_x * (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz *
-        J.arm_a_x_fa_z_z) + J.arm_a_x_fa_z_y *
-        (ma.Ixy * J.arm_a_x_fa_z_x + ma.Iyy * J.arm_a_x_fa_z_y + ma.Iyz * J.arm_a_x_fa_z_z) +
-        J.arm_a_x_fa_z_z * (ma.Ixz * J.arm_a_x_fa_z_x + ma.Iyz * J.arm_a_x_fa_z_y + ma.Izz *
-        J.arm_a_x_fa_z_z) + K31_1 *
-        (K31_1 * mb.Ixx + K11_2 * J.k_x_dir_m_x_fa_z_y + K11_3 * J.k_x_dir_m_x_fa_z_z) + K31_2 *
-        (K11_2 * J.k_x_dir_m_x_fa_z_x + K31_2 * mb.Iyy + K11_6 * J.k_x_dir_m_x_fa_z_z) + K31_3 *
-        (K11_3 * J.k_x_dir_m_x_fa_z_x + K11_6 * J.k_x_dir_m_x_fa_z_y + K31_3 * mb.Izz) +
-        (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) * K11_13;
+    const T K22_4 = mb.Ixx * J.k_x_dir_m_x_fa_y_x + mb.Ixy * J.k_x_dir_m_x_fa_y_y + mb.Ixz *
+        J.k_x_dir_m_x_fa_y_z;
+    const T K22_5 = mb.Ixy * J.k_x_dir_m_x_fa_y_x + mb.Iyy * J.k_x_dir_m_x_fa_y_y + mb.Iyz *
+        J.k_x_dir_m_x_fa_y_z;
+    const T K22_6 = mb.Ixz * J.k_x_dir_m_x_fa_y_x + mb.Iyz * J.k_x_dir_m_x_fa_y_y + mb.Izz *
+        J.k_x_dir_m_x_fa_y_z;
+    K[0] = K11_1 + K11_2 * (J.fa_x_x_dir_m_x_k_x * K11_3 + J.fa_x_x_dir_m_x_k_y * K11_4 +
+        J.fa_x_x_dir_m_x_k_z * K11_5) + J.wa_1_x * K11_6 + J.wa_1_y * K11_7 + J.wa_1_z * K11_8;
+    K[1] = K11_2 * (J.k_x_dir_m_x_fa_y_x * K11_3 + J.k_x_dir_m_x_fa_y_y * K11_4 +
+        J.k_x_dir_m_x_fa_y_z * K11_5) - J.arm_a_x_fa_y_x * K11_6 - J.arm_a_x_fa_y_y * K11_7 -
+        J.arm_a_x_fa_y_z * K11_8;
+    K[2] = K11_1 + J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3 +
+        K11_2 * (J.k_x_dir_m_x_fa_y_x * K22_4 + J.k_x_dir_m_x_fa_y_y * K22_5 +
+        J.k_x_dir_m_x_fa_y_z * K22_6);
+    K[3] = K11_2 * (J.k_x_dir_m_x_fa_z_x * K11_3 + J.k_x_dir_m_x_fa_z_y * K11_4 +
+        J.k_x_dir_m_x_fa_z_z * K11_5) - J.arm_a_x_fa_z_x * K11_6 - J.arm_a_x_fa_z_y * K11_7 -
+        J.arm_a_x_fa_z_z * K11_8;
+    K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3 + K11_2 *
+        (J.k_x_dir_m_x_fa_z_x * K22_4 + J.k_x_dir_m_x_fa_z_y * K22_5 + J.k_x_dir_m_x_fa_z_z *
+        K22_6);
+    K[5] = K11_1 + J.arm_a_x_fa_z_x *
+        (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz * J.arm_a_x_fa_z_z) +
+        J.arm_a_x_fa_z_y * (ma.Ixy * J.arm_a_x_fa_z_x + ma.Iyy * J.arm_a_x_fa_z_y + ma.Iyz *
+        J.arm_a_x_fa_z_z) + J.arm_a_x_fa_z_z *
+        (ma.Ixz * J.arm_a_x_fa_z_x + ma.Iyz * J.arm_a_x_fa_z_y + ma.Izz * J.arm_a_x_fa_z_z) +
+        K11_2 * (J.k_x_dir_m_x_fa_z_x *
+        (mb.Ixx * J.k_x_dir_m_x_fa_z_x + mb.Ixy * J.k_x_dir_m_x_fa_z_y + mb.Ixz *
+        J.k_x_dir_m_x_fa_z_z) + J.k_x_dir_m_x_fa_z_y *
+        (mb.Ixy * J.k_x_dir_m_x_fa_z_x + mb.Iyy * J.k_x_dir_m_x_fa_z_y + mb.Iyz *
+        J.k_x_dir_m_x_fa_z_z) + J.k_x_dir_m_x_fa_z_z *
+        (mb.Ixz * J.k_x_dir_m_x_fa_z_x + mb.Iyz * J.k_x_dir_m_x_fa_z_y + mb.Izz *
+        J.k_x_dir_m_x_fa_z_z));
   }
 
   // K = L D L^T; F holds L and, on the diagonal, D^-1: 4 +, 13 *, 3 /, 3 <
@@ -445,51 +440,43 @@ struct rolling_disc {
         J.k_x_dir_m_x_fa_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 49 +, 76 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 34 +, 50 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
     const IsotropicInverseMass<T>& ma = m[0];
     const IsotropicInverseMass<T>& mb = m[1];
-    const T ia_wa_1_x = ma.I * J.wa_1_x;
-    const T ia_wa_1_y = ma.I * J.wa_1_y;
-    const T ia_wa_1_z = ma.I * J.wa_1_z;
-    const T K11_1 = J.radius * mb.I * J.radius;
-    const T K11_2 = J.fa_x_x_dir_m_x_k_x * K11_1;
-    const T K11_3 = K11_1 * J.fa_x_x_dir_m_x_k_y;
-    const T K11_4 = K11_1 * J.fa_x_x_dir_m_x_k_z;
-    const T K11_5 = ma.m + mb.m;
-    const T K11_6 = J.fa_x_x * K11_5;
-    const T K11_7 = J.fa_x_y * K11_5;
-    const T K11_8 = J.fa_x_z * K11_5;
-    const T ia_arm_a_x_fa_y_x = ma.I * J.arm_a_x_fa_y_x;
-    const T ia_arm_a_x_fa_y_y = ma.I * J.arm_a_x_fa_y_y;
-    const T ia_arm_a_x_fa_y_z = ma.I * J.arm_a_x_fa_y_z;
-    const T K22_1 = K11_1 * J.k_x_dir_m_x_fa_y_x;
-    const T K22_2 = K11_1 * J.k_x_dir_m_x_fa_y_y;
-    const T K22_3 = K11_1 * J.k_x_dir_m_x_fa_y_z;
-    K[0] = ia_wa_1_x * J.wa_1_x + ia_wa_1_y * J.wa_1_y + ia_wa_1_z * J.wa_1_z + K11_2 *
-        J.fa_x_x_dir_m_x_k_x + K11_3 * J.fa_x_x_dir_m_x_k_y + K11_4 * J.fa_x_x_dir_m_x_k_z +
-        J.fa_x_x * K11_6 + J.fa_x_y * K11_7 + J.fa_x_z * K11_8;
-    K[1] = K11_2 * J.k_x_dir_m_x_fa_y_x - ia_wa_1_x * J.arm_a_x_fa_y_x - ia_wa_1_y *
-        J.arm_a_x_fa_y_y - ia_wa_1_z * J.arm_a_x_fa_y_z + K11_3 * J.k_x_dir_m_x_fa_y_y + K11_4 *
-        J.k_x_dir_m_x_fa_y_z + J.fa_y_x * K11_6 + J.fa_y_y * K11_7 + J.fa_y_z * K11_8;
-    K[2] = ia_arm_a_x_fa_y_x * J.arm_a_x_fa_y_x + ia_arm_a_x_fa_y_y * J.arm_a_x_fa_y_y +
-        ia_arm_a_x_fa_y_z * J.arm_a_x_fa_y_z + K22_1 * J.k_x_dir_m_x_fa_y_x + K22_2 *
-        J.k_x_dir_m_x_fa_y_y + K22_3 * J.k_x_dir_m_x_fa_y_z +
-        (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) * K11_5;
-    K[3] = K11_2 * J.k_x_dir_m_x_fa_z_x - ia_wa_1_x * J.arm_a_x_fa_z_x - ia_wa_1_y *
-        J.arm_a_x_fa_z_y - ia_wa_1_z * J.arm_a_x_fa_z_z + K11_3 * J.k_x_dir_m_x_fa_z_y + K11_4 *
-        J.k_x_dir_m_x_fa_z_z + J.fa_z_x * K11_6 + J.fa_z_y * K11_7 + J.fa_z_z * K11_8;
-    K[4] = ia_arm_a_x_fa_y_x * J.arm_a_x_fa_z_x + ia_arm_a_x_fa_y_y * J.arm_a_x_fa_z_y +
-        ia_arm_a_x_fa_y_z * J.arm_a_x_fa_z_z + K22_1 * J.k_x_dir_m_x_fa_z_x + K22_2 *
-        J.k_x_dir_m_x_fa_z_y + K22_3 * J.k_x_dir_m_x_fa_z_z +
-        (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z) * K11_5;
-    K[5] = ma.I * (J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x + J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y +
-        J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z) + K11_1 *
-        (J.k_x_dir_m_x_fa_z_x * J.k_x_dir_m_x_fa_z_x + J.k_x_dir_m_x_fa_z_y *
-        J.k_x_dir_m_x_fa_z_y + J.k_x_dir_m_x_fa_z_z * J.k_x_dir_m_x_fa_z_z) +
-        (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) * K11_5;
+    const T K11_1 = ma.m + mb.m;
+    const T K11_2 = J.radius * mb.I * J.radius;
+    const T dot_fa_x_x_dir_m_x_k_fa_x_x_dir_m_x_k = J.fa_x_x_dir_m_x_k_x * J.fa_x_x_dir_m_x_k_x +
+        J.fa_x_x_dir_m_x_k_y * J.fa_x_x_dir_m_x_k_y + J.fa_x_x_dir_m_x_k_z * J.fa_x_x_dir_m_x_k_z;
+    const T dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_y = J.fa_x_x_dir_m_x_k_x * J.k_x_dir_m_x_fa_y_x +
+        J.fa_x_x_dir_m_x_k_y * J.k_x_dir_m_x_fa_y_y + J.fa_x_x_dir_m_x_k_z * J.k_x_dir_m_x_fa_y_z;
+    const T dot_arm_a_x_fa_y_arm_a_x_fa_y = J.arm_a_x_fa_y_x * J.arm_a_x_fa_y_x +
+        J.arm_a_x_fa_y_y * J.arm_a_x_fa_y_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_y_z;
+    const T dot_k_x_dir_m_x_fa_y_k_x_dir_m_x_fa_y = J.k_x_dir_m_x_fa_y_x * J.k_x_dir_m_x_fa_y_x +
+        J.k_x_dir_m_x_fa_y_y * J.k_x_dir_m_x_fa_y_y + J.k_x_dir_m_x_fa_y_z * J.k_x_dir_m_x_fa_y_z;
+    const T dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_z = J.fa_x_x_dir_m_x_k_x * J.k_x_dir_m_x_fa_z_x +
+        J.fa_x_x_dir_m_x_k_y * J.k_x_dir_m_x_fa_z_y + J.fa_x_x_dir_m_x_k_z * J.k_x_dir_m_x_fa_z_z;
+    const T dot_arm_a_x_fa_y_arm_a_x_fa_z = J.arm_a_x_fa_y_x * J.arm_a_x_fa_z_x +
+        J.arm_a_x_fa_y_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_z_z;
+    const T dot_k_x_dir_m_x_fa_y_k_x_dir_m_x_fa_z = J.k_x_dir_m_x_fa_y_x * J.k_x_dir_m_x_fa_z_x +
+        J.k_x_dir_m_x_fa_y_y * J.k_x_dir_m_x_fa_z_y + J.k_x_dir_m_x_fa_y_z * J.k_x_dir_m_x_fa_z_z;
+    const T dot_arm_a_x_fa_z_arm_a_x_fa_z = J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x +
+        J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z;
+    const T dot_k_x_dir_m_x_fa_z_k_x_dir_m_x_fa_z = J.k_x_dir_m_x_fa_z_x * J.k_x_dir_m_x_fa_z_x +
+        J.k_x_dir_m_x_fa_z_y * J.k_x_dir_m_x_fa_z_y + J.k_x_dir_m_x_fa_z_z * J.k_x_dir_m_x_fa_z_z;
+    K[0] = K11_1 + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z) +
+        K11_2 * dot_fa_x_x_dir_m_x_k_fa_x_x_dir_m_x_k;
+    K[1] = K11_2 * dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_y - ma.I *
+        (J.arm_a_x_fa_y_x * J.wa_1_x + J.arm_a_x_fa_y_y * J.wa_1_y + J.arm_a_x_fa_y_z * J.wa_1_z);
+    K[2] = K11_1 + ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_y + K11_2 *
+        dot_k_x_dir_m_x_fa_y_k_x_dir_m_x_fa_y;
+    K[3] = K11_2 * dot_fa_x_x_dir_m_x_k_k_x_dir_m_x_fa_z - ma.I *
+        (J.arm_a_x_fa_z_x * J.wa_1_x + J.arm_a_x_fa_z_y * J.wa_1_y + J.arm_a_x_fa_z_z * J.wa_1_z);
+    K[4] = ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_z + K11_2 * dot_k_x_dir_m_x_fa_y_k_x_dir_m_x_fa_z;
+    K[5] = K11_1 + ma.I * dot_arm_a_x_fa_z_arm_a_x_fa_z + K11_2 *
+        dot_k_x_dir_m_x_fa_z_k_x_dir_m_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 30 +, 42 *
@@ -1528,170 +1515,6 @@ struct rolling_disc::a_immovable : rolling_disc {
     D[2][13] = T(2) * (D1_1 * J.k_x_dir_m_x_fa_z_y - D1_2 * J.k_x_dir_m_x_fa_z_x - D1_1_2 *
         J.k_x_dir_m_x_fa_z_z);
   }
-
-  // -Jdot v - d/dt(dC/dt): 68 +, 115 *, 1 /, 1 sqrt, 4 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[3]) {
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T k_x = b.xx * p.k_x + b.xy * p.k_y + b.xz * p.k_z;
-    const T k_y = b.yx * p.k_x + b.yy * p.k_y + b.yz * p.k_z;
-    const T w_b_x_k_z = vb.wx * k_y - vb.wy * k_x;
-    const T k_z = b.zx * p.k_x + b.zy * p.k_y + b.zz * p.k_z;
-    const T w_b_x_k_x = vb.wy * k_z - vb.wz * k_y;
-    const T w_b_x_k_y = vb.wz * k_x - vb.wx * k_z;
-    const T w_b_x_w_b_x_k_x = vb.wy * w_b_x_k_z - vb.wz * w_b_x_k_y;
-    const T w_b_x_w_b_x_k_y = vb.wz * w_b_x_k_x - vb.wx * w_b_x_k_z;
-    const T w_b_x_w_b_x_k_x_fa_x_z = fa_x_y * w_b_x_w_b_x_k_x - fa_x_x * w_b_x_w_b_x_k_y;
-    const T m_z = fa_x_x * k_y - fa_x_y * k_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T m_x = fa_x_y * k_z - fa_x_z * k_y;
-    const T m_y = fa_x_z * k_x - fa_x_x * k_z;
-    const T m_len = sqrt(m_z * m_z + m_y * m_y + m_x * m_x);
-    const T inv_m_len = inverse(m_len);
-    const T dir_m_z = select(m_len > smallest<T>(), m_z * inv_m_len, T(0));
-    const T w_b_x_w_b_x_k_z = vb.wx * w_b_x_k_y - vb.wy * w_b_x_k_x;
-    const T w_b_x_w_b_x_k_x_fa_x_x = fa_x_z * w_b_x_w_b_x_k_y - fa_x_y * w_b_x_w_b_x_k_z;
-    const T w_b_x_w_b_x_k_x_fa_x_y = fa_x_x * w_b_x_w_b_x_k_z - fa_x_z * w_b_x_w_b_x_k_x;
-    const T dir_m_x = select(m_len > smallest<T>(), m_x * inv_m_len, T(1));
-    const T dir_m_y = select(m_len > smallest<T>(), m_y * inv_m_len, T(0));
-    const T dot_w_b_x_w_b_x_k_x_fa_x_dir_m = w_b_x_w_b_x_k_x_fa_x_z * dir_m_z +
-        w_b_x_w_b_x_k_x_fa_x_y * dir_m_y + w_b_x_w_b_x_k_x_fa_x_x * dir_m_x;
-    const T w_b_x_k_x_fa_x_x = fa_x_z * w_b_x_k_y - fa_x_y * w_b_x_k_z;
-    const T w_b_x_k_x_fa_x_y = fa_x_x * w_b_x_k_z - fa_x_z * w_b_x_k_x;
-    const T w_b_x_k_x_fa_x_z = fa_x_y * w_b_x_k_x - fa_x_x * w_b_x_k_y;
-    const T dot_w_b_x_k_x_fa_x_dir_m = w_b_x_k_x_fa_x_y * dir_m_y + w_b_x_k_x_fa_x_z * dir_m_z +
-        w_b_x_k_x_fa_x_x * dir_m_x;
-    const T g1_1 = dot_w_b_x_k_x_fa_x_dir_m * dir_m_y - w_b_x_k_x_fa_x_y;
-    const T g1_2 = dot_w_b_x_k_x_fa_x_dir_m * dir_m_z - w_b_x_k_x_fa_x_z;
-    const T g1_3 = dot_w_b_x_k_x_fa_x_dir_m * dir_m_x - w_b_x_k_x_fa_x_x;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T w_b_x_k_x_dir_m_z = w_b_x_k_x * dir_m_y - w_b_x_k_y * dir_m_x;
-    const T g2_1 = w_b_x_k_x_dir_m_z - (g1_3 * k_y - g1_1 * k_x) * inv_m_len;
-    const T w_b_x_k_x_dir_m_x = w_b_x_k_y * dir_m_z - w_b_x_k_z * dir_m_y;
-    const T w_b_x_k_x_dir_m_y = w_b_x_k_z * dir_m_x - w_b_x_k_x * dir_m_z;
-    const T g2_2 = w_b_x_k_x_dir_m_y - (g1_2 * k_x - g1_3 * k_z) * inv_m_len;
-    const T g2_3 = vb.wy * g2_1 - vb.wz * g2_2;
-    const T g2_4 = w_b_x_k_x_dir_m_x - (g1_1 * k_z - g1_2 * k_y) * inv_m_len;
-    const T g2_5 = vb.wz * g2_4 - vb.wx * g2_1;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T g2_6 = vb.wx * g2_2 - vb.wy * g2_4;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    g[0] = -p.radius * (dot_w_b_x_w_b_x_k_x_fa_x_dir_m +
-        (g1_1 * w_b_x_k_x_fa_x_y + g1_2 * w_b_x_k_x_fa_x_z + g1_3 * w_b_x_k_x_fa_x_x) * inv_m_len);
-    g[1] = p.radius * (fa_y_x * g2_3 + fa_y_y * g2_5 + fa_y_z * g2_6);
-    g[2] = p.radius * (fa_z_x * g2_3 + fa_z_y * g2_5 + fa_z_z * g2_6);
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 101 +, 157 *, 1 /, 1 sqrt, 4 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T k_x = b.xx * p.k_x + b.xy * p.k_y + b.xz * p.k_z;
-    const T k_y = b.yx * p.k_x + b.yy * p.k_y + b.yz * p.k_z;
-    const T H10_1 = lambda[0] * p.radius;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T H10_2 = k_y * fa_x_x;
-    const T H10_3 = fa_x_y * k_x;
-    const T m_z = H10_2 - H10_3;
-    const T k_z = b.zx * p.k_x + b.zy * p.k_y + b.zz * p.k_z;
-    const T H10_4 = fa_x_y * k_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H10_5 = k_y * fa_x_z;
-    const T m_x = H10_4 - H10_5;
-    const T H10_6 = fa_x_x * k_z;
-    const T H10_7 = k_x * fa_x_z;
-    const T m_y = H10_7 - H10_6;
-    const T m_len = sqrt(m_z * m_z + m_y * m_y + m_x * m_x);
-    const T inv_m_len = inverse(m_len);
-    const T dir_m_z = select(m_len > smallest<T>(), m_z * inv_m_len, T(0));
-    const T dir_m_x = select(m_len > smallest<T>(), m_x * inv_m_len, T(1));
-    const T dir_m_y = select(m_len > smallest<T>(), m_y * inv_m_len, T(0));
-    const T fa_x_x_dir_m_x = fa_x_y * dir_m_z - fa_x_z * dir_m_y;
-    const T fa_x_x_dir_m_y = fa_x_z * dir_m_x - fa_x_x * dir_m_z;
-    const T H10_8 = H10_1 * fa_x_x_dir_m_y;
-    const T H10_9 = inv_m_len * H10_1;
-    const T H10_10 = k_x * inv_m_len;
-    const T H10_11 = p.radius * lambda[1];
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T H10_12 = p.radius * lambda[2];
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T H10_13 = H10_11 * fa_y_y + H10_12 * fa_z_y;
-    const T H10_14 = H10_2 * H10_9 + H10_10 * H10_13;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T H10_15 = H10_11 * fa_y_z + H10_12 * fa_z_z;
-    const T H10_16 = H10_6 * H10_9 + H10_10 * H10_15;
-    const T H10_17 = fa_x_y * k_y;
-    const T H10_18 = fa_x_z * k_z;
-    const T H10_19 = k_y * H10_13;
-    const T H10_20 = k_z * H10_15;
-    const T H10_21 = H10_9 * (H10_17 + H10_18) + (H10_19 + H10_20) * inv_m_len;
-    const T H10_22 = H10_14 * dir_m_y + H10_16 * dir_m_z - H10_21 * dir_m_x;
-    const T H10_23 = H10_22 * dir_m_y - H10_14;
-    const T H10_24 = H10_21 + H10_22 * dir_m_x;
-    const T H10_25 = fa_x_x * H10_23 - H10_8 - fa_x_y * H10_24 - H10_15 * dir_m_x;
-    const T fa_x_x_dir_m_z = fa_x_x * dir_m_y - fa_x_y * dir_m_x;
-    const T H10_26 = H10_1 * fa_x_x_dir_m_z;
-    const T H10_27 = H10_22 * dir_m_z - H10_16;
-    const T H10_28 = H10_26 - fa_x_x * H10_27 + fa_x_z * H10_24 - H10_13 * dir_m_x;
-    const T H10_1_2 = H10_13 * dir_m_y;
-    const T H10_2_2 = H10_15 * dir_m_z;
-    const T H10_3_2 = fa_x_y * H10_27 - fa_x_z * H10_23 + H10_1_2 + H10_2_2;
-    const T H11_1 = H10_1 * fa_x_x_dir_m_x;
-    const T H11_2 = fa_x_x * k_x;
-    const T H11_3 = H10_11 * fa_y_x + H10_12 * fa_z_x;
-    const T H11_4 = k_x * H11_3;
-    const T H11_5 = H10_9 * (H11_2 + H10_18) + (H11_4 + H10_20) * inv_m_len;
-    const T H11_6 = k_y * inv_m_len;
-    const T H11_7 = H10_3 * H10_9 + H11_6 * H11_3;
-    const T H11_8 = H10_4 * H10_9 + H11_6 * H10_15;
-    const T H11_9 = H11_7 * dir_m_x + H11_8 * dir_m_z - H11_5 * dir_m_y;
-    const T H11_10 = H11_5 + H11_9 * dir_m_y;
-    const T H11_11 = H11_9 * dir_m_x - H11_7;
-    const T H11_12 = H11_1 + fa_x_x * H11_10 - fa_x_y * H11_11 - H10_15 * dir_m_y;
-    const T H11_13 = H11_9 * dir_m_z - H11_8;
-    const T H11_14 = H11_3 * dir_m_x;
-    const T H11_15 = fa_x_z * H11_11 - fa_x_x * H11_13 + H11_14 + H10_2_2;
-    const T H11_1_2 = fa_x_y * H11_13 - H10_26 - fa_x_z * H11_10 - H11_3 * dir_m_y;
-    const T H12_1 = k_z * inv_m_len;
-    const T H12_2 = H10_5 * H10_9 + H12_1 * H10_13;
-    const T H12_3 = H10_7 * H10_9 + H12_1 * H11_3;
-    const T H12_4 = H10_9 * (H11_2 + H10_17) + (H11_4 + H10_19) * inv_m_len;
-    const T H12_5 = H12_3 * dir_m_x + H12_2 * dir_m_y - H12_4 * dir_m_z;
-    const T H12_6 = H12_5 * dir_m_y - H12_2;
-    const T H12_7 = H12_5 * dir_m_x - H12_3;
-    const T H12_8 = fa_x_x * H12_6 - fa_x_y * H12_7 + H11_14 + H10_1_2;
-    const T H12_9 = H12_4 + H12_5 * dir_m_z;
-    const T H12_10 = fa_x_z * H12_7 - H11_1 - fa_x_x * H12_9 - H10_13 * dir_m_z;
-    const T H12_1_2 = H10_8 + fa_x_y * H12_9 - fa_x_z * H12_6 - H11_3 * dir_m_z;
-    H[9][9] = k_y * H10_25 - k_z * H10_28;
-    H[9][10] = k_z * H10_3_2 - k_x * H10_25;
-    H[9][11] = k_x * H10_28 - k_y * H10_3_2;
-    H[10][9] = k_y * H11_12 - k_z * H11_15;
-    H[10][10] = k_z * H11_1_2 - k_x * H11_12;
-    H[10][11] = k_x * H11_15 - k_y * H11_1_2;
-    H[11][9] = k_y * H12_8 - k_z * H12_10;
-    H[11][10] = k_z * H12_1_2 - k_x * H12_8;
-    H[11][11] = k_x * H12_10 - k_y * H12_1_2;
-  }
 };
 
 // rolling_disc with b immovable: its velocity and inverse mass are zero and gone.
@@ -1774,7 +1597,7 @@ struct rolling_disc::b_immovable : rolling_disc {
     J.arm_a_x_fa_z_z = arm_a_x * fa_z_y - arm_a_y * fa_z_x;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 48 +, 69 *
+  // K = J M^-1 J^T, lower triangle, from J: 35 +, 45 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[6]) {
     const InverseMass<T>& ma = m[0];
@@ -1787,22 +1610,16 @@ struct rolling_disc::b_immovable : rolling_disc {
         J.arm_a_x_fa_y_z;
     const T K22_3 = ma.Ixz * J.arm_a_x_fa_y_x + ma.Iyz * J.arm_a_x_fa_y_y + ma.Izz *
         J.arm_a_x_fa_y_z;
-    K[0] = J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3 + ma.m *
-        (J.fa_x_x * J.fa_x_x + J.fa_x_y * J.fa_x_y + J.fa_x_z * J.fa_x_z);
-    K[1] = ma.m * (J.fa_x_x * J.fa_y_x + J.fa_x_y * J.fa_y_y + J.fa_x_z * J.fa_y_z) -
-        J.arm_a_x_fa_y_x * K11_1 - J.arm_a_x_fa_y_y * K11_2 - J.arm_a_x_fa_y_z * K11_3;
-    K[2] = J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3 + ma.m *
-        (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z);
-    K[3] = ma.m * (J.fa_x_x * J.fa_z_x + J.fa_x_y * J.fa_z_y + J.fa_x_z * J.fa_z_z) -
-        J.arm_a_x_fa_z_x * K11_1 - J.arm_a_x_fa_z_y * K11_2 - J.arm_a_x_fa_z_z * K11_3;
-    K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3 + ma.m *
-        (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z);
-    K[5] = J.arm_a_x_fa_z_x * (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz *
-        J.arm_a_x_fa_z_z) + J.arm_a_x_fa_z_y *
-        (ma.Ixy * J.arm_a_x_fa_z_x + ma.Iyy * J.arm_a_x_fa_z_y + ma.Iyz * J.arm_a_x_fa_z_z) +
-        J.arm_a_x_fa_z_z * (ma.Ixz * J.arm_a_x_fa_z_x + ma.Iyz * J.arm_a_x_fa_z_y + ma.Izz *
-        J.arm_a_x_fa_z_z) + ma.m *
-        (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z);
+    K[0] = ma.m + J.wa_1_x * K11_1 + J.wa_1_y * K11_2 + J.wa_1_z * K11_3;
+    K[1] = -J.arm_a_x_fa_y_x * K11_1 - J.arm_a_x_fa_y_y * K11_2 - J.arm_a_x_fa_y_z * K11_3;
+    K[2] = ma.m + J.arm_a_x_fa_y_x * K22_1 + J.arm_a_x_fa_y_y * K22_2 + J.arm_a_x_fa_y_z * K22_3;
+    K[3] = -J.arm_a_x_fa_z_x * K11_1 - J.arm_a_x_fa_z_y * K11_2 - J.arm_a_x_fa_z_z * K11_3;
+    K[4] = J.arm_a_x_fa_z_x * K22_1 + J.arm_a_x_fa_z_y * K22_2 + J.arm_a_x_fa_z_z * K22_3;
+    K[5] = ma.m + J.arm_a_x_fa_z_x *
+        (ma.Ixx * J.arm_a_x_fa_z_x + ma.Ixy * J.arm_a_x_fa_z_y + ma.Ixz * J.arm_a_x_fa_z_z) +
+        J.arm_a_x_fa_z_y * (ma.Ixy * J.arm_a_x_fa_z_x + ma.Iyy * J.arm_a_x_fa_z_y + ma.Iyz *
+        J.arm_a_x_fa_z_z) + J.arm_a_x_fa_z_z *
+        (ma.Ixz * J.arm_a_x_fa_z_x + ma.Iyz * J.arm_a_x_fa_z_y + ma.Izz * J.arm_a_x_fa_z_z);
   }
 
   // J v: 17 +, 18 *
@@ -1891,26 +1708,25 @@ struct rolling_disc::b_immovable : rolling_disc {
     D[2][5] = -ma.Ixz * J.arm_a_x_fa_z_x - ma.Iyz * J.arm_a_x_fa_z_y - ma.Izz * J.arm_a_x_fa_z_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 30 +, 48 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 17 +, 24 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[6]) {
     const IsotropicInverseMass<T>& ma = m[0];
-    K[0] = ma.m * (J.fa_x_x * J.fa_x_x + J.fa_x_y * J.fa_x_y + J.fa_x_z * J.fa_x_z) + ma.I *
-        (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
-    K[1] = ma.m * (J.fa_x_x * J.fa_y_x + J.fa_x_y * J.fa_y_y + J.fa_x_z * J.fa_y_z) - ma.I *
-        (J.arm_a_x_fa_y_x * J.wa_1_x + J.arm_a_x_fa_y_y * J.wa_1_y + J.arm_a_x_fa_y_z * J.wa_1_z);
-    K[2] = ma.m * (J.fa_y_x * J.fa_y_x + J.fa_y_y * J.fa_y_y + J.fa_y_z * J.fa_y_z) + ma.I *
-        (J.arm_a_x_fa_y_x * J.arm_a_x_fa_y_x + J.arm_a_x_fa_y_y * J.arm_a_x_fa_y_y +
-        J.arm_a_x_fa_y_z * J.arm_a_x_fa_y_z);
-    K[3] = ma.m * (J.fa_x_x * J.fa_z_x + J.fa_x_y * J.fa_z_y + J.fa_x_z * J.fa_z_z) - ma.I *
-        (J.arm_a_x_fa_z_x * J.wa_1_x + J.arm_a_x_fa_z_y * J.wa_1_y + J.arm_a_x_fa_z_z * J.wa_1_z);
-    K[4] = ma.m * (J.fa_y_x * J.fa_z_x + J.fa_y_y * J.fa_z_y + J.fa_y_z * J.fa_z_z) + ma.I *
-        (J.arm_a_x_fa_y_x * J.arm_a_x_fa_z_x + J.arm_a_x_fa_y_y * J.arm_a_x_fa_z_y +
-        J.arm_a_x_fa_y_z * J.arm_a_x_fa_z_z);
-    K[5] = ma.m * (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z) + ma.I *
-        (J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x + J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y +
-        J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z);
+    const T dot_arm_a_x_fa_y_arm_a_x_fa_y = J.arm_a_x_fa_y_x * J.arm_a_x_fa_y_x +
+        J.arm_a_x_fa_y_y * J.arm_a_x_fa_y_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_y_z;
+    const T dot_arm_a_x_fa_y_arm_a_x_fa_z = J.arm_a_x_fa_y_x * J.arm_a_x_fa_z_x +
+        J.arm_a_x_fa_y_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_y_z * J.arm_a_x_fa_z_z;
+    const T dot_arm_a_x_fa_z_arm_a_x_fa_z = J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x +
+        J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z;
+    K[0] = ma.m + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
+    K[1] = ma.I * (-J.arm_a_x_fa_y_x * J.wa_1_x - J.arm_a_x_fa_y_y * J.wa_1_y - J.arm_a_x_fa_y_z *
+        J.wa_1_z);
+    K[2] = ma.m + ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_y;
+    K[3] = ma.I * (-J.arm_a_x_fa_z_x * J.wa_1_x - J.arm_a_x_fa_z_y * J.wa_1_y - J.arm_a_x_fa_z_z *
+        J.wa_1_z);
+    K[4] = ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_z;
+    K[5] = ma.m + ma.I * dot_arm_a_x_fa_z_arm_a_x_fa_z;
   }
 
   // v += M^-1 J^T lambda, for sphere-like bodies: 18 +, 24 *
@@ -2013,241 +1829,6 @@ struct rolling_disc::b_immovable : rolling_disc {
     D[2][4] = T(2) * (J.arm_a_x_fa_z_z * a.e2 - J.arm_a_x_fa_z_x * a.e0 - J.arm_a_x_fa_z_y * a.e3);
     D[2][5] = T(2) * (J.arm_a_x_fa_z_x * a.e3 - J.arm_a_x_fa_z_y * a.e0 - J.arm_a_x_fa_z_z * a.e1);
     D[2][6] = T(2) * (J.arm_a_x_fa_z_y * a.e1 - J.arm_a_x_fa_z_x * a.e2 - J.arm_a_x_fa_z_z * a.e0);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 124 +, 172 *, 1 /, 1 sqrt, 4 <
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[3]) {
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const Pose<T>& b = q[1];
-    const T g1_1 = a.x - b.x;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T u_x = -g1_1 - ra_x;
-    const T g1_2 = a.y - b.y;
-    const T u_y = -g1_2 - ra_y;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-    const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T g1_3 = a.z - b.z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T u_z = -g1_3 - ra_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T dot_u_w_a_x_w_a_x_fa_x = u_x * w_a_x_w_a_x_fa_x_x + u_y * w_a_x_w_a_x_fa_x_y + u_z *
-        w_a_x_w_a_x_fa_x_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
-    const T u_dot_x = ra_x_w_a_x - va.x;
-    const T u_dot_y = ra_x_w_a_y - va.y;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
-    const T u_dot_z = ra_x_w_a_z - va.z;
-    const T dot_u_dot_w_a_x_fa_x = u_dot_x * w_a_x_fa_x_x + u_dot_y * w_a_x_fa_x_y + u_dot_z *
-        w_a_x_fa_x_z;
-    const T u_dot_dot_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    const T u_dot_dot_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    const T u_dot_dot_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    const T dot_u_dot_dot_fa_x = fa_x_x * u_dot_dot_x + fa_x_y * u_dot_dot_y + fa_x_z * u_dot_dot_z;
-    const T k_x = b.xx * p.k_x + b.xy * p.k_y + b.xz * p.k_z;
-    const T k_y = b.yx * p.k_x + b.yy * p.k_y + b.yz * p.k_z;
-    const T w_a_x_w_a_x_fa_x_x_k_z = k_y * w_a_x_w_a_x_fa_x_x - k_x * w_a_x_w_a_x_fa_x_y;
-    const T m_z = fa_x_x * k_y - fa_x_y * k_x;
-    const T k_z = b.zx * p.k_x + b.zy * p.k_y + b.zz * p.k_z;
-    const T m_x = fa_x_y * k_z - fa_x_z * k_y;
-    const T m_y = fa_x_z * k_x - fa_x_x * k_z;
-    const T m_len = sqrt(m_z * m_z + m_y * m_y + m_x * m_x);
-    const T inv_m_len = inverse(m_len);
-    const T dir_m_z = select(m_len > smallest<T>(), m_z * inv_m_len, T(0));
-    const T w_a_x_w_a_x_fa_x_x_k_x = k_z * w_a_x_w_a_x_fa_x_y - k_y * w_a_x_w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_k_y = k_x * w_a_x_w_a_x_fa_x_z - k_z * w_a_x_w_a_x_fa_x_x;
-    const T dir_m_x = select(m_len > smallest<T>(), m_x * inv_m_len, T(1));
-    const T dir_m_y = select(m_len > smallest<T>(), m_y * inv_m_len, T(0));
-    const T dot_m_dot_dot_dir_m = w_a_x_w_a_x_fa_x_x_k_z * dir_m_z + w_a_x_w_a_x_fa_x_x_k_y *
-        dir_m_y + w_a_x_w_a_x_fa_x_x_k_x * dir_m_x;
-    const T w_a_x_fa_x_x_k_x = k_z * w_a_x_fa_x_y - k_y * w_a_x_fa_x_z;
-    const T w_a_x_fa_x_x_k_y = k_x * w_a_x_fa_x_z - k_z * w_a_x_fa_x_x;
-    const T w_a_x_fa_x_x_k_z = k_y * w_a_x_fa_x_x - k_x * w_a_x_fa_x_y;
-    const T dot_m_dot_dir_m = w_a_x_fa_x_x_k_y * dir_m_y + w_a_x_fa_x_x_k_z * dir_m_z +
-        w_a_x_fa_x_x_k_x * dir_m_x;
-    const T g1_4 = w_a_x_fa_x_x_k_y - dot_m_dot_dir_m * dir_m_y;
-    const T g1_5 = w_a_x_fa_x_x_k_z - dot_m_dot_dir_m * dir_m_z;
-    const T g1_6 = w_a_x_fa_x_x_k_x - dot_m_dot_dir_m * dir_m_x;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T g2_1 = p.radius * inv_m_len;
-    const T arm_b_dot_z = g2_1 * (g1_6 * k_y - g1_4 * k_x);
-    const T arm_a_dot_z = arm_b_dot_z - va.z;
-    const T arm_b_dot_x = g2_1 * (g1_4 * k_z - g1_5 * k_y);
-    const T arm_b_dot_y = g2_1 * (g1_5 * k_x - g1_6 * k_z);
-    const T arm_a_dot_x = arm_b_dot_x - va.x;
-    const T arm_a_dot_y = arm_b_dot_y - va.y;
-    const T w_a_x_arm_a_dot_x = va.wy * arm_a_dot_z - va.wz * arm_a_dot_y;
-    const T w_a_x_arm_a_dot_y = va.wz * arm_a_dot_x - va.wx * arm_a_dot_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_a_x_arm_a_dot_z = va.wx * arm_a_dot_y - va.wy * arm_a_dot_x;
-    const T dot_w_a_x_arm_a_dot_fa_y = fa_y_x * w_a_x_arm_a_dot_x + fa_y_y * w_a_x_arm_a_dot_y +
-        fa_y_z * w_a_x_arm_a_dot_z;
-    const T k_x_dir_m_z = k_x * dir_m_y - k_y * dir_m_x;
-    const T arm_a_z = -g1_3 - p.radius * k_x_dir_m_z;
-    const T k_x_dir_m_x = k_y * dir_m_z - k_z * dir_m_y;
-    const T k_x_dir_m_y = k_z * dir_m_x - k_x * dir_m_z;
-    const T arm_a_x = -g1_1 - p.radius * k_x_dir_m_x;
-    const T arm_a_y = -g1_2 - p.radius * k_x_dir_m_y;
-    const T w_a_x_arm_a_x = va.wy * arm_a_z - va.wz * arm_a_y;
-    const T w_a_x_arm_a_y = va.wz * arm_a_x - va.wx * arm_a_z;
-    const T g2_2 = va.x + w_a_x_arm_a_x;
-    const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-    const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T g2_3 = va.y + w_a_x_arm_a_y;
-    const T w_a_x_arm_a_z = va.wx * arm_a_y - va.wy * arm_a_x;
-    const T g2_4 = va.z + w_a_x_arm_a_z;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T dot_w_a_x_arm_a_dot_fa_z = fa_z_x * w_a_x_arm_a_dot_x + fa_z_y * w_a_x_arm_a_dot_y +
-        fa_z_z * w_a_x_arm_a_dot_z;
-    const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-    const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    g[0] = p.radius * (dot_m_dot_dot_dir_m +
-        (g1_4 * w_a_x_fa_x_x_k_y + g1_5 * w_a_x_fa_x_x_k_z + g1_6 * w_a_x_fa_x_x_k_x) *
-        inv_m_len) - dot_u_w_a_x_w_a_x_fa_x - T(2) * dot_u_dot_w_a_x_fa_x - dot_u_dot_dot_fa_x;
-    g[1] = dot_w_a_x_arm_a_dot_fa_y + g2_2 * w_a_x_fa_y_x + g2_3 * w_a_x_fa_y_y + g2_4 *
-        w_a_x_fa_y_z;
-    g[2] = dot_w_a_x_arm_a_dot_fa_z + g2_2 * w_a_x_fa_z_x + g2_3 * w_a_x_fa_z_y + g2_4 *
-        w_a_x_fa_z_z;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 128 +, 171 *, 1 /, 1 sqrt, 4 <
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    using std::sqrt;
-    const Pose<T>& a = q[0];
-    const Pose<T>& b = q[1];
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T H1_1 = lambda[1] * fa_y_z + lambda[2] * fa_z_z;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T H1_2 = H1_1 + lambda[0] * fa_x_z;
-    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
-    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
-    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T H1_1_2 = lambda[1] * fa_y_y + lambda[2] * fa_z_y;
-    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
-    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T H1_2_2 = H1_1_2 + lambda[0] * fa_x_y;
-    const T H2_1 = lambda[1] * fa_y_x + lambda[2] * fa_z_x;
-    const T H2_2 = H2_1 + lambda[0] * fa_x_x;
-    const T H4_1 = a.x - b.x;
-    const T k_x = b.xx * p.k_x + b.xy * p.k_y + b.xz * p.k_z;
-    const T k_y = b.yx * p.k_x + b.yy * p.k_y + b.yz * p.k_z;
-    const T m_z = fa_x_x * k_y - fa_x_y * k_x;
-    const T k_z = b.zx * p.k_x + b.zy * p.k_y + b.zz * p.k_z;
-    const T m_x = fa_x_y * k_z - fa_x_z * k_y;
-    const T m_y = fa_x_z * k_x - fa_x_x * k_z;
-    const T m_len = sqrt(m_z * m_z + m_y * m_y + m_x * m_x);
-    const T inv_m_len = inverse(m_len);
-    const T dir_m_z = select(m_len > smallest<T>(), m_z * inv_m_len, T(0));
-    const T H4_2 = k_y * dir_m_z;
-    const T dir_m_x = select(m_len > smallest<T>(), m_x * inv_m_len, T(1));
-    const T dir_m_y = select(m_len > smallest<T>(), m_y * inv_m_len, T(0));
-    const T k_x_dir_m_x = H4_2 - k_z * dir_m_y;
-    const T H4_3 = k_x * dir_m_z;
-    const T H4_4 = k_z * dir_m_x;
-    const T k_x_dir_m_y = H4_4 - H4_3;
-    const T H4_5 = p.radius * k_x_dir_m_x;
-    const T arm_a_x = -H4_1 - H4_5;
-    const T H4_6 = a.y - b.y;
-    const T H4_7 = p.radius * k_x_dir_m_y;
-    const T arm_a_y = -H4_6 - H4_7;
-    const T H4_8 = arm_a_y * fa_y_y;
-    const T H4_9 = a.z - b.z;
-    const T H4_10 = k_y * dir_m_x;
-    const T k_x_dir_m_z = k_x * dir_m_y - H4_10;
-    const T H4_11 = p.radius * k_x_dir_m_z;
-    const T arm_a_z = -H4_9 - H4_11;
-    const T H4_12 = arm_a_z * fa_y_z;
-    const T H4_13 = arm_a_y * fa_z_y;
-    const T H4_14 = arm_a_z * fa_z_z;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T u_x = -H4_1 - ra_x;
-    const T u_y = -H4_6 - ra_y;
-    const T H4_15 = lambda[0] * (H4_7 - u_y - ra_y);
-    const T H4_16 = H1_2_2 * k_x;
-    const T H4_17 = p.radius * inv_m_len;
-    const T H4_18 = k_y * H1_2_2;
-    const T H4_19 = k_z * H1_2;
-    const T H4_20 = H4_18 + H4_19;
-    const T H4_21 = H4_17 * (H4_16 * dir_m_y + H4_3 * H1_2 - H4_20 * dir_m_x);
-    const T H4_22 = H4_21 * dir_m_y - H4_16 * H4_17;
-    const T H4_23 = H4_21 * dir_m_x + H4_17 * H4_20;
-    const T H4_24 = H4_15 + k_x * H4_22 - k_y * H4_23;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T u_z = -H4_9 - ra_z;
-    const T H4_25 = lambda[0] * (u_z + ra_z - H4_11);
-    const T H4_26 = H4_21 * dir_m_z - H4_17 * k_x * H1_2;
-    const T H4_27 = H4_25 - k_x * H4_26 + k_z * H4_23;
-    const T H4_1_2 = k_y * H4_26 - k_z * H4_22;
-    const T H5_1 = lambda[0] * (u_x + ra_x - H4_5);
-    const T H5_2 = k_x * H2_2;
-    const T H5_3 = H5_2 + H4_19;
-    const T H5_4 = H4_17 * (H4_10 * H2_2 + H4_2 * H1_2 - H5_3 * dir_m_y);
-    const T H5_5 = H4_17 * H5_3 + H5_4 * dir_m_y;
-    const T H5_6 = k_y * H4_17;
-    const T H5_7 = H5_4 * dir_m_x - H5_6 * H2_2;
-    const T H5_8 = H5_1 + k_x * H5_5 - k_y * H5_7;
-    const T H5_9 = H5_4 * dir_m_z - H5_6 * H1_2;
-    const T H5_10 = k_z * H5_7 - k_x * H5_9;
-    const T H5_1_2 = arm_a_x * fa_y_x;
-    const T H5_2_2 = arm_a_x * fa_z_x;
-    const T H5_3_2 = k_y * H5_9 - H4_25 - k_z * H5_5;
-    const T H6_1 = H1_2_2 * k_z;
-    const T H6_2 = H5_2 + H4_18;
-    const T H6_3 = H4_17 * (H4_4 * H2_2 + H6_1 * dir_m_y - H6_2 * dir_m_z);
-    const T H6_4 = H6_3 * dir_m_y - H6_1 * H4_17;
-    const T H6_5 = H6_3 * dir_m_x - H4_17 * k_z * H2_2;
-    const T H6_6 = k_x * H6_4 - k_y * H6_5;
-    const T H6_7 = H4_17 * H6_2 + H6_3 * dir_m_z;
-    const T H6_8 = k_z * H6_5 - H5_1 - k_x * H6_7;
-    const T H6_1_2 = k_y * H6_7 - H4_15 - k_z * H6_4;
-    H[0][4] = -H1_2;
-    H[0][5] = H1_2_2;
-    H[1][3] = H1_2;
-    H[1][5] = -H2_2;
-    H[2][3] = -H1_2_2;
-    H[2][4] = H2_2;
-    H[3][1] = H1_2;
-    H[3][2] = H[2][3];
-    H[3][3] = fa_x_y * H4_24 - lambda[1] * (H4_8 + H4_12) - lambda[2] * (H4_13 + H4_14) - fa_x_z *
-        H4_27;
-    H[3][4] = fa_x_z * H4_1_2 - fa_x_x * H4_24 + arm_a_y * H2_1;
-    H[3][5] = fa_x_x * H4_27 - fa_x_y * H4_1_2 + arm_a_z * H2_1;
-    H[4][0] = H[0][4];
-    H[4][2] = H2_2;
-    H[4][3] = fa_x_y * H5_8 - fa_x_z * H5_10 + arm_a_x * H1_1_2;
-    H[4][4] = fa_x_z * H5_3_2 - lambda[1] * (H5_1_2 + H4_12) - lambda[2] * (H5_2_2 + H4_14) -
-        fa_x_x * H5_8;
-    H[4][5] = fa_x_x * H5_10 - fa_x_y * H5_3_2 + arm_a_z * H1_1_2;
-    H[5][0] = H1_2_2;
-    H[5][1] = H[1][5];
-    H[5][3] = fa_x_y * H6_6 - fa_x_z * H6_8 + arm_a_x * H1_1;
-    H[5][4] = fa_x_z * H6_1_2 - fa_x_x * H6_6 + arm_a_y * H1_1;
-    H[5][5] = fa_x_x * H6_8 - lambda[1] * (H5_1_2 + H4_8) - lambda[2] * (H5_2_2 + H4_13) - fa_x_y *
-        H6_1_2;
   }
 };
 

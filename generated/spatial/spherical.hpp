@@ -758,48 +758,6 @@ struct spherical::a_immovable : spherical {
     D[2][12] = T(2) * (D2_1_4 + D1_1);
     D[2][13] = -T(2) * (D2_1_3 + D1_1_2);
   }
-
-  // -Jdot v - d/dt(dC/dt): 12 +, 21 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[3]) {
-    const Pose<T>& b = q[1];
-    const Velocity<T>& vb = v[1];
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
-    const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    g[0] = vb.wz * rb_x_w_b_y - vb.wy * rb_x_w_b_z;
-    g[1] = vb.wx * rb_x_w_b_z - vb.wz * rb_x_w_b_x;
-    g[2] = vb.wy * rb_x_w_b_x - vb.wx * rb_x_w_b_y;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 15 +, 18 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
-    const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T H10_1 = lambda[1] * rb_y;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T H10_2 = lambda[2] * rb_z;
-    const T H11_1 = lambda[0] * rb_x;
-    H[9][9] = H10_1 + H10_2;
-    H[9][10] = -lambda[1] * rb_x;
-    H[9][11] = -lambda[2] * rb_x;
-    H[10][9] = -lambda[0] * rb_y;
-    H[10][10] = H11_1 + H10_2;
-    H[10][11] = -lambda[2] * rb_y;
-    H[11][9] = -lambda[0] * rb_z;
-    H[11][10] = -lambda[1] * rb_z;
-    H[11][11] = H11_1 + H10_1;
-  }
 };
 
 // spherical with b immovable: its velocity and inverse mass are zero and gone.
@@ -1026,48 +984,6 @@ struct spherical::b_immovable : spherical {
     D[2][4] = T(2) * (D1_1_4 - D2_1);
     D[2][5] = -T(2) * (D2_1_4 + D1_1);
     D[2][6] = T(2) * (D2_1_3 + D1_1_2);
-  }
-
-  // -Jdot v - d/dt(dC/dt): 12 +, 21 *
-  template <class T>
-  static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
-      T (&g)[3]) {
-    const Pose<T>& a = q[0];
-    const Velocity<T>& va = v[0];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
-    g[0] = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    g[1] = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    g[2] = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-  }
-
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 12 +, 18 *
-  template <class T>
-  static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
-      T (&H)[12][12]) {
-    for (auto& row : H) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T H4_1 = lambda[1] * ra_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T H4_2 = lambda[2] * ra_z;
-    const T H5_1 = lambda[0] * ra_x;
-    H[3][3] = -H4_1 - H4_2;
-    H[3][4] = lambda[1] * ra_x;
-    H[3][5] = lambda[2] * ra_x;
-    H[4][3] = lambda[0] * ra_y;
-    H[4][4] = -H5_1 - H4_2;
-    H[4][5] = lambda[2] * ra_y;
-    H[5][3] = lambda[0] * ra_z;
-    H[5][4] = lambda[1] * ra_z;
-    H[5][5] = -H5_1 - H4_1;
   }
 };
 
