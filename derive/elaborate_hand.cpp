@@ -3,6 +3,7 @@
 
 #include "derive/evaluate.hpp"
 #include "derive/hand.hpp"
+#include "derive/hand_readings.hpp"
 #include "derive/lexer.hpp"
 #include "derive/symbols.hpp"
 
@@ -78,9 +79,14 @@ class EntryElaborator final : public Scope {
   void begin_part(std::vector<std::string> rows);
   const Value* special(const std::string& name);
   Value lambda();
-  // Of v and w in a row of J.
-  std::vector<int> widths_of_body() const {
-    return joint_.dimension == 2 ? std::vector{2, 1} : std::vector{3, entry_.form == Form::euler ? 4 : 3};
+  // Of v and w of each body in a row of J.
+  std::vector<int> widths_of_J() const {
+    std::vector<int> widths;
+    for (std::size_t i = 0; i < joint_.bodies.size(); ++i) {
+      widths.push_back(joint_.dimension);
+      widths.push_back(joint_.dimension == 2 ? 1 : entry_.form == Form::euler ? 4 : 3);
+    }
+    return widths;
   }
   bool name_is_free(const Word& word);
   Value evaluate(const Ast& ast, bool rows_of_J = false);
@@ -183,14 +189,7 @@ std::string EntryElaborator::hint(const std::string& name) const {
 
 Value EntryElaborator::evaluate(const Ast& ast, bool rows_of_J) {
   Evaluator evaluator(pool_, *this, diagnostics_, findings_);
-  if (rows_of_J) {
-    std::vector<int> widths;
-    for (std::size_t i = 0; i < joint_.bodies.size(); ++i) {
-      const std::vector<int> of_body = widths_of_body();
-      widths.insert(widths.end(), of_body.begin(), of_body.end());
-    }
-    evaluator.expect_columns(std::move(widths));
-  }
+  if (rows_of_J) evaluator.expect_columns(widths_of_J());
   Value v = evaluator(ast);
   if (v.type != Type::body && v.type != Type::frame) return v;
   findings_.error(ast.where, std::string(in_words(v.type)) + " is not a quantity");
@@ -219,16 +218,14 @@ std::string EntryElaborator::problem(const Ast& ast, std::size_t since) const {
 void EntryElaborator::store(const Value& v, std::optional<Matrix>& matrix, Expr& expression) {
   if (v.type == Type::scalar || v.type == Type::vector || v.type == Type::point) expression = v.e;
   if (v.type == Type::scalar) matrix = Matrix{1, 1, {v.e}};
-  if (v.type == Type::vector || v.type == Type::point)
-    matrix = column_of(v.e);
+  if (v.type == Type::vector || v.type == Type::point) matrix = column_of(v.e);
   if (v.type == Type::matrix) {
     matrix = v.inverted ? inverse(*v.matrix) : *v.matrix;
     if (!matrix->any_size()) return;
     const int n = pool_.dimension();
     Matrix full{n, n, {}};
-    for (int i = 0; i < n * n; ++i) {
+    for (int i = 0; i < n * n; ++i)
       full.entries.push_back(i % (n + 1) == 0 ? matrix->entries[0] : pool_.number(0));
-    }
     matrix = full;
   }
 }
@@ -320,8 +317,8 @@ void EntryElaborator::assume(const HandItemAst& item) {
 
 // C, Cdot, J, K, b or lambda = expression
 void EntryElaborator::quantity(const HandItemAst& item) {
-  HandItem out =
-      begin(item, item.kind == Kind::lambda ? HandItem::Kind::lambda : HandItem::Kind::quantity);
+  const bool lambda = item.kind == Kind::lambda;
+  HandItem out = begin(item, lambda ? HandItem::Kind::lambda : HandItem::Kind::quantity);
   const std::size_t before = findings();
   const Value v = evaluate(item.right, item.word.text == "J");
   if (v.type == Type::poison) {
@@ -333,26 +330,14 @@ void EntryElaborator::quantity(const HandItemAst& item) {
   entry_.parts.back().items.push_back(std::move(out));
 }
 
-// Readings in which one velocity is an angular velocity, or the other way round.
 std::vector<HandReading> EntryElaborator::readings(const Ast& ast) {
   std::vector<HandReading> found;
-  const auto exchange = [&](auto& self, Ast& whole, Ast& node) -> void {
-    const bool velocity = node.text == "v" || node.text == "w";
-    if (node.kind == Ast::Kind::call && velocity && node.args.size() == 1) {
-      const std::string written = node.text, body = node.args[0].text;
-      node.text = written == "v" ? "w" : "v";
-      HandReading reading{"with " + node.text + "(" + body + ") in place of " + written + "(" + body + ")",
-                          node.text + "_" + body, {}};
-      std::optional<Matrix> value;
-      Expr expression;
-      store(evaluate(whole), value, expression);
-      if (value) found.push_back({reading.words, reading.column, *value});
-      node.text = written;
-    }
-    for (Ast& arg : node.args) self(self, whole, arg);
-  };
-  Ast copy = ast;
-  exchange(exchange, copy, copy);
+  for (const OtherAst& other : with_velocities_exchanged(ast)) {
+    std::optional<Matrix> value;
+    Expr expression;
+    store(evaluate(other.ast), value, expression);
+    if (value) found.push_back({other.words, other.column, *value});
+  }
   return found;
 }
 
@@ -406,10 +391,6 @@ void EntryElaborator::claim(const HandItemAst& item) {
 }
 
 }  // namespace
-
-Form form_of(const HandEntryAst& entry) {
-  return entry.form == "local" ? Form::local : entry.form == "euler" ? Form::euler : Form::global;
-}
 
 HandEntry elaborate_entry(const HandEntryAst& entry, const HandFile& file, const ReadResult& joint,
                           const GeneratedRows& generated, Diagnostics& diagnostics) {

@@ -260,6 +260,10 @@ class HandParser {
 
 }  // namespace
 
+Form form_of(const HandEntryAst& entry) {
+  return entry.form == "local" ? Form::local : entry.form == "euler" ? Form::euler : Form::global;
+}
+
 HandFile read_hand(std::shared_ptr<const SourceFile> file) {
   HandFile out;
   out.file = std::move(file);
