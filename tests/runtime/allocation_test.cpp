@@ -1,5 +1,5 @@
 // step() does not allocate: every operator new of the process is counted while it runs.
-#include "tests/runtime/support.hpp"
+#include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {
 
@@ -57,6 +57,23 @@ TEST(Allocation, StepDoesNotAllocate) {
       for (bool stiff : {false, true}) {
         EXPECT_EQ(allocations_of_a_run<double>(solver, drift, stiff), 0);
         EXPECT_EQ(allocations_of_a_run<float>(solver, drift, stiff), 0);
+      }
+    }
+  }
+}
+
+TEST(Allocation, StepInSpaceDoesNotAllocate) {
+  for (Solver solver : {Solver::direct, Solver::iterative}) {
+    for (Drift drift : {Drift::none, Drift::baumgarte, Drift::projection}) {
+      for (bool stiff : {false, true}) {
+        Settings s = settings(solver, drift);
+        s.geometric_stiffness = stiff;
+        SpatialWorld<double> world(s);
+        add_free_mechanism(world);
+        world.prepare();
+        const long before = allocations;
+        for (int i = 0; i < 200; ++i) world.step(0.005);
+        EXPECT_EQ(allocations - before, 0);
       }
     }
   }

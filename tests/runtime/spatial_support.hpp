@@ -46,4 +46,39 @@ void run(SpatialWorld<T>& world, double duration, double h) {
   for (long i = 0; i < steps; ++i) world.step(h);
 }
 
+inline SpatialBodyDefinition brick(double x, double y, double z, double mass = 1) {
+  SpatialBodyDefinition d;
+  d.x = x, d.y = y, d.z = z;
+  d.mass = mass;
+  d.inertia = {0.1 * mass, 0.2 * mass, 0.25 * mass, 0.01 * mass, 0, 0.02 * mass};
+  return d;
+}
+
+template <class T>
+int join(SpatialWorld<T>& world, const char* type, int a, int b, std::vector<NamedValue> values,
+         std::optional<Softness> soft = {}) {
+  return world.add_joint({type, {a, b}, std::move(values), soft});
+}
+
+// Four bricks in free space: balls, a hinge with a motor and a limit, something soft, a spring.
+template <class T>
+void add_free_mechanism(SpatialWorld<T>& world) {
+  std::vector<int> bricks;
+  for (int i = 0; i < 4; ++i) bricks.push_back(world.add_body(brick(i, 0.1 * i, 0, 1 + 0.5 * i)));
+  join(world, "spherical", bricks[0], bricks[1], {{"pa", {0.5, 0.1, 0.2}}});
+  const int hinge =
+      join(world, "revolute", bricks[1], bricks[2], {{"pa", {0.5, 0, 0}}, {"fa", {0.3, 0.2, 1}}});
+  join(world, "spherical", bricks[2], bricks[3], {{"pa", {0.5, 0, 0.3}}});
+  add_motor(world, hinge, "angle", {.speed = 2, .max_force = 0.5});
+  add_limit(world, hinge, "angle", {.lower = -3, .upper = 3});
+  join(world, "distance", bricks[0], bricks[2], {{"pa", {0, 0, 0}}, {"pb", {0, 0, 0}}},
+       Softness{.by_frequency = true, .frequency = 3, .damping_ratio = 0.2});
+  SpringDefinition spring;
+  spring.body_a = bricks[0], spring.body_b = bricks[3];
+  spring.ay = 0.2, spring.stiffness = 5, spring.rest_length = 2, spring.damping = 0.3;
+  world.add_spring(spring);
+  world.apply_impulse(bricks[0], {1, 2, -0.5, 0.5, 0.1, 0.2});
+  world.apply_impulse(bricks[3], {-3, 1, 0.5, -0.2, 0.4, 0.1});
+}
+
 }  // namespace cdot::test

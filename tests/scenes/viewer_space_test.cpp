@@ -96,7 +96,8 @@ TEST_F(SpacePage, PlaysScrubsAndOrbits) {
       const there = drawn();
       slider.value = 0.2; slider.dispatchEvent(new Event('input')); seen.moves = drawn() !== there;
       const here = drawn(), camera = root2.dataset.camera;
-      stage.dispatchEvent(new PointerEvent('pointermove', {buttons: 1, movementX: 60, movementY: 20}));
+      stage.dispatchEvent(new PointerEvent(
+          'pointermove', {buttons: 1, movementX: 60, movementY: 20}));
       seen.orbits = drawn() !== here && root2.dataset.camera !== camera;
       key('0'); seen.fits = drawn() === here && root2.dataset.camera === camera;
       stage.dispatchEvent(new WheelEvent('wheel', {deltaY: -200})); seen.zooms = drawn() !== here;
@@ -119,6 +120,15 @@ TEST_F(SpacePage, IsSelfContained) {
     page.erase(at, std::string("http://www.w3.org/2000/svg").size());
   for (const char* outside : {"http:", "https:", "src=", "@import", "url(", "fetch(", "{{"})
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
+}
+
+TEST(SpacePictures, EverySceneInSpaceCanBeDrawn) {
+  for (const std::filesystem::path& file : files_in(scenes_dir() / "spatial", ".toml")) {
+    Scene scene = read_scene(file.string());
+    scene.duration = 20 * scene.step;
+    const std::string page = html_page(scene, film_of(scene));
+    EXPECT_EQ(page.find("null"), std::string::npos) << file;  // what JSON makes of a NaN
+  }
 }
 
 TEST(SpacePictures, AStillIsRefused) {

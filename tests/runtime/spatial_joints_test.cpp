@@ -1,0 +1,181 @@
+// Joints in space: what they conserve, what they carry, and angles beyond half a turn.
+#include "tests/runtime/spatial_support.hpp"
+
+namespace cdot::test {
+namespace {
+
+using spatial::Vector;
+
+TEST(SpatialJoints, MomentumOfAFreeMechanism) {
+  for (Solver solver : {Solver::direct, Solver::iterative}) {
+    for (Drift drift : {Drift::none, Drift::baumgarte, Drift::projection}) {
+      SpatialWorld<double> world(settings(solver, drift));
+      add_free_mechanism(world);
+      const SpatialMomentum before = momentum(world);
+      run(world, 3, 1.0 / 240);
+      const SpatialMomentum after = momentum(world);
+      EXPECT_LT(norm(after.linear - before.linear), 1e-11);
+      // The points of a joint coincide only where gaps are closed: else impulses have a lever.
+      if (solver == Solver::direct && drift == Drift::projection) {
+        EXPECT_LT(norm(after.angular - before.angular), 1e-12);
+      }
+    }
+  }
+}
+
+// A heavy brick on a ball: wavers at first order, and does not drift.
+TEST(SpatialJoints, EnergyOfAPendulumHasNoDrift) {
+  double before = 0;
+  for (double h : {2e-3, 1e-3}) {
+    Settings s = settings(Solver::direct);
+    s.gravity_z = -9.81;
+    SpatialWorld<double> world(s);
+    const int body = world.add_body(brick(0.5, 0, 0.3));
+    join(world, "spherical", world.ground(), body, {{"pa", {0, 0, 0}}});
+    world.set_velocity(body, {0, 1.5, 0, -0.3 / 0.34 * 1.5, 0, 0.5 / 0.34 * 1.5});
+    world.project(1e-10);
+    const double start = world.energy();
+    double worst = 0, late = 0;
+    const long steps = std::lround(20 / h);
+    for (long i = 0; i < steps; ++i) {
+      world.step(h);
+      const double off = std::abs(world.energy() - start);
+      (i < steps / 4 ? worst : late) = std::max(i < steps / 4 ? worst : late, off);
+    }
+    EXPECT_LT(late, 2 * worst) << "h = " << h;
+    if (before > 0) {
+      EXPECT_NEAR(before / worst, 2, 0.5);
+    }
+    before = worst;
+  }
+}
+
+TEST(SpatialJoints, ReactionsOfAHangingChain) {
+  Settings s = settings(Solver::direct);
+  s.gravity_z = -10;
+  SpatialWorld<double> world(s);
+  int above = world.ground();
+  for (int i = 0; i < 4; ++i) {
+    const int link = world.add_body(brick(0, 0, -0.5 - i, 2));
+    join(world, "spherical", above, link, {{"pa", {0, 0, i ? -0.5 : 0.0}}});
+    above = link;
+  }
+  run(world, 1, 0.01);
+  for (int i = 0; i < 4; ++i) {
+    const auto carried = world.reaction(i, world.joint_bodies(i)[1]);
+    EXPECT_NEAR(carried.force_z, 20 * (4 - i), 1e-9);
+    EXPECT_NEAR(carried.force_x, 0, 1e-9);
+  }
+}
+
+// A motor turns a hinge to a limit three turns away: an angle of the kernel ends at pi.
+TEST(SpatialJoints, AnglesGoOnBeyondHalfATurn) {
+  for (Solver solver : {Solver::direct, Solver::iterative}) {
+    SpatialWorld<double> world(settings(solver));
+    const int body = world.add_body(brick(0.5, 0, 0));
+    const int hinge =
+        join(world, "revolute", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {0, 0.6, 0.8}}});
+    add_motor(world, hinge, "angle", {.speed = 5, .max_force = 20});
+    add_limit(world, hinge, "angle", {.lower = -1, .upper = 19});
+    run(world, 2, 0.005);
+    EXPECT_NEAR(world.coordinate(hinge, "angle"), 9.7, 0.1);  // 10 but for the start
+    run(world, 3, 0.005);
+    EXPECT_NEAR(world.coordinate(hinge, "angle"), 19, 1e-6);
+    EXPECT_NEAR(world.coordinate_rate(hinge, "angle"), 0, 1e-9);
+  }
+}
+
+// Two wheels on hinges and a gear between them, for many turns.
+TEST(SpatialJoints, AGearCountsTurns) {
+  SpatialWorld<double> world(settings(Solver::direct));
+  SpatialBodyDefinition wheel;
+  wheel.mass = 1;
+  wheel.inertia = {0.5, 0.5, 0.9};
+  const int a = world.add_body(wheel);
+  wheel.x = 3;
+  const int b = world.add_body(wheel);
+  const int first =
+      join(world, "revolute", world.ground(), a, {{"pa", {0, 0, 0}}, {"fa", {0, 0, 1}}});
+  join(world, "revolute", world.ground(), b, {{"pa", {3, 0, 0}}, {"fa", {0, 0, 1}}});
+  const int gear =
+      join(world, "gear", a, b, {{"fa", {0, 0, 1}}, {"fb", {0, 0, 1}}, {"ratio", {2.5}}});
+  add_motor(world, first, "angle", {.speed = 4, .max_force = 100});
+  run(world, 20, 0.01);
+  EXPECT_NEAR(world.velocity(a).wz, 4, 1e-9);
+  EXPECT_NEAR(world.velocity(b).wz, -1.6, 1e-9);
+  EXPECT_LT(std::abs(world.position_error(gear)[0]), 1e-9);
+  EXPECT_NEAR(world.pose(b).xx, std::cos(32.0), 0.05);  // but for the first step's start
+}
+
+TEST(SpatialJoints, EqualBitsOnRepetition) {
+  for (Solver solver : {Solver::direct, Solver::iterative}) {
+    const auto hash = [&] {
+      SpatialWorld<double> world(settings(solver));
+      add_free_mechanism(world);
+      run(world, 2, 0.005);
+      return world.hash();
+    };
+    EXPECT_EQ(hash(), hash());
+  }
+}
+
+TEST(SpatialJoints, InFloats) {
+  SpatialWorld<float> world(settings(Solver::iterative));
+  add_free_mechanism(world);
+  run(world, 3, 1.0 / 240);
+  EXPECT_LT(world.worst_position_error().value, 1e-3);
+}
+
+// A triad from its x axis alone, from two axes, and from three.
+TEST(SpatialJoints, FramesInEveryWayOfGivingThem) {
+  SpatialWorld<double> world;
+  const int body = world.add_body(brick(1, 0, 0));
+  const auto frame = [&](std::vector<double> fa) {
+    const int joint =
+        join(world, "revolute", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", std::move(fa)}});
+    const auto numbers = world.joint_parameters(joint);
+    for (const ParameterInfo& info : world.joint_type(joint).parameters)
+      if (info.name == "fa")
+        return std::vector<double>(numbers.begin() + info.offset,
+                                   numbers.begin() + info.offset + info.size);
+    return std::vector<double>{};
+  };
+  const auto triad = [](const std::vector<double>& f) {
+    const Vector<double> x = {f[0], f[1], f[2]}, y = {f[3], f[4], f[5]}, z = {f[6], f[7], f[8]};
+    EXPECT_NEAR(norm(x), 1, 1e-15);
+    EXPECT_NEAR(norm(y), 1, 1e-15);
+    EXPECT_NEAR(dot(x, y), 0, 1e-15);
+    EXPECT_LT(norm(cross(x, y) - z), 1e-15);
+  };
+  for (const std::vector<double>& x :
+       {std::vector<double>{0, 0, 3}, {0, -1, 0}, {2, 0, 0}, {0.3, -0.2, 0.9}})
+    triad(frame(x));
+  EXPECT_EQ(frame({0, 0, 1, 1, 0, 0.5}), frame({0, 0, 1, 1, 0, 0, 0, 1, 0}));
+  EXPECT_THROW(frame({0, 0, 0}), Error);
+  EXPECT_THROW(frame({0, 0, 1, 0, 0, 2}), Error);  // two parallel axes
+  EXPECT_THROW(frame({0, 0}), Error);
+}
+
+// Heavy loads on light links in space: quiet with the geometric stiffness.
+TEST(SpatialJoints, GeometricStiffnessHoldsAHeavyLoad) {
+  Settings s = settings(Solver::direct);
+  s.gravity_z = -9.81;
+  s.geometric_stiffness = true;
+  SpatialWorld<double> world(s);
+  int above = world.ground(), body = -1;
+  for (int i = 0; i < 6; ++i) {
+    body = world.add_body(brick(0, 0, -0.5 - i, i == 5 ? 1e4 : 1));
+    join(world, "spherical", above, body, {{"pa", {0, 0, i ? -0.5 : 0.0}}});
+    above = body;
+  }
+  world.apply_impulse(body, {1e4, 0, 0, 0, 0, 0});
+  const double start = world.energy();
+  for (int i = 0; i < 300; ++i) {
+    world.step(1.0 / 60);
+    ASSERT_LT(world.energy(), 1.01 * start) << i;
+  }
+  EXPECT_LT(world.worst_position_error().value, 1e-3);
+}
+
+}  // namespace
+}  // namespace cdot::test
