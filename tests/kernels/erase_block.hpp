@@ -195,7 +195,7 @@ void add_with_variants(std::vector<AnyBlock>& all, const std::string& name,
 
 template <template <class> class In, class Joint, class T>
 void add_joint(std::vector<AnyBlock>& all) {
-  add_with_variants<In, Joint, Joint, T>(all, "rows", "");
+  if constexpr (Joint::rows > 0) add_with_variants<In, Joint, Joint, T>(all, "rows", "");
   const auto add = [&]<class Coordinate>(std::type_identity<Coordinate>) {
     const std::string name(Coordinate::name);
     add_with_variants<In, Joint, Coordinate, T>(all, name, name + ".");
