@@ -113,7 +113,8 @@ std::vector<Joint> spatial_joints() {
       joints.push_back(std::move(joint));
   }
   for (const std::string& name : spec_names()) {
-    if (name.starts_with("spatial/")) joints.push_back(read_spec(name));
+    if (!name.starts_with("spatial/")) continue;
+    if (Joint joint = read_spec(name); !joint.rows.empty()) joints.push_back(std::move(joint));
   }
   return joints;
 }

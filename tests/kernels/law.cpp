@@ -52,9 +52,10 @@ Eigen::MatrixXd dense_jacobian(const AnyBlock& block, const Inputs& in) {
 }
 
 Eigen::MatrixXd derivative_at_zero(const std::function<Eigen::MatrixXd(double)>& f) {
+  const auto difference = [&](double h) -> Eigen::MatrixXd { return (f(h) - f(-h)) / (2 * h); };
   constexpr double h = 1e-3;
-  const Eigen::MatrixXd wide = (f(h) - f(-h)) / (2 * h), narrow = (f(h / 2) - f(-h / 2)) / h;
-  return (4 * narrow - wide) / 3;
+  const Eigen::MatrixXd wide = difference(h), middle = difference(h / 2), narrow = difference(h / 4);
+  return (64 * narrow - 20 * middle + wide) / 45;
 }
 
 void expect_near(const AnyBlock& block, std::string_view law, const Eigen::MatrixXd& actual,

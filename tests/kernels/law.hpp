@@ -26,7 +26,7 @@ Outputs evaluate_one(const AnyBlock& block, const Inputs& in);
 // J with its zeros.
 Eigen::MatrixXd dense_jacobian(const AnyBlock& block, const Inputs& in);
 
-// f'(0) by central differences at two steps, extrapolated: an error of fourth order in the step.
+// f'(0) by central differences at three steps, extrapolated: an error of sixth order in the step.
 Eigen::MatrixXd derivative_at_zero(const std::function<Eigen::MatrixXd(double)>& f);
 
 // Entry by entry within tolerance (1 + |expected|); a failure names joint, block, law, row and

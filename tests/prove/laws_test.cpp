@@ -82,6 +82,7 @@ TEST(Laws, JacobianEqualsFiniteDifferences) {
     const Joint joint = joint_of(spec.string());
     const int dimension = joint.pool->dimension();
     for (const ScalarRow& row : derive_rows(joint).rows) {
+      if (row.kind == RowKind::velocity) continue;  // has no C
       std::vector<Expr> all = {row.C};
       for (const JacobianEntry& e : row.J) {
         const std::vector<Expr> columns = columns_of(e);
