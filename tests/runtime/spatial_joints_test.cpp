@@ -74,7 +74,7 @@ TEST(SpatialJoints, AnglesGoOnBeyondHalfATurn) {
     SpatialWorld<double> world(settings(solver));
     const int body = world.add_body(brick(0.5, 0, 0));
     const int hinge =
-        join(world, "revolute", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {0, 0.6, 0.8}}});
+        join(world, "hinge", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {0, 0.6, 0.8}}});
     add_motor(world, hinge, "angle", {.speed = 5, .max_force = 20});
     add_limit(world, hinge, "angle", {.lower = -1, .upper = 19});
     run(world, 2, 0.005);
@@ -94,9 +94,8 @@ TEST(SpatialJoints, AGearCountsTurns) {
   const int a = world.add_body(wheel);
   wheel.x = 3;
   const int b = world.add_body(wheel);
-  const int first =
-      join(world, "revolute", world.ground(), a, {{"pa", {0, 0, 0}}, {"fa", {0, 0, 1}}});
-  join(world, "revolute", world.ground(), b, {{"pa", {3, 0, 0}}, {"fa", {0, 0, 1}}});
+  const int first = join(world, "hinge", world.ground(), a, {{"pa", {0, 0, 0}}, {"fa", {0, 0, 1}}});
+  join(world, "hinge", world.ground(), b, {{"pa", {3, 0, 0}}, {"fa", {0, 0, 1}}});
   const int gear =
       join(world, "gear", a, b, {{"fa", {0, 0, 1}}, {"fb", {0, 0, 1}}, {"ratio", {2.5}}});
   add_motor(world, first, "angle", {.speed = 4, .max_force = 100});

@@ -67,7 +67,7 @@ void add_free_mechanism(SpatialWorld<T>& world) {
   for (int i = 0; i < 4; ++i) bricks.push_back(world.add_body(brick(i, 0.1 * i, 0, 1 + 0.5 * i)));
   join(world, "spherical", bricks[0], bricks[1], {{"pa", {0.5, 0.1, 0.2}}});
   const int hinge =
-      join(world, "revolute", bricks[1], bricks[2], {{"pa", {0.5, 0, 0}}, {"fa", {0.3, 0.2, 1}}});
+      join(world, "hinge", bricks[1], bricks[2], {{"pa", {0.5, 0, 0}}, {"fa", {0.3, 0.2, 1}}});
   join(world, "spherical", bricks[2], bricks[3], {{"pa", {0.5, 0, 0.3}}});
   add_motor(world, hinge, "angle", {.speed = 2, .max_force = 0.5});
   add_limit(world, hinge, "angle", {.lower = -3, .upper = 3});
