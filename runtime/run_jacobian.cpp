@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace cdot {
@@ -10,6 +11,9 @@ namespace {
 
 // Beyond this many columns or rows numbers are no longer for reading.
 constexpr int most_columns = 60, most_rows = 60, most_bodies = 12;
+
+// A cosine of a quarter turn reads 0, not 6e-17; all digits are in the JSON.
+double without_round_off(double entry) { return std::fabs(entry) < 1e-15 ? 0.0 : entry; }
 
 const SceneJoint& source_of(const Scene& scene, const SystemMatrix::Joint& joint) {
   return scene.joints[static_cast<std::size_t>(joint.joint)];
@@ -81,7 +85,7 @@ std::string numbers_text(const Scene& scene, const SystemMatrix& system) {
   for (int k = 0; k < static_cast<int>(system.bodies.size()); ++k) {
     text += fmt::format("\nD, columns of {}:\n", body_name(scene, system, k));
     text += fmt::format("  {:20}", "");
-    for (int c = 0; c < system.freedom; ++c) text += fmt::format("{:>12}", names[c]);
+    for (int c = 0; c < system.freedom; ++c) text += fmt::format(" {:>12}", names[c]);
     text += "\n";
     for (const auto& joint : system.joints) {
       if (system.empty_block(joint, k)) continue;
@@ -90,8 +94,8 @@ std::string numbers_text(const Scene& scene, const SystemMatrix& system) {
       for (int r = 0; r < joint.rows; ++r) {
         text += fmt::format("  {:20}", fmt::format("{}.{}", source.name, type.row_names[r]));
         for (int c = 0; c < system.freedom; ++c)
-          text +=
-              fmt::format("{:12.6g}", system.entry(joint.first + r, system.freedom * k + c) + 0.0);
+          text += fmt::format(" {:12.6g}", without_round_off(system.entry(
+                                               joint.first + r, system.freedom * k + c)));
         text += "\n";
       }
     }

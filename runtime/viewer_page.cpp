@@ -113,10 +113,35 @@ Json planar_run(const Scene& scene, const Drawing& drawing, const std::vector<Fr
   return run;
 }
 
-Json spatial_run(const Scene& scene, const std::vector<Frame>& film) {
+Json point_json(const SpacePoint& p) { return {p.body, p.local[0], p.local[1], p.local[2]}; }
+
+Json space_json(const SpaceDrawing& drawing) {
+  Json bodies = Json::array(), links = Json::array(), pins = Json::array(), traces = Json::array();
+  for (const SpaceBody& body : drawing.bodies)
+    bodies.push_back({{"kind", body.kind},
+                      {"faces", body.faces},
+                      {"lines", body.lines},
+                      {"ball", body.ball}});
+  for (const SpaceLink& link : drawing.links)
+    links.push_back({point_json(link.from), point_json(link.to), link.kind});
+  for (const SpacePoint& pin : drawing.pins) pins.push_back(point_json(pin));
+  for (const SpaceTrace& trace : drawing.traces)
+    traces.push_back({{"point", point_json(trace.point)}, {"colour", trace.colour}});
+  const Camera& camera = drawing.camera;
+  return {{"bodies", bodies},
+          {"links", links},
+          {"pins", pins},
+          {"traces", traces},
+          {"floor", drawing.floor},
+          {"centre", drawing.centre},
+          {"radius", drawing.radius},
+          {"camera", {{"yaw", camera.yaw}, {"pitch", camera.pitch}, {"zoom", camera.zoom}}}};
+}
+
+Json spatial_run(const Scene& scene, const SpaceDrawing& drawing, const std::vector<Frame>& film) {
   Json run = film_json(film);
-  run["space"] = space_marks(scene, film);
-  const double steps = 1e4 / run["space"]["radius"].get<double>();
+  run["space"] = space_json(drawing);
+  const double steps = 1e4 / drawing.radius;
   const auto numbers_of = [&](const BodyState& b) {
     return Json{rounded(b.x, steps), rounded(b.y, steps), rounded(b.z, steps), rounded(b.e0, 1e5),
                 rounded(b.e1, 1e5),  rounded(b.e2, 1e5),  rounded(b.e3, 1e5)};
@@ -153,10 +178,54 @@ std::string filled(std::string_view page,
   return result;
 }
 
-std::string svg_head(const View& view, const char* attributes) {
+std::string svg_head(double width, double height, const std::string& attributes) {
   return fmt::format(
       "<svg {} xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n", attributes,
-      view.width, view.height);
+      width, height);
+}
+
+std::string still_head(double width, double height) {
+  return svg_head(width, height, fmt::format("width=\"{:.0f}\"", 0.8 * width)) +
+         fmt::format(
+             "<style>\n{}@media (prefers-color-scheme: dark) {{ svg {{ --ink: #e6edf3; --paper: "
+             "#0d1117; }} }}\n</style>\n",
+             viewer_marks_css);
+}
+
+// The mechanism at several times, older ones fainter; `at` draws a frame, and whether it is the
+// last, which alone shows what never moves.
+template <class At>
+std::string snapshots_of(const std::vector<Frame>& film, At at) {
+  std::string svg;
+  for (int k = 0; k < snapshots; ++k) {
+    const std::size_t frame = (film.size() - 1) * static_cast<std::size_t>(k) / (snapshots - 1);
+    const bool last = k == snapshots - 1;
+    svg += fmt::format("<g class=\"{}\" opacity=\"{:.2f}\">\n{}</g>\n", last ? "now" : "before",
+                       last ? 1 : 0.15 + 0.07 * k, at(film[frame], last));
+  }
+  return svg;
+}
+
+std::string planar_still(const Drawing& drawing, const std::vector<Frame>& film) {
+  std::string svg = still_head(drawing.view.width, drawing.view.height);
+  for (const Trace& trace : drawing.traces) {
+    svg += fmt::format("<polyline class=\"trace c{}\" points=\"", trace.colour);
+    for (const Frame& frame : film) {
+      const Vec2 at = position(trace.point, places_of(drawing.view, frame));
+      svg += fmt::format("{:.1f},{:.1f} ", at[0], at[1]);
+    }
+    svg += "\"/>\n";
+  }
+  return svg + snapshots_of(film, [&](const Frame& frame, bool last) {
+           return placed(drawing, places_of(drawing.view, frame), last);
+         });
+}
+
+std::string spatial_still(const SpaceDrawing& drawing, const std::vector<Frame>& film) {
+  return still_head(drawing.width, drawing.height) + space_background(drawing, film) +
+         snapshots_of(film, [&](const Frame& frame, bool last) {
+           return space_snapshot(drawing, frame, last);
+         });
 }
 
 }  // namespace
@@ -174,15 +243,15 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
   Json run;
   if (scene.dimension == Dimension::planar) {
     const Drawing drawing = draw(scene, film);
-    stage = svg_head(drawing.view, "id=\"stage\"") + "<g id=\"paths\"></g>\n" +
+    stage = svg_head(drawing.view.width, drawing.view.height, "id=\"stage\"") + "<g id=\"paths\"></g>\n" +
             placed(drawing, places_of(drawing.view, film.front())) + "</svg>";
     run = planar_run(scene, drawing, film);
     script += viewer_plane_js;
   } else {
-    const View view{0, 0, 1, 1000, 760};
-    stage = svg_head(view, "id=\"stage\"") +
+    const SpaceDrawing drawing = draw_in_space(scene, film);
+    stage = svg_head(drawing.width, drawing.height, "id=\"stage\"") +
             "<path id=\"floor\" class=\"floor\"/><g id=\"space\"></g><g id=\"paths\"></g>\n</svg>";
-    run = spatial_run(scene, film);
+    run = spatial_run(scene, drawing, film);
     script += viewer_space_js;
   }
   const std::string title = escaped(scene.title.empty() ? scene.file : scene.title);
@@ -197,31 +266,9 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
 }
 
 std::string svg_still(const Scene& scene, const std::vector<Frame>& film) {
-  if (scene.dimension != Dimension::planar)
-    throw Error("a still is drawn of planar scenes; --html shows this one, from all sides");
-  const Drawing drawing = draw(scene, film);
-  std::string svg =
-      svg_head(drawing.view, fmt::format("width=\"{:.0f}\"", 0.8 * drawing.view.width).c_str());
-  svg += fmt::format(
-      "<style>\n{}@media (prefers-color-scheme: dark) {{ svg {{ --ink: #e6edf3; --paper: #0d1117; "
-      "}} }}\n</style>\n",
-      viewer_marks_css);
-  for (const Trace& trace : drawing.traces) {
-    svg += fmt::format("<polyline class=\"trace c{}\" points=\"", trace.colour);
-    for (const Frame& frame : film) {
-      const Vec2 at = position(trace.point, places_of(drawing.view, frame));
-      svg += fmt::format("{:.1f},{:.1f} ", at[0], at[1]);
-    }
-    svg += "\"/>\n";
-  }
-  for (int k = 0; k < snapshots; ++k) {
-    const std::size_t frame = (film.size() - 1) * static_cast<std::size_t>(k) / (snapshots - 1);
-    const bool last = k == snapshots - 1;
-    svg += fmt::format("<g class=\"{}\" opacity=\"{:.2f}\">\n{}</g>\n", last ? "now" : "before",
-                       last ? 1 : 0.15 + 0.07 * k,
-                       placed(drawing, places_of(drawing.view, film[frame]), last));
-  }
-  return svg + "</svg>\n";
+  return (scene.dimension == Dimension::planar ? planar_still(draw(scene, film), film)
+                                               : spatial_still(draw_in_space(scene, film), film)) +
+         "</svg>\n";
 }
 
 }  // namespace cdot

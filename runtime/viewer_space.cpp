@@ -6,12 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/viewer_marks.hpp"
-
 namespace cdot {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr int sides_of_a_disc = 24;
 constexpr int floor_lines = 10;
@@ -51,24 +47,24 @@ Box box_of(const Scene& scene, const std::vector<Frame>& film) {
   return box;
 }
 
-// Anticlockwise seen from outside.
-Json box_faces(double x, double y, double z) {
+std::vector<SpaceFace> box_faces(double x, double y, double z) {
   const auto corner = [&](int i) {
-    return Json{(i & 1 ? x : -x) / 2, (i & 2 ? y : -y) / 2, (i & 4 ? z : -z) / 2};
+    return Vec3{(i & 1 ? x : -x) / 2, (i & 2 ? y : -y) / 2, (i & 4 ? z : -z) / 2};
   };
-  Json faces = Json::array();
+  std::vector<SpaceFace> faces;
   for (const auto& face : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4},
                            std::array{2, 6, 7, 3}, std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})
     faces.push_back({corner(face[0]), corner(face[1]), corner(face[2]), corner(face[3])});
   return faces;
 }
 
-Json disc_faces(double radius, double height) {
+std::vector<SpaceFace> disc_faces(double radius, double height) {
   const auto at = [&](int k, double z) {
     const double angle = 2 * std::numbers::pi * k / sides_of_a_disc;
-    return Json{radius * std::cos(angle), radius * std::sin(angle), z};
+    return Vec3{radius * std::cos(angle), radius * std::sin(angle), z};
   };
-  Json faces = Json::array(), top = Json::array(), bottom = Json::array();
+  std::vector<SpaceFace> faces;
+  SpaceFace top, bottom;
   for (int k = 0; k < sides_of_a_disc; ++k) {
     top.push_back(at(k, height / 2));
     bottom.push_back(at(-k, -height / 2));
@@ -80,26 +76,20 @@ Json disc_faces(double radius, double height) {
   return faces;
 }
 
-struct Point {
-  int body;
-  Vec3 local;
-  Json json() const { return {body, local[0], local[1], local[2]}; }
-};
-
 class SpacePainter {
  public:
   SpacePainter(const Scene& scene, double size)
       : scene_(scene), size_(size), world_(build_world_in<Spatial<double>>(scene)) {}
 
-  Json marks() {
-    links_ = pins_ = Json::array();
+  SpaceDrawing draw() {
     for (int joint = 0; joint < world_.joint_count(); ++joint) draw_joint(joint);
     for (const SpringDefinition& spring : scene_.springs)
-      links_.push_back({Point{spring.body_a, {spring.ax, spring.ay, spring.az}}.json(),
-                        Point{spring.body_b, {spring.bx, spring.by, spring.bz}}.json(), "spring"});
-    Json bodies = Json::array();
-    for (std::size_t k = 0; k < scene_.bodies.size(); ++k) bodies.push_back(body(k));
-    return {{"bodies", bodies}, {"links", links_}, {"pins", pins_}, {"traces", traces()}};
+      drawing_.links.push_back({{spring.body_a, {spring.ax, spring.ay, spring.az}},
+                                {spring.body_b, {spring.bx, spring.by, spring.bz}},
+                                "spring"});
+    for (std::size_t k = 0; k < scene_.bodies.size(); ++k) drawing_.bodies.push_back(body(k));
+    add_traces();
+    return drawing_;
   }
 
  private:
@@ -108,32 +98,33 @@ class SpacePainter {
   }
 
   // Faces of its shape, without one a ball; and lines to joints that lie outside.
-  Json body(std::size_t k) const {
+  SpaceBody body(std::size_t k) const {
     const Shape& shape = scene_.bodies[k].shape;
-    Json look = {{"kind", kind(k)}, {"faces", Json::array()}, {"lines", Json::array()}};
+    SpaceBody look;
+    look.kind = kind(k);
     switch (shape.kind) {
       case Shape::rod:
-        look["faces"] = box_faces(shape.length, shape.width, shape.width);
+        look.faces = box_faces(shape.length, shape.width, shape.width);
         break;
       case Shape::box:
-        look["faces"] = box_faces(shape.length, shape.width, shape.depth);
+        look.faces = box_faces(shape.length, shape.width, shape.depth);
         break;
       case Shape::disc:
-        look["faces"] = disc_faces(shape.length / 2, shape.depth);
-        look["lines"] = {{{0, 0, shape.depth / 2}, {shape.length / 2, 0, shape.depth / 2}}};
+        look.faces = disc_faces(shape.length / 2, shape.depth);
+        look.lines = {{Vec3{0, 0, shape.depth / 2}, Vec3{shape.length / 2, 0, shape.depth / 2}}};
         break;
       case Shape::ball:
-        look["ball"] = shape.length / 2;
-        look["lines"] = {{{0, 0, 0}, {shape.length / 2, 0, 0}}};
+        look.ball = shape.length / 2;
+        look.lines = {{Vec3{}, Vec3{shape.length / 2, 0, 0}}};
         break;
       case Shape::none:
-        look["ball"] = 0.02 * size_;
+        look.ball = 0.02 * size_;
         break;
     }
-    for (const Point& point : joint_points_) {
+    for (const SpacePoint& point : drawing_.pins) {
       const Vec3& p = point.local;
       if (point.body == static_cast<int>(k) && std::hypot(p[0], p[1], p[2]) > reach(shape))
-        look["lines"].push_back({{0, 0, 0}, {p[0], p[1], p[2]}});
+        look.lines.push_back({Vec3{}, p});
     }
     return look;
   }
@@ -143,30 +134,29 @@ class SpacePainter {
     const std::vector<double> numbers = world_.joint_parameters(joint);
     const SceneJoint& source = scene_.joints[static_cast<std::size_t>(joint)];
     const JointType& type = world_.joint_type(joint);
-    std::vector<Point> points;
+    std::vector<SpacePoint> points;
     for (const ParameterInfo& info : type.parameters) {
       if (info.kind != ParameterKind::point) continue;
       const double* at = numbers.data() + info.offset;
       points.push_back({body_of(source, info.body), {at[0], at[1], at[2]}});
-      pins_.push_back(points.back().json());
     }
-    joint_points_.insert(joint_points_.end(), points.begin(), points.end());
+    drawing_.pins.insert(drawing_.pins.end(), points.begin(), points.end());
     const bool rope = !type.row_kinds.empty() && type.row_kinds[0] == RowKind::inequality;
     if (points.size() == 2)
-      links_.push_back({points[0].json(), points[1].json(),
-                        source.definition.soft ? "spring"
-                        : rope                 ? "rope"
-                                               : "rigid"});
+      drawing_.links.push_back({points[0], points[1],
+                                source.definition.soft ? "spring"
+                                : rope                 ? "rope"
+                                                       : "rigid"});
     for (const ParameterInfo& info : type.parameters) {
       const bool direction = info.kind == ParameterKind::frame || info.kind == ParameterKind::unit;
       if (!direction || points.empty() || body_of(source, info.body) != points[0].body) continue;
       const double* n = numbers.data() + info.offset;
-      Point from = points[0], to = points[0];
+      SpacePoint from = points[0], to = points[0];
       for (std::size_t k = 0; k < 3; ++k) {
         from.local[k] -= 0.04 * size_ * n[k];
         to.local[k] += 0.04 * size_ * n[k];
       }
-      links_.push_back({from.json(), to.json(), "rigid"});
+      drawing_.links.push_back({from, to, "rigid"});
       break;
     }
   }
@@ -176,48 +166,45 @@ class SpacePainter {
   }
 
   // What the scene asks for; else the centre of the last body that can move.
-  Json traces() const {
-    Json list = Json::array();
+  void add_traces() {
     const auto add = [&](std::size_t k, const Vec3& p) {
-      list.push_back({{"point", Point{static_cast<int>(k), p}.json()}, {"colour", kind(k)}});
+      drawing_.traces.push_back({{static_cast<int>(k), p}, kind(k)});
     };
     for (std::size_t k = 0; k < scene_.bodies.size(); ++k)
       for (const Vec3& point : scene_.bodies[k].traces) add(k, point);
-    for (std::size_t k = scene_.bodies.size(); k-- > 0 && list.empty();)
+    for (std::size_t k = scene_.bodies.size(); k-- > 0 && drawing_.traces.empty();)
       if (!scene_.bodies[k].is_static) add(k, {});
-    return list;
   }
 
   const Scene& scene_;
   double size_;
   SpatialWorld<double> world_;
-  std::vector<Point> joint_points_;
-  Json links_, pins_;
+  SpaceDrawing drawing_;
 };
 
 // A square grid under everything.
-Json floor_of(const Box& box) {
+std::vector<SpaceLine> floor_of(const Box& box) {
   const double half = 0.75 * box.size(), z = box.low[2];
   const double x = (box.low[0] + box.high[0]) / 2, y = (box.low[1] + box.high[1]) / 2;
-  Json lines = Json::array();
+  std::vector<SpaceLine> lines;
   for (int k = 0; k <= floor_lines; ++k) {
     const double at = half * (2.0 * k / floor_lines - 1);
-    lines.push_back({{x + at, y - half, z}, {x + at, y + half, z}});
-    lines.push_back({{x - half, y + at, z}, {x + half, y + at, z}});
+    lines.push_back({Vec3{x + at, y - half, z}, Vec3{x + at, y + half, z}});
+    lines.push_back({Vec3{x - half, y + at, z}, Vec3{x + half, y + at, z}});
   }
   return lines;
 }
 
 }  // namespace
 
-Json space_marks(const Scene& scene, const std::vector<Frame>& film) {
+SpaceDrawing draw_in_space(const Scene& scene, const std::vector<Frame>& film) {
   const Box box = box_of(scene, film);
-  Json marks = SpacePainter(scene, box.size()).marks();
-  marks["centre"] = {(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2,
-                     (box.low[2] + box.high[2]) / 2};
-  marks["radius"] = std::max(0.65 * box.size(), 1e-9);
-  marks["floor"] = floor_of(box);
-  return marks;
+  SpaceDrawing drawing = SpacePainter(scene, box.size()).draw();
+  drawing.centre = {(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2,
+                    (box.low[2] + box.high[2]) / 2};
+  drawing.radius = std::max(0.65 * box.size(), 1e-9);
+  drawing.floor = floor_of(box);
+  return drawing;
 }
 
 }  // namespace cdot

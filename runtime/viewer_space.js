@@ -1,4 +1,5 @@
-// Draws a film in space: faces, lines and points of bodies through a camera that orbits.
+// Draws a film in space: faces, lines and points of bodies through a camera that orbits. The still
+// (viewer_space_still.cpp) is the same through the camera of the start.
 
 // --- places ------------------------------------------------------------------------------------
 
@@ -46,7 +47,7 @@ const anchor = ([body, x, y, z]) => placed(body < 0 ? fixed : places[body], [x, 
 
 // --- camera ------------------------------------------------------------------------------------
 
-const start = {yaw: -0.9, pitch: 0.42, zoom: 1};
+const start = marks.camera;
 let camera = {...start};
 const [wide, high] = stage.getAttribute('viewBox').split(' ').slice(2).map(Number);
 

@@ -1,8 +1,11 @@
 // cdot-run jacobian: the system's D against what is known of it by other routes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "runtime/run_jacobian.hpp"
 #include "tests/scenes/support.hpp"
@@ -137,6 +140,37 @@ TEST(Jacobian, TheCommandPrintsAndDraws) {
   EXPECT_EQ(json["D"][0].size(), 9u);
   EXPECT_EQ(json["conflicts"].size(), 3u);
   EXPECT_EQ(json["degrees_of_freedom"], 1);
+}
+
+// In space, turned out of the axes: round-off must neither fill the table nor glue its columns.
+TEST(Jacobian, TheTableHasTheNumbersOfTheJson) {
+  const std::string four_bar = (scenes_dir() / "spatial/four_bar.toml").string();
+  const CommandResult table = cdot_run("jacobian '" + four_bar + "'");
+  const auto D = nlohmann::json::parse(cdot_run("jacobian '" + four_bar + "' --json").out)["D"];
+  std::istringstream lines(table.out.substr(table.out.find("\nD, columns of ")));
+  std::map<std::string, std::vector<double>> rows;  // without the blocks that are empty
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream cells(line);
+    std::string name;
+    if (!(cells >> name) || name.find('.') == std::string::npos) continue;
+    std::vector<double>& row = rows[name];
+    const std::size_t before = row.size();
+    for (double number; cells >> number;) row.push_back(number);
+    EXPECT_EQ(row.size() - before, 6u) << line;
+    EXPECT_TRUE(cells.eof()) << line;
+  }
+  ASSERT_EQ(rows.size(), D.size());
+  std::vector<double> printed, exact;
+  for (auto& [name, row] : rows) printed.insert(printed.end(), row.begin(), row.end());
+  for (const auto& row : D)
+    for (const double number : row) exact.push_back(number);
+  for (std::vector<double>* numbers : {&printed, &exact}) {
+    std::erase_if(*numbers, [](double x) { return std::fabs(x) < 1e-15; });
+    std::sort(numbers->begin(), numbers->end());
+  }
+  ASSERT_EQ(printed.size(), exact.size());
+  for (std::size_t at = 0; at < exact.size(); ++at)
+    EXPECT_NEAR(printed[at], exact[at], 1e-5 * std::fabs(exact[at]));
 }
 
 }  // namespace
