@@ -47,6 +47,21 @@ void error_limit(const Batch<S>& batch, int slot, typename S::Scalar* error) {
       nearer_to_lower(C, limits) ? std::fmin(C - limits[0], T(0)) : std::fmax(C - limits[1], T(0));
 }
 
+// --- lock, a limit whose ends are one: C = at. Constants: at.
+
+template <class S>
+void fill_lock(Batch<S>& batch, int begin, int end, typename S::Scalar h,
+               const Settings& settings) {
+  using T = typename S::Scalar;
+  const T share = settings.drift == Drift::baumgarte ? T(settings.baumgarte) / h : T(0);
+  for (int i = begin; i < end; ++i) batch.bias[i] += share * (batch.C[i] - batch.constants[i]);
+}
+
+template <class S>
+void error_lock(const Batch<S>& batch, int slot, typename S::Scalar* error) {
+  *error = batch.C[slot] - batch.constants[slot];
+}
+
 // --- motor: J v = speed, as far as its force reaches. Constants: speed, largest force.
 // --- dry friction is a motor of speed 0.
 
@@ -82,6 +97,8 @@ double energy_spring(const Batch<S>& batch, int slot) {
 template <class S>
 constexpr Law<S> limit_law{2, false, fill_limit<S>, error_limit<S>, nullptr};
 template <class S>
+constexpr Law<S> lock_law{1, false, fill_lock<S>, error_lock<S>, nullptr};
+template <class S>
 constexpr Law<S> motor_law{2, false, fill_motor<S>, nullptr, nullptr};
 template <class S>
 constexpr Law<S> spring_law{4, false, fill_spring<S>, nullptr, energy_spring<S>};
@@ -95,6 +112,8 @@ void add_limit(BasicWorld<S>& world, int joint, std::string_view coordinate, con
     throw Error(fmt::format("a limit's lower end {} must not lie above its upper end {}",
                             constants[0], constants[1]));
   if (!limit.lower && !limit.upper) throw Error("a limit needs a lower or an upper end");
+  if (constants[0] == constants[1])
+    return add_coordinate_row(world.state(), joint, coordinate, &lock_law<S>, constants);
   add_coordinate_row(world.state(), joint, coordinate, &limit_law<S>, constants);
 }
 

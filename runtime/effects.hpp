@@ -15,7 +15,7 @@ namespace cdot {
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 struct Limit {
-  std::optional<double> lower, upper;  // [m] or [rad]; one or both
+  std::optional<double> lower, upper;  // [m] or [rad]; one or both; equal: the coordinate is locked
 };
 
 struct Motor {

@@ -102,6 +102,26 @@ TEST(Limit, OneSideOnlyAndNoPullFromIt) {
   }
 }
 
+// Both ends the same: held from both sides, and let go of by nobody.
+TEST(Limit, WithoutRoomLocks) {
+  for (Solver solver : both) {
+    for (Drift drift : {Drift::baumgarte, Drift::projection}) {
+      World<double> world(settings(solver, drift));
+      int wheel;
+      const int joint = add_wheel(world, 2, &wheel, 5);
+      add_limit(world, joint, "angle", {.lower = 0.25, .upper = 0.25});
+      world.set_velocity(wheel, {0, 0, -3});
+      run(world, 2, 1.0 / 60);
+      for (int i = 0; i < 60; ++i) {
+        world.set_velocity(wheel, {0, 0, i % 2 ? 3.0 : -3.0});
+        world.step(1.0 / 60);
+        EXPECT_NEAR(world.coordinate(joint, "angle"), 0.25, 1e-9);
+        EXPECT_NEAR(world.velocity(wheel).w, 0, 1e-9);
+      }
+    }
+  }
+}
+
 TEST(Limit, ThousandTurnsAreCounted) {
   World<double> world;
   int wheel;

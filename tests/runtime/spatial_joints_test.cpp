@@ -155,6 +155,84 @@ TEST(SpatialJoints, FramesInEveryWayOfGivingThem) {
   EXPECT_THROW(frame({0, 0}), Error);
 }
 
+// Six degrees of freedom, each locked, free or limited, against the joints that have just those
+// rows.
+struct SixDof {
+  const char* like;
+  std::vector<const char*> free;
+};
+
+// Two bricks in gravity, the first on a ball, joined by `type`; the pose of the second at the end.
+spatial::Pose<double> pose_at_the_end(const char* type, const std::vector<const char*>& locked) {
+  Settings s = settings(Solver::direct);
+  s.gravity_z = -9.81;
+  SpatialWorld<double> world(s);
+  const int first = world.add_body(brick(0.5, 0, 0)), second = world.add_body(brick(1.5, 0.2, 0));
+  join(world, "spherical", world.ground(), first, {{"pa", {0, 0, 0}}});
+  std::vector<NamedValue> values = {{"pa", {0.5, 0.1, 0}}};
+  if (std::string_view(type) != "spherical") values.push_back({"fa", {0.3, 1, 0.2}});
+  const int joint = join(world, type, first, second, values);
+  for (const char* coordinate : locked)
+    add_limit(world, joint, coordinate, {.lower = 0, .upper = 0});
+  world.apply_impulse(second, {0.3, 0.5, -0.2, 0.1, 0.2, -0.1});
+  run(world, 0.5, 1e-3);
+  for (const char* coordinate : locked)
+    EXPECT_NEAR(world.coordinate(joint, coordinate), 0, 1e-9) << type << " " << coordinate;
+  return world.pose(second);
+}
+
+TEST(SpatialJoints, SixDofWithLocksIsTheJointWithThoseRows) {
+  const std::vector<const char*> all = {"slide_x", "slide_y", "slide_z",
+                                        "turn_x",  "turn_y",  "turn_z"};
+  for (const SixDof& c :
+       {SixDof{"fixed", {}}, SixDof{"revolute", {"turn_x"}}, SixDof{"prismatic", {"slide_x"}},
+        SixDof{"cylindrical", {"slide_x", "turn_x"}},
+        SixDof{"planar_joint", {"slide_y", "slide_z", "turn_x"}},
+        SixDof{"spherical", {"turn_x", "turn_y", "turn_z"}}}) {
+    std::vector<const char*> locked;
+    for (const char* coordinate : all)
+      if (std::none_of(c.free.begin(), c.free.end(),
+                       [&](std::string_view name) { return name == coordinate; }))
+        locked.push_back(coordinate);
+    const auto ours = pose_at_the_end("six_dof", locked), theirs = pose_at_the_end(c.like, {});
+    EXPECT_NEAR(ours.x, theirs.x, 1e-6) << c.like;
+    EXPECT_NEAR(ours.y, theirs.y, 1e-6) << c.like;
+    EXPECT_NEAR(ours.z, theirs.z, 1e-6) << c.like;
+    const double same =
+        ours.e0 * theirs.e0 + ours.e1 * theirs.e1 + ours.e2 * theirs.e2 + ours.e3 * theirs.e3;
+    EXPECT_NEAR(std::abs(same), 1, 1e-9) << c.like;
+  }
+}
+
+TEST(SpatialJoints, SixDofStaysWithinItsLimits) {
+  for (Solver solver : {Solver::direct, Solver::iterative}) {
+    Settings s = settings(solver);
+    s.gravity_z = -9.81;
+    s.iterations = 50;
+    SpatialWorld<double> world(s);
+    const int body = world.add_body(brick(0, 0, 0));
+    const int joint =
+        join(world, "six_dof", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {1, 0, 0}}});
+    for (const char* slide : {"slide_x", "slide_y"})
+      add_limit(world, joint, slide, {.lower = 0, .upper = 0});
+    add_limit(world, joint, "slide_z", {.lower = -0.5, .upper = 0.2});
+    for (const char* turn : {"turn_x", "turn_y"})
+      add_limit(world, joint, turn, {.lower = -0.3, .upper = 0.3});
+    world.apply_impulse(body, {0, 0, 0, 0.2, -0.3, 0.1});
+    double lowest = 0, widest = 0;
+    for (int i = 0; i < 2000; ++i) {
+      world.step(1e-3);
+      lowest = std::min(lowest, world.coordinate(joint, "slide_z"));
+      for (const char* turn : {"turn_x", "turn_y"})
+        widest = std::max(widest, std::abs(world.coordinate(joint, turn)));
+    }
+    EXPECT_NEAR(lowest, -0.5, 1e-6);
+    EXPECT_NEAR(world.coordinate(joint, "slide_z"), -0.5, 1e-6);
+    EXPECT_NEAR(widest, 0.3, 1e-5);
+    EXPECT_GT(std::abs(world.coordinate_rate(joint, "turn_z")), 0.05);  // left free
+  }
+}
+
 // Heavy loads on light links in space: quiet with the geometric stiffness.
 TEST(SpatialJoints, GeometricStiffnessHoldsAHeavyLoad) {
   Settings s = settings(Solver::direct);
