@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <fstream>
 #include <iostream>
 #include <sstream>
@@ -65,7 +66,8 @@ std::vector<Joint> read_and_prove(const std::vector<fs::path>& paths, const Spec
   return joints;
 }
 
-// The costs of the published derivations beside these specs, as far as they are right.
+// The costs of the published derivations beside these specs, as far as they are right. Two of them
+// may be about the same that the ledger does not have otherwise.
 std::vector<LedgerRow> hand_costs(const std::vector<fs::path>& specs, const SpecsFolder& folder) {
   std::vector<LedgerRow> rows;
   for (const fs::path& spec : specs) {
@@ -74,7 +76,11 @@ std::vector<LedgerRow> hand_costs(const std::vector<fs::path>& specs, const Spec
     if (!fs::exists(hand)) continue;
     const DiffReport report = judge(hand, spec, folder);
     std::cerr << render(*report.file, report.diagnostics);
-    for (const Judgement& j : report.judgements) rows.insert(rows.end(), j.costs.begin(), j.costs.end());
+    for (const Judgement& j : report.judgements) {
+      for (const LedgerRow& cost : j.costs) {
+        if (std::find(rows.begin(), rows.end(), cost) == rows.end()) rows.push_back(cost);
+      }
+    }
   }
   return rows;
 }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "derive/finite_field.hpp"
 #include "derive/ginac.hpp"
@@ -13,6 +14,18 @@ namespace {
 
 Matrix column(std::vector<Expr> entries) {
   return {static_cast<int>(entries.size()), 1, std::move(entries)};
+}
+
+std::vector<Expr> lower_triangle(const Matrix& m) {
+  std::vector<Expr> entries;
+  for (int i = 0; i < m.rows; ++i) {
+    for (int j = 0; j <= i; ++j) entries.push_back(m.at(i, j));
+  }
+  return entries;
+}
+
+bool is_coordinate(const std::vector<ScalarRow>& rows) {
+  return rows.size() == 1 && rows[0].row == nullptr;
 }
 
 }  // namespace
@@ -203,34 +216,44 @@ void EntryJudge::judge_item(const Part& part, const HandItem& item) {
   if (item.kind != HandItem::Kind::quantity) return;
   const Generated& g = part.generated;
   const std::size_t before = out_.differences.size();
+  const bool others_need_assumptions = std::exchange(needs_assumptions_, false);
   const Matrix& generated = item.what == "C"   ? g.C
                             : item.what == "J" ? g.J
                             : item.what == "K" ? g.K
                                                : g.Cdot;
   compare(part, item, *item.value, generated);
   if (item.what == "J" && item.value->columns == g.J.columns) judge_momentum(part, *item.value);
-  if (out_.differences.size() == before) add_cost(part, item);
+  // Under an assumption more may be left out than is when nothing is assumed: no fair comparison.
+  if (out_.differences.size() == before && !needs_assumptions_) add_costs(part, item, generated);
+  needs_assumptions_ = needs_assumptions_ || others_need_assumptions;
 }
 
-void EntryJudge::add_cost(const Part& part, const HandItem& item) {
+std::string EntryJudge::scope_of(const Part& part) const {
+  std::string scope;
+  const auto append = [&](const char* first, const char* further, const std::string& what) {
+    scope += (scope.find(first) == scope.npos ? first : further) + what;
+  };
+  if (!is_coordinate(part.rows) && part.rows.size() != block_.rows.size()) {
+    for (const std::string& name : part.hand->rows) append(" of ", " ", name);
+  }
+  for (const auto& [name, body] : changed_anchors_) append(" with ", " and ", name + " on " + body);
+  for (const std::string& body : entry_.immovable) append(" with ", " and ", body + " immovable");
+  return scope;
+}
+
+// Beside what is generated of the same, where the ledger does not have that anyway.
+void EntryJudge::add_costs(const Part& part, const HandItem& item, const Matrix& generated) {
   if (item.what != "C" && item.what != "J" && item.what != "K") return;
   if (item.what == "J" && form_ != Form::global) return;
-  std::string block = "rows";
-  if (!part.hand->rows.empty()) {
-    const bool coordinate = part.rows.size() == 1 && part.rows[0].row == nullptr;
-    const bool all = part.rows.size() == block_.rows.size() && !coordinate;
-    if (!coordinate && !all) return;
-    if (coordinate) block = part.rows[0].name;
-  }
-  std::vector<Expr> entries = item.value->entries;
-  if (item.what == "K") {
-    entries.clear();
-    for (int i = 0; i < item.value->rows; ++i) {
-      for (int j = 0; j <= i; ++j) entries.push_back(item.value->at(i, j));
-    }
-  }
-  out_.costs.push_back({name_of_space(joint_.dimension), joint_.name, block, item.what, entry_.id,
-                        cost_from_poses(joint_, entries)});
+  const std::string block = is_coordinate(part.rows) ? part.rows[0].name : "rows";
+  const std::string scope = scope_of(part);
+  const auto add = [&](const std::string& source, const Matrix& m) {
+    const std::vector<Expr> entries = item.what == "K" ? lower_triangle(m) : m.entries;
+    out_.costs.push_back({name_of_space(joint_.dimension), joint_.name, block, item.what,
+                          source + scope, cost_from_poses(joint_, item.what, entries)});
+  };
+  add(entry_.id, *item.value);
+  if (!scope.empty()) add("generated", generated);
 }
 
 Judgement EntryJudge::judge() {

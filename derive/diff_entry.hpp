@@ -39,7 +39,9 @@ class EntryJudge {
   bool proved(Expr difference) const;
   void judge_item(const Part& part, const HandItem& item);
   void conclude();
-  void add_cost(const Part& part, const HandItem& item);
+  // What an entry is about, if not all rows of the spec as it stands: " of pin", " with t on a".
+  std::string scope_of(const Part& part) const;
+  void add_costs(const Part& part, const HandItem& item, const Matrix& generated);
 
   // diff_sign.cpp: which sign of C an entry means.
   struct Misfit {

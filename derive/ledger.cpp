@@ -31,21 +31,24 @@ void add_quantities(const Joint& joint, const Block& block, const std::string& n
     for (const Expr entry : columns_of(block.rows[i].J)) J.push_back(entry);
     for (const Expr entry : block.K[i]) K.push_back(entry);
   }
-  rows.push_back({space, joint.name, name, "C", "generated", cost_from_poses(joint, C)});
-  rows.push_back({space, joint.name, name, "J", "generated", cost_from_poses(joint, J)});
-  rows.push_back({space, joint.name, name, "K", "generated", cost_from_poses(joint, K)});
+  for (const auto& [quantity, entries] : {std::pair{"C", C}, {"J", J}, {"K", K}}) {
+    rows.push_back({space, joint.name, name, quantity, "generated",
+                    cost_from_poses(joint, quantity, entries)});
+  }
 }
 
 }  // namespace
 
-Count cost_from_poses(const Joint& joint, const std::vector<Expr>& scalars) {
+Count cost_from_poses(const Joint& joint, std::string_view quantity,
+                      const std::vector<Expr>& entries) {
   PoseInputs pose(joint);
   std::vector<NamedExpr> outputs;
-  for (const Expr scalar : scalars) {
-    // An entry and its negative cost the same: whoever uses it adds or subtracts.
-    const Expr e = pose.of(scalar);
+  for (const Expr entry : entries) {
+    // A kernel's Jacobian holds one number for an entry and its negative, and what reads it adds or
+    // subtracts. C and K are handed out as they are, with their signs.
+    const Expr e = pose.of(entry);
     const bool negative = e->kind == Kind::sum && !e->coefs.empty() && e->coefs[0].sign() < 0;
-    outputs.push_back({"", negative ? -e : e});
+    outputs.push_back({"", negative && quantity == "J" ? -e : e});
   }
   return count(simplify(assemble(outputs)));
 }

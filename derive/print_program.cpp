@@ -183,29 +183,24 @@ class StatementPrinter {
   }
 
   std::string sum_text(const Operation& o, Level level) const {
-    // A positive term leads; without one the sum opens with a minus sign.
-    std::size_t lead = 0;
-    while (lead < o.args.size() && o.coefs[lead].sign() < 0) ++lead;
-    if (lead == o.args.size()) lead = 0;
-    std::string s;
+    const Lead lead = lead_of(program_, o);
+    std::string s = lead.negated ? "-" : "";
     const auto append = [&](std::size_t i) {
-      const Rational c = o.coefs[i];
-      if (s.empty())
-        s += c.sign() < 0 ? "-" : "";
-      else
-        s += c.sign() < 0 ? " - " : " + ";
+      const bool leads = i == lead.term;
+      if (!leads) s += o.coefs[i].sign() < 0 ? " - " : " + ";
+      const Rational c = leads && !lead.negated ? o.coefs[i] : abs(o.coefs[i]);
       if (at(o.args[i]).kind == OpKind::number) {
-        s += number(abs(c) * at(o.args[i]).value);
+        s += number(c * at(o.args[i]).value);
         return;
       }
-      if (abs(c) != Rational(1)) s += number(abs(c)) + " * ";
+      if (c != Rational(1)) s += number(c) + " * ";
       s += operand(o.args[i], in_product);
     };
-    append(lead);
+    append(lead.term);
     for (std::size_t i = 0; i < o.args.size(); ++i) {
-      if (i != lead) append(i);
+      if (i != lead.term) append(i);
     }
-    const bool scaled_only = is_scaling(o) && o.coefs[0].sign() > 0;
+    const bool scaled_only = is_scaling(o) && !lead.negated;
     return parenthesised(s, level >= in_power || (level >= in_product && !scaled_only));
   }
 

@@ -27,16 +27,18 @@ std::string key_of(const Operation& op) {
   return key;
 }
 
-void add_cost(const Operation& op, Count& count) {
+bool is_number(const Program& program, int op) {
+  return program.ops[static_cast<std::size_t>(op)].kind == OpKind::number;
+}
+
+void add_cost(const Program& program, const Operation& op, Count& count) {
   const int n = static_cast<int>(op.args.size());
   if (op.kind == OpKind::sum) {
-    bool any_positive = false;
     for (std::size_t i = 0; i < op.args.size(); ++i) {
-      any_positive = any_positive || op.coefs[i].sign() > 0;
-      count.multiply += abs(op.coefs[i]) != Rational(1) ? 1 : 0;
+      const bool scaled = abs(op.coefs[i]) != Rational(1) && !is_number(program, op.args[i]);
+      count.multiply += scaled ? 1 : 0;
     }
-    const bool scaled_only = n == 1 && abs(op.coefs[0]) != Rational(1);
-    count.add += n - 1 + (any_positive || scaled_only ? 0 : 1);
+    count.add += n - 1 + (lead_of(program, op).negated ? 1 : 0);
   } else if (op.kind == OpKind::product) {
     count.multiply += n - 1;
     for (const int k : op.exponents) count.multiply += k - 1;
@@ -54,6 +56,16 @@ void add_cost(const Operation& op, Count& count) {
 }
 
 }  // namespace
+
+Lead lead_of(const Program& program, const Operation& sum) {
+  for (std::size_t i = 0; i < sum.args.size(); ++i) {
+    if (sum.coefs[i].sign() > 0) return {i, false};
+  }
+  for (std::size_t i = 0; i < sum.args.size(); ++i) {
+    if (sum.coefs[i] != Rational(-1) || is_number(program, sum.args[i])) return {i, false};
+  }
+  return {0, true};
+}
 
 int ProgramBuilder::intern(Operation op) {
   const std::string key = key_of(op);
@@ -216,7 +228,7 @@ Count count(const Program& program) {
   Count total;
   for (std::size_t i = program.ops.size(); i-- > 0;) {
     if (!needed[i]) continue;
-    add_cost(program.ops[i], total);
+    add_cost(program, program.ops[i], total);
     for (const int arg : program.ops[i].args) needed[static_cast<std::size_t>(arg)] = true;
   }
   return total;

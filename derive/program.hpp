@@ -36,6 +36,14 @@ struct Program {
   std::vector<Output> outputs;
 };
 
+// The term that a sum opens with: the first positive one; without one, the first with a number that
+// takes the minus sign, -2 x; else the first, negated, -x, which costs an operation.
+struct Lead {
+  std::size_t term = 0;
+  bool negated = false;
+};
+Lead lead_of(const Program& program, const Operation& sum);
+
 // Operations by kind. A power x^n is n - 1 products; a subtraction or negation counts as an
 // addition; the guarded inverse is a division and a comparison, a guarded pivot another product
 // besides.

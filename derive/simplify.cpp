@@ -336,7 +336,9 @@ Program simplify(const Program& program) {
       }
     }
   }
-  return best;
+  // Of equals, x - w (2 y + z) rather than x + w (-2 y - z).
+  Program positive = flatten_sums(take_out_coefficients(best));
+  return weight(count(positive)) <= weight(count(best)) ? positive : best;
 }
 
 }  // namespace cdot::derive

@@ -53,7 +53,7 @@ struct gear_on_base {
     C[0] = qa - p.phi + p.ratio * qb;
   }
 
-  // C and J: 6 +, 1 *
+  // C and J: 5 +, 1 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[3], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -64,7 +64,7 @@ struct gear_on_base {
     const T qb = b.angle - c.angle;
     C[0] = qa - p.phi + p.ratio * qb;
     J.ratio = p.ratio;
-    J.wc = -p.ratio - T(1);
+    J.wc = T(-1) - p.ratio;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 2 +, 4 *
@@ -250,7 +250,7 @@ struct gear_on_base::b_immovable : gear_on_base {
     T wc;
   };
 
-  // C and J: 6 +, 1 *
+  // C and J: 5 +, 1 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[3], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -260,7 +260,7 @@ struct gear_on_base::b_immovable : gear_on_base {
     const T qa = a.angle - c.angle;
     const T qb = b.angle - c.angle;
     C[0] = qa - p.phi + p.ratio * qb;
-    J.wc = -p.ratio - T(1);
+    J.wc = T(-1) - p.ratio;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 1 +, 2 *

@@ -131,8 +131,8 @@ struct pulley {
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.ratio * (-J.nb_x * vb.x - J.nb_y * vb.y - J.rb_x_nb * vb.w) - J.na_x * va.x -
-        J.na_y * va.y - J.ra_x_na * va.w;
+    Jv[0] = -J.na_x * va.x - J.na_y * va.y - J.ra_x_na * va.w - J.ratio *
+        (J.nb_x * vb.x + J.nb_y * vb.y + J.rb_x_nb * vb.w);
   }
 
   // v += M^-1 J^T lambda: 6 +, 11 *
@@ -372,7 +372,7 @@ struct pulley::a_immovable : pulley {
   template <class T>
   static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
     const Velocity<T>& vb = v[1];
-    Jv[0] = J.ratio * (-J.nb_x * vb.x - J.nb_y * vb.y - J.rb_x_nb * vb.w);
+    Jv[0] = -J.ratio * (J.nb_x * vb.x + J.nb_y * vb.y + J.rb_x_nb * vb.w);
   }
 
   // v += M^-1 J^T lambda: 3 +, 6 *

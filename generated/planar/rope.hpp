@@ -271,7 +271,7 @@ struct rope {
     H[5][2] = H3_1_2;
     H[5][3] = H1_1_4;
     H[5][4] = H[4][5];
-    H[5][5] = dot_rb_n * (-lambda[0] - H1_1 * dot_rb_n);
+    H[5][5] = -dot_rb_n * (lambda[0] + H1_1 * dot_rb_n);
   }
 
   // The default of parameter `index`, from the initial pose and the parameters before it.

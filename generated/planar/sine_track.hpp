@@ -673,12 +673,12 @@ struct sine_track::b_immovable : sine_track {
     const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T C1_1 = p.k * s_x;
     const T va_x_1 = cos(C1_1) * p.amplitude * p.k;
-    const T va_x_2 = -f_x_y - va_x_1 * f_x_x;
+    const T va_x_2 = f_x_y + va_x_1 * f_x_x;
     const T va_y_1 = f_x_x - va_x_1 * f_x_y;
     C[0] = -u_x_f_x - p.amplitude * sin(C1_1);
-    J.va_x = va_x_2;
+    J.va_x = -va_x_2;
     J.va_y = va_y_1;
-    J.wa = va_y_1 * ra_x - va_x_2 * ra_y;
+    J.wa = va_y_1 * ra_x + va_x_2 * ra_y;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 2 +, 5 *

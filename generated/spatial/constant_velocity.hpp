@@ -551,37 +551,37 @@ struct constant_velocity {
     D[0][3] = T(2) * (D1_1 - D1_2);
     D[0][4] = T(2) * (D1_1_2 + D1_2_2);
     D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = -T(2) * (D1_1_4 + D1_2_4);
+    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
     D[0][7] = T(-1);
     D[0][10] = T(2) * (D1_2_5 - D1_1_5);
-    D[0][11] = -T(2) * (D1_1_6 + D1_2_6);
+    D[0][11] = T(-2) * (D1_1_6 + D1_2_6);
     D[0][12] = T(2) * (D1_1_7 - D1_2_7);
     D[0][13] = T(2) * (D1_1_8 + D1_2_8);
     D[1][1] = T(1);
     D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = -T(2) * (D2_1_2 + D1_2_3);
+    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
     D[1][5] = T(2) * (D2_1_3 + D1_2_2);
     D[1][6] = T(2) * (D2_1_4 - D1_2);
     D[1][8] = T(-1);
     D[1][10] = T(2) * (D2_1_5 - D1_2_8);
     D[1][11] = T(2) * (D2_1_6 + D1_2_7);
-    D[1][12] = -T(2) * (D2_1_7 + D1_2_6);
+    D[1][12] = T(-2) * (D2_1_7 + D1_2_6);
     D[1][13] = T(2) * (D1_2_5 - D2_1_8);
     D[2][2] = T(1);
     D[2][3] = T(2) * (D2_1_2 - D1_1_3);
     D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = -T(2) * (D2_1_4 + D1_1);
+    D[2][5] = T(-2) * (D2_1_4 + D1_1);
     D[2][6] = T(2) * (D2_1_3 + D1_1_2);
     D[2][9] = T(-1);
     D[2][10] = T(2) * (D1_1_7 - D2_1_6);
     D[2][11] = T(2) * (D2_1_5 - D1_1_8);
     D[2][12] = T(2) * (D2_1_8 + D1_1_5);
-    D[2][13] = -T(2) * (D2_1_7 + D1_1_6);
-    D[3][3] = -T(2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
+    D[2][13] = T(-2) * (D2_1_7 + D1_1_6);
+    D[3][3] = T(-2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
     D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
     D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
     D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
-    D[3][10] = -T(2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
+    D[3][10] = T(-2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
     D[3][11] = T(2) * (J.wb_4_x * b.e0 + J.wb_4_y * b.e3 - J.wb_4_z * b.e2);
     D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
     D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
@@ -1041,11 +1041,11 @@ struct constant_velocity {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
       D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
       D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
       D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
       D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -1495,11 +1495,11 @@ struct constant_velocity {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
       D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
       D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
       D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
       D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -1989,20 +1989,20 @@ struct constant_velocity::a_immovable : constant_velocity {
     const T D2_1_4 = J.rb_x * b.e0;
     D[0][7] = T(-1);
     D[0][10] = T(2) * (D1_2 - D1_1);
-    D[0][11] = -T(2) * (D1_1_2 + D1_2_2);
+    D[0][11] = T(-2) * (D1_1_2 + D1_2_2);
     D[0][12] = T(2) * (D1_1_3 - D1_2_3);
     D[0][13] = T(2) * (D1_1_4 + D1_2_4);
     D[1][8] = T(-1);
     D[1][10] = T(2) * (D2_1 - D1_2_4);
     D[1][11] = T(2) * (D2_1_2 + D1_2_3);
-    D[1][12] = -T(2) * (D2_1_3 + D1_2_2);
+    D[1][12] = T(-2) * (D2_1_3 + D1_2_2);
     D[1][13] = T(2) * (D1_2 - D2_1_4);
     D[2][9] = T(-1);
     D[2][10] = T(2) * (D1_1_3 - D2_1_2);
     D[2][11] = T(2) * (D2_1 - D1_1_4);
     D[2][12] = T(2) * (D2_1_4 + D1_1);
-    D[2][13] = -T(2) * (D2_1_3 + D1_1_2);
-    D[3][10] = -T(2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
+    D[2][13] = T(-2) * (D2_1_3 + D1_1_2);
+    D[3][10] = T(-2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
     D[3][11] = T(2) * (J.wb_4_x * b.e0 + J.wb_4_y * b.e3 - J.wb_4_z * b.e2);
     D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
     D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
@@ -2275,18 +2275,18 @@ struct constant_velocity::b_immovable : constant_velocity {
     D[0][3] = T(2) * (D1_1 - D1_2);
     D[0][4] = T(2) * (D1_1_2 + D1_2_2);
     D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = -T(2) * (D1_1_4 + D1_2_4);
+    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
     D[1][1] = T(1);
     D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = -T(2) * (D2_1_2 + D1_2_3);
+    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
     D[1][5] = T(2) * (D2_1_3 + D1_2_2);
     D[1][6] = T(2) * (D2_1_4 - D1_2);
     D[2][2] = T(1);
     D[2][3] = T(2) * (D2_1_2 - D1_1_3);
     D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = -T(2) * (D2_1_4 + D1_1);
+    D[2][5] = T(-2) * (D2_1_4 + D1_1);
     D[2][6] = T(2) * (D2_1_3 + D1_1_2);
-    D[3][3] = -T(2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
+    D[3][3] = T(-2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
     D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
     D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
     D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
@@ -2438,7 +2438,7 @@ struct constant_velocity::bend_y::a_immovable : constant_velocity::bend_y {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -2593,7 +2593,7 @@ struct constant_velocity::bend_y::b_immovable : constant_velocity::bend_y {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
@@ -2745,7 +2745,7 @@ struct constant_velocity::bend_z::a_immovable : constant_velocity::bend_z {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -2900,7 +2900,7 @@ struct constant_velocity::bend_z::b_immovable : constant_velocity::bend_z {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);

@@ -306,7 +306,7 @@ struct distance {
     D[0][7] = J.n_x;
     D[0][8] = J.n_y;
     D[0][9] = J.n_z;
-    D[0][10] = -T(2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_n_x * b.e0 + J.rb_x_n_y * b.e3 - J.rb_x_n_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_n_y * b.e0 - J.rb_x_n_x * b.e3 + J.rb_x_n_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_n_x * b.e2 - J.rb_x_n_y * b.e1 + J.rb_x_n_z * b.e0);
@@ -816,7 +816,7 @@ struct distance::a_immovable : distance {
     D[0][7] = J.n_x;
     D[0][8] = J.n_y;
     D[0][9] = J.n_z;
-    D[0][10] = -T(2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_n_x * b.e0 + J.rb_x_n_y * b.e3 - J.rb_x_n_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_n_y * b.e0 - J.rb_x_n_x * b.e3 + J.rb_x_n_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_n_x * b.e2 - J.rb_x_n_y * b.e1 + J.rb_x_n_z * b.e0);

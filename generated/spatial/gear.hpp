@@ -312,11 +312,11 @@ struct gear {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -693,7 +693,7 @@ struct gear {
         for (T& entry : row) entry = T(0);
       }
       const Pose<T>& a = q[0];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
       D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
       D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
@@ -953,7 +953,7 @@ struct gear {
         for (T& entry : row) entry = T(0);
       }
       const Pose<T>& b = q[1];
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
       D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
       D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -1199,7 +1199,7 @@ struct gear::a_immovable : gear {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -1366,7 +1366,7 @@ struct gear::b_immovable : gear {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);

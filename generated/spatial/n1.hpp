@@ -226,7 +226,7 @@ struct n1 {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = -T(2) * (J.na_x_nb_x * a.e1 + J.na_x_nb_y * a.e2 + J.na_x_nb_z * a.e3);
+    D[0][3] = T(-2) * (J.na_x_nb_x * a.e1 + J.na_x_nb_y * a.e2 + J.na_x_nb_z * a.e3);
     D[0][4] = T(2) * (J.na_x_nb_x * a.e0 + J.na_x_nb_y * a.e3 - J.na_x_nb_z * a.e2);
     D[0][5] = T(2) * (J.na_x_nb_y * a.e0 - J.na_x_nb_x * a.e3 + J.na_x_nb_z * a.e1);
     D[0][6] = T(2) * (J.na_x_nb_x * a.e2 - J.na_x_nb_y * a.e1 + J.na_x_nb_z * a.e0);
@@ -236,7 +236,7 @@ struct n1 {
     D[0][13] = T(2) * (J.na_x_nb_y * b.e1 - J.na_x_nb_x * b.e2 - J.na_x_nb_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 33 +, 52 *
+  // -Jdot v - d/dt(dC/dt): 32 +, 52 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -268,7 +268,7 @@ struct n1 {
         w_a_x_w_a_x_na_z;
     const T dot_w_a_x_na_w_b_x_nb = w_a_x_na_z * w_b_x_nb_z + w_a_x_na_y * w_b_x_nb_y +
         w_a_x_na_x * w_b_x_nb_x;
-    g[0] = -dot_w_b_x_w_b_x_nb_na - dot_w_a_x_w_a_x_na_nb - T(2) * dot_w_a_x_na_w_b_x_nb;
+    g[0] = T(-2) * dot_w_a_x_na_w_b_x_nb - dot_w_b_x_w_b_x_nb_na - dot_w_a_x_w_a_x_na_nb;
   }
 
   // dC/dt at fixed q: nothing
@@ -587,7 +587,7 @@ struct n1::b_immovable : n1 {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.na_x_nb_x * a.e1 + J.na_x_nb_y * a.e2 + J.na_x_nb_z * a.e3);
+    D[0][3] = T(-2) * (J.na_x_nb_x * a.e1 + J.na_x_nb_y * a.e2 + J.na_x_nb_z * a.e3);
     D[0][4] = T(2) * (J.na_x_nb_x * a.e0 + J.na_x_nb_y * a.e3 - J.na_x_nb_z * a.e2);
     D[0][5] = T(2) * (J.na_x_nb_y * a.e0 - J.na_x_nb_x * a.e3 + J.na_x_nb_z * a.e1);
     D[0][6] = T(2) * (J.na_x_nb_x * a.e2 - J.na_x_nb_y * a.e1 + J.na_x_nb_z * a.e0);

@@ -309,13 +309,13 @@ struct n2 {
     D[0][7] = J.n_x;
     D[0][8] = J.n_y;
     D[0][9] = J.n_z;
-    D[0][10] = -T(2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_n_x * b.e0 + J.rb_x_n_y * b.e3 - J.rb_x_n_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_n_y * b.e0 - J.rb_x_n_x * b.e3 + J.rb_x_n_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_n_x * b.e2 - J.rb_x_n_y * b.e1 + J.rb_x_n_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+  // -Jdot v - d/dt(dC/dt): 65 +, 73 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -363,7 +363,7 @@ struct n2 {
     const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
     const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
     const T dot_d_dot_dot_n = d_dot_dot_y * n_y + d_dot_dot_z * n_z + d_dot_dot_x * n_x;
-    g[0] = -dot_d_w_a_x_w_a_x_n - T(2) * dot_d_dot_w_a_x_n - dot_d_dot_dot_n;
+    g[0] = T(-2) * dot_d_dot_w_a_x_n - dot_d_w_a_x_w_a_x_n - dot_d_dot_dot_n;
   }
 
   // dC/dt at fixed q: nothing
@@ -673,7 +673,7 @@ struct n2::a_immovable : n2 {
     D[0][7] = J.n_x;
     D[0][8] = J.n_y;
     D[0][9] = J.n_z;
-    D[0][10] = -T(2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_n_x * b.e0 + J.rb_x_n_y * b.e3 - J.rb_x_n_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_n_y * b.e0 - J.rb_x_n_x * b.e3 + J.rb_x_n_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_n_x * b.e2 - J.rb_x_n_y * b.e1 + J.rb_x_n_z * b.e0);

@@ -296,7 +296,7 @@ struct p1 {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = -T(2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
+    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
     D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
     D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
     D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
@@ -304,7 +304,7 @@ struct p1 {
     D[0][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
     D[0][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
     D[0][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[1][3] = -T(2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
+    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
     D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
     D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
     D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
@@ -314,7 +314,7 @@ struct p1 {
     D[1][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 54 +, 83 *
+  // -Jdot v - d/dt(dC/dt): 52 +, 83 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[2]) {
@@ -361,10 +361,10 @@ struct p1 {
         fb_x_z * w_a_x_w_a_x_fa_z_z;
     const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y * w_b_x_fb_x_y +
         w_a_x_fa_z_x * w_b_x_fb_x_x;
-    g[0] = -dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_a_x_w_a_x_fa_y_fb_x - T(2) *
-        dot_w_a_x_fa_y_w_b_x_fb_x;
-    g[1] = -dot_w_b_x_w_b_x_fb_x_fa_z - dot_w_a_x_w_a_x_fa_z_fb_x - T(2) *
-        dot_w_a_x_fa_z_w_b_x_fb_x;
+    g[0] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_y -
+        dot_w_a_x_w_a_x_fa_y_fb_x;
+    g[1] = T(-2) * dot_w_a_x_fa_z_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_z -
+        dot_w_a_x_w_a_x_fa_z_fb_x;
   }
 
   // dC/dt at fixed q: nothing
@@ -777,11 +777,11 @@ struct p1::b_immovable : p1 {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
+    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
     D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
     D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
     D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[1][3] = -T(2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
+    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
     D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
     D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
     D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);

@@ -488,7 +488,7 @@ struct planar_joint {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = -T(2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
+    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
     D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
     D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
     D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
@@ -496,7 +496,7 @@ struct planar_joint {
     D[0][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
     D[0][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
     D[0][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[1][3] = -T(2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
+    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
     D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
     D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
     D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
@@ -514,13 +514,13 @@ struct planar_joint {
     D[2][7] = J.fa_x_x;
     D[2][8] = J.fa_x_y;
     D[2][9] = J.fa_x_z;
-    D[2][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+    D[2][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
     D[2][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
     D[2][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
     D[2][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 120 +, 156 *
+  // -Jdot v - d/dt(dC/dt): 117 +, 156 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[3]) {
@@ -608,11 +608,11 @@ struct planar_joint {
     const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
     const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
     const T dot_d_dot_dot_fa_x = d_dot_dot_y * fa_x_y + d_dot_dot_z * fa_x_z + d_dot_dot_x * fa_x_x;
-    g[0] = -dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_a_x_w_a_x_fa_y_fb_x - T(2) *
-        dot_w_a_x_fa_y_w_b_x_fb_x;
-    g[1] = -dot_w_b_x_w_b_x_fb_x_fa_z - dot_w_a_x_w_a_x_fa_z_fb_x - T(2) *
-        dot_w_a_x_fa_z_w_b_x_fb_x;
-    g[2] = -dot_d_w_a_x_w_a_x_fa_x - T(2) * dot_d_dot_w_a_x_fa_x - dot_d_dot_dot_fa_x;
+    g[0] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_y -
+        dot_w_a_x_w_a_x_fa_y_fb_x;
+    g[1] = T(-2) * dot_w_a_x_fa_z_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_z -
+        dot_w_a_x_w_a_x_fa_z_fb_x;
+    g[2] = T(-2) * dot_d_dot_w_a_x_fa_x - dot_d_w_a_x_w_a_x_fa_x - dot_d_dot_dot_fa_x;
   }
 
   // dC/dt at fixed q: nothing
@@ -1088,13 +1088,13 @@ struct planar_joint {
       D[0][7] = J.fa_y_x;
       D[0][8] = J.fa_y_y;
       D[0][9] = J.fa_y_z;
-      D[0][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1144,7 +1144,7 @@ struct planar_joint {
       const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
       const T dot_d_dot_dot_fa_y = d_dot_dot_y * fa_y_y + d_dot_dot_z * fa_y_z + d_dot_dot_x *
           fa_y_x;
-      g[0] = -dot_d_w_a_x_w_a_x_fa_y - T(2) * dot_d_dot_w_a_x_fa_y - dot_d_dot_dot_fa_y;
+      g[0] = T(-2) * dot_d_dot_w_a_x_fa_y - dot_d_w_a_x_w_a_x_fa_y - dot_d_dot_dot_fa_y;
     }
 
     // dC/dt at fixed q: nothing
@@ -1545,13 +1545,13 @@ struct planar_joint {
       D[0][7] = J.fa_z_x;
       D[0][8] = J.fa_z_y;
       D[0][9] = J.fa_z_z;
-      D[0][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1601,7 +1601,7 @@ struct planar_joint {
       const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
       const T dot_d_dot_dot_fa_z = d_dot_dot_y * fa_z_y + d_dot_dot_z * fa_z_z + d_dot_dot_x *
           fa_z_x;
-      g[0] = -dot_d_w_a_x_w_a_x_fa_z - T(2) * dot_d_dot_w_a_x_fa_z - dot_d_dot_dot_fa_z;
+      g[0] = T(-2) * dot_d_dot_w_a_x_fa_z - dot_d_w_a_x_w_a_x_fa_z - dot_d_dot_dot_fa_z;
     }
 
     // dC/dt at fixed q: nothing
@@ -1954,7 +1954,7 @@ struct planar_joint {
       D[0][4] = T(2) * (J.wa_z * a.e2 - J.wa_x * a.e0 - J.wa_y * a.e3);
       D[0][5] = T(2) * (J.wa_x * a.e3 - J.wa_y * a.e0 - J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_y * a.e1 - J.wa_x * a.e2 - J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wa_x * b.e1 + J.wa_y * b.e2 + J.wa_z * b.e3);
+      D[0][10] = T(-2) * (J.wa_x * b.e1 + J.wa_y * b.e2 + J.wa_z * b.e3);
       D[0][11] = T(2) * (J.wa_x * b.e0 + J.wa_y * b.e3 - J.wa_z * b.e2);
       D[0][12] = T(2) * (J.wa_y * b.e0 - J.wa_x * b.e3 + J.wa_z * b.e1);
       D[0][13] = T(2) * (J.wa_x * b.e2 - J.wa_y * b.e1 + J.wa_z * b.e0);
@@ -2361,7 +2361,7 @@ struct planar_joint::a_immovable : planar_joint {
     D[2][7] = J.fa_x_x;
     D[2][8] = J.fa_x_y;
     D[2][9] = J.fa_x_z;
-    D[2][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+    D[2][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
     D[2][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
     D[2][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
     D[2][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
@@ -2613,11 +2613,11 @@ struct planar_joint::b_immovable : planar_joint {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
+    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
     D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
     D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
     D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[1][3] = -T(2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
+    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
     D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
     D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
     D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
@@ -2800,7 +2800,7 @@ struct planar_joint::slide_y::a_immovable : planar_joint::slide_y {
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
@@ -3156,7 +3156,7 @@ struct planar_joint::slide_z::a_immovable : planar_joint::slide_z {
     D[0][7] = J.fa_z_x;
     D[0][8] = J.fa_z_y;
     D[0][9] = J.fa_z_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
@@ -3498,7 +3498,7 @@ struct planar_joint::angle::a_immovable : planar_joint::angle {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);

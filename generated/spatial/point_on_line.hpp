@@ -424,7 +424,7 @@ struct point_on_line {
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
@@ -438,13 +438,13 @@ struct point_on_line {
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
-    D[1][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+    D[1][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
     D[1][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
     D[1][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
     D[1][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 87 +, 104 *
+  // -Jdot v - d/dt(dC/dt): 85 +, 104 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[2]) {
@@ -507,8 +507,8 @@ struct point_on_line {
     const T dot_d_dot_w_a_x_fa_z = d_dot_x * w_a_x_fa_z_x + d_dot_y * w_a_x_fa_z_y + d_dot_z *
         w_a_x_fa_z_z;
     const T dot_d_dot_dot_fa_z = d_dot_dot_y * fa_z_y + d_dot_dot_z * fa_z_z + d_dot_dot_x * fa_z_x;
-    g[0] = -dot_d_w_a_x_w_a_x_fa_y - T(2) * dot_d_dot_w_a_x_fa_y - dot_d_dot_dot_fa_y;
-    g[1] = -dot_d_w_a_x_w_a_x_fa_z - T(2) * dot_d_dot_w_a_x_fa_z - dot_d_dot_dot_fa_z;
+    g[0] = T(-2) * dot_d_dot_w_a_x_fa_y - dot_d_w_a_x_w_a_x_fa_y - dot_d_dot_dot_fa_y;
+    g[1] = T(-2) * dot_d_dot_w_a_x_fa_z - dot_d_w_a_x_w_a_x_fa_z - dot_d_dot_dot_fa_z;
   }
 
   // dC/dt at fixed q: nothing
@@ -939,13 +939,13 @@ struct point_on_line {
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
-      D[0][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -995,7 +995,7 @@ struct point_on_line {
       const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
       const T dot_d_dot_dot_fa_x = d_dot_dot_y * fa_x_y + d_dot_dot_z * fa_x_z + d_dot_dot_x *
           fa_x_x;
-      g[0] = -dot_d_w_a_x_w_a_x_fa_x - T(2) * dot_d_dot_w_a_x_fa_x - dot_d_dot_dot_fa_x;
+      g[0] = T(-2) * dot_d_dot_w_a_x_fa_x - dot_d_w_a_x_w_a_x_fa_x - dot_d_dot_dot_fa_x;
     }
 
     // dC/dt at fixed q: nothing
@@ -1334,14 +1334,14 @@ struct point_on_line::a_immovable : point_on_line {
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
-    D[1][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+    D[1][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
     D[1][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
     D[1][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
     D[1][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
@@ -1749,7 +1749,7 @@ struct point_on_line::slide::a_immovable : point_on_line::slide {
     D[0][7] = J.fa_x_x;
     D[0][8] = J.fa_x_y;
     D[0][9] = J.fa_x_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);

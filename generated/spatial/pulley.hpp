@@ -344,14 +344,14 @@ struct pulley {
     D[0][0] = J.na_x;
     D[0][1] = J.na_y;
     D[0][2] = J.na_z;
-    D[0][3] = -T(2) * (J.ra_x_na_x * a.e1 + J.ra_x_na_y * a.e2 + J.ra_x_na_z * a.e3);
+    D[0][3] = T(-2) * (J.ra_x_na_x * a.e1 + J.ra_x_na_y * a.e2 + J.ra_x_na_z * a.e3);
     D[0][4] = T(2) * (J.ra_x_na_x * a.e0 + J.ra_x_na_y * a.e3 - J.ra_x_na_z * a.e2);
     D[0][5] = T(2) * (J.ra_x_na_y * a.e0 - J.ra_x_na_x * a.e3 + J.ra_x_na_z * a.e1);
     D[0][6] = T(2) * (J.ra_x_na_x * a.e2 - J.ra_x_na_y * a.e1 + J.ra_x_na_z * a.e0);
     D[0][7] = J.nb_x * J.ratio;
     D[0][8] = J.nb_y * J.ratio;
     D[0][9] = J.nb_z * J.ratio;
-    D[0][10] = -T(2) * (D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3);
+    D[0][10] = T(-2) * (D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3);
     D[0][11] = T(2) * (D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2);
     D[0][12] = T(2) * (D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1);
     D[0][13] = T(2) * (D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0);
@@ -839,7 +839,7 @@ struct pulley::a_immovable : pulley {
     D[0][7] = J.nb_x * J.ratio;
     D[0][8] = J.nb_y * J.ratio;
     D[0][9] = J.nb_z * J.ratio;
-    D[0][10] = -T(2) * (D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3);
+    D[0][10] = T(-2) * (D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3);
     D[0][11] = T(2) * (D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2);
     D[0][12] = T(2) * (D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1);
     D[0][13] = T(2) * (D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0);
@@ -1022,7 +1022,7 @@ struct pulley::b_immovable : pulley {
     D[0][0] = J.na_x;
     D[0][1] = J.na_y;
     D[0][2] = J.na_z;
-    D[0][3] = -T(2) * (J.ra_x_na_x * a.e1 + J.ra_x_na_y * a.e2 + J.ra_x_na_z * a.e3);
+    D[0][3] = T(-2) * (J.ra_x_na_x * a.e1 + J.ra_x_na_y * a.e2 + J.ra_x_na_z * a.e3);
     D[0][4] = T(2) * (J.ra_x_na_x * a.e0 + J.ra_x_na_y * a.e3 - J.ra_x_na_z * a.e2);
     D[0][5] = T(2) * (J.ra_x_na_y * a.e0 - J.ra_x_na_x * a.e3 + J.ra_x_na_z * a.e1);
     D[0][6] = T(2) * (J.ra_x_na_x * a.e2 - J.ra_x_na_y * a.e1 + J.ra_x_na_z * a.e0);

@@ -323,13 +323,13 @@ struct rack_and_pinion {
     D[0][7] = J.vb_x;
     D[0][8] = J.vb_y;
     D[0][9] = J.vb_z;
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 60 +, 88 *, 1 /, 1 <, 2 call
+  // -Jdot v - d/dt(dC/dt): 59 +, 88 *, 1 /, 1 <, 2 call
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -392,7 +392,7 @@ struct rack_and_pinion {
     const T turned_z = p.ga_y_z * g1_3 + p.ga_z_z * g1_2;
     const T dot_turned_w_a_x_w_a_x_fa_z = w_a_x_w_a_x_fa_z_y * turned_y + w_a_x_w_a_x_fa_z_z *
         turned_z + w_a_x_w_a_x_fa_z_x * turned_x;
-    g[0] = -dot_turned_dot_dot_fa_z - T(2) * dot_turned_dot_w_a_x_fa_z -
+    g[0] = T(-2) * dot_turned_dot_w_a_x_fa_z - dot_turned_dot_dot_fa_z -
         dot_turned_w_a_x_w_a_x_fa_z;
   }
 
@@ -818,7 +818,7 @@ struct rack_and_pinion {
       D[0][7] = J.e_x;
       D[0][8] = J.e_y;
       D[0][9] = J.e_z;
-      D[0][10] = -T(2) * (J.rb_x_e_x * b.e1 + J.rb_x_e_y * b.e2 + J.rb_x_e_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_e_x * b.e1 + J.rb_x_e_y * b.e2 + J.rb_x_e_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_e_x * b.e0 + J.rb_x_e_y * b.e3 - J.rb_x_e_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_e_y * b.e0 - J.rb_x_e_x * b.e3 + J.rb_x_e_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_e_x * b.e2 - J.rb_x_e_y * b.e1 + J.rb_x_e_z * b.e0);
@@ -865,15 +865,15 @@ struct rack_and_pinion {
       const T H11_1 = lambda[0] * rb_y;
       const T H11_1_2 = p.e_x * rb_x;
       const T H12_1 = lambda[0] * rb_z;
-      H[9][9] = lambda[0] * (-H10_1 - H10_2);
+      H[9][9] = -lambda[0] * (H10_1 + H10_2);
       H[9][10] = H10_1_2 * p.e_y;
       H[9][11] = H10_1_2 * p.e_z;
       H[10][9] = H11_1 * p.e_x;
-      H[10][10] = lambda[0] * (-H11_1_2 - H10_2);
+      H[10][10] = -lambda[0] * (H11_1_2 + H10_2);
       H[10][11] = H11_1 * p.e_z;
       H[11][9] = H12_1 * p.e_x;
       H[11][10] = H12_1 * p.e_y;
-      H[11][11] = lambda[0] * (-H11_1_2 - H10_1);
+      H[11][11] = -lambda[0] * (H11_1_2 + H10_1);
     }
 
     struct a_immovable;
@@ -1068,7 +1068,7 @@ struct rack_and_pinion::a_immovable : rack_and_pinion {
     D[0][7] = J.vb_x;
     D[0][8] = J.vb_y;
     D[0][9] = J.vb_z;
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);

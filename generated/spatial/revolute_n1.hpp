@@ -589,33 +589,33 @@ struct revolute_n1 {
     D[0][3] = T(2) * (D1_1 - D1_2);
     D[0][4] = T(2) * (D1_1_2 + D1_2_2);
     D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = -T(2) * (D1_1_4 + D1_2_4);
+    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
     D[0][7] = T(-1);
     D[0][10] = T(2) * (D1_2_5 - D1_1_5);
-    D[0][11] = -T(2) * (D1_1_6 + D1_2_6);
+    D[0][11] = T(-2) * (D1_1_6 + D1_2_6);
     D[0][12] = T(2) * (D1_1_7 - D1_2_7);
     D[0][13] = T(2) * (D1_1_8 + D1_2_8);
     D[1][1] = T(1);
     D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = -T(2) * (D2_1_2 + D1_2_3);
+    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
     D[1][5] = T(2) * (D2_1_3 + D1_2_2);
     D[1][6] = T(2) * (D2_1_4 - D1_2);
     D[1][8] = T(-1);
     D[1][10] = T(2) * (D2_1_5 - D1_2_8);
     D[1][11] = T(2) * (D2_1_6 + D1_2_7);
-    D[1][12] = -T(2) * (D2_1_7 + D1_2_6);
+    D[1][12] = T(-2) * (D2_1_7 + D1_2_6);
     D[1][13] = T(2) * (D1_2_5 - D2_1_8);
     D[2][2] = T(1);
     D[2][3] = T(2) * (D2_1_2 - D1_1_3);
     D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = -T(2) * (D2_1_4 + D1_1);
+    D[2][5] = T(-2) * (D2_1_4 + D1_1);
     D[2][6] = T(2) * (D2_1_3 + D1_1_2);
     D[2][9] = T(-1);
     D[2][10] = T(2) * (D1_1_7 - D2_1_6);
     D[2][11] = T(2) * (D2_1_5 - D1_1_8);
     D[2][12] = T(2) * (D2_1_8 + D1_1_5);
-    D[2][13] = -T(2) * (D2_1_7 + D1_1_6);
-    D[3][3] = -T(2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
+    D[2][13] = T(-2) * (D2_1_7 + D1_1_6);
+    D[3][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
     D[3][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
     D[3][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
     D[3][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
@@ -623,7 +623,7 @@ struct revolute_n1 {
     D[3][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
     D[3][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
     D[3][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[4][3] = -T(2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
+    D[4][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
     D[4][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
     D[4][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
     D[4][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
@@ -633,7 +633,7 @@ struct revolute_n1 {
     D[4][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 81 +, 125 *
+  // -Jdot v - d/dt(dC/dt): 79 +, 125 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[5]) {
@@ -701,10 +701,10 @@ struct revolute_n1 {
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    g[3] = -dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_a_x_w_a_x_fa_y_fb_x - T(2) *
-        dot_w_a_x_fa_y_w_b_x_fb_x;
-    g[4] = -dot_w_b_x_w_b_x_fb_x_fa_z - dot_w_a_x_w_a_x_fa_z_fb_x - T(2) *
-        dot_w_a_x_fa_z_w_b_x_fb_x;
+    g[3] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_y -
+        dot_w_a_x_w_a_x_fa_y_fb_x;
+    g[4] = T(-2) * dot_w_a_x_fa_z_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_z -
+        dot_w_a_x_w_a_x_fa_z_fb_x;
   }
 
   // dC/dt at fixed q: nothing
@@ -1160,19 +1160,19 @@ struct revolute_n1::a_immovable : revolute_n1 {
     const T D2_1_4 = J.rb_x * b.e0;
     D[0][7] = T(-1);
     D[0][10] = T(2) * (D1_2 - D1_1);
-    D[0][11] = -T(2) * (D1_1_2 + D1_2_2);
+    D[0][11] = T(-2) * (D1_1_2 + D1_2_2);
     D[0][12] = T(2) * (D1_1_3 - D1_2_3);
     D[0][13] = T(2) * (D1_1_4 + D1_2_4);
     D[1][8] = T(-1);
     D[1][10] = T(2) * (D2_1 - D1_2_4);
     D[1][11] = T(2) * (D2_1_2 + D1_2_3);
-    D[1][12] = -T(2) * (D2_1_3 + D1_2_2);
+    D[1][12] = T(-2) * (D2_1_3 + D1_2_2);
     D[1][13] = T(2) * (D1_2 - D2_1_4);
     D[2][9] = T(-1);
     D[2][10] = T(2) * (D1_1_3 - D2_1_2);
     D[2][11] = T(2) * (D2_1 - D1_1_4);
     D[2][12] = T(2) * (D2_1_4 + D1_1);
-    D[2][13] = -T(2) * (D2_1_3 + D1_1_2);
+    D[2][13] = T(-2) * (D2_1_3 + D1_1_2);
     D[3][10] = T(2) * (J.fa_y_x_fb_x_x * b.e1 + J.fa_y_x_fb_x_y * b.e2 + J.fa_y_x_fb_x_z * b.e3);
     D[3][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
     D[3][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
@@ -1485,22 +1485,22 @@ struct revolute_n1::b_immovable : revolute_n1 {
     D[0][3] = T(2) * (D1_1 - D1_2);
     D[0][4] = T(2) * (D1_1_2 + D1_2_2);
     D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = -T(2) * (D1_1_4 + D1_2_4);
+    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
     D[1][1] = T(1);
     D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = -T(2) * (D2_1_2 + D1_2_3);
+    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
     D[1][5] = T(2) * (D2_1_3 + D1_2_2);
     D[1][6] = T(2) * (D2_1_4 - D1_2);
     D[2][2] = T(1);
     D[2][3] = T(2) * (D2_1_2 - D1_1_3);
     D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = -T(2) * (D2_1_4 + D1_1);
+    D[2][5] = T(-2) * (D2_1_4 + D1_1);
     D[2][6] = T(2) * (D2_1_3 + D1_1_2);
-    D[3][3] = -T(2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
+    D[3][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
     D[3][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
     D[3][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
     D[3][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[4][3] = -T(2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
+    D[4][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
     D[4][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
     D[4][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
     D[4][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);

@@ -631,7 +631,7 @@ struct rolling_disc {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
     D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
     D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
     D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
@@ -951,7 +951,7 @@ struct rolling_disc {
     const T H6_6 = H6_1 * H2_2 + H6_4 * dir_m_x;
     const T H6_7 = k_x * H6_5 - k_y * H6_6;
     const T H6_8 = H4_24 * H6_2 - H6_4 * dir_m_z;
-    const T H6_9 = -H5_1 - k_x * H6_8 - k_z * H6_6;
+    const T H6_9 = H5_1 + k_x * H6_8 + k_z * H6_6;
     const T H6_1_2 = k_y * H6_8 - H4_23 + k_z * H6_5;
     const T H6_1_3 = fa_x_x * H6_5 - p.radius * H6_3 - fa_x_y * H6_6;
     const T H6_2_2 = p.radius * dir_m_z;
@@ -1060,9 +1060,9 @@ struct rolling_disc {
     H[4][11] = k_x * H5_3_3 - k_y * H5_1_4;
     H[5][0] = H1_2_2;
     H[5][1] = H[1][5];
-    H[5][3] = arm_a_x * H1_1 - fa_x_y * H6_7 - fa_x_z * H6_9;
+    H[5][3] = fa_x_z * H6_9 - fa_x_y * H6_7 + arm_a_x * H1_1;
     H[5][4] = fa_x_x * H6_7 + fa_x_z * H6_1_2 + arm_a_y * H1_1;
-    H[5][5] = fa_x_x * H6_9 - lambda[1] * (H5_1_2 + H4_15) - lambda[2] * (H5_2_2 + H4_21) -
+    H[5][5] = -lambda[1] * (H5_1_2 + H4_15) - lambda[2] * (H5_2_2 + H4_21) - fa_x_x * H6_9 -
         fa_x_y * H6_1_2;
     H[5][6] = H[2][3];
     H[5][7] = H2_2;
@@ -1720,10 +1720,10 @@ struct rolling_disc::b_immovable : rolling_disc {
     const T dot_arm_a_x_fa_z_arm_a_x_fa_z = J.arm_a_x_fa_z_x * J.arm_a_x_fa_z_x +
         J.arm_a_x_fa_z_y * J.arm_a_x_fa_z_y + J.arm_a_x_fa_z_z * J.arm_a_x_fa_z_z;
     K[0] = ma.m + ma.I * (J.wa_1_x * J.wa_1_x + J.wa_1_y * J.wa_1_y + J.wa_1_z * J.wa_1_z);
-    K[1] = ma.I * (-J.arm_a_x_fa_y_x * J.wa_1_x - J.arm_a_x_fa_y_y * J.wa_1_y - J.arm_a_x_fa_y_z *
+    K[1] = -ma.I * (J.arm_a_x_fa_y_x * J.wa_1_x + J.arm_a_x_fa_y_y * J.wa_1_y + J.arm_a_x_fa_y_z *
         J.wa_1_z);
     K[2] = ma.m + ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_y;
-    K[3] = ma.I * (-J.arm_a_x_fa_z_x * J.wa_1_x - J.arm_a_x_fa_z_y * J.wa_1_y - J.arm_a_x_fa_z_z *
+    K[3] = -ma.I * (J.arm_a_x_fa_z_x * J.wa_1_x + J.arm_a_x_fa_z_y * J.wa_1_y + J.arm_a_x_fa_z_z *
         J.wa_1_z);
     K[4] = ma.I * dot_arm_a_x_fa_y_arm_a_x_fa_z;
     K[5] = ma.m + ma.I * dot_arm_a_x_fa_z_arm_a_x_fa_z;
@@ -1811,7 +1811,7 @@ struct rolling_disc::b_immovable : rolling_disc {
     D[0][0] = -J.fa_x_x;
     D[0][1] = -J.fa_x_y;
     D[0][2] = -J.fa_x_z;
-    D[0][3] = -T(2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
     D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
     D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
     D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);

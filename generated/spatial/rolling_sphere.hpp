@@ -543,13 +543,13 @@ struct rolling_sphere {
     D[2][7] = J.fa_z_x;
     D[2][8] = J.fa_z_y;
     D[2][9] = J.fa_z_z;
-    D[2][10] = -T(2) * (D2_1 * J.fa_y_x + D2_2 * J.fa_y_y + D2_3 * J.fa_y_z);
+    D[2][10] = T(-2) * (D2_1 * J.fa_y_x + D2_2 * J.fa_y_y + D2_3 * J.fa_y_z);
     D[2][11] = T(2) * (D2_1_2 * J.fa_y_x + D2_3 * J.fa_y_y - D2_2 * J.fa_y_z);
     D[2][12] = T(2) * (D2_1_2 * J.fa_y_y - D2_3 * J.fa_y_x + D2_1 * J.fa_y_z);
     D[2][13] = T(2) * (D2_2 * J.fa_y_x - D2_1 * J.fa_y_y + D2_1_2 * J.fa_y_z);
   }
 
-  // -Jdot v - d/dt(dC/dt): 109 +, 130 *
+  // -Jdot v - d/dt(dC/dt): 108 +, 130 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[3]) {
@@ -628,7 +628,7 @@ struct rolling_sphere {
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    g[0] = -dot_u_w_a_x_w_a_x_fa_x - T(2) * dot_u_dot_w_a_x_fa_x - dot_u_dot_dot_fa_x;
+    g[0] = T(-2) * dot_u_dot_w_a_x_fa_x - dot_u_w_a_x_w_a_x_fa_x - dot_u_dot_dot_fa_x;
     g[1] = g2_1 * w_a_x_fa_y_x + g2_2 * w_a_x_fa_y_y + g2_3 * w_a_x_fa_y_z + g2_4 * fa_y_z + g2_5 *
         fa_y_y + g2_6 * fa_y_x;
     g[2] = g2_1 * w_a_x_fa_z_x + g2_2 * w_a_x_fa_z_y + g2_3 * w_a_x_fa_z_z + g2_4 * fa_z_z + g2_5 *
@@ -1045,7 +1045,7 @@ struct rolling_sphere::a_immovable : rolling_sphere {
     D[2][7] = J.fa_z_x;
     D[2][8] = J.fa_z_y;
     D[2][9] = J.fa_z_z;
-    D[2][10] = -T(2) * (D2_1 * J.fa_y_x + D2_2 * J.fa_y_y + D2_3 * J.fa_y_z);
+    D[2][10] = T(-2) * (D2_1 * J.fa_y_x + D2_2 * J.fa_y_y + D2_3 * J.fa_y_z);
     D[2][11] = T(2) * (D2_1_2 * J.fa_y_x + D2_3 * J.fa_y_y - D2_2 * J.fa_y_z);
     D[2][12] = T(2) * (D2_1_2 * J.fa_y_y - D2_3 * J.fa_y_x + D2_1 * J.fa_y_z);
     D[2][13] = T(2) * (D2_2 * J.fa_y_x - D2_1 * J.fa_y_y + D2_1_2 * J.fa_y_z);

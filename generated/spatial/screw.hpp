@@ -823,7 +823,7 @@ struct screw {
     }
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    D[0][3] = -T(2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
+    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
     D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
     D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
     D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
@@ -831,7 +831,7 @@ struct screw {
     D[0][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
     D[0][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
     D[0][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[1][3] = -T(2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
+    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
     D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
     D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
     D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
@@ -849,7 +849,7 @@ struct screw {
     D[2][7] = J.fa_y_x;
     D[2][8] = J.fa_y_y;
     D[2][9] = J.fa_y_z;
-    D[2][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+    D[2][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
     D[2][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
     D[2][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
     D[2][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
@@ -863,27 +863,27 @@ struct screw {
     D[3][7] = J.fa_z_x;
     D[3][8] = J.fa_z_y;
     D[3][9] = J.fa_z_z;
-    D[3][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+    D[3][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
     D[3][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
     D[3][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
     D[3][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
     D[4][0] = -J.va_5_x;
     D[4][1] = -J.va_5_y;
     D[4][2] = -J.va_5_z;
-    D[4][3] = -T(2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
+    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
     D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
     D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
     D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
     D[4][7] = J.va_5_x;
     D[4][8] = J.va_5_y;
     D[4][9] = J.va_5_z;
-    D[4][10] = -T(2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
+    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
     D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
     D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
     D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 194 +, 267 *, 1 /, 1 <, 2 call
+  // -Jdot v - d/dt(dC/dt): 189 +, 267 *, 1 /, 1 <, 2 call
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[5]) {
@@ -1027,13 +1027,13 @@ struct screw {
     const T turned_z = fa_y_z * g5_1 + fa_z_z * g5_3;
     const T dot_turned_w_b_x_w_b_x_fb_z = w_b_x_w_b_x_fb_z_y * turned_y + w_b_x_w_b_x_fb_z_z *
         turned_z + w_b_x_w_b_x_fb_z_x * turned_x;
-    g[0] = -dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_a_x_w_a_x_fa_y_fb_x - T(2) *
-        dot_w_a_x_fa_y_w_b_x_fb_x;
-    g[1] = -dot_w_b_x_w_b_x_fb_x_fa_z - dot_w_a_x_w_a_x_fa_z_fb_x - T(2) *
-        dot_w_a_x_fa_z_w_b_x_fb_x;
-    g[2] = -dot_d_w_a_x_w_a_x_fa_y - T(2) * dot_d_dot_w_a_x_fa_y - dot_d_dot_dot_fa_y;
-    g[3] = -dot_d_w_a_x_w_a_x_fa_z - T(2) * dot_d_dot_w_a_x_fa_z - dot_d_dot_dot_fa_z;
-    g[4] = -dot_turned_dot_dot_fb_z - T(2) * dot_turned_dot_w_b_x_fb_z -
+    g[0] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_y -
+        dot_w_a_x_w_a_x_fa_y_fb_x;
+    g[1] = T(-2) * dot_w_a_x_fa_z_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_z -
+        dot_w_a_x_w_a_x_fa_z_fb_x;
+    g[2] = T(-2) * dot_d_dot_w_a_x_fa_y - dot_d_w_a_x_w_a_x_fa_y - dot_d_dot_dot_fa_y;
+    g[3] = T(-2) * dot_d_dot_w_a_x_fa_z - dot_d_w_a_x_w_a_x_fa_z - dot_d_dot_dot_fa_z;
+    g[4] = T(-2) * dot_turned_dot_w_b_x_fb_z - dot_turned_dot_dot_fb_z -
         dot_turned_w_b_x_w_b_x_fb_z;
   }
 
@@ -1831,13 +1831,13 @@ struct screw {
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
-      D[0][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1887,7 +1887,7 @@ struct screw {
       const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
       const T dot_d_dot_dot_fa_x = d_dot_dot_y * fa_x_y + d_dot_dot_z * fa_x_z + d_dot_dot_x *
           fa_x_x;
-      g[0] = -dot_d_w_a_x_w_a_x_fa_x - T(2) * dot_d_dot_w_a_x_fa_x - dot_d_dot_dot_fa_x;
+      g[0] = T(-2) * dot_d_dot_w_a_x_fa_x - dot_d_w_a_x_w_a_x_fa_x - dot_d_dot_dot_fa_x;
     }
 
     // dC/dt at fixed q: nothing
@@ -2240,7 +2240,7 @@ struct screw {
       D[0][4] = T(2) * (J.wa_z * a.e2 - J.wa_x * a.e0 - J.wa_y * a.e3);
       D[0][5] = T(2) * (J.wa_x * a.e3 - J.wa_y * a.e0 - J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_y * a.e1 - J.wa_x * a.e2 - J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wa_x * b.e1 + J.wa_y * b.e2 + J.wa_z * b.e3);
+      D[0][10] = T(-2) * (J.wa_x * b.e1 + J.wa_y * b.e2 + J.wa_z * b.e3);
       D[0][11] = T(2) * (J.wa_x * b.e0 + J.wa_y * b.e3 - J.wa_z * b.e2);
       D[0][12] = T(2) * (J.wa_y * b.e0 - J.wa_x * b.e3 + J.wa_z * b.e1);
       D[0][13] = T(2) * (J.wa_x * b.e2 - J.wa_y * b.e1 + J.wa_z * b.e0);
@@ -2785,21 +2785,21 @@ struct screw::a_immovable : screw {
     D[2][7] = J.fa_y_x;
     D[2][8] = J.fa_y_y;
     D[2][9] = J.fa_y_z;
-    D[2][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+    D[2][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
     D[2][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
     D[2][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
     D[2][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
     D[3][7] = J.fa_z_x;
     D[3][8] = J.fa_z_y;
     D[3][9] = J.fa_z_z;
-    D[3][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+    D[3][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
     D[3][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
     D[3][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
     D[3][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
     D[4][7] = J.vb_5_x;
     D[4][8] = J.vb_5_y;
     D[4][9] = J.vb_5_z;
-    D[4][10] = -T(2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
+    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
     D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
     D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
     D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
@@ -3190,11 +3190,11 @@ struct screw::b_immovable : screw {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
+    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
     D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
     D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
     D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[1][3] = -T(2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
+    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
     D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
     D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
     D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
@@ -3215,7 +3215,7 @@ struct screw::b_immovable : screw {
     D[4][0] = -J.va_5_x;
     D[4][1] = -J.va_5_y;
     D[4][2] = -J.va_5_z;
-    D[4][3] = -T(2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
+    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
     D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
     D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
     D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
@@ -3391,7 +3391,7 @@ struct screw::slide::a_immovable : screw::slide {
     D[0][7] = J.fa_x_x;
     D[0][8] = J.fa_x_y;
     D[0][9] = J.fa_x_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
@@ -3733,7 +3733,7 @@ struct screw::angle::a_immovable : screw::angle {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);

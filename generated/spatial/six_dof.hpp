@@ -437,13 +437,13 @@ struct six_dof {
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
-      D[0][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -493,7 +493,7 @@ struct six_dof {
       const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
       const T dot_d_dot_dot_fa_x = d_dot_dot_y * fa_x_y + d_dot_dot_z * fa_x_z + d_dot_dot_x *
           fa_x_x;
-      g[0] = -dot_d_w_a_x_w_a_x_fa_x - T(2) * dot_d_dot_w_a_x_fa_x - dot_d_dot_dot_fa_x;
+      g[0] = T(-2) * dot_d_dot_w_a_x_fa_x - dot_d_w_a_x_w_a_x_fa_x - dot_d_dot_dot_fa_x;
     }
 
     // dC/dt at fixed q: nothing
@@ -894,13 +894,13 @@ struct six_dof {
       D[0][7] = J.fa_y_x;
       D[0][8] = J.fa_y_y;
       D[0][9] = J.fa_y_z;
-      D[0][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -950,7 +950,7 @@ struct six_dof {
       const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
       const T dot_d_dot_dot_fa_y = d_dot_dot_y * fa_y_y + d_dot_dot_z * fa_y_z + d_dot_dot_x *
           fa_y_x;
-      g[0] = -dot_d_w_a_x_w_a_x_fa_y - T(2) * dot_d_dot_w_a_x_fa_y - dot_d_dot_dot_fa_y;
+      g[0] = T(-2) * dot_d_dot_w_a_x_fa_y - dot_d_w_a_x_w_a_x_fa_y - dot_d_dot_dot_fa_y;
     }
 
     // dC/dt at fixed q: nothing
@@ -1351,13 +1351,13 @@ struct six_dof {
       D[0][7] = J.fa_z_x;
       D[0][8] = J.fa_z_y;
       D[0][9] = J.fa_z_z;
-      D[0][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1407,7 +1407,7 @@ struct six_dof {
       const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
       const T dot_d_dot_dot_fa_z = d_dot_dot_y * fa_z_y + d_dot_dot_z * fa_z_z + d_dot_dot_x *
           fa_z_x;
-      g[0] = -dot_d_w_a_x_w_a_x_fa_z - T(2) * dot_d_dot_w_a_x_fa_z - dot_d_dot_dot_fa_z;
+      g[0] = T(-2) * dot_d_dot_w_a_x_fa_z - dot_d_w_a_x_w_a_x_fa_z - dot_d_dot_dot_fa_z;
     }
 
     // dC/dt at fixed q: nothing
@@ -1755,11 +1755,11 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
       D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
       D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
       D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
       D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -2221,11 +2221,11 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
       D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
       D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
       D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
       D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -2382,8 +2382,8 @@ struct six_dof {
       const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
       const T H4_13 = H4_6 * fa_x_x_fb_z_x - H4_10 * fa_y_x_fb_z_x - H4_12 * fa_z_x_fb_z_x;
       const T H4_14 = H4_7 * (ryz * fa_y_x_fb_z_x + rzz * fa_z_x_fb_z_x);
-      const T H4_15 = T(2) * H4_13 * rxz + lambda[0] * H4_2 * H4_14;
-      const T H4_16 = H4_5 + fb_z_z * H4_15;
+      const T H4_15 = T(-2) * H4_13 * rxz - lambda[0] * H4_2 * H4_14;
+      const T H4_16 = fb_z_z * H4_15 - H4_5;
       const T H4_17 = H4_9 * fb_z_y;
       const T H4_18 = lambda[0] * H4_2 * H4_7 * (fa_x_x_fb_z_x + rxz * H4_7 * H4_14) - T(2) * H4_13;
       const T H4_19 = H4_18 * ryz - H4_8 * fa_y_x_fb_z_x;
@@ -2392,29 +2392,29 @@ struct six_dof {
       const T H4_22 = H4_18 * rzz - H4_8 * fa_z_x_fb_z_x;
       const T H4_23 = H4_21 + fb_z_z * H4_22;
       const T H4_24 = H4_4 * fb_z_z;
-      const T H4_25 = H4_24 - fb_z_y * H4_15;
+      const T H4_25 = H4_24 + fb_z_y * H4_15;
       const T H4_26 = H4_9 * fb_z_z;
       const T H4_27 = fb_z_y * H4_19 - H4_26;
       const T H4_28 = H4_11 * fb_z_z;
       const T H4_29 = fb_z_y * H4_22 - H4_28;
-      const T H4_30 = fa_y_y * H4_20 - fa_x_y * H4_16 + fa_z_y * H4_23 - fa_x_z * H4_25 - fa_y_z *
+      const T H4_30 = fa_x_y * H4_16 + fa_y_y * H4_20 + fa_z_y * H4_23 - fa_x_z * H4_25 - fa_y_z *
           H4_27 - fa_z_z * H4_29;
-      const T H4_1_2 = fa_z_z * H4_22 - fa_x_z * H4_15 + fa_y_z * H4_19;
-      const T H4_2_2 = fa_x_x * H4_16 - fa_y_x * H4_20 - fa_z_x * H4_23 + fb_z_x * H4_1_2;
-      const T H4_1_3 = fa_z_y * H4_22 - fa_x_y * H4_15 + fa_y_y * H4_19;
+      const T H4_1_2 = fa_z_z * H4_22 + fa_x_z * H4_15 + fa_y_z * H4_19;
+      const T H4_2_2 = fb_z_x * H4_1_2 - fa_x_x * H4_16 - fa_y_x * H4_20 - fa_z_x * H4_23;
+      const T H4_1_3 = fa_z_y * H4_22 + fa_x_y * H4_15 + fa_y_y * H4_19;
       const T H4_2_3 = fa_x_x * H4_25 + fa_y_x * H4_27 + fa_z_x * H4_29 - fb_z_x * H4_1_3;
       const T H4_1_4 = H4_11 * fa_z_y - H4_4 * fa_x_y + H4_9 * fa_y_y;
       const T H4_2_4 = H4_1_2 - H4_1_4;
       const T H4_3_2 = H4_11 * fa_z_z - H4_4 * fa_x_z + H4_9 * fa_y_z;
       const T H4_4_2 = H4_3_2 + H4_1_3;
-      const T H4_1_5 = fa_y_x * H4_19 - fa_x_x * H4_15 + fa_z_x * H4_22;
+      const T H4_1_5 = fa_x_x * H4_15 + fa_y_x * H4_19 + fa_z_x * H4_22;
       const T H4_2_5 = fb_z_z * H4_1_5;
       const T H4_1_6 = fb_z_y * H4_1_5;
       const T H5_1 = H4_4 * fb_z_x;
       const T H5_2 = H4_6 * fa_x_x_fb_z_y - H4_10 * fa_y_x_fb_z_y - H4_12 * fa_z_x_fb_z_y;
       const T H5_3 = H4_7 * (ryz * fa_y_x_fb_z_y + rzz * fa_z_x_fb_z_y);
-      const T H5_4 = T(2) * H5_2 * rxz + lambda[0] * H4_2 * H5_3;
-      const T H5_5 = H5_1 - fb_z_z * H5_4;
+      const T H5_4 = T(-2) * H5_2 * rxz - lambda[0] * H4_2 * H5_3;
+      const T H5_5 = H5_1 + fb_z_z * H5_4;
       const T H5_6 = H4_9 * fb_z_x;
       const T H5_7 = lambda[0] * H4_2 * H4_7 * (fa_x_x_fb_z_y + rxz * H4_7 * H5_3) - T(2) * H5_2;
       const T H5_8 = H5_7 * ryz - H4_8 * fa_y_x_fb_z_y;
@@ -2422,18 +2422,18 @@ struct six_dof {
       const T H5_10 = H4_11 * fb_z_x;
       const T H5_11 = H5_7 * rzz - H4_8 * fa_z_x_fb_z_y;
       const T H5_12 = fb_z_z * H5_11 - H5_10;
-      const T H5_13 = fa_z_z * H5_11 - fa_x_z * H5_4 + fa_y_z * H5_8;
+      const T H5_13 = fa_z_z * H5_11 + fa_x_z * H5_4 + fa_y_z * H5_8;
       const T H5_14 = fa_x_y * H5_5 + fa_y_y * H5_9 + fa_z_y * H5_12 - fb_z_y * H5_13;
-      const T H5_1_2 = H4_24 + fb_z_x * H5_4;
+      const T H5_1_2 = fb_z_x * H5_4 - H4_24;
       const T H5_2_2 = H4_26 + fb_z_x * H5_8;
       const T H5_3_2 = H4_28 + fb_z_x * H5_11;
-      const T H5_4_2 = fa_y_z * H5_2_2 - fa_x_x * H5_5 - fa_y_x * H5_9 - fa_z_x * H5_12 - fa_x_z *
-          H5_1_2 + fa_z_z * H5_3_2;
-      const T H5_1_3 = fa_z_x * H5_11 - fa_x_x * H5_4 + fa_y_x * H5_8;
-      const T H5_2_3 = fa_x_y * H5_1_2 - fa_y_y * H5_2_2 - fa_z_y * H5_3_2 + fb_z_y * H5_1_3;
+      const T H5_4_2 = fa_x_z * H5_1_2 - fa_x_x * H5_5 - fa_y_x * H5_9 - fa_z_x * H5_12 + fa_y_z *
+          H5_2_2 + fa_z_z * H5_3_2;
+      const T H5_1_3 = fa_z_x * H5_11 + fa_x_x * H5_4 + fa_y_x * H5_8;
+      const T H5_2_3 = fb_z_y * H5_1_3 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2 - fa_z_y * H5_3_2;
       const T H5_1_4 = H4_11 * fa_z_x - H4_4 * fa_x_x + H4_9 * fa_y_x;
       const T H5_2_4 = H5_1_4 + H5_13;
-      const T H5_3_3 = fa_y_y * H5_8 - fa_x_y * H5_4 + fa_z_y * H5_11;
+      const T H5_3_3 = fa_x_y * H5_4 + fa_y_y * H5_8 + fa_z_y * H5_11;
       const T H5_4_3 = fb_z_z * H5_3_3;
       const T H5_1_5 = H5_1_3 - H4_3_2;
       const T H5_1_6 = fb_z_x * H5_3_3;
@@ -2442,23 +2442,23 @@ struct six_dof {
       const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
       const T H6_1 = H4_6 * fa_x_x_fb_z_z - H4_10 * fa_y_x_fb_z_z - H4_12 * fa_z_x_fb_z_z;
       const T H6_2 = H4_7 * (ryz * fa_y_x_fb_z_z + rzz * fa_z_x_fb_z_z);
-      const T H6_3 = T(2) * H6_1 * rxz + lambda[0] * H4_2 * H6_2;
-      const T H6_4 = H5_1 + fb_z_y * H6_3;
+      const T H6_3 = T(-2) * H6_1 * rxz - lambda[0] * H4_2 * H6_2;
+      const T H6_4 = fb_z_y * H6_3 - H5_1;
       const T H6_5 = lambda[0] * H4_2 * H4_7 * (fa_x_x_fb_z_z + rxz * H4_7 * H6_2) - T(2) * H6_1;
       const T H6_6 = H6_5 * ryz - H4_8 * fa_y_x_fb_z_z;
       const T H6_7 = H5_6 + fb_z_y * H6_6;
       const T H6_8 = H6_5 * rzz - H4_8 * fa_z_x_fb_z_z;
       const T H6_9 = H5_10 + fb_z_y * H6_8;
-      const T H6_10 = fa_z_y * H6_8 - fa_x_y * H6_3 + fa_y_y * H6_6;
-      const T H6_11 = fa_x_z * H6_4 - fa_y_z * H6_7 - fa_z_z * H6_9 + fb_z_z * H6_10;
-      const T H6_1_2 = H4_5 - fb_z_x * H6_3;
+      const T H6_10 = fa_z_y * H6_8 + fa_x_y * H6_3 + fa_y_y * H6_6;
+      const T H6_11 = fb_z_z * H6_10 - fa_x_z * H6_4 - fa_y_z * H6_7 - fa_z_z * H6_9;
+      const T H6_1_2 = H4_5 + fb_z_x * H6_3;
       const T H6_2_2 = fb_z_x * H6_6 - H4_17;
       const T H6_3_2 = fb_z_x * H6_8 - H4_21;
-      const T H6_4_2 = fa_z_x * H6_8 - fa_x_x * H6_3 + fa_y_x * H6_6;
+      const T H6_4_2 = fa_z_x * H6_8 + fa_x_x * H6_3 + fa_y_x * H6_6;
       const T H6_5_2 = fa_x_z * H6_1_2 + fa_y_z * H6_2_2 + fa_z_z * H6_3_2 - fb_z_z * H6_4_2;
-      const T H6_1_3 = fa_y_x * H6_7 - fa_x_x * H6_4 + fa_z_x * H6_9 - fa_x_y * H6_1_2 - fa_y_y *
+      const T H6_1_3 = fa_x_x * H6_4 + fa_y_x * H6_7 + fa_z_x * H6_9 - fa_x_y * H6_1_2 - fa_y_y *
           H6_2_2 - fa_z_y * H6_3_2;
-      const T H6_1_4 = fa_y_z * H6_6 - fa_x_z * H6_3 + fa_z_z * H6_8;
+      const T H6_1_4 = fa_x_z * H6_3 + fa_y_z * H6_6 + fa_z_z * H6_8;
       const T H6_2_3 = fb_z_y * H6_1_4;
       const T H6_3_3 = H6_10 - H5_1_4;
       const T H6_1_5 = fb_z_x * H6_1_4;
@@ -2749,11 +2749,11 @@ struct six_dof {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
       D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
       D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
       D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
       D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -3146,7 +3146,7 @@ struct six_dof::slide_x::a_immovable : six_dof::slide_x {
     D[0][7] = J.fa_x_x;
     D[0][8] = J.fa_x_y;
     D[0][9] = J.fa_x_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
@@ -3502,7 +3502,7 @@ struct six_dof::slide_y::a_immovable : six_dof::slide_y {
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
@@ -3858,7 +3858,7 @@ struct six_dof::slide_z::a_immovable : six_dof::slide_z {
     D[0][7] = J.fa_z_x;
     D[0][8] = J.fa_z_y;
     D[0][9] = J.fa_z_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
@@ -4190,7 +4190,7 @@ struct six_dof::turn_x::a_immovable : six_dof::turn_x {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -4345,7 +4345,7 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
@@ -4505,7 +4505,7 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -4671,7 +4671,7 @@ struct six_dof::turn_y::b_immovable : six_dof::turn_y {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
@@ -4826,7 +4826,7 @@ struct six_dof::turn_z::a_immovable : six_dof::turn_z {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -4978,7 +4978,7 @@ struct six_dof::turn_z::b_immovable : six_dof::turn_z {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);

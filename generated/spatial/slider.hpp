@@ -228,23 +228,23 @@ struct slider {
     J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
     J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
     J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
-    J.wa_3_x = -T(0.5) * wa_3_x_3;
+    J.wa_3_x = T(-0.5) * wa_3_x_3;
     J.wa_3_y = T(0.5) * wa_3_y_1;
     J.wa_3_z = T(0.5) * wa_3_z_1;
     J.wb_3_x = T(0.5) * wa_3_x_3;
-    J.wb_3_y = -T(0.5) * wb_3_y_1;
-    J.wb_3_z = -T(0.5) * wb_3_z_1;
+    J.wb_3_y = T(-0.5) * wb_3_y_1;
+    J.wb_3_z = T(-0.5) * wb_3_z_1;
     J.wa_4_x = T(0.5) * wb_3_y_1;
-    J.wa_4_y = -T(0.5) * wa_4_y_2;
+    J.wa_4_y = T(-0.5) * wa_4_y_2;
     J.wa_4_z = T(0.5) * wa_4_z_1;
-    J.wb_4_x = -T(0.5) * wa_3_y_1;
+    J.wb_4_x = T(-0.5) * wa_3_y_1;
     J.wb_4_y = T(0.5) * wa_4_y_2;
-    J.wb_4_z = -T(0.5) * wb_4_z_1;
+    J.wb_4_z = T(-0.5) * wb_4_z_1;
     J.wa_5_x = T(0.5) * wb_3_z_1;
     J.wa_5_y = T(0.5) * wb_4_z_1;
-    J.wa_5_z = -T(0.5) * wa_5_z_1;
-    J.wb_5_x = -T(0.5) * wa_3_z_1;
-    J.wb_5_y = -T(0.5) * wa_4_z_1;
+    J.wa_5_z = T(-0.5) * wa_5_z_1;
+    J.wb_5_x = T(-0.5) * wa_3_z_1;
+    J.wb_5_y = T(-0.5) * wa_4_z_1;
     J.wb_5_z = T(0.5) * wa_5_z_1;
   }
 
@@ -585,12 +585,12 @@ struct slider {
     K[8] = ma.I * (J.wa_3_y * J.wa_4_y - J.wa_3_x * J.wb_3_y + J.wa_3_z * J.wa_4_z) + mb.I *
         (J.wa_3_x * J.wa_3_y - J.wa_4_y * J.wb_3_y + J.wb_3_z * J.wb_4_z);
     K[9] = ma.I * (K44_1 + K44_2 + K33_4) + mb.I * (K33_2 + K44_1 + K44_3);
-    K[10] = mb.I * (-J.rb_x_fa_y_x * J.wa_3_z - J.rb_x_fa_y_y * J.wa_4_z - J.rb_x_fa_y_z *
-        J.wa_5_z) - ma.I * (J.ra_d_x_fa_y_z * J.wa_5_z - J.ra_d_x_fa_y_x * J.wb_3_z -
-        J.ra_d_x_fa_y_y * J.wb_4_z);
-    K[11] = mb.I * (-J.rb_x_fa_z_x * J.wa_3_z - J.rb_x_fa_z_y * J.wa_4_z - J.rb_x_fa_z_z *
-        J.wa_5_z) - ma.I * (J.ra_d_x_fa_z_z * J.wa_5_z - J.ra_d_x_fa_z_x * J.wb_3_z -
-        J.ra_d_x_fa_z_y * J.wb_4_z);
+    K[10] = -ma.I * (J.ra_d_x_fa_y_z * J.wa_5_z - J.ra_d_x_fa_y_x * J.wb_3_z - J.ra_d_x_fa_y_y *
+        J.wb_4_z) - mb.I * (J.rb_x_fa_y_x * J.wa_3_z + J.rb_x_fa_y_y * J.wa_4_z + J.rb_x_fa_y_z *
+        J.wa_5_z);
+    K[11] = -ma.I * (J.ra_d_x_fa_z_z * J.wa_5_z - J.ra_d_x_fa_z_x * J.wb_3_z - J.ra_d_x_fa_z_y *
+        J.wb_4_z) - mb.I * (J.rb_x_fa_z_x * J.wa_3_z + J.rb_x_fa_z_y * J.wa_4_z + J.rb_x_fa_z_z *
+        J.wa_5_z);
     K[12] = ma.I * (J.wa_3_z * J.wa_5_z - J.wa_3_x * J.wb_3_z - J.wa_3_y * J.wb_4_z) + mb.I *
         (J.wa_3_x * J.wa_3_z - J.wa_4_z * J.wb_3_y - J.wa_5_z * J.wb_3_z);
     K[13] = ma.I * (J.wa_4_z * J.wa_5_z - J.wa_4_y * J.wb_4_z + J.wb_3_y * J.wb_3_z) + mb.I *
@@ -752,7 +752,7 @@ struct slider {
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
@@ -766,37 +766,37 @@ struct slider {
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
-    D[1][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+    D[1][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
     D[1][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
     D[1][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
     D[1][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
-    D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
+    D[2][3] = T(-2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
     D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
     D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
     D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
-    D[2][10] = -T(2) * (J.wb_3_x * b.e1 + J.wb_3_y * b.e2 + J.wb_3_z * b.e3);
+    D[2][10] = T(-2) * (J.wb_3_x * b.e1 + J.wb_3_y * b.e2 + J.wb_3_z * b.e3);
     D[2][11] = T(2) * (J.wb_3_x * b.e0 + J.wb_3_y * b.e3 - J.wb_3_z * b.e2);
     D[2][12] = T(2) * (J.wb_3_y * b.e0 - J.wb_3_x * b.e3 + J.wb_3_z * b.e1);
     D[2][13] = T(2) * (J.wb_3_x * b.e2 - J.wb_3_y * b.e1 + J.wb_3_z * b.e0);
-    D[3][3] = -T(2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
+    D[3][3] = T(-2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
     D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
     D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
     D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
-    D[3][10] = -T(2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
+    D[3][10] = T(-2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
     D[3][11] = T(2) * (J.wb_4_x * b.e0 + J.wb_4_y * b.e3 - J.wb_4_z * b.e2);
     D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
     D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
-    D[4][3] = -T(2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
+    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
     D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
     D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
     D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
-    D[4][10] = -T(2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
+    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
     D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
     D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
     D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 186 +, 260 *
+  // -Jdot v - d/dt(dC/dt): 184 +, 260 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[5]) {
@@ -922,8 +922,8 @@ struct slider {
     const T w_a_x_fa_x_x_w_b_x_fb_x_z = w_a_x_fa_x_x * w_b_x_fb_x_y - w_a_x_fa_x_y * w_b_x_fb_x_x;
     const T w_a_x_fa_y_x_w_b_x_fb_y_z = w_a_x_fa_y_x * w_b_x_fb_y_y - w_a_x_fa_y_y * w_b_x_fb_y_x;
     const T w_a_x_fa_z_x_w_b_x_fb_z_z = w_a_x_fa_z_x * w_b_x_fb_z_y - w_a_x_fa_z_y * w_b_x_fb_z_x;
-    g[0] = -dot_d_w_a_x_w_a_x_fa_y - T(2) * dot_d_dot_w_a_x_fa_y - dot_d_dot_dot_fa_y;
-    g[1] = -dot_d_w_a_x_w_a_x_fa_z - T(2) * dot_d_dot_w_a_x_fa_z - dot_d_dot_dot_fa_z;
+    g[0] = T(-2) * dot_d_dot_w_a_x_fa_y - dot_d_w_a_x_w_a_x_fa_y - dot_d_dot_dot_fa_y;
+    g[1] = T(-2) * dot_d_dot_w_a_x_fa_z - dot_d_w_a_x_w_a_x_fa_z - dot_d_dot_dot_fa_z;
     g[2] = T(0.5) * w_b_x_w_b_x_fb_x_x_fa_x_x + T(0.5) * w_b_x_w_b_x_fb_y_x_fa_y_x + T(0.5) *
         w_b_x_w_b_x_fb_z_x_fa_z_x - T(0.5) * w_a_x_w_a_x_fa_x_x_fb_x_x - T(0.5) *
         w_a_x_w_a_x_fa_y_x_fb_y_x - T(0.5) * w_a_x_w_a_x_fa_z_x_fb_z_x -
@@ -948,7 +948,7 @@ struct slider {
     C_t[4] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 274 +, 423 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 265 +, 423 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[5],
       T (&H)[12][12]) {
@@ -1116,14 +1116,14 @@ struct slider {
     H[3][1] = H1_1;
     H[3][2] = H[2][3];
     H[3][3] = H4_10 - H4_20;
-    H[3][4] = -T(0.5) * fa_x_x * H4_6 - fa_y_x * H4_9 - fa_z_x * H4_3;
+    H[3][4] = T(-0.5) * fa_x_x * H4_6 - fa_y_x * H4_9 - fa_z_x * H4_3;
     H[3][5] = T(0.5) * fa_x_x * H4_16 + fa_y_x * H4_19 + fa_z_x * H4_13;
     H[3][7] = H[0][4];
     H[3][8] = H1_1_2;
     H[3][9] = H4_3_2 + T(0.5) * H4_4_2 + T(0.5) * lambda[2] * (H4_5_2 - H4_6_2);
     H[3][10] = T(0.5) * fb_x_z * H4_4_3 - H4_1_3 + T(0.5) * fb_y_z * H4_7_2 + T(0.5) * fb_z_z *
         H4_10_2 + T(0.5) * lambda[2] * (H4_11_2 + fa_x_z * fb_x_x);
-    H[3][11] = -H4_1_4 - T(0.5) * fb_x_y * H4_4_3 - T(0.5) * fb_y_y * H4_7_2 - T(0.5) * fb_z_y *
+    H[3][11] = T(-0.5) * fb_x_y * H4_4_3 - H4_1_4 - T(0.5) * fb_y_y * H4_7_2 - T(0.5) * fb_z_y *
         H4_10_2 - T(0.5) * lambda[2] * (H4_2_4 + fa_x_y * fb_x_x);
     H[4][0] = H[0][4];
     H[4][2] = H2_1;
@@ -1132,7 +1132,7 @@ struct slider {
     H[4][5] = T(0.5) * fa_x_y * H4_16 + fa_y_y * H4_19 + fa_z_y * H4_13;
     H[4][6] = H1_1;
     H[4][8] = H[1][5];
-    H[4][9] = -H5_1_3 - T(0.5) * fb_x_z * H5_3_2 - T(0.5) * fb_y_z * H5_5_2 - T(0.5) * fb_z_z *
+    H[4][9] = T(-0.5) * fb_x_z * H5_3_2 - H5_1_3 - T(0.5) * fb_y_z * H5_5_2 - T(0.5) * fb_z_z *
         H5_7_2 - T(0.5) * lambda[3] * (H4_6_2 + fa_x_z * fb_x_y);
     H[4][10] = H5_2_3 - T(0.5) * H5_3_3 + T(0.5) * lambda[3] * (H4_11_2 - H5_4_3);
     H[4][11] = T(0.5) * fb_x_x * H5_3_2 + T(0.5) * fb_y_x * H5_5_2 + T(0.5) * fb_z_x * H5_7_2 -
@@ -1140,13 +1140,13 @@ struct slider {
     H[5][0] = H1_1_2;
     H[5][1] = H[1][5];
     H[5][3] = T(0.5) * fa_x_z * H5_3 + fa_y_z * H5_6 + fa_z_z * H5_9;
-    H[5][4] = -T(0.5) * fa_x_z * H4_6 - fa_y_z * H4_9 - fa_z_z * H4_3;
+    H[5][4] = T(-0.5) * fa_x_z * H4_6 - fa_y_z * H4_9 - fa_z_z * H4_3;
     H[5][5] = H4_10 - H5_1_2;
     H[5][6] = H[2][3];
     H[5][7] = H2_1;
     H[5][9] = T(0.5) * fb_x_y * H6_1 + T(0.5) * fb_y_y * H6_2 + T(0.5) * fb_z_y * H6_3 - H6_4 +
         T(0.5) * lambda[4] * (H4_5_2 + fa_x_y * fb_x_z);
-    H[5][10] = -T(0.5) * fb_x_x * H6_1 - T(0.5) * fb_y_x * H6_2 - T(0.5) * fb_z_x * H6_3 - H6_1_2 -
+    H[5][10] = T(-0.5) * fb_x_x * H6_1 - T(0.5) * fb_y_x * H6_2 - T(0.5) * fb_z_x * H6_3 - H6_1_2 -
         T(0.5) * lambda[4] * (H5_4_3 + fa_x_x * fb_x_z);
     H[5][11] = H6_1_3 + T(0.5) * H6_2_2 + T(0.5) * lambda[4] * (H5_2_4 - H4_2_4);
     H[6][4] = H1_1;
@@ -1156,7 +1156,7 @@ struct slider {
     H[8][3] = H1_1_2;
     H[8][4] = H[1][5];
     H[9][3] = T(0.5) * H4_4_2 + fa_y_y * H10_2 + fa_z_y * H10_4 - fa_y_z * H10_6 - fa_z_z * H10_8;
-    H[9][4] = -T(0.5) * H4_4 * fa_x_x - fa_y_x * H10_2 - fa_z_x * H10_4 - T(0.5) * fa_x_z *
+    H[9][4] = T(-0.5) * H4_4 * fa_x_x - fa_y_x * H10_2 - fa_z_x * H10_4 - T(0.5) * fa_x_z *
         H10_3_2 - T(0.5) * fa_y_z * H10_6_2 - T(0.5) * fa_z_z * H10_9;
     H[9][5] = T(0.5) * H4_14 * fa_x_x + fa_y_x * H10_6 + fa_z_x * H10_8 + T(0.5) * fa_x_y *
         H10_3_2 + T(0.5) * fa_y_y * H10_6_2 + T(0.5) * fa_z_y * H10_9;
@@ -1169,14 +1169,14 @@ struct slider {
         T(0.5) * fa_y_z * H11_8 + T(0.5) * fa_z_z * H11_10;
     H[10][4] = fa_y_z * H11_1_2 - T(0.5) * H5_3_3 - fa_y_x * H11_2 - fa_z_x * H11_4 + fa_z_z *
         H11_2_2;
-    H[10][5] = -T(0.5) * H4_15 * fa_x_y - T(0.5) * fa_x_x * H11_6 - T(0.5) * fa_y_x * H11_8 -
+    H[10][5] = T(-0.5) * H4_15 * fa_x_y - T(0.5) * fa_x_x * H11_6 - T(0.5) * fa_y_x * H11_8 -
         T(0.5) * fa_z_x * H11_10 - fa_y_y * H11_1_2 - fa_z_y * H11_2_2;
     H[10][9] = T(0.5) * fb_x_y * H11_1_3 + T(0.5) * fb_y_y * H11_2_3 + T(0.5) * fb_z_y * H11_3_2 +
         H5_1_3;
-    H[10][10] = -T(0.5) * H11_1_4 - T(0.5) * H10_8_3 - H5_2_3;
+    H[10][10] = T(-0.5) * H11_1_4 - T(0.5) * H10_8_3 - H5_2_3;
     H[10][11] = T(0.5) * fb_x_y * H10_6_3 + T(0.5) * fb_y_y * H10_7_3 + T(0.5) * fb_z_y * H10_5_3 +
         H5_1_5;
-    H[11][3] = -T(0.5) * H5_2 * fa_x_z - T(0.5) * fa_x_y * H12_1 - T(0.5) * fa_y_y * H12_2 -
+    H[11][3] = T(-0.5) * H5_2 * fa_x_z - T(0.5) * fa_x_y * H12_1 - T(0.5) * fa_y_y * H12_2 -
         T(0.5) * fa_z_y * H12_3 - fa_y_z * H12_4 - fa_z_z * H12_5;
     H[11][4] = T(0.5) * H4_5 * fa_x_z + T(0.5) * fa_x_x * H12_1 + T(0.5) * fa_y_x * H12_2 +
         T(0.5) * fa_z_x * H12_3 + fa_y_z * H12_1_2 + fa_z_z * H12_2_2;
@@ -1517,13 +1517,13 @@ struct slider {
       D[0][7] = J.fa_x_x;
       D[0][8] = J.fa_x_y;
       D[0][9] = J.fa_x_z;
-      D[0][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+      D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
       D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
       D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
       D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 66 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1573,7 +1573,7 @@ struct slider {
       const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
       const T dot_d_dot_dot_fa_x = d_dot_dot_y * fa_x_y + d_dot_dot_z * fa_x_z + d_dot_dot_x *
           fa_x_x;
-      g[0] = -dot_d_w_a_x_w_a_x_fa_x - T(2) * dot_d_dot_w_a_x_fa_x - dot_d_dot_dot_fa_x;
+      g[0] = T(-2) * dot_d_dot_w_a_x_fa_x - dot_d_w_a_x_w_a_x_fa_x - dot_d_dot_dot_fa_x;
     }
 
     // dC/dt at fixed q: nothing
@@ -1790,13 +1790,13 @@ struct slider::a_immovable : slider {
     J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
     J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
     J.wb_3_x = T(0.5) * (wb_3_x_1 + wb_3_x_2);
-    J.wb_3_y = -T(0.5) * (C5_2 + C5_4 + C5_6);
-    J.wb_3_z = -T(0.5) * (C3_4 + C3_8 + C3_12);
-    J.wb_4_x = -T(0.5) * (C5_1 + C5_3 + C5_5);
+    J.wb_3_y = T(-0.5) * (C5_2 + C5_4 + C5_6);
+    J.wb_3_z = T(-0.5) * (C3_4 + C3_8 + C3_12);
+    J.wb_4_x = T(-0.5) * (C5_1 + C5_3 + C5_5);
     J.wb_4_y = T(0.5) * (wb_4_y_1 + wb_3_x_2);
-    J.wb_4_z = -T(0.5) * (C3_2 + C3_6 + C3_10);
-    J.wb_5_x = -T(0.5) * (C3_3 + C3_7 + C3_11);
-    J.wb_5_y = -T(0.5) * (C3_1 + C3_5 + C3_9);
+    J.wb_4_z = T(-0.5) * (C3_2 + C3_6 + C3_10);
+    J.wb_5_x = T(-0.5) * (C3_3 + C3_7 + C3_11);
+    J.wb_5_y = T(-0.5) * (C3_1 + C3_5 + C3_9);
     J.wb_5_z = T(0.5) * (wb_3_x_1 + wb_4_y_1);
   }
 
@@ -2044,26 +2044,26 @@ struct slider::a_immovable : slider {
     D[0][7] = J.fa_y_x;
     D[0][8] = J.fa_y_y;
     D[0][9] = J.fa_y_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
     D[1][7] = J.fa_z_x;
     D[1][8] = J.fa_z_y;
     D[1][9] = J.fa_z_z;
-    D[1][10] = -T(2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
+    D[1][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
     D[1][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
     D[1][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
     D[1][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
-    D[2][10] = -T(2) * (J.wb_3_x * b.e1 + J.wb_3_y * b.e2 + J.wb_3_z * b.e3);
+    D[2][10] = T(-2) * (J.wb_3_x * b.e1 + J.wb_3_y * b.e2 + J.wb_3_z * b.e3);
     D[2][11] = T(2) * (J.wb_3_x * b.e0 + J.wb_3_y * b.e3 - J.wb_3_z * b.e2);
     D[2][12] = T(2) * (J.wb_3_y * b.e0 - J.wb_3_x * b.e3 + J.wb_3_z * b.e1);
     D[2][13] = T(2) * (J.wb_3_x * b.e2 - J.wb_3_y * b.e1 + J.wb_3_z * b.e0);
-    D[3][10] = -T(2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
+    D[3][10] = T(-2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
     D[3][11] = T(2) * (J.wb_4_x * b.e0 + J.wb_4_y * b.e3 - J.wb_4_z * b.e2);
     D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
     D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
-    D[4][10] = -T(2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
+    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
     D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
     D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
     D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
@@ -2164,15 +2164,15 @@ struct slider::b_immovable : slider {
     J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
     J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
     J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
-    J.wa_3_x = -T(0.5) * (wa_3_x_1 + wa_3_x_2);
+    J.wa_3_x = T(-0.5) * (wa_3_x_1 + wa_3_x_2);
     J.wa_3_y = T(0.5) * (C5_1 + C5_3 + C5_5);
     J.wa_3_z = T(0.5) * (C3_3 + C3_7 + C3_11);
     J.wa_4_x = T(0.5) * (C5_2 + C5_4 + C5_6);
-    J.wa_4_y = -T(0.5) * (wa_4_y_1 + wa_3_x_2);
+    J.wa_4_y = T(-0.5) * (wa_4_y_1 + wa_3_x_2);
     J.wa_4_z = T(0.5) * (C3_1 + C3_5 + C3_9);
     J.wa_5_x = T(0.5) * (C3_4 + C3_8 + C3_12);
     J.wa_5_y = T(0.5) * (C3_2 + C3_6 + C3_10);
-    J.wa_5_z = -T(0.5) * (wa_3_x_1 + wa_4_y_1);
+    J.wa_5_z = T(-0.5) * (wa_3_x_1 + wa_4_y_1);
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 68 +, 90 *
@@ -2436,15 +2436,15 @@ struct slider::b_immovable : slider {
     D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
     D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
     D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
-    D[2][3] = -T(2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
+    D[2][3] = T(-2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
     D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
     D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
     D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
-    D[3][3] = -T(2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
+    D[3][3] = T(-2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
     D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
     D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
     D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
-    D[4][3] = -T(2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
+    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
     D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
     D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
     D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
@@ -2620,7 +2620,7 @@ struct slider::slide::a_immovable : slider::slide {
     D[0][7] = J.fa_x_x;
     D[0][8] = J.fa_x_y;
     D[0][9] = J.fa_x_z;
-    D[0][10] = -T(2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);

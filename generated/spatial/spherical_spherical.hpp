@@ -302,7 +302,7 @@ struct spherical_spherical {
     D[0][7] = J.d_x;
     D[0][8] = J.d_y;
     D[0][9] = J.d_z;
-    D[0][10] = -T(2) * (J.rb_x_d_x * b.e1 + J.rb_x_d_y * b.e2 + J.rb_x_d_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_d_x * b.e1 + J.rb_x_d_y * b.e2 + J.rb_x_d_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_d_x * b.e0 + J.rb_x_d_y * b.e3 - J.rb_x_d_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_d_y * b.e0 - J.rb_x_d_x * b.e3 + J.rb_x_d_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_d_x * b.e2 - J.rb_x_d_y * b.e1 + J.rb_x_d_z * b.e0);
@@ -704,7 +704,7 @@ struct spherical_spherical::a_immovable : spherical_spherical {
     D[0][7] = J.d_x;
     D[0][8] = J.d_y;
     D[0][9] = J.d_z;
-    D[0][10] = -T(2) * (J.rb_x_d_x * b.e1 + J.rb_x_d_y * b.e2 + J.rb_x_d_z * b.e3);
+    D[0][10] = T(-2) * (J.rb_x_d_x * b.e1 + J.rb_x_d_y * b.e2 + J.rb_x_d_z * b.e3);
     D[0][11] = T(2) * (J.rb_x_d_x * b.e0 + J.rb_x_d_y * b.e3 - J.rb_x_d_z * b.e2);
     D[0][12] = T(2) * (J.rb_x_d_y * b.e0 - J.rb_x_d_x * b.e3 + J.rb_x_d_z * b.e1);
     D[0][13] = T(2) * (J.rb_x_d_x * b.e2 - J.rb_x_d_y * b.e1 + J.rb_x_d_z * b.e0);

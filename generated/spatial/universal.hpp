@@ -534,33 +534,33 @@ struct universal {
     D[0][3] = T(2) * (D1_1 - D1_2);
     D[0][4] = T(2) * (D1_1_2 + D1_2_2);
     D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = -T(2) * (D1_1_4 + D1_2_4);
+    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
     D[0][7] = T(-1);
     D[0][10] = T(2) * (D1_2_5 - D1_1_5);
-    D[0][11] = -T(2) * (D1_1_6 + D1_2_6);
+    D[0][11] = T(-2) * (D1_1_6 + D1_2_6);
     D[0][12] = T(2) * (D1_1_7 - D1_2_7);
     D[0][13] = T(2) * (D1_1_8 + D1_2_8);
     D[1][1] = T(1);
     D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = -T(2) * (D2_1_2 + D1_2_3);
+    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
     D[1][5] = T(2) * (D2_1_3 + D1_2_2);
     D[1][6] = T(2) * (D2_1_4 - D1_2);
     D[1][8] = T(-1);
     D[1][10] = T(2) * (D2_1_5 - D1_2_8);
     D[1][11] = T(2) * (D2_1_6 + D1_2_7);
-    D[1][12] = -T(2) * (D2_1_7 + D1_2_6);
+    D[1][12] = T(-2) * (D2_1_7 + D1_2_6);
     D[1][13] = T(2) * (D1_2_5 - D2_1_8);
     D[2][2] = T(1);
     D[2][3] = T(2) * (D2_1_2 - D1_1_3);
     D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = -T(2) * (D2_1_4 + D1_1);
+    D[2][5] = T(-2) * (D2_1_4 + D1_1);
     D[2][6] = T(2) * (D2_1_3 + D1_1_2);
     D[2][9] = T(-1);
     D[2][10] = T(2) * (D1_1_7 - D2_1_6);
     D[2][11] = T(2) * (D2_1_5 - D1_1_8);
     D[2][12] = T(2) * (D2_1_8 + D1_1_5);
-    D[2][13] = -T(2) * (D2_1_7 + D1_1_6);
-    D[3][3] = -T(2) * (J.fa_y_x_fb_z_x * a.e1 + J.fa_y_x_fb_z_y * a.e2 + J.fa_y_x_fb_z_z * a.e3);
+    D[2][13] = T(-2) * (D2_1_7 + D1_1_6);
+    D[3][3] = T(-2) * (J.fa_y_x_fb_z_x * a.e1 + J.fa_y_x_fb_z_y * a.e2 + J.fa_y_x_fb_z_z * a.e3);
     D[3][4] = T(2) * (J.fa_y_x_fb_z_x * a.e0 + J.fa_y_x_fb_z_y * a.e3 - J.fa_y_x_fb_z_z * a.e2);
     D[3][5] = T(2) * (J.fa_y_x_fb_z_y * a.e0 - J.fa_y_x_fb_z_x * a.e3 + J.fa_y_x_fb_z_z * a.e1);
     D[3][6] = T(2) * (J.fa_y_x_fb_z_x * a.e2 - J.fa_y_x_fb_z_y * a.e1 + J.fa_y_x_fb_z_z * a.e0);
@@ -570,7 +570,7 @@ struct universal {
     D[3][13] = T(2) * (J.fa_y_x_fb_z_y * b.e1 - J.fa_y_x_fb_z_x * b.e2 - J.fa_y_x_fb_z_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 60 +, 94 *
+  // -Jdot v - d/dt(dC/dt): 59 +, 94 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[4]) {
@@ -623,8 +623,8 @@ struct universal {
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    g[3] = -dot_w_b_x_w_b_x_fb_z_fa_y - dot_w_a_x_w_a_x_fa_y_fb_z - T(2) *
-        dot_w_a_x_fa_y_w_b_x_fb_z;
+    g[3] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_z - dot_w_b_x_w_b_x_fb_z_fa_y -
+        dot_w_a_x_w_a_x_fa_y_fb_z;
   }
 
   // dC/dt at fixed q: nothing
@@ -991,11 +991,11 @@ struct universal {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
       D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
       D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
       D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
       D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -1445,11 +1445,11 @@ struct universal {
       }
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
       D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
       D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
       D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-      D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
       D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
       D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -1931,19 +1931,19 @@ struct universal::a_immovable : universal {
     const T D2_1_4 = J.rb_x * b.e0;
     D[0][7] = T(-1);
     D[0][10] = T(2) * (D1_2 - D1_1);
-    D[0][11] = -T(2) * (D1_1_2 + D1_2_2);
+    D[0][11] = T(-2) * (D1_1_2 + D1_2_2);
     D[0][12] = T(2) * (D1_1_3 - D1_2_3);
     D[0][13] = T(2) * (D1_1_4 + D1_2_4);
     D[1][8] = T(-1);
     D[1][10] = T(2) * (D2_1 - D1_2_4);
     D[1][11] = T(2) * (D2_1_2 + D1_2_3);
-    D[1][12] = -T(2) * (D2_1_3 + D1_2_2);
+    D[1][12] = T(-2) * (D2_1_3 + D1_2_2);
     D[1][13] = T(2) * (D1_2 - D2_1_4);
     D[2][9] = T(-1);
     D[2][10] = T(2) * (D1_1_3 - D2_1_2);
     D[2][11] = T(2) * (D2_1 - D1_1_4);
     D[2][12] = T(2) * (D2_1_4 + D1_1);
-    D[2][13] = -T(2) * (D2_1_3 + D1_1_2);
+    D[2][13] = T(-2) * (D2_1_3 + D1_1_2);
     D[3][10] = T(2) * (J.fa_y_x_fb_z_x * b.e1 + J.fa_y_x_fb_z_y * b.e2 + J.fa_y_x_fb_z_z * b.e3);
     D[3][11] = T(2) * (J.fa_y_x_fb_z_z * b.e2 - J.fa_y_x_fb_z_x * b.e0 - J.fa_y_x_fb_z_y * b.e3);
     D[3][12] = T(2) * (J.fa_y_x_fb_z_x * b.e3 - J.fa_y_x_fb_z_y * b.e0 - J.fa_y_x_fb_z_z * b.e1);
@@ -2209,18 +2209,18 @@ struct universal::b_immovable : universal {
     D[0][3] = T(2) * (D1_1 - D1_2);
     D[0][4] = T(2) * (D1_1_2 + D1_2_2);
     D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = -T(2) * (D1_1_4 + D1_2_4);
+    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
     D[1][1] = T(1);
     D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = -T(2) * (D2_1_2 + D1_2_3);
+    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
     D[1][5] = T(2) * (D2_1_3 + D1_2_2);
     D[1][6] = T(2) * (D2_1_4 - D1_2);
     D[2][2] = T(1);
     D[2][3] = T(2) * (D2_1_2 - D1_1_3);
     D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = -T(2) * (D2_1_4 + D1_1);
+    D[2][5] = T(-2) * (D2_1_4 + D1_1);
     D[2][6] = T(2) * (D2_1_3 + D1_1_2);
-    D[3][3] = -T(2) * (J.fa_y_x_fb_z_x * a.e1 + J.fa_y_x_fb_z_y * a.e2 + J.fa_y_x_fb_z_z * a.e3);
+    D[3][3] = T(-2) * (J.fa_y_x_fb_z_x * a.e1 + J.fa_y_x_fb_z_y * a.e2 + J.fa_y_x_fb_z_z * a.e3);
     D[3][4] = T(2) * (J.fa_y_x_fb_z_x * a.e0 + J.fa_y_x_fb_z_y * a.e3 - J.fa_y_x_fb_z_z * a.e2);
     D[3][5] = T(2) * (J.fa_y_x_fb_z_y * a.e0 - J.fa_y_x_fb_z_x * a.e3 + J.fa_y_x_fb_z_z * a.e1);
     D[3][6] = T(2) * (J.fa_y_x_fb_z_x * a.e2 - J.fa_y_x_fb_z_y * a.e1 + J.fa_y_x_fb_z_z * a.e0);
@@ -2372,7 +2372,7 @@ struct universal::bend_a::a_immovable : universal::bend_a {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -2527,7 +2527,7 @@ struct universal::bend_a::b_immovable : universal::bend_a {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
@@ -2682,7 +2682,7 @@ struct universal::bend_b::a_immovable : universal::bend_b {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& b = q[1];
-    D[0][10] = -T(2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
     D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
     D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
     D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
@@ -2834,7 +2834,7 @@ struct universal::bend_b::b_immovable : universal::bend_b {
       for (T& entry : row) entry = T(0);
     }
     const Pose<T>& a = q[0];
-    D[0][3] = -T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
     D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
     D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
     D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);

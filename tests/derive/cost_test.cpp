@@ -1,4 +1,4 @@
-// No generated C, J or K costs more than the cheapest published derivation of the same that agrees with it.
+// No generated C, J or K costs more than the cheapest published derivation of the same.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -12,7 +12,9 @@
 
 namespace {
 
-using Quantity = std::array<std::string, 4>;  // space, joint, block, C or J or K
+// Space, joint, block, C or J or K; and what it is about, if not all rows of the spec as it stands:
+// "of pin", "with t on a".
+using Quantity = std::array<std::string, 5>;
 
 // What a quantity costs from poses and parameters, after the passes that kernels go through: the
 // number of operations, and the same weighted by what each kind takes, roughly in cycles of a
@@ -52,40 +54,65 @@ Ledger read_ledger() {
     std::istringstream cells(line);
     std::vector<std::string> cell;
     for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
-    const Quantity of = {cell[0], cell[1], cell[2], cell[3]};
-    if (cell[4] == "generated") {
+    const std::string source = cell[4].substr(0, cell[4].find(' '));
+    const Quantity of = {cell[0], cell[1], cell[2], cell[3], cell[4].substr(source.size())};
+    if (source == "generated") {
       ledger.generated[of] = cost_of(cell);
     } else {
-      ledger.hand.push_back({of, cell[4], cost_of(cell)});
+      ledger.hand.push_back({of, source, cost_of(cell)});
     }
   }
   return ledger;
 }
 
-}  // namespace
-
-// In the plane. In space most published derivations agree only where an assumption holds (aligned
-// frames, no error), and then compute less; the ledger does not yet tell those apart.
-TEST(Ledger, has_no_published_derivation_in_the_plane_cheaper_than_the_generated) {
-  const Ledger ledger = read_ledger();
+// What is published of the joints of one space.
+struct Compared {
   std::set<std::string> joints, quantities;
-  int compared = 0, cheaper = 0;
+  int all = 0, cheaper = 0, scoped = 0;
+};
+
+Compared compare(const std::string& space) {
+  const Ledger ledger = read_ledger();
+  Compared compared;
   for (const Hand& hand : ledger.hand) {
-    if (hand.of[0] != "planar") continue;
-    ++compared;
+    if (hand.of[0] != space) continue;
+    const std::string what = hand.of[0] + " " + hand.of[1] + ", " + hand.of[2] + hand.of[4] + ": " +
+                             hand.of[3] + " against " + hand.source;
     const auto ours = ledger.generated.find(hand.of);
-    ASSERT_NE(ours, ledger.generated.end()) << hand.source;
+    if (ours == ledger.generated.end()) {
+      ADD_FAILURE() << what << ": nothing is generated of the same";
+      continue;
+    }
     const Cost generated = ours->second, published = hand.cost;
-    const std::string what = hand.of[0] + " " + hand.of[1] + ", " + hand.of[2] + ": " + hand.of[3] +
-                             " against " + hand.source;
     EXPECT_LE(generated.total, published.total) << what;
     EXPECT_LE(generated.weighted, published.weighted) << what << ", weighted";
-    cheaper += generated.total < published.total ? 1 : 0;
-    joints.insert(hand.of[1]);
-    quantities.insert(hand.of[3]);
+    ++compared.all;
+    compared.cheaper += generated.total < published.total ? 1 : 0;
+    compared.scoped += hand.of[4].empty() ? 0 : 1;
+    compared.joints.insert(hand.of[1]);
+    compared.quantities.insert(hand.of[3]);
   }
-  std::printf("%d published C, J and K that agree, of %zu joints: %d cost more than what is generated, the others as much\n",
-              compared, joints.size(), cheaper);
-  EXPECT_EQ(quantities, (std::set<std::string>{"C", "J", "K"}));
-  EXPECT_GE(joints.size(), 10u) << "most of the catalogue has been published by somebody";
+  std::printf(
+      "%s: %d published C, J and K, of %zu joints: %d cost more than what is generated, the others "
+      "as much; %d are of some rows, or with directions fixed elsewhere\n",
+      space.c_str(), compared.all, compared.joints.size(), compared.cheaper, compared.scoped);
+  return compared;
+}
+
+}  // namespace
+
+// The ledger has those that agree wherever the joint is. One that agrees only where an assumption
+// holds computes something else, and may well be cheaper.
+TEST(Ledger, has_no_published_derivation_in_the_plane_cheaper_than_the_generated) {
+  const Compared compared = compare("planar");
+  EXPECT_EQ(compared.quantities, (std::set<std::string>{"C", "J", "K"}));
+  EXPECT_GE(compared.joints.size(), 16u) << "most of the catalogue has been published by somebody";
+  EXPECT_GE(compared.all, 90);
+}
+
+TEST(Ledger, has_no_published_derivation_in_space_cheaper_than_the_generated) {
+  const Compared compared = compare("spatial");
+  EXPECT_EQ(compared.quantities, (std::set<std::string>{"C", "J", "K"}));
+  EXPECT_GE(compared.joints.size(), 14u) << "whatever agrees only once frames do is not compared";
+  EXPECT_GE(compared.all, 45);
 }

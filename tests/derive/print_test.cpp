@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <regex>
+#include <tuple>
 
 #include "derive/print_program.hpp"
 
@@ -74,6 +75,25 @@ TEST(Print, computes_nothing_twice) {
   EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), minus), {}),
             count(program).add)
       << text;
+}
+
+// For a type that counts, -T(2) * a would be a negation more than the ledger says.
+TEST(Print, has_no_minus_sign_that_a_number_can_take) {
+  Symbols s;
+  const Rational minus_one(-1), minus_two(-2);
+  const std::vector<std::tuple<Expr, std::string, int>> cases = {
+      {minus_two * s.a, "T(-2) * a", 0},
+      {minus_two * s.a - s.b, "T(-2) * a - b", 1},
+      {-s.a + minus_two * s.b, "T(-2) * b - a", 1},
+      {s.a + minus_two * s.b, "a - T(2) * b", 1},
+      {-s.a - s.pool.number(3), "T(-3) - a", 1},
+      {-s.a - s.b, "-a - b", 2},
+      {minus_one * s.a, "-a", 1}};
+  for (const auto& [e, text, additions] : cases) {
+    const Program program = assemble({{"C[0]", e}});
+    EXPECT_EQ(joined(print_statements(program, {})), "C[0] = " + text + ";\n");
+    EXPECT_EQ(count(program).add, additions) << text;
+  }
 }
 
 TEST(Print, leaves_zeros_out_where_they_stand_already) {

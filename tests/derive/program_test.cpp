@@ -2,10 +2,12 @@
 // person's would.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "derive/canonical.hpp"
 #include "derive/kernel.hpp"
+#include "derive/ledger.hpp"
 #include "derive/specs_folder.hpp"
 #include "tests/derive/random_expressions.hpp"
 
@@ -113,6 +115,20 @@ TEST(Simplify, shares_sums_and_products) {
   EXPECT_EQ(count(products), (Count{0, 2, 0, 0, 0, 0})) << text(count(products));
 }
 
+TEST(Simplify, takes_minus_signs_out_where_that_costs_nothing) {
+  Pool pool;
+  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given),
+             c = pool.symbol("c", Role::given), d = pool.symbol("d", Role::given);
+  // a + b (-2 c - d) costs the same as a - b (2 c + d).
+  const Program program = simplify(assemble({{"C[0]", a + b * (Rational(-2) * c - d)}}));
+  EXPECT_EQ(count(program), (Count{2, 2, 0, 0, 0, 0})) << text(count(program));
+  for (const Operation& op : program.ops) {
+    if (op.kind != OpKind::sum) continue;
+    EXPECT_TRUE(std::any_of(op.coefs.begin(), op.coefs.end(),
+                            [](Rational coef) { return coef.sign() > 0; }));
+  }
+}
+
 TEST(Simplify, subtracts_positions_first) {
   // (x_a + ra) - (x_b + rb): far from the origin x_a + ra would round ra away.
   const Joint joint = joint_of("revolute");
@@ -138,6 +154,17 @@ TEST(Cost, of_the_point_joint_is_that_of_a_careful_person) {
   }
 }
 
+TEST(Cost, of_a_negative_in_J_is_left_to_whoever_uses_it) {
+  const Joint joint = joint_of("revolute");
+  const Expr ra = joint.parameters.front().symbol, square = dot(ra, ra);
+  const auto cost_of = [&](const char* quantity, Expr e) {
+    return cost_from_poses(joint, quantity, {e}).add;
+  };
+  EXPECT_EQ(cost_of("J", -square), cost_of("J", square));
+  EXPECT_EQ(cost_of("C", -square), cost_of("C", square) + 1);
+  EXPECT_EQ(cost_of("K", -square), cost_of("K", square) + 1);
+}
+
 TEST(Cost, counts_powers_negations_and_guards) {
   Pool pool;
   const Expr a = pool.symbol("a", Role::given);
@@ -145,6 +172,8 @@ TEST(Cost, counts_powers_negations_and_guards) {
   EXPECT_EQ(cost_of(pow(a, 4)), (Count{0, 3, 0, 0, 0, 0}));
   EXPECT_EQ(cost_of(-a), (Count{1, 0, 0, 0, 0, 0}));
   EXPECT_EQ(cost_of(Rational(2) * a), (Count{0, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(cost_of(Rational(-2) * a), (Count{0, 1, 0, 0, 0, 0}));
+  EXPECT_EQ(cost_of(a + pool.number(2)), (Count{1, 0, 0, 0, 0, 0})) << "nothing is multiplied";
   EXPECT_EQ(cost_of(call(Fn::inverse, a)), (Count{0, 0, 1, 0, 1, 0}));
   EXPECT_EQ(cost_of(call(Fn::sin, a)), (Count{0, 0, 0, 0, 0, 1}));
   EXPECT_EQ(cost_of(call(Fn::sqrt, a)), (Count{0, 0, 0, 1, 0, 0}));
