@@ -130,7 +130,7 @@ class KernelWriter {
     std::string names;
     for (const std::string& body : joint_.bodies)
       names += (names.empty() ? "" : ", ") + quoted(body);
-    line("static_assert(kernel_contract == 1);", 1);
+    line("static_assert(kernel_contract == 2);", 1);
     line("static constexpr std::string_view name = " + quoted(joint_.name) + ";", 1);
     line("static constexpr std::string_view title =", 1);
     string_literal(joint_.title, 3);

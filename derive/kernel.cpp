@@ -44,9 +44,8 @@ class BlockPlanner {
       add_apply();
       add_inverse_mass_jacobian();
       isotropic_ = false;
-      add_other_forms();
     }
-    if (out_.block.immovable < 0) add_from_pose();  // a variant inherits these
+    if (out_.block.immovable < 0) add_what_variants_inherit();
     return std::move(out_);
   }
 
@@ -264,6 +263,12 @@ class BlockPlanner {
         outputs.push_back({element(element("D", i), c), weighted(i, c)});
     }
     add("inverse_mass_jacobian", "(M^-1 J^T)^T, laid out like dense", outputs);
+  }
+
+  // What no inner loop of a solver asks for: a variant has it from the general block.
+  void add_what_variants_inherit() {
+    if (joint_.dimension == 3) add_other_forms();
+    add_from_pose();
   }
 
   // The other two velocity forms in space.

@@ -3,8 +3,9 @@
 // A kernel is a struct of static function templates, one struct per joint (`cdot::planar::line`), written by
 // `cdot derive`. A solver sees a *row block*: some rows of C(q, t) over some bodies. Three kinds of struct are row
 // blocks and have the same members: a joint, one of its coordinates (`line::slide`, always one row), and a joint or
-// coordinate with one body immovable (`line::a_immovable`: that body's terms are gone from J, K and the impulse; it has
-// gamma, dC/dt and the stiffness from the block with all bodies movable).
+// coordinate with one body immovable (`line::a_immovable`: that body's terms are gone from J, K and the impulse). What
+// no inner loop of a solver calls, such a variant has from the block with all bodies movable: gamma, dC/dt, the
+// stiffness and, in space, the two other forms of J, which take the Jacobian<T> of that block.
 //
 //   members of a row block B                                                                 shapes
 //   B::bodies, B::rows                                             number of bodies, of rows
@@ -55,7 +56,7 @@
 namespace cdot {
 
 // Raised when the members above change; every kernel asserts the number it was written for.
-inline constexpr int kernel_contract = 1;
+inline constexpr int kernel_contract = 2;
 
 enum class RowKind {
   equality,    // C = 0

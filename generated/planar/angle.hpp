@@ -13,7 +13,7 @@
 namespace cdot::planar {
 
 struct angle {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "angle";
   static constexpr std::string_view title =
       "The angle from b to a stays phi; the bodies may move apart.";

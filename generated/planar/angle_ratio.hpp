@@ -15,7 +15,7 @@
 namespace cdot::planar {
 
 struct angle_ratio {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "angle_ratio";
   static constexpr std::string_view title =
       "The angle of b is ratio times that of a, plus phi; both are counted from the "

@@ -15,7 +15,7 @@
 namespace cdot::planar {
 
 struct distance {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "distance";
   static constexpr std::string_view title =
       "The points pa of a and pb of b keep their distance l.";

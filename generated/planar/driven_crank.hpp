@@ -18,7 +18,7 @@
 namespace cdot::planar {
 
 struct driven_crank {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "driven_crank";
   static constexpr std::string_view title =
       "b turns about the pin pa of a with the angle rate time + phase.";

@@ -15,7 +15,7 @@
 namespace cdot::planar {
 
 struct gear {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "gear";
   static constexpr std::string_view title =
       "The angle of a and ratio times that of b keep their sum; both are counted from "

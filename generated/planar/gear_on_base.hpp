@@ -16,7 +16,7 @@
 namespace cdot::planar {
 
 struct gear_on_base {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "gear_on_base";
   static constexpr std::string_view title =
       "A gear between wheels a and b whose axles are in the same base c.";

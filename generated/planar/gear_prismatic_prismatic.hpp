@@ -33,7 +33,7 @@
 namespace cdot::planar {
 
 struct gear_prismatic_prismatic {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "gear_prismatic_prismatic";
   static constexpr std::string_view title =
       "The slide of a along ea of its base c, and ratio times the slide of b along eb "

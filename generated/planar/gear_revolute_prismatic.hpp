@@ -19,7 +19,7 @@
 namespace cdot::planar {
 
 struct gear_revolute_prismatic {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "gear_revolute_prismatic";
   static constexpr std::string_view title =
       "The angle of a against its base c, and ratio times the slide of b along e of its "

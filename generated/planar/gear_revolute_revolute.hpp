@@ -17,7 +17,7 @@
 namespace cdot::planar {
 
 struct gear_revolute_revolute {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "gear_revolute_revolute";
   static constexpr std::string_view title =
       "The angle of a against its base c, and ratio times that of b against its base d, "

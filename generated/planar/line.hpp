@@ -18,7 +18,7 @@
 namespace cdot::planar {
 
 struct line {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "line";
   static constexpr std::string_view title =
       "The point pa of a stays on the line through pb of b with the normal t; a may "

@@ -15,7 +15,7 @@
 namespace cdot::planar {
 
 struct max_distance {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "max_distance";
   static constexpr std::string_view title =
       "The points pa of a and pb of b are never farther apart than l.";

@@ -20,7 +20,7 @@
 namespace cdot::planar {
 
 struct motor {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "motor";
   static constexpr std::string_view title =
       "The point pb of b stays at offset from the centre of a, in a's frame, and b at "

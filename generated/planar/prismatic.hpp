@@ -22,7 +22,7 @@
 namespace cdot::planar {
 
 struct prismatic {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "prismatic";
   static constexpr std::string_view title =
       "a slides on the line through pb of b with the normal t, and does not turn "

@@ -19,7 +19,7 @@
 namespace cdot::planar {
 
 struct pulley {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "pulley";
   static constexpr std::string_view title =
       "A rope from pa over ga and gb to pb: la + ratio lb keeps its length.";

@@ -19,7 +19,7 @@
 namespace cdot::planar {
 
 struct rack_and_pinion {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "rack_and_pinion";
   static constexpr std::string_view title =
       "The rack b moves along e by radius times the angle of the pinion a.";

@@ -18,7 +18,7 @@
 namespace cdot::planar {
 
 struct revolute {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "revolute";
   static constexpr std::string_view title =
       "The point pa of a and the point pb of b stay together; the bodies turn about "

@@ -25,7 +25,7 @@
 namespace cdot::planar {
 
 struct rolling {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "rolling";
   static constexpr std::string_view title =
       "The disc a touches the line of b with the normal n, and rolls on it without "

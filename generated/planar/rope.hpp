@@ -20,7 +20,7 @@
 namespace cdot::planar {
 
 struct rope {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "rope";
   static constexpr std::string_view title =
       "A rope of length l from the point pa of a to the point pb of b; its present "

@@ -29,7 +29,7 @@
 namespace cdot::planar {
 
 struct sine_track {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "sine_track";
   static constexpr std::string_view title =
       "The point pa of a stays on the curve y = amplitude sin(k x) in the frame f of b, "

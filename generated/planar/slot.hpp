@@ -18,7 +18,7 @@
 namespace cdot::planar {
 
 struct slot {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "slot";
   static constexpr std::string_view title =
       "The point pa of a stays on a line through pb fixed in b.";

@@ -18,7 +18,7 @@
 namespace cdot::planar {
 
 struct target {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "target";
   static constexpr std::string_view title =
       "The point pa of a stays at the point goal of the world.";

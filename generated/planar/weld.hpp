@@ -18,7 +18,7 @@
 namespace cdot::planar {
 
 struct weld {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "weld";
   static constexpr std::string_view title =
       "a and b move and turn as one body.";

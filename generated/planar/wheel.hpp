@@ -23,7 +23,7 @@
 namespace cdot::planar {
 
 struct wheel {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "wheel";
   static constexpr std::string_view title =
       "The point pb of b slides along ax, fixed in a, through pa; b may turn.";

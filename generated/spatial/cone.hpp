@@ -13,7 +13,7 @@
 namespace cdot::spatial {
 
 struct cone {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "cone";
   static constexpr std::string_view title =
       "The axis fb.x of b is never farther from the axis fa.x of a than the angle half.";
@@ -468,31 +468,6 @@ struct cone::a_immovable : cone {
     D[0][10] = -mb.I * J.na_x_nb_y;
     D[0][11] = -mb.I * J.na_x_nb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = -J.na_x_nb_x * b.xx - J.na_x_nb_y * b.yx - J.na_x_nb_z * b.zx;
-    D[0][10] = -J.na_x_nb_x * b.xy - J.na_x_nb_y * b.yy - J.na_x_nb_z * b.zy;
-    D[0][11] = -J.na_x_nb_x * b.xz - J.na_x_nb_y * b.yz - J.na_x_nb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(2) * (J.na_x_nb_x * b.e1 + J.na_x_nb_y * b.e2 + J.na_x_nb_z * b.e3);
-    D[0][11] = T(2) * (J.na_x_nb_z * b.e2 - J.na_x_nb_x * b.e0 - J.na_x_nb_y * b.e3);
-    D[0][12] = T(2) * (J.na_x_nb_x * b.e3 - J.na_x_nb_y * b.e0 - J.na_x_nb_z * b.e1);
-    D[0][13] = T(2) * (J.na_x_nb_y * b.e1 - J.na_x_nb_x * b.e2 - J.na_x_nb_z * b.e0);
-  }
 };
 
 // cone with b immovable: its velocity and inverse mass are zero and gone.
@@ -586,31 +561,6 @@ struct cone::b_immovable : cone {
     D[0][3] = ma.I * J.na_x_nb_x;
     D[0][4] = ma.I * J.na_x_nb_y;
     D[0][5] = ma.I * J.na_x_nb_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.na_x_nb_x * a.xx + J.na_x_nb_y * a.yx + J.na_x_nb_z * a.zx;
-    D[0][4] = J.na_x_nb_x * a.xy + J.na_x_nb_y * a.yy + J.na_x_nb_z * a.zy;
-    D[0][5] = J.na_x_nb_x * a.xz + J.na_x_nb_y * a.yz + J.na_x_nb_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.na_x_nb_x * a.e1 + J.na_x_nb_y * a.e2 + J.na_x_nb_z * a.e3);
-    D[0][4] = T(2) * (J.na_x_nb_x * a.e0 + J.na_x_nb_y * a.e3 - J.na_x_nb_z * a.e2);
-    D[0][5] = T(2) * (J.na_x_nb_y * a.e0 - J.na_x_nb_x * a.e3 + J.na_x_nb_z * a.e1);
-    D[0][6] = T(2) * (J.na_x_nb_x * a.e2 - J.na_x_nb_y * a.e1 + J.na_x_nb_z * a.e0);
   }
 };
 

@@ -54,7 +54,7 @@
 namespace cdot::spatial {
 
 struct cylindrical {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "cylindrical";
   static constexpr std::string_view title =
       "The point pb of b stays on the axis fa.x through the point pa of a, and the axis "
@@ -2031,64 +2031,6 @@ struct cylindrical::a_immovable : cylindrical {
     D[3][10] = mb.I * J.rb_x_fa_z_y;
     D[3][11] = mb.I * J.rb_x_fa_z_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 30 +, 36 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = -J.fa_y_x_fb_x_x * b.xx - J.fa_y_x_fb_x_y * b.yx - J.fa_y_x_fb_x_z * b.zx;
-    D[0][10] = -J.fa_y_x_fb_x_x * b.xy - J.fa_y_x_fb_x_y * b.yy - J.fa_y_x_fb_x_z * b.zy;
-    D[0][11] = -J.fa_y_x_fb_x_x * b.xz - J.fa_y_x_fb_x_y * b.yz - J.fa_y_x_fb_x_z * b.zz;
-    D[1][9] = -J.fa_z_x_fb_x_x * b.xx - J.fa_z_x_fb_x_y * b.yx - J.fa_z_x_fb_x_z * b.zx;
-    D[1][10] = -J.fa_z_x_fb_x_x * b.xy - J.fa_z_x_fb_x_y * b.yy - J.fa_z_x_fb_x_z * b.zy;
-    D[1][11] = -J.fa_z_x_fb_x_x * b.xz - J.fa_z_x_fb_x_y * b.yz - J.fa_z_x_fb_x_z * b.zz;
-    D[2][6] = J.fa_y_x;
-    D[2][7] = J.fa_y_y;
-    D[2][8] = J.fa_y_z;
-    D[2][9] = J.rb_x_fa_y_x * b.xx + J.rb_x_fa_y_y * b.yx + J.rb_x_fa_y_z * b.zx;
-    D[2][10] = J.rb_x_fa_y_x * b.xy + J.rb_x_fa_y_y * b.yy + J.rb_x_fa_y_z * b.zy;
-    D[2][11] = J.rb_x_fa_y_x * b.xz + J.rb_x_fa_y_y * b.yz + J.rb_x_fa_y_z * b.zz;
-    D[3][6] = J.fa_z_x;
-    D[3][7] = J.fa_z_y;
-    D[3][8] = J.fa_z_z;
-    D[3][9] = J.rb_x_fa_z_x * b.xx + J.rb_x_fa_z_y * b.yx + J.rb_x_fa_z_z * b.zx;
-    D[3][10] = J.rb_x_fa_z_x * b.xy + J.rb_x_fa_z_y * b.yy + J.rb_x_fa_z_z * b.zy;
-    D[3][11] = J.rb_x_fa_z_x * b.xz + J.rb_x_fa_z_y * b.yz + J.rb_x_fa_z_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 32 +, 64 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(2) * (J.fa_y_x_fb_x_x * b.e1 + J.fa_y_x_fb_x_y * b.e2 + J.fa_y_x_fb_x_z * b.e3);
-    D[0][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
-    D[0][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
-    D[0][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[1][10] = T(2) * (J.fa_z_x_fb_x_x * b.e1 + J.fa_z_x_fb_x_y * b.e2 + J.fa_z_x_fb_x_z * b.e3);
-    D[1][11] = T(2) * (J.fa_z_x_fb_x_z * b.e2 - J.fa_z_x_fb_x_x * b.e0 - J.fa_z_x_fb_x_y * b.e3);
-    D[1][12] = T(2) * (J.fa_z_x_fb_x_x * b.e3 - J.fa_z_x_fb_x_y * b.e0 - J.fa_z_x_fb_x_z * b.e1);
-    D[1][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
-    D[2][7] = J.fa_y_x;
-    D[2][8] = J.fa_y_y;
-    D[2][9] = J.fa_y_z;
-    D[2][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[2][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[2][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[2][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
-    D[3][7] = J.fa_z_x;
-    D[3][8] = J.fa_z_y;
-    D[3][9] = J.fa_z_z;
-    D[3][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-    D[3][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-    D[3][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-    D[3][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
-  }
 };
 
 // cylindrical with b immovable: its velocity and inverse mass are zero and gone.
@@ -2349,64 +2291,6 @@ struct cylindrical::b_immovable : cylindrical {
     D[3][4] = -ma.I * J.ra_d_x_fa_z_y;
     D[3][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 36 +, 36 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.fa_y_x_fb_x_x * a.xx + J.fa_y_x_fb_x_y * a.yx + J.fa_y_x_fb_x_z * a.zx;
-    D[0][4] = J.fa_y_x_fb_x_x * a.xy + J.fa_y_x_fb_x_y * a.yy + J.fa_y_x_fb_x_z * a.zy;
-    D[0][5] = J.fa_y_x_fb_x_x * a.xz + J.fa_y_x_fb_x_y * a.yz + J.fa_y_x_fb_x_z * a.zz;
-    D[1][3] = J.fa_z_x_fb_x_x * a.xx + J.fa_z_x_fb_x_y * a.yx + J.fa_z_x_fb_x_z * a.zx;
-    D[1][4] = J.fa_z_x_fb_x_x * a.xy + J.fa_z_x_fb_x_y * a.yy + J.fa_z_x_fb_x_z * a.zy;
-    D[1][5] = J.fa_z_x_fb_x_x * a.xz + J.fa_z_x_fb_x_y * a.yz + J.fa_z_x_fb_x_z * a.zz;
-    D[2][0] = -J.fa_y_x;
-    D[2][1] = -J.fa_y_y;
-    D[2][2] = -J.fa_y_z;
-    D[2][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
-    D[2][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
-    D[2][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
-    D[3][0] = -J.fa_z_x;
-    D[3][1] = -J.fa_z_y;
-    D[3][2] = -J.fa_z_z;
-    D[3][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
-    D[3][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
-    D[3][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 38 +, 64 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
-    D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
-    D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
-    D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
-    D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
-    D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
-    D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
-    D[2][0] = -J.fa_y_x;
-    D[2][1] = -J.fa_y_y;
-    D[2][2] = -J.fa_y_z;
-    D[2][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[2][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[2][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[2][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
-    D[3][0] = -J.fa_z_x;
-    D[3][1] = -J.fa_z_y;
-    D[3][2] = -J.fa_z_z;
-    D[3][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-    D[3][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-    D[3][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-    D[3][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
-  }
 };
 
 // cylindrical::slide with a immovable: its velocity and inverse mass are zero and gone.
@@ -2551,37 +2435,6 @@ struct cylindrical::slide::a_immovable : cylindrical::slide {
     D[0][9] = mb.I * J.rb_x_fa_x_x;
     D[0][10] = mb.I * J.rb_x_fa_x_y;
     D[0][11] = mb.I * J.rb_x_fa_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_x_x;
-    D[0][7] = J.fa_x_y;
-    D[0][8] = J.fa_x_z;
-    D[0][9] = J.rb_x_fa_x_x * b.xx + J.rb_x_fa_x_y * b.yx + J.rb_x_fa_x_z * b.zx;
-    D[0][10] = J.rb_x_fa_x_x * b.xy + J.rb_x_fa_x_y * b.yy + J.rb_x_fa_x_z * b.zy;
-    D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_x_x;
-    D[0][8] = J.fa_x_y;
-    D[0][9] = J.fa_x_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
   }
 };
 
@@ -2732,37 +2585,6 @@ struct cylindrical::slide::b_immovable : cylindrical::slide {
     D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
-  }
 };
 
 // cylindrical::angle with a immovable: its velocity and inverse mass are zero and gone.
@@ -2900,31 +2722,6 @@ struct cylindrical::angle::a_immovable : cylindrical::angle {
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
 };
 
 // cylindrical::angle with b immovable: its velocity and inverse mass are zero and gone.
@@ -3016,31 +2813,6 @@ struct cylindrical::angle::b_immovable : cylindrical::angle {
     D[0][3] = -ma.I * J.wa_x;
     D[0][4] = -ma.I * J.wa_y;
     D[0][5] = -ma.I * J.wa_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = -J.wa_x * a.xx - J.wa_y * a.yx - J.wa_z * a.zx;
-    D[0][4] = -J.wa_x * a.xy - J.wa_y * a.yy - J.wa_z * a.zy;
-    D[0][5] = -J.wa_x * a.xz - J.wa_y * a.yz - J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_z * a.e2 - J.wa_x * a.e0 - J.wa_y * a.e3);
-    D[0][5] = T(2) * (J.wa_x * a.e3 - J.wa_y * a.e0 - J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_y * a.e1 - J.wa_x * a.e2 - J.wa_z * a.e0);
   }
 };
 

@@ -15,7 +15,7 @@
 namespace cdot::spatial {
 
 struct distance {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "distance";
   static constexpr std::string_view title =
       "The points pa of a and pb of b keep their distance l.";
@@ -790,37 +790,6 @@ struct distance::a_immovable : distance {
     D[0][10] = mb.I * J.rb_x_n_y;
     D[0][11] = mb.I * J.rb_x_n_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.n_x;
-    D[0][7] = J.n_y;
-    D[0][8] = J.n_z;
-    D[0][9] = J.rb_x_n_x * b.xx + J.rb_x_n_y * b.yx + J.rb_x_n_z * b.zx;
-    D[0][10] = J.rb_x_n_x * b.xy + J.rb_x_n_y * b.yy + J.rb_x_n_z * b.zy;
-    D[0][11] = J.rb_x_n_x * b.xz + J.rb_x_n_y * b.yz + J.rb_x_n_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.n_x;
-    D[0][8] = J.n_y;
-    D[0][9] = J.n_z;
-    D[0][10] = T(-2) * (J.rb_x_n_x * b.e1 + J.rb_x_n_y * b.e2 + J.rb_x_n_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_n_x * b.e0 + J.rb_x_n_y * b.e3 - J.rb_x_n_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_n_y * b.e0 - J.rb_x_n_x * b.e3 + J.rb_x_n_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_n_x * b.e2 - J.rb_x_n_y * b.e1 + J.rb_x_n_z * b.e0);
-  }
 };
 
 // distance with b immovable: its velocity and inverse mass are zero and gone.
@@ -967,37 +936,6 @@ struct distance::b_immovable : distance {
     D[0][3] = -ma.I * J.ra_x_n_x;
     D[0][4] = -ma.I * J.ra_x_n_y;
     D[0][5] = -ma.I * J.ra_x_n_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.n_x;
-    D[0][1] = -J.n_y;
-    D[0][2] = -J.n_z;
-    D[0][3] = -J.ra_x_n_x * a.xx - J.ra_x_n_y * a.yx - J.ra_x_n_z * a.zx;
-    D[0][4] = -J.ra_x_n_x * a.xy - J.ra_x_n_y * a.yy - J.ra_x_n_z * a.zy;
-    D[0][5] = -J.ra_x_n_x * a.xz - J.ra_x_n_y * a.yz - J.ra_x_n_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.n_x;
-    D[0][1] = -J.n_y;
-    D[0][2] = -J.n_z;
-    D[0][3] = T(2) * (J.ra_x_n_x * a.e1 + J.ra_x_n_y * a.e2 + J.ra_x_n_z * a.e3);
-    D[0][4] = T(2) * (J.ra_x_n_z * a.e2 - J.ra_x_n_x * a.e0 - J.ra_x_n_y * a.e3);
-    D[0][5] = T(2) * (J.ra_x_n_x * a.e3 - J.ra_x_n_y * a.e0 - J.ra_x_n_z * a.e1);
-    D[0][6] = T(2) * (J.ra_x_n_y * a.e1 - J.ra_x_n_x * a.e2 - J.ra_x_n_z * a.e0);
   }
 };
 

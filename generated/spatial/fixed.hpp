@@ -27,7 +27,7 @@
 namespace cdot::spatial {
 
 struct fixed {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "fixed";
   static constexpr std::string_view title =
       "The point pb of b stays at the point pa of a, and the frame fb of b parallel to "
@@ -1466,84 +1466,6 @@ struct fixed::a_immovable : fixed {
     D[5][10] = mb.I * J.wb_6_y;
     D[5][11] = mb.I * J.wb_6_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 27 +, 45 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[6][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = T(-1);
-    D[0][9] = J.rb_y * b.zx - J.rb_z * b.yx;
-    D[0][10] = J.rb_y * b.zy - J.rb_z * b.yy;
-    D[0][11] = J.rb_y * b.zz - J.rb_z * b.yz;
-    D[1][7] = T(-1);
-    D[1][9] = J.rb_z * b.xx - J.rb_x * b.zx;
-    D[1][10] = J.rb_z * b.xy - J.rb_x * b.zy;
-    D[1][11] = J.rb_z * b.xz - J.rb_x * b.zz;
-    D[2][8] = T(-1);
-    D[2][9] = J.rb_x * b.yx - J.rb_y * b.xx;
-    D[2][10] = J.rb_x * b.yy - J.rb_y * b.xy;
-    D[2][11] = J.rb_x * b.yz - J.rb_y * b.xz;
-    D[3][9] = J.wb_4_x * b.xx + J.wb_4_y * b.yx + J.wb_4_z * b.zx;
-    D[3][10] = J.wb_4_x * b.xy + J.wb_4_y * b.yy + J.wb_4_z * b.zy;
-    D[3][11] = J.wb_4_x * b.xz + J.wb_4_y * b.yz + J.wb_4_z * b.zz;
-    D[4][9] = J.wb_5_x * b.xx + J.wb_5_y * b.yx + J.wb_5_z * b.zx;
-    D[4][10] = J.wb_5_x * b.xy + J.wb_5_y * b.yy + J.wb_5_z * b.zy;
-    D[4][11] = J.wb_5_x * b.xz + J.wb_5_y * b.yz + J.wb_5_z * b.zz;
-    D[5][9] = J.wb_6_x * b.xx + J.wb_6_y * b.yx + J.wb_6_z * b.zx;
-    D[5][10] = J.wb_6_x * b.xy + J.wb_6_y * b.yy + J.wb_6_z * b.zy;
-    D[5][11] = J.wb_6_x * b.xz + J.wb_6_y * b.yz + J.wb_6_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 36 +, 72 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[6][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T D1_1 = J.rb_y * b.e3;
-    const T D1_2 = J.rb_z * b.e2;
-    const T D1_1_2 = J.rb_y * b.e2;
-    const T D1_2_2 = J.rb_z * b.e3;
-    const T D1_1_3 = J.rb_y * b.e1;
-    const T D1_2_3 = J.rb_z * b.e0;
-    const T D1_1_4 = J.rb_y * b.e0;
-    const T D1_2_4 = J.rb_z * b.e1;
-    const T D2_1 = J.rb_x * b.e3;
-    const T D2_1_2 = J.rb_x * b.e2;
-    const T D2_1_3 = J.rb_x * b.e1;
-    const T D2_1_4 = J.rb_x * b.e0;
-    D[0][7] = T(-1);
-    D[0][10] = T(2) * (D1_2 - D1_1);
-    D[0][11] = T(-2) * (D1_1_2 + D1_2_2);
-    D[0][12] = T(2) * (D1_1_3 - D1_2_3);
-    D[0][13] = T(2) * (D1_1_4 + D1_2_4);
-    D[1][8] = T(-1);
-    D[1][10] = T(2) * (D2_1 - D1_2_4);
-    D[1][11] = T(2) * (D2_1_2 + D1_2_3);
-    D[1][12] = T(-2) * (D2_1_3 + D1_2_2);
-    D[1][13] = T(2) * (D1_2 - D2_1_4);
-    D[2][9] = T(-1);
-    D[2][10] = T(2) * (D1_1_3 - D2_1_2);
-    D[2][11] = T(2) * (D2_1 - D1_1_4);
-    D[2][12] = T(2) * (D2_1_4 + D1_1);
-    D[2][13] = T(-2) * (D2_1_3 + D1_1_2);
-    D[3][10] = T(-2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
-    D[3][11] = T(2) * (J.wb_4_x * b.e0 + J.wb_4_y * b.e3 - J.wb_4_z * b.e2);
-    D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
-    D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
-    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
-    D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
-    D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
-    D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
-    D[5][10] = T(-2) * (J.wb_6_x * b.e1 + J.wb_6_y * b.e2 + J.wb_6_z * b.e3);
-    D[5][11] = T(2) * (J.wb_6_x * b.e0 + J.wb_6_y * b.e3 - J.wb_6_z * b.e2);
-    D[5][12] = T(2) * (J.wb_6_y * b.e0 - J.wb_6_x * b.e3 + J.wb_6_z * b.e1);
-    D[5][13] = T(2) * (J.wb_6_x * b.e2 - J.wb_6_y * b.e1 + J.wb_6_z * b.e0);
-  }
 };
 
 // fixed with b immovable: its velocity and inverse mass are zero and gone.
@@ -1860,84 +1782,6 @@ struct fixed::b_immovable : fixed {
     D[5][3] = ma.I * J.wa_6_x;
     D[5][4] = ma.I * J.wa_6_y;
     D[5][5] = ma.I * J.wa_6_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 27 +, 45 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[6][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = T(1);
-    D[0][3] = J.ra_z * a.yx - J.ra_y * a.zx;
-    D[0][4] = J.ra_z * a.yy - J.ra_y * a.zy;
-    D[0][5] = J.ra_z * a.yz - J.ra_y * a.zz;
-    D[1][1] = T(1);
-    D[1][3] = J.ra_x * a.zx - J.ra_z * a.xx;
-    D[1][4] = J.ra_x * a.zy - J.ra_z * a.xy;
-    D[1][5] = J.ra_x * a.zz - J.ra_z * a.xz;
-    D[2][2] = T(1);
-    D[2][3] = J.ra_y * a.xx - J.ra_x * a.yx;
-    D[2][4] = J.ra_y * a.xy - J.ra_x * a.yy;
-    D[2][5] = J.ra_y * a.xz - J.ra_x * a.yz;
-    D[3][3] = J.wa_4_x * a.xx + J.wa_4_y * a.yx + J.wa_4_z * a.zx;
-    D[3][4] = J.wa_4_x * a.xy + J.wa_4_y * a.yy + J.wa_4_z * a.zy;
-    D[3][5] = J.wa_4_x * a.xz + J.wa_4_y * a.yz + J.wa_4_z * a.zz;
-    D[4][3] = J.wa_5_x * a.xx + J.wa_5_y * a.yx + J.wa_5_z * a.zx;
-    D[4][4] = J.wa_5_x * a.xy + J.wa_5_y * a.yy + J.wa_5_z * a.zy;
-    D[4][5] = J.wa_5_x * a.xz + J.wa_5_y * a.yz + J.wa_5_z * a.zz;
-    D[5][3] = J.wa_6_x * a.xx + J.wa_6_y * a.yx + J.wa_6_z * a.zx;
-    D[5][4] = J.wa_6_x * a.xy + J.wa_6_y * a.yy + J.wa_6_z * a.zy;
-    D[5][5] = J.wa_6_x * a.xz + J.wa_6_y * a.yz + J.wa_6_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 36 +, 72 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[6][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const T D1_1 = J.ra_y * a.e3;
-    const T D1_2 = J.ra_z * a.e2;
-    const T D1_1_2 = J.ra_y * a.e2;
-    const T D1_2_2 = J.ra_z * a.e3;
-    const T D1_1_3 = J.ra_y * a.e1;
-    const T D1_2_3 = J.ra_z * a.e0;
-    const T D1_1_4 = J.ra_y * a.e0;
-    const T D1_2_4 = J.ra_z * a.e1;
-    const T D2_1 = J.ra_x * a.e3;
-    const T D2_1_2 = J.ra_x * a.e2;
-    const T D2_1_3 = J.ra_x * a.e1;
-    const T D2_1_4 = J.ra_x * a.e0;
-    D[0][0] = T(1);
-    D[0][3] = T(2) * (D1_1 - D1_2);
-    D[0][4] = T(2) * (D1_1_2 + D1_2_2);
-    D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
-    D[1][1] = T(1);
-    D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
-    D[1][5] = T(2) * (D2_1_3 + D1_2_2);
-    D[1][6] = T(2) * (D2_1_4 - D1_2);
-    D[2][2] = T(1);
-    D[2][3] = T(2) * (D2_1_2 - D1_1_3);
-    D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = T(-2) * (D2_1_4 + D1_1);
-    D[2][6] = T(2) * (D2_1_3 + D1_1_2);
-    D[3][3] = T(-2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
-    D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
-    D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
-    D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
-    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
-    D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
-    D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
-    D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
-    D[5][3] = T(-2) * (J.wa_6_x * a.e1 + J.wa_6_y * a.e2 + J.wa_6_z * a.e3);
-    D[5][4] = T(2) * (J.wa_6_x * a.e0 + J.wa_6_y * a.e3 - J.wa_6_z * a.e2);
-    D[5][5] = T(2) * (J.wa_6_y * a.e0 - J.wa_6_x * a.e3 + J.wa_6_z * a.e1);
-    D[5][6] = T(2) * (J.wa_6_x * a.e2 - J.wa_6_y * a.e1 + J.wa_6_z * a.e0);
   }
 };
 

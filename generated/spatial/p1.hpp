@@ -20,7 +20,7 @@
 namespace cdot::spatial {
 
 struct p1 {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "p1";
   static constexpr std::string_view title =
       "The axis fb.x of b stays parallel to the axis fa.x of a.";
@@ -606,38 +606,6 @@ struct p1::a_immovable : p1 {
     D[1][10] = -mb.I * J.fa_z_x_fb_x_y;
     D[1][11] = -mb.I * J.fa_z_x_fb_x_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 18 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = -J.fa_y_x_fb_x_x * b.xx - J.fa_y_x_fb_x_y * b.yx - J.fa_y_x_fb_x_z * b.zx;
-    D[0][10] = -J.fa_y_x_fb_x_x * b.xy - J.fa_y_x_fb_x_y * b.yy - J.fa_y_x_fb_x_z * b.zy;
-    D[0][11] = -J.fa_y_x_fb_x_x * b.xz - J.fa_y_x_fb_x_y * b.yz - J.fa_y_x_fb_x_z * b.zz;
-    D[1][9] = -J.fa_z_x_fb_x_x * b.xx - J.fa_z_x_fb_x_y * b.yx - J.fa_z_x_fb_x_z * b.zx;
-    D[1][10] = -J.fa_z_x_fb_x_x * b.xy - J.fa_z_x_fb_x_y * b.yy - J.fa_z_x_fb_x_z * b.zy;
-    D[1][11] = -J.fa_z_x_fb_x_x * b.xz - J.fa_z_x_fb_x_y * b.yz - J.fa_z_x_fb_x_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(2) * (J.fa_y_x_fb_x_x * b.e1 + J.fa_y_x_fb_x_y * b.e2 + J.fa_y_x_fb_x_z * b.e3);
-    D[0][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
-    D[0][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
-    D[0][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[1][10] = T(2) * (J.fa_z_x_fb_x_x * b.e1 + J.fa_z_x_fb_x_y * b.e2 + J.fa_z_x_fb_x_z * b.e3);
-    D[1][11] = T(2) * (J.fa_z_x_fb_x_z * b.e2 - J.fa_z_x_fb_x_x * b.e0 - J.fa_z_x_fb_x_y * b.e3);
-    D[1][12] = T(2) * (J.fa_z_x_fb_x_x * b.e3 - J.fa_z_x_fb_x_y * b.e0 - J.fa_z_x_fb_x_z * b.e1);
-    D[1][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
-  }
 };
 
 // p1 with b immovable: its velocity and inverse mass are zero and gone.
@@ -753,38 +721,6 @@ struct p1::b_immovable : p1 {
     D[1][3] = ma.I * J.fa_z_x_fb_x_x;
     D[1][4] = ma.I * J.fa_z_x_fb_x_y;
     D[1][5] = ma.I * J.fa_z_x_fb_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.fa_y_x_fb_x_x * a.xx + J.fa_y_x_fb_x_y * a.yx + J.fa_y_x_fb_x_z * a.zx;
-    D[0][4] = J.fa_y_x_fb_x_x * a.xy + J.fa_y_x_fb_x_y * a.yy + J.fa_y_x_fb_x_z * a.zy;
-    D[0][5] = J.fa_y_x_fb_x_x * a.xz + J.fa_y_x_fb_x_y * a.yz + J.fa_y_x_fb_x_z * a.zz;
-    D[1][3] = J.fa_z_x_fb_x_x * a.xx + J.fa_z_x_fb_x_y * a.yx + J.fa_z_x_fb_x_z * a.zx;
-    D[1][4] = J.fa_z_x_fb_x_x * a.xy + J.fa_z_x_fb_x_y * a.yy + J.fa_z_x_fb_x_z * a.zy;
-    D[1][5] = J.fa_z_x_fb_x_x * a.xz + J.fa_z_x_fb_x_y * a.yz + J.fa_z_x_fb_x_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
-    D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
-    D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
-    D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
-    D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
-    D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
-    D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
   }
 };
 

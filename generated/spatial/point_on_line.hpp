@@ -27,7 +27,7 @@
 namespace cdot::spatial {
 
 struct point_on_line {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "point_on_line";
   static constexpr std::string_view title =
       "The point pb of b stays on the line of a through pa along fa.x; b may turn.";
@@ -1302,50 +1302,6 @@ struct point_on_line::a_immovable : point_on_line {
     D[1][10] = mb.I * J.rb_x_fa_z_y;
     D[1][11] = mb.I * J.rb_x_fa_z_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_y_x;
-    D[0][7] = J.fa_y_y;
-    D[0][8] = J.fa_y_z;
-    D[0][9] = J.rb_x_fa_y_x * b.xx + J.rb_x_fa_y_y * b.yx + J.rb_x_fa_y_z * b.zx;
-    D[0][10] = J.rb_x_fa_y_x * b.xy + J.rb_x_fa_y_y * b.yy + J.rb_x_fa_y_z * b.zy;
-    D[0][11] = J.rb_x_fa_y_x * b.xz + J.rb_x_fa_y_y * b.yz + J.rb_x_fa_y_z * b.zz;
-    D[1][6] = J.fa_z_x;
-    D[1][7] = J.fa_z_y;
-    D[1][8] = J.fa_z_z;
-    D[1][9] = J.rb_x_fa_z_x * b.xx + J.rb_x_fa_z_y * b.yx + J.rb_x_fa_z_z * b.zx;
-    D[1][10] = J.rb_x_fa_z_x * b.xy + J.rb_x_fa_z_y * b.yy + J.rb_x_fa_z_z * b.zy;
-    D[1][11] = J.rb_x_fa_z_x * b.xz + J.rb_x_fa_z_y * b.yz + J.rb_x_fa_z_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_y_x;
-    D[0][8] = J.fa_y_y;
-    D[0][9] = J.fa_y_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
-    D[1][7] = J.fa_z_x;
-    D[1][8] = J.fa_z_y;
-    D[1][9] = J.fa_z_z;
-    D[1][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-    D[1][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-    D[1][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-    D[1][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
-  }
 };
 
 // point_on_line with b immovable: its velocity and inverse mass are zero and gone.
@@ -1534,50 +1490,6 @@ struct point_on_line::b_immovable : point_on_line {
     D[1][4] = -ma.I * J.ra_d_x_fa_z_y;
     D[1][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 24 +, 18 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_y_x;
-    D[0][1] = -J.fa_y_y;
-    D[0][2] = -J.fa_y_z;
-    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
-    D[1][0] = -J.fa_z_x;
-    D[1][1] = -J.fa_z_y;
-    D[1][2] = -J.fa_z_z;
-    D[1][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
-    D[1][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
-    D[1][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 22 +, 32 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[2][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_y_x;
-    D[0][1] = -J.fa_y_y;
-    D[0][2] = -J.fa_y_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
-    D[1][0] = -J.fa_z_x;
-    D[1][1] = -J.fa_z_y;
-    D[1][2] = -J.fa_z_z;
-    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
-  }
 };
 
 // point_on_line::slide with a immovable: its velocity and inverse mass are zero and gone.
@@ -1722,37 +1634,6 @@ struct point_on_line::slide::a_immovable : point_on_line::slide {
     D[0][9] = mb.I * J.rb_x_fa_x_x;
     D[0][10] = mb.I * J.rb_x_fa_x_y;
     D[0][11] = mb.I * J.rb_x_fa_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_x_x;
-    D[0][7] = J.fa_x_y;
-    D[0][8] = J.fa_x_z;
-    D[0][9] = J.rb_x_fa_x_x * b.xx + J.rb_x_fa_x_y * b.yx + J.rb_x_fa_x_z * b.zx;
-    D[0][10] = J.rb_x_fa_x_x * b.xy + J.rb_x_fa_x_y * b.yy + J.rb_x_fa_x_z * b.zy;
-    D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_x_x;
-    D[0][8] = J.fa_x_y;
-    D[0][9] = J.fa_x_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
   }
 };
 
@@ -1902,37 +1783,6 @@ struct point_on_line::slide::b_immovable : point_on_line::slide {
     D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
     D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 };
 

@@ -20,7 +20,7 @@
 namespace cdot::spatial {
 
 struct pulley {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "pulley";
   static constexpr std::string_view title =
       "A rope from pa over ga and gb to pb: la + ratio lb keeps its length.";
@@ -807,43 +807,6 @@ struct pulley::a_immovable : pulley {
     D[0][10] = D1_1 * J.rb_x_nb_y;
     D[0][11] = D1_1 * J.rb_x_nb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 15 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T D1_1 = J.ratio * J.rb_x_nb_x;
-    const T D1_2 = J.ratio * J.rb_x_nb_y;
-    const T D1_3 = J.ratio * J.rb_x_nb_z;
-    D[0][6] = J.nb_x * J.ratio;
-    D[0][7] = J.nb_y * J.ratio;
-    D[0][8] = J.nb_z * J.ratio;
-    D[0][9] = D1_1 * b.xx + D1_2 * b.yx + D1_3 * b.zx;
-    D[0][10] = D1_1 * b.xy + D1_2 * b.yy + D1_3 * b.zy;
-    D[0][11] = D1_1 * b.xz + D1_2 * b.yz + D1_3 * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 22 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T D1_1 = J.ratio * J.rb_x_nb_x;
-    const T D1_2 = J.ratio * J.rb_x_nb_y;
-    const T D1_3 = J.ratio * J.rb_x_nb_z;
-    D[0][7] = J.nb_x * J.ratio;
-    D[0][8] = J.nb_y * J.ratio;
-    D[0][9] = J.nb_z * J.ratio;
-    D[0][10] = T(-2) * (D1_1 * b.e1 + D1_2 * b.e2 + D1_3 * b.e3);
-    D[0][11] = T(2) * (D1_1 * b.e0 + D1_2 * b.e3 - D1_3 * b.e2);
-    D[0][12] = T(2) * (D1_2 * b.e0 - D1_1 * b.e3 + D1_3 * b.e1);
-    D[0][13] = T(2) * (D1_1 * b.e2 - D1_2 * b.e1 + D1_3 * b.e0);
-  }
 };
 
 // pulley with b immovable: its velocity and inverse mass are zero and gone.
@@ -995,37 +958,6 @@ struct pulley::b_immovable : pulley {
     D[0][3] = ma.I * J.ra_x_na_x;
     D[0][4] = ma.I * J.ra_x_na_y;
     D[0][5] = ma.I * J.ra_x_na_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = J.na_x;
-    D[0][1] = J.na_y;
-    D[0][2] = J.na_z;
-    D[0][3] = J.ra_x_na_x * a.xx + J.ra_x_na_y * a.yx + J.ra_x_na_z * a.zx;
-    D[0][4] = J.ra_x_na_x * a.xy + J.ra_x_na_y * a.yy + J.ra_x_na_z * a.zy;
-    D[0][5] = J.ra_x_na_x * a.xz + J.ra_x_na_y * a.yz + J.ra_x_na_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = J.na_x;
-    D[0][1] = J.na_y;
-    D[0][2] = J.na_z;
-    D[0][3] = T(-2) * (J.ra_x_na_x * a.e1 + J.ra_x_na_y * a.e2 + J.ra_x_na_z * a.e3);
-    D[0][4] = T(2) * (J.ra_x_na_x * a.e0 + J.ra_x_na_y * a.e3 - J.ra_x_na_z * a.e2);
-    D[0][5] = T(2) * (J.ra_x_na_y * a.e0 - J.ra_x_na_x * a.e3 + J.ra_x_na_z * a.e1);
-    D[0][6] = T(2) * (J.ra_x_na_x * a.e2 - J.ra_x_na_y * a.e1 + J.ra_x_na_z * a.e0);
   }
 };
 

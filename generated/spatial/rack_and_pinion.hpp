@@ -26,7 +26,7 @@
 namespace cdot::spatial {
 
 struct rack_and_pinion {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "rack_and_pinion";
   static constexpr std::string_view title =
       "The rack b moves along e by radius times the angle of the pinion a.";
@@ -1042,37 +1042,6 @@ struct rack_and_pinion::a_immovable : rack_and_pinion {
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.vb_x;
-    D[0][7] = J.vb_y;
-    D[0][8] = J.vb_z;
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.vb_x;
-    D[0][8] = J.vb_y;
-    D[0][9] = J.vb_z;
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
 };
 
 // rack_and_pinion with b immovable: its velocity and inverse mass are zero and gone.
@@ -1204,35 +1173,6 @@ struct rack_and_pinion::b_immovable : rack_and_pinion {
     D[0][3] = -ma.I * J.turned_x_fa_z_x;
     D[0][4] = -ma.I * J.turned_x_fa_z_y;
     D[0][5] = -ma.I * J.turned_x_fa_z_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = -J.turned_x_fa_z_x * a.xx - J.turned_x_fa_z_y * a.yx - J.turned_x_fa_z_z * a.zx;
-    D[0][4] = -J.turned_x_fa_z_x * a.xy - J.turned_x_fa_z_y * a.yy - J.turned_x_fa_z_z * a.zy;
-    D[0][5] = -J.turned_x_fa_z_x * a.xz - J.turned_x_fa_z_y * a.yz - J.turned_x_fa_z_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(2) * (J.turned_x_fa_z_x * a.e1 + J.turned_x_fa_z_y * a.e2 + J.turned_x_fa_z_z *
-        a.e3);
-    D[0][4] = T(2) * (J.turned_x_fa_z_z * a.e2 - J.turned_x_fa_z_x * a.e0 - J.turned_x_fa_z_y *
-        a.e3);
-    D[0][5] = T(2) * (J.turned_x_fa_z_x * a.e3 - J.turned_x_fa_z_y * a.e0 - J.turned_x_fa_z_z *
-        a.e1);
-    D[0][6] = T(2) * (J.turned_x_fa_z_y * a.e1 - J.turned_x_fa_z_x * a.e2 - J.turned_x_fa_z_z *
-        a.e0);
   }
 };
 

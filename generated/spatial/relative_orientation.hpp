@@ -23,7 +23,7 @@
 namespace cdot::spatial {
 
 struct relative_orientation {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "relative_orientation";
   static constexpr std::string_view title =
       "The frame fb of b stays parallel to the frame fa of a; the bodies may move "
@@ -946,45 +946,6 @@ struct relative_orientation::a_immovable : relative_orientation {
     D[2][10] = mb.I * J.wb_3_y;
     D[2][11] = mb.I * J.wb_3_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 27 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_1_x * b.xx + J.wb_1_y * b.yx + J.wb_1_z * b.zx;
-    D[0][10] = J.wb_1_x * b.xy + J.wb_1_y * b.yy + J.wb_1_z * b.zy;
-    D[0][11] = J.wb_1_x * b.xz + J.wb_1_y * b.yz + J.wb_1_z * b.zz;
-    D[1][9] = J.wb_2_x * b.xx + J.wb_2_y * b.yx + J.wb_2_z * b.zx;
-    D[1][10] = J.wb_2_x * b.xy + J.wb_2_y * b.yy + J.wb_2_z * b.zy;
-    D[1][11] = J.wb_2_x * b.xz + J.wb_2_y * b.yz + J.wb_2_z * b.zz;
-    D[2][9] = J.wb_3_x * b.xx + J.wb_3_y * b.yx + J.wb_3_z * b.zx;
-    D[2][10] = J.wb_3_x * b.xy + J.wb_3_y * b.yy + J.wb_3_z * b.zy;
-    D[2][11] = J.wb_3_x * b.xz + J.wb_3_y * b.yz + J.wb_3_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 24 +, 48 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_1_x * b.e1 + J.wb_1_y * b.e2 + J.wb_1_z * b.e3);
-    D[0][11] = T(2) * (J.wb_1_x * b.e0 + J.wb_1_y * b.e3 - J.wb_1_z * b.e2);
-    D[0][12] = T(2) * (J.wb_1_y * b.e0 - J.wb_1_x * b.e3 + J.wb_1_z * b.e1);
-    D[0][13] = T(2) * (J.wb_1_x * b.e2 - J.wb_1_y * b.e1 + J.wb_1_z * b.e0);
-    D[1][10] = T(-2) * (J.wb_2_x * b.e1 + J.wb_2_y * b.e2 + J.wb_2_z * b.e3);
-    D[1][11] = T(2) * (J.wb_2_x * b.e0 + J.wb_2_y * b.e3 - J.wb_2_z * b.e2);
-    D[1][12] = T(2) * (J.wb_2_y * b.e0 - J.wb_2_x * b.e3 + J.wb_2_z * b.e1);
-    D[1][13] = T(2) * (J.wb_2_x * b.e2 - J.wb_2_y * b.e1 + J.wb_2_z * b.e0);
-    D[2][10] = T(-2) * (J.wb_3_x * b.e1 + J.wb_3_y * b.e2 + J.wb_3_z * b.e3);
-    D[2][11] = T(2) * (J.wb_3_x * b.e0 + J.wb_3_y * b.e3 - J.wb_3_z * b.e2);
-    D[2][12] = T(2) * (J.wb_3_y * b.e0 - J.wb_3_x * b.e3 + J.wb_3_z * b.e1);
-    D[2][13] = T(2) * (J.wb_3_x * b.e2 - J.wb_3_y * b.e1 + J.wb_3_z * b.e0);
-  }
 };
 
 // relative_orientation with b immovable: its velocity and inverse mass are zero and gone.
@@ -1184,45 +1145,6 @@ struct relative_orientation::b_immovable : relative_orientation {
     D[2][3] = ma.I * J.wa_3_x;
     D[2][4] = ma.I * J.wa_3_y;
     D[2][5] = ma.I * J.wa_3_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 27 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.wa_1_x * a.xx + J.wa_1_y * a.yx + J.wa_1_z * a.zx;
-    D[0][4] = J.wa_1_x * a.xy + J.wa_1_y * a.yy + J.wa_1_z * a.zy;
-    D[0][5] = J.wa_1_x * a.xz + J.wa_1_y * a.yz + J.wa_1_z * a.zz;
-    D[1][3] = J.wa_2_x * a.xx + J.wa_2_y * a.yx + J.wa_2_z * a.zx;
-    D[1][4] = J.wa_2_x * a.xy + J.wa_2_y * a.yy + J.wa_2_z * a.zy;
-    D[1][5] = J.wa_2_x * a.xz + J.wa_2_y * a.yz + J.wa_2_z * a.zz;
-    D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
-    D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
-    D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 24 +, 48 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.wa_1_x * a.e1 + J.wa_1_y * a.e2 + J.wa_1_z * a.e3);
-    D[0][4] = T(2) * (J.wa_1_x * a.e0 + J.wa_1_y * a.e3 - J.wa_1_z * a.e2);
-    D[0][5] = T(2) * (J.wa_1_y * a.e0 - J.wa_1_x * a.e3 + J.wa_1_z * a.e1);
-    D[0][6] = T(2) * (J.wa_1_x * a.e2 - J.wa_1_y * a.e1 + J.wa_1_z * a.e0);
-    D[1][3] = T(-2) * (J.wa_2_x * a.e1 + J.wa_2_y * a.e2 + J.wa_2_z * a.e3);
-    D[1][4] = T(2) * (J.wa_2_x * a.e0 + J.wa_2_y * a.e3 - J.wa_2_z * a.e2);
-    D[1][5] = T(2) * (J.wa_2_y * a.e0 - J.wa_2_x * a.e3 + J.wa_2_z * a.e1);
-    D[1][6] = T(2) * (J.wa_2_x * a.e2 - J.wa_2_y * a.e1 + J.wa_2_z * a.e0);
-    D[2][3] = T(-2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
   }
 };
 

@@ -28,7 +28,7 @@
 namespace cdot::spatial {
 
 struct rolling_sphere {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "rolling_sphere";
   static constexpr std::string_view title =
       "The ball b touches the plane of a through pa with the normal fa.x, and rolls on "
@@ -990,66 +990,6 @@ struct rolling_sphere::a_immovable : rolling_sphere {
     D[2][10] = ib_radius * J.fa_y_y;
     D[2][11] = ib_radius * J.fa_y_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 24 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T D2_1 = J.fa_z_x * J.radius;
-    const T D2_2 = J.radius * J.fa_z_y;
-    const T D2_3 = J.radius * J.fa_z_z;
-    const T D3_1 = J.fa_y_x * J.radius;
-    const T D3_2 = J.fa_y_y * J.radius;
-    const T D3_3 = J.fa_y_z * J.radius;
-    D[0][6] = J.fa_x_x;
-    D[0][7] = J.fa_x_y;
-    D[0][8] = J.fa_x_z;
-    D[1][6] = J.fa_y_x;
-    D[1][7] = J.fa_y_y;
-    D[1][8] = J.fa_y_z;
-    D[1][9] = -D2_1 * b.xx - D2_2 * b.yx - D2_3 * b.zx;
-    D[1][10] = -D2_1 * b.xy - D2_2 * b.yy - D2_3 * b.zy;
-    D[1][11] = -D2_1 * b.xz - D2_2 * b.yz - D2_3 * b.zz;
-    D[2][6] = J.fa_z_x;
-    D[2][7] = J.fa_z_y;
-    D[2][8] = J.fa_z_z;
-    D[2][9] = D3_1 * b.xx + D3_2 * b.yx + D3_3 * b.zx;
-    D[2][10] = D3_1 * b.xy + D3_2 * b.yy + D3_3 * b.zy;
-    D[2][11] = D3_1 * b.xz + D3_2 * b.yz + D3_3 * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 36 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T D2_1 = J.radius * b.e1;
-    const T D2_2 = J.radius * b.e2;
-    const T D2_3 = J.radius * b.e3;
-    const T D2_1_2 = J.radius * b.e0;
-    D[0][7] = J.fa_x_x;
-    D[0][8] = J.fa_x_y;
-    D[0][9] = J.fa_x_z;
-    D[1][7] = J.fa_y_x;
-    D[1][8] = J.fa_y_y;
-    D[1][9] = J.fa_y_z;
-    D[1][10] = T(2) * (D2_1 * J.fa_z_x + D2_2 * J.fa_z_y + D2_3 * J.fa_z_z);
-    D[1][11] = T(2) * (D2_2 * J.fa_z_z - D2_1_2 * J.fa_z_x - D2_3 * J.fa_z_y);
-    D[1][12] = T(2) * (D2_3 * J.fa_z_x - D2_1_2 * J.fa_z_y - D2_1 * J.fa_z_z);
-    D[1][13] = T(2) * (D2_1 * J.fa_z_y - D2_2 * J.fa_z_x - D2_1_2 * J.fa_z_z);
-    D[2][7] = J.fa_z_x;
-    D[2][8] = J.fa_z_y;
-    D[2][9] = J.fa_z_z;
-    D[2][10] = T(-2) * (D2_1 * J.fa_y_x + D2_2 * J.fa_y_y + D2_3 * J.fa_y_z);
-    D[2][11] = T(2) * (D2_1_2 * J.fa_y_x + D2_3 * J.fa_y_y - D2_2 * J.fa_y_z);
-    D[2][12] = T(2) * (D2_1_2 * J.fa_y_y - D2_3 * J.fa_y_x + D2_1 * J.fa_y_z);
-    D[2][13] = T(2) * (D2_2 * J.fa_y_x - D2_1 * J.fa_y_y + D2_1_2 * J.fa_y_z);
-  }
 };
 
 // rolling_sphere with b immovable: its velocity and inverse mass are zero and gone.
@@ -1306,63 +1246,6 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     D[2][3] = -ma.I * J.arm_a_x_fa_z_x;
     D[2][4] = -ma.I * J.arm_a_x_fa_z_y;
     D[2][5] = -ma.I * J.arm_a_x_fa_z_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 36 +, 27 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = -J.ra_u_x_fa_x_x * a.xx - J.ra_u_x_fa_x_y * a.yx - J.ra_u_x_fa_x_z * a.zx;
-    D[0][4] = -J.ra_u_x_fa_x_x * a.xy - J.ra_u_x_fa_x_y * a.yy - J.ra_u_x_fa_x_z * a.zy;
-    D[0][5] = -J.ra_u_x_fa_x_x * a.xz - J.ra_u_x_fa_x_y * a.yz - J.ra_u_x_fa_x_z * a.zz;
-    D[1][0] = -J.fa_y_x;
-    D[1][1] = -J.fa_y_y;
-    D[1][2] = -J.fa_y_z;
-    D[1][3] = -J.arm_a_x_fa_y_x * a.xx - J.arm_a_x_fa_y_y * a.yx - J.arm_a_x_fa_y_z * a.zx;
-    D[1][4] = -J.arm_a_x_fa_y_x * a.xy - J.arm_a_x_fa_y_y * a.yy - J.arm_a_x_fa_y_z * a.zy;
-    D[1][5] = -J.arm_a_x_fa_y_x * a.xz - J.arm_a_x_fa_y_y * a.yz - J.arm_a_x_fa_y_z * a.zz;
-    D[2][0] = -J.fa_z_x;
-    D[2][1] = -J.fa_z_y;
-    D[2][2] = -J.fa_z_z;
-    D[2][3] = -J.arm_a_x_fa_z_x * a.xx - J.arm_a_x_fa_z_y * a.yx - J.arm_a_x_fa_z_z * a.zx;
-    D[2][4] = -J.arm_a_x_fa_z_x * a.xy - J.arm_a_x_fa_z_y * a.yy - J.arm_a_x_fa_z_z * a.zy;
-    D[2][5] = -J.arm_a_x_fa_z_x * a.xz - J.arm_a_x_fa_z_y * a.yz - J.arm_a_x_fa_z_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 33 +, 48 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = T(2) * (J.ra_u_x_fa_x_x * a.e1 + J.ra_u_x_fa_x_y * a.e2 + J.ra_u_x_fa_x_z * a.e3);
-    D[0][4] = T(2) * (J.ra_u_x_fa_x_z * a.e2 - J.ra_u_x_fa_x_x * a.e0 - J.ra_u_x_fa_x_y * a.e3);
-    D[0][5] = T(2) * (J.ra_u_x_fa_x_x * a.e3 - J.ra_u_x_fa_x_y * a.e0 - J.ra_u_x_fa_x_z * a.e1);
-    D[0][6] = T(2) * (J.ra_u_x_fa_x_y * a.e1 - J.ra_u_x_fa_x_x * a.e2 - J.ra_u_x_fa_x_z * a.e0);
-    D[1][0] = -J.fa_y_x;
-    D[1][1] = -J.fa_y_y;
-    D[1][2] = -J.fa_y_z;
-    D[1][3] = T(2) * (J.arm_a_x_fa_y_x * a.e1 + J.arm_a_x_fa_y_y * a.e2 + J.arm_a_x_fa_y_z * a.e3);
-    D[1][4] = T(2) * (J.arm_a_x_fa_y_z * a.e2 - J.arm_a_x_fa_y_x * a.e0 - J.arm_a_x_fa_y_y * a.e3);
-    D[1][5] = T(2) * (J.arm_a_x_fa_y_x * a.e3 - J.arm_a_x_fa_y_y * a.e0 - J.arm_a_x_fa_y_z * a.e1);
-    D[1][6] = T(2) * (J.arm_a_x_fa_y_y * a.e1 - J.arm_a_x_fa_y_x * a.e2 - J.arm_a_x_fa_y_z * a.e0);
-    D[2][0] = -J.fa_z_x;
-    D[2][1] = -J.fa_z_y;
-    D[2][2] = -J.fa_z_z;
-    D[2][3] = T(2) * (J.arm_a_x_fa_z_x * a.e1 + J.arm_a_x_fa_z_y * a.e2 + J.arm_a_x_fa_z_z * a.e3);
-    D[2][4] = T(2) * (J.arm_a_x_fa_z_z * a.e2 - J.arm_a_x_fa_z_x * a.e0 - J.arm_a_x_fa_z_y * a.e3);
-    D[2][5] = T(2) * (J.arm_a_x_fa_z_x * a.e3 - J.arm_a_x_fa_z_y * a.e0 - J.arm_a_x_fa_z_z * a.e1);
-    D[2][6] = T(2) * (J.arm_a_x_fa_z_y * a.e1 - J.arm_a_x_fa_z_x * a.e2 - J.arm_a_x_fa_z_z * a.e0);
   }
 };
 

@@ -101,7 +101,7 @@
 namespace cdot::spatial {
 
 struct screw {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "screw";
   static constexpr std::string_view title =
       "b turns about the axis fa.x of a and slides along it by pitch times the angle.";
@@ -2733,77 +2733,6 @@ struct screw::a_immovable : screw {
     D[4][10] = mb.I * J.wb_5_y;
     D[4][11] = mb.I * J.wb_5_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 36 +, 45 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = -J.fa_y_x_fb_x_x * b.xx - J.fa_y_x_fb_x_y * b.yx - J.fa_y_x_fb_x_z * b.zx;
-    D[0][10] = -J.fa_y_x_fb_x_x * b.xy - J.fa_y_x_fb_x_y * b.yy - J.fa_y_x_fb_x_z * b.zy;
-    D[0][11] = -J.fa_y_x_fb_x_x * b.xz - J.fa_y_x_fb_x_y * b.yz - J.fa_y_x_fb_x_z * b.zz;
-    D[1][9] = -J.fa_z_x_fb_x_x * b.xx - J.fa_z_x_fb_x_y * b.yx - J.fa_z_x_fb_x_z * b.zx;
-    D[1][10] = -J.fa_z_x_fb_x_x * b.xy - J.fa_z_x_fb_x_y * b.yy - J.fa_z_x_fb_x_z * b.zy;
-    D[1][11] = -J.fa_z_x_fb_x_x * b.xz - J.fa_z_x_fb_x_y * b.yz - J.fa_z_x_fb_x_z * b.zz;
-    D[2][6] = J.fa_y_x;
-    D[2][7] = J.fa_y_y;
-    D[2][8] = J.fa_y_z;
-    D[2][9] = J.rb_x_fa_y_x * b.xx + J.rb_x_fa_y_y * b.yx + J.rb_x_fa_y_z * b.zx;
-    D[2][10] = J.rb_x_fa_y_x * b.xy + J.rb_x_fa_y_y * b.yy + J.rb_x_fa_y_z * b.zy;
-    D[2][11] = J.rb_x_fa_y_x * b.xz + J.rb_x_fa_y_y * b.yz + J.rb_x_fa_y_z * b.zz;
-    D[3][6] = J.fa_z_x;
-    D[3][7] = J.fa_z_y;
-    D[3][8] = J.fa_z_z;
-    D[3][9] = J.rb_x_fa_z_x * b.xx + J.rb_x_fa_z_y * b.yx + J.rb_x_fa_z_z * b.zx;
-    D[3][10] = J.rb_x_fa_z_x * b.xy + J.rb_x_fa_z_y * b.yy + J.rb_x_fa_z_z * b.zy;
-    D[3][11] = J.rb_x_fa_z_x * b.xz + J.rb_x_fa_z_y * b.yz + J.rb_x_fa_z_z * b.zz;
-    D[4][6] = J.vb_5_x;
-    D[4][7] = J.vb_5_y;
-    D[4][8] = J.vb_5_z;
-    D[4][9] = J.wb_5_x * b.xx + J.wb_5_y * b.yx + J.wb_5_z * b.zx;
-    D[4][10] = J.wb_5_x * b.xy + J.wb_5_y * b.yy + J.wb_5_z * b.zy;
-    D[4][11] = J.wb_5_x * b.xz + J.wb_5_y * b.yz + J.wb_5_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 40 +, 80 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(2) * (J.fa_y_x_fb_x_x * b.e1 + J.fa_y_x_fb_x_y * b.e2 + J.fa_y_x_fb_x_z * b.e3);
-    D[0][11] = T(2) * (J.fa_y_x_fb_x_z * b.e2 - J.fa_y_x_fb_x_x * b.e0 - J.fa_y_x_fb_x_y * b.e3);
-    D[0][12] = T(2) * (J.fa_y_x_fb_x_x * b.e3 - J.fa_y_x_fb_x_y * b.e0 - J.fa_y_x_fb_x_z * b.e1);
-    D[0][13] = T(2) * (J.fa_y_x_fb_x_y * b.e1 - J.fa_y_x_fb_x_x * b.e2 - J.fa_y_x_fb_x_z * b.e0);
-    D[1][10] = T(2) * (J.fa_z_x_fb_x_x * b.e1 + J.fa_z_x_fb_x_y * b.e2 + J.fa_z_x_fb_x_z * b.e3);
-    D[1][11] = T(2) * (J.fa_z_x_fb_x_z * b.e2 - J.fa_z_x_fb_x_x * b.e0 - J.fa_z_x_fb_x_y * b.e3);
-    D[1][12] = T(2) * (J.fa_z_x_fb_x_x * b.e3 - J.fa_z_x_fb_x_y * b.e0 - J.fa_z_x_fb_x_z * b.e1);
-    D[1][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
-    D[2][7] = J.fa_y_x;
-    D[2][8] = J.fa_y_y;
-    D[2][9] = J.fa_y_z;
-    D[2][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[2][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[2][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[2][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
-    D[3][7] = J.fa_z_x;
-    D[3][8] = J.fa_z_y;
-    D[3][9] = J.fa_z_z;
-    D[3][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-    D[3][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-    D[3][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-    D[3][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
-    D[4][7] = J.vb_5_x;
-    D[4][8] = J.vb_5_y;
-    D[4][9] = J.vb_5_z;
-    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
-    D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
-    D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
-    D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
-  }
 };
 
 // screw with b immovable: its velocity and inverse mass are zero and gone.
@@ -3149,77 +3078,6 @@ struct screw::b_immovable : screw {
     D[4][4] = ma.I * J.wa_5_y;
     D[4][5] = ma.I * J.wa_5_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 45 +, 45 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.fa_y_x_fb_x_x * a.xx + J.fa_y_x_fb_x_y * a.yx + J.fa_y_x_fb_x_z * a.zx;
-    D[0][4] = J.fa_y_x_fb_x_x * a.xy + J.fa_y_x_fb_x_y * a.yy + J.fa_y_x_fb_x_z * a.zy;
-    D[0][5] = J.fa_y_x_fb_x_x * a.xz + J.fa_y_x_fb_x_y * a.yz + J.fa_y_x_fb_x_z * a.zz;
-    D[1][3] = J.fa_z_x_fb_x_x * a.xx + J.fa_z_x_fb_x_y * a.yx + J.fa_z_x_fb_x_z * a.zx;
-    D[1][4] = J.fa_z_x_fb_x_x * a.xy + J.fa_z_x_fb_x_y * a.yy + J.fa_z_x_fb_x_z * a.zy;
-    D[1][5] = J.fa_z_x_fb_x_x * a.xz + J.fa_z_x_fb_x_y * a.yz + J.fa_z_x_fb_x_z * a.zz;
-    D[2][0] = -J.fa_y_x;
-    D[2][1] = -J.fa_y_y;
-    D[2][2] = -J.fa_y_z;
-    D[2][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
-    D[2][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
-    D[2][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
-    D[3][0] = -J.fa_z_x;
-    D[3][1] = -J.fa_z_y;
-    D[3][2] = -J.fa_z_z;
-    D[3][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
-    D[3][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
-    D[3][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
-    D[4][0] = -J.va_5_x;
-    D[4][1] = -J.va_5_y;
-    D[4][2] = -J.va_5_z;
-    D[4][3] = J.wa_5_x * a.xx + J.wa_5_y * a.yx + J.wa_5_z * a.zx;
-    D[4][4] = J.wa_5_x * a.xy + J.wa_5_y * a.yy + J.wa_5_z * a.zy;
-    D[4][5] = J.wa_5_x * a.xz + J.wa_5_y * a.yz + J.wa_5_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 49 +, 80 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.fa_y_x_fb_x_x * a.e1 + J.fa_y_x_fb_x_y * a.e2 + J.fa_y_x_fb_x_z * a.e3);
-    D[0][4] = T(2) * (J.fa_y_x_fb_x_x * a.e0 + J.fa_y_x_fb_x_y * a.e3 - J.fa_y_x_fb_x_z * a.e2);
-    D[0][5] = T(2) * (J.fa_y_x_fb_x_y * a.e0 - J.fa_y_x_fb_x_x * a.e3 + J.fa_y_x_fb_x_z * a.e1);
-    D[0][6] = T(2) * (J.fa_y_x_fb_x_x * a.e2 - J.fa_y_x_fb_x_y * a.e1 + J.fa_y_x_fb_x_z * a.e0);
-    D[1][3] = T(-2) * (J.fa_z_x_fb_x_x * a.e1 + J.fa_z_x_fb_x_y * a.e2 + J.fa_z_x_fb_x_z * a.e3);
-    D[1][4] = T(2) * (J.fa_z_x_fb_x_x * a.e0 + J.fa_z_x_fb_x_y * a.e3 - J.fa_z_x_fb_x_z * a.e2);
-    D[1][5] = T(2) * (J.fa_z_x_fb_x_y * a.e0 - J.fa_z_x_fb_x_x * a.e3 + J.fa_z_x_fb_x_z * a.e1);
-    D[1][6] = T(2) * (J.fa_z_x_fb_x_x * a.e2 - J.fa_z_x_fb_x_y * a.e1 + J.fa_z_x_fb_x_z * a.e0);
-    D[2][0] = -J.fa_y_x;
-    D[2][1] = -J.fa_y_y;
-    D[2][2] = -J.fa_y_z;
-    D[2][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[2][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[2][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[2][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
-    D[3][0] = -J.fa_z_x;
-    D[3][1] = -J.fa_z_y;
-    D[3][2] = -J.fa_z_z;
-    D[3][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-    D[3][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-    D[3][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-    D[3][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
-    D[4][0] = -J.va_5_x;
-    D[4][1] = -J.va_5_y;
-    D[4][2] = -J.va_5_z;
-    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
-    D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
-    D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
-    D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
-  }
 };
 
 // screw::slide with a immovable: its velocity and inverse mass are zero and gone.
@@ -3364,37 +3222,6 @@ struct screw::slide::a_immovable : screw::slide {
     D[0][9] = mb.I * J.rb_x_fa_x_x;
     D[0][10] = mb.I * J.rb_x_fa_x_y;
     D[0][11] = mb.I * J.rb_x_fa_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_x_x;
-    D[0][7] = J.fa_x_y;
-    D[0][8] = J.fa_x_z;
-    D[0][9] = J.rb_x_fa_x_x * b.xx + J.rb_x_fa_x_y * b.yx + J.rb_x_fa_x_z * b.zx;
-    D[0][10] = J.rb_x_fa_x_x * b.xy + J.rb_x_fa_x_y * b.yy + J.rb_x_fa_x_z * b.zy;
-    D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_x_x;
-    D[0][8] = J.fa_x_y;
-    D[0][9] = J.fa_x_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
   }
 };
 
@@ -3545,37 +3372,6 @@ struct screw::slide::b_immovable : screw::slide {
     D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
-  }
 };
 
 // screw::angle with a immovable: its velocity and inverse mass are zero and gone.
@@ -3713,31 +3509,6 @@ struct screw::angle::a_immovable : screw::angle {
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
 };
 
 // screw::angle with b immovable: its velocity and inverse mass are zero and gone.
@@ -3829,31 +3600,6 @@ struct screw::angle::b_immovable : screw::angle {
     D[0][3] = -ma.I * J.wa_x;
     D[0][4] = -ma.I * J.wa_y;
     D[0][5] = -ma.I * J.wa_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = -J.wa_x * a.xx - J.wa_y * a.yx - J.wa_z * a.zx;
-    D[0][4] = -J.wa_x * a.xy - J.wa_y * a.yy - J.wa_z * a.zy;
-    D[0][5] = -J.wa_x * a.xz - J.wa_y * a.yz - J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_z * a.e2 - J.wa_x * a.e0 - J.wa_y * a.e3);
-    D[0][5] = T(2) * (J.wa_x * a.e3 - J.wa_y * a.e0 - J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_y * a.e1 - J.wa_x * a.e2 - J.wa_z * a.e0);
   }
 };
 

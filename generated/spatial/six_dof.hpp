@@ -83,7 +83,7 @@
 namespace cdot::spatial {
 
 struct six_dof {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "six_dof";
   static constexpr std::string_view title =
       "b is free against a; its three slides along fa and its three turns are "
@@ -3120,37 +3120,6 @@ struct six_dof::slide_x::a_immovable : six_dof::slide_x {
     D[0][10] = mb.I * J.rb_x_fa_x_y;
     D[0][11] = mb.I * J.rb_x_fa_x_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_x_x;
-    D[0][7] = J.fa_x_y;
-    D[0][8] = J.fa_x_z;
-    D[0][9] = J.rb_x_fa_x_x * b.xx + J.rb_x_fa_x_y * b.yx + J.rb_x_fa_x_z * b.zx;
-    D[0][10] = J.rb_x_fa_x_x * b.xy + J.rb_x_fa_x_y * b.yy + J.rb_x_fa_x_z * b.zy;
-    D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_x_x;
-    D[0][8] = J.fa_x_y;
-    D[0][9] = J.fa_x_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
-  }
 };
 
 // six_dof::slide_x with b immovable: its velocity and inverse mass are zero and gone.
@@ -3300,37 +3269,6 @@ struct six_dof::slide_x::b_immovable : six_dof::slide_x {
     D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
-  }
 };
 
 // six_dof::slide_y with a immovable: its velocity and inverse mass are zero and gone.
@@ -3475,37 +3413,6 @@ struct six_dof::slide_y::a_immovable : six_dof::slide_y {
     D[0][9] = mb.I * J.rb_x_fa_y_x;
     D[0][10] = mb.I * J.rb_x_fa_y_y;
     D[0][11] = mb.I * J.rb_x_fa_y_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_y_x;
-    D[0][7] = J.fa_y_y;
-    D[0][8] = J.fa_y_z;
-    D[0][9] = J.rb_x_fa_y_x * b.xx + J.rb_x_fa_y_y * b.yx + J.rb_x_fa_y_z * b.zx;
-    D[0][10] = J.rb_x_fa_y_x * b.xy + J.rb_x_fa_y_y * b.yy + J.rb_x_fa_y_z * b.zy;
-    D[0][11] = J.rb_x_fa_y_x * b.xz + J.rb_x_fa_y_y * b.yz + J.rb_x_fa_y_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_y_x;
-    D[0][8] = J.fa_y_y;
-    D[0][9] = J.fa_y_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
   }
 };
 
@@ -3656,37 +3563,6 @@ struct six_dof::slide_y::b_immovable : six_dof::slide_y {
     D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_y_x;
-    D[0][1] = -J.fa_y_y;
-    D[0][2] = -J.fa_y_z;
-    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_y_x;
-    D[0][1] = -J.fa_y_y;
-    D[0][2] = -J.fa_y_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
-  }
 };
 
 // six_dof::slide_z with a immovable: its velocity and inverse mass are zero and gone.
@@ -3831,37 +3707,6 @@ struct six_dof::slide_z::a_immovable : six_dof::slide_z {
     D[0][9] = mb.I * J.rb_x_fa_z_x;
     D[0][10] = mb.I * J.rb_x_fa_z_y;
     D[0][11] = mb.I * J.rb_x_fa_z_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_z_x;
-    D[0][7] = J.fa_z_y;
-    D[0][8] = J.fa_z_z;
-    D[0][9] = J.rb_x_fa_z_x * b.xx + J.rb_x_fa_z_y * b.yx + J.rb_x_fa_z_z * b.zx;
-    D[0][10] = J.rb_x_fa_z_x * b.xy + J.rb_x_fa_z_y * b.yy + J.rb_x_fa_z_z * b.zy;
-    D[0][11] = J.rb_x_fa_z_x * b.xz + J.rb_x_fa_z_y * b.yz + J.rb_x_fa_z_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_z_x;
-    D[0][8] = J.fa_z_y;
-    D[0][9] = J.fa_z_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
   }
 };
 
@@ -4012,37 +3857,6 @@ struct six_dof::slide_z::b_immovable : six_dof::slide_z {
     D[0][4] = -ma.I * J.ra_d_x_fa_z_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_z_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_z_x;
-    D[0][1] = -J.fa_z_y;
-    D[0][2] = -J.fa_z_z;
-    D[0][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_z_x;
-    D[0][1] = -J.fa_z_y;
-    D[0][2] = -J.fa_z_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
-  }
 };
 
 // six_dof::turn_x with a immovable: its velocity and inverse mass are zero and gone.
@@ -4169,31 +3983,6 @@ struct six_dof::turn_x::a_immovable : six_dof::turn_x {
     D[0][9] = mb.I * J.wb_x;
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
   }
 };
 
@@ -4324,31 +4113,6 @@ struct six_dof::turn_x::b_immovable : six_dof::turn_x {
     D[0][3] = ma.I * J.wa_x;
     D[0][4] = ma.I * J.wa_y;
     D[0][5] = ma.I * J.wa_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
   }
 };
 
@@ -4484,31 +4248,6 @@ struct six_dof::turn_y::a_immovable : six_dof::turn_y {
     D[0][9] = mb.I * J.wb_x;
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
   }
 };
 
@@ -4651,31 +4390,6 @@ struct six_dof::turn_y::b_immovable : six_dof::turn_y {
     D[0][4] = ma.I * J.wa_y;
     D[0][5] = ma.I * J.wa_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-  }
 };
 
 // six_dof::turn_z with a immovable: its velocity and inverse mass are zero and gone.
@@ -4806,31 +4520,6 @@ struct six_dof::turn_z::a_immovable : six_dof::turn_z {
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
 };
 
 // six_dof::turn_z with b immovable: its velocity and inverse mass are zero and gone.
@@ -4957,31 +4646,6 @@ struct six_dof::turn_z::b_immovable : six_dof::turn_z {
     D[0][3] = ma.I * J.wa_x;
     D[0][4] = ma.I * J.wa_y;
     D[0][5] = ma.I * J.wa_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
   }
 };
 

@@ -45,7 +45,7 @@
 namespace cdot::spatial {
 
 struct slider {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "slider";
   static constexpr std::string_view title =
       "b slides along the axis fa.x of a without turning; the slide is what motors and "
@@ -2003,71 +2003,6 @@ struct slider::a_immovable : slider {
     D[4][10] = mb.I * J.wb_5_y;
     D[4][11] = mb.I * J.wb_5_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 30 +, 45 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_y_x;
-    D[0][7] = J.fa_y_y;
-    D[0][8] = J.fa_y_z;
-    D[0][9] = J.rb_x_fa_y_x * b.xx + J.rb_x_fa_y_y * b.yx + J.rb_x_fa_y_z * b.zx;
-    D[0][10] = J.rb_x_fa_y_x * b.xy + J.rb_x_fa_y_y * b.yy + J.rb_x_fa_y_z * b.zy;
-    D[0][11] = J.rb_x_fa_y_x * b.xz + J.rb_x_fa_y_y * b.yz + J.rb_x_fa_y_z * b.zz;
-    D[1][6] = J.fa_z_x;
-    D[1][7] = J.fa_z_y;
-    D[1][8] = J.fa_z_z;
-    D[1][9] = J.rb_x_fa_z_x * b.xx + J.rb_x_fa_z_y * b.yx + J.rb_x_fa_z_z * b.zx;
-    D[1][10] = J.rb_x_fa_z_x * b.xy + J.rb_x_fa_z_y * b.yy + J.rb_x_fa_z_z * b.zy;
-    D[1][11] = J.rb_x_fa_z_x * b.xz + J.rb_x_fa_z_y * b.yz + J.rb_x_fa_z_z * b.zz;
-    D[2][9] = J.wb_3_x * b.xx + J.wb_3_y * b.yx + J.wb_3_z * b.zx;
-    D[2][10] = J.wb_3_x * b.xy + J.wb_3_y * b.yy + J.wb_3_z * b.zy;
-    D[2][11] = J.wb_3_x * b.xz + J.wb_3_y * b.yz + J.wb_3_z * b.zz;
-    D[3][9] = J.wb_4_x * b.xx + J.wb_4_y * b.yx + J.wb_4_z * b.zx;
-    D[3][10] = J.wb_4_x * b.xy + J.wb_4_y * b.yy + J.wb_4_z * b.zy;
-    D[3][11] = J.wb_4_x * b.xz + J.wb_4_y * b.yz + J.wb_4_z * b.zz;
-    D[4][9] = J.wb_5_x * b.xx + J.wb_5_y * b.yx + J.wb_5_z * b.zx;
-    D[4][10] = J.wb_5_x * b.xy + J.wb_5_y * b.yy + J.wb_5_z * b.zy;
-    D[4][11] = J.wb_5_x * b.xz + J.wb_5_y * b.yz + J.wb_5_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 40 +, 80 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_y_x;
-    D[0][8] = J.fa_y_y;
-    D[0][9] = J.fa_y_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
-    D[1][7] = J.fa_z_x;
-    D[1][8] = J.fa_z_y;
-    D[1][9] = J.fa_z_z;
-    D[1][10] = T(-2) * (J.rb_x_fa_z_x * b.e1 + J.rb_x_fa_z_y * b.e2 + J.rb_x_fa_z_z * b.e3);
-    D[1][11] = T(2) * (J.rb_x_fa_z_x * b.e0 + J.rb_x_fa_z_y * b.e3 - J.rb_x_fa_z_z * b.e2);
-    D[1][12] = T(2) * (J.rb_x_fa_z_y * b.e0 - J.rb_x_fa_z_x * b.e3 + J.rb_x_fa_z_z * b.e1);
-    D[1][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
-    D[2][10] = T(-2) * (J.wb_3_x * b.e1 + J.wb_3_y * b.e2 + J.wb_3_z * b.e3);
-    D[2][11] = T(2) * (J.wb_3_x * b.e0 + J.wb_3_y * b.e3 - J.wb_3_z * b.e2);
-    D[2][12] = T(2) * (J.wb_3_y * b.e0 - J.wb_3_x * b.e3 + J.wb_3_z * b.e1);
-    D[2][13] = T(2) * (J.wb_3_x * b.e2 - J.wb_3_y * b.e1 + J.wb_3_z * b.e0);
-    D[3][10] = T(-2) * (J.wb_4_x * b.e1 + J.wb_4_y * b.e2 + J.wb_4_z * b.e3);
-    D[3][11] = T(2) * (J.wb_4_x * b.e0 + J.wb_4_y * b.e3 - J.wb_4_z * b.e2);
-    D[3][12] = T(2) * (J.wb_4_y * b.e0 - J.wb_4_x * b.e3 + J.wb_4_z * b.e1);
-    D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
-    D[4][10] = T(-2) * (J.wb_5_x * b.e1 + J.wb_5_y * b.e2 + J.wb_5_z * b.e3);
-    D[4][11] = T(2) * (J.wb_5_x * b.e0 + J.wb_5_y * b.e3 - J.wb_5_z * b.e2);
-    D[4][12] = T(2) * (J.wb_5_y * b.e0 - J.wb_5_x * b.e3 + J.wb_5_z * b.e1);
-    D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
-  }
 };
 
 // slider with b immovable: its velocity and inverse mass are zero and gone.
@@ -2384,71 +2319,6 @@ struct slider::b_immovable : slider {
     D[4][4] = ma.I * J.wa_5_y;
     D[4][5] = ma.I * J.wa_5_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 42 +, 45 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_y_x;
-    D[0][1] = -J.fa_y_y;
-    D[0][2] = -J.fa_y_z;
-    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
-    D[1][0] = -J.fa_z_x;
-    D[1][1] = -J.fa_z_y;
-    D[1][2] = -J.fa_z_z;
-    D[1][3] = -J.ra_d_x_fa_z_x * a.xx - J.ra_d_x_fa_z_y * a.yx - J.ra_d_x_fa_z_z * a.zx;
-    D[1][4] = -J.ra_d_x_fa_z_x * a.xy - J.ra_d_x_fa_z_y * a.yy - J.ra_d_x_fa_z_z * a.zy;
-    D[1][5] = -J.ra_d_x_fa_z_x * a.xz - J.ra_d_x_fa_z_y * a.yz - J.ra_d_x_fa_z_z * a.zz;
-    D[2][3] = J.wa_3_x * a.xx + J.wa_3_y * a.yx + J.wa_3_z * a.zx;
-    D[2][4] = J.wa_3_x * a.xy + J.wa_3_y * a.yy + J.wa_3_z * a.zy;
-    D[2][5] = J.wa_3_x * a.xz + J.wa_3_y * a.yz + J.wa_3_z * a.zz;
-    D[3][3] = J.wa_4_x * a.xx + J.wa_4_y * a.yx + J.wa_4_z * a.zx;
-    D[3][4] = J.wa_4_x * a.xy + J.wa_4_y * a.yy + J.wa_4_z * a.zy;
-    D[3][5] = J.wa_4_x * a.xz + J.wa_4_y * a.yz + J.wa_4_z * a.zz;
-    D[4][3] = J.wa_5_x * a.xx + J.wa_5_y * a.yx + J.wa_5_z * a.zx;
-    D[4][4] = J.wa_5_x * a.xy + J.wa_5_y * a.yy + J.wa_5_z * a.zy;
-    D[4][5] = J.wa_5_x * a.xz + J.wa_5_y * a.yz + J.wa_5_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 46 +, 80 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[5][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_y_x;
-    D[0][1] = -J.fa_y_y;
-    D[0][2] = -J.fa_y_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
-    D[1][0] = -J.fa_z_x;
-    D[1][1] = -J.fa_z_y;
-    D[1][2] = -J.fa_z_z;
-    D[1][3] = T(2) * (J.ra_d_x_fa_z_x * a.e1 + J.ra_d_x_fa_z_y * a.e2 + J.ra_d_x_fa_z_z * a.e3);
-    D[1][4] = T(2) * (J.ra_d_x_fa_z_z * a.e2 - J.ra_d_x_fa_z_x * a.e0 - J.ra_d_x_fa_z_y * a.e3);
-    D[1][5] = T(2) * (J.ra_d_x_fa_z_x * a.e3 - J.ra_d_x_fa_z_y * a.e0 - J.ra_d_x_fa_z_z * a.e1);
-    D[1][6] = T(2) * (J.ra_d_x_fa_z_y * a.e1 - J.ra_d_x_fa_z_x * a.e2 - J.ra_d_x_fa_z_z * a.e0);
-    D[2][3] = T(-2) * (J.wa_3_x * a.e1 + J.wa_3_y * a.e2 + J.wa_3_z * a.e3);
-    D[2][4] = T(2) * (J.wa_3_x * a.e0 + J.wa_3_y * a.e3 - J.wa_3_z * a.e2);
-    D[2][5] = T(2) * (J.wa_3_y * a.e0 - J.wa_3_x * a.e3 + J.wa_3_z * a.e1);
-    D[2][6] = T(2) * (J.wa_3_x * a.e2 - J.wa_3_y * a.e1 + J.wa_3_z * a.e0);
-    D[3][3] = T(-2) * (J.wa_4_x * a.e1 + J.wa_4_y * a.e2 + J.wa_4_z * a.e3);
-    D[3][4] = T(2) * (J.wa_4_x * a.e0 + J.wa_4_y * a.e3 - J.wa_4_z * a.e2);
-    D[3][5] = T(2) * (J.wa_4_y * a.e0 - J.wa_4_x * a.e3 + J.wa_4_z * a.e1);
-    D[3][6] = T(2) * (J.wa_4_x * a.e2 - J.wa_4_y * a.e1 + J.wa_4_z * a.e0);
-    D[4][3] = T(-2) * (J.wa_5_x * a.e1 + J.wa_5_y * a.e2 + J.wa_5_z * a.e3);
-    D[4][4] = T(2) * (J.wa_5_x * a.e0 + J.wa_5_y * a.e3 - J.wa_5_z * a.e2);
-    D[4][5] = T(2) * (J.wa_5_y * a.e0 - J.wa_5_x * a.e3 + J.wa_5_z * a.e1);
-    D[4][6] = T(2) * (J.wa_5_x * a.e2 - J.wa_5_y * a.e1 + J.wa_5_z * a.e0);
-  }
 };
 
 // slider::slide with a immovable: its velocity and inverse mass are zero and gone.
@@ -2593,37 +2463,6 @@ struct slider::slide::a_immovable : slider::slide {
     D[0][9] = mb.I * J.rb_x_fa_x_x;
     D[0][10] = mb.I * J.rb_x_fa_x_y;
     D[0][11] = mb.I * J.rb_x_fa_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_x_x;
-    D[0][7] = J.fa_x_y;
-    D[0][8] = J.fa_x_z;
-    D[0][9] = J.rb_x_fa_x_x * b.xx + J.rb_x_fa_x_y * b.yx + J.rb_x_fa_x_z * b.zx;
-    D[0][10] = J.rb_x_fa_x_x * b.xy + J.rb_x_fa_x_y * b.yy + J.rb_x_fa_x_z * b.zy;
-    D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_x_x;
-    D[0][8] = J.fa_x_y;
-    D[0][9] = J.fa_x_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
   }
 };
 
@@ -2773,37 +2612,6 @@ struct slider::slide::b_immovable : slider::slide {
     D[0][3] = -ma.I * J.ra_d_x_fa_x_x;
     D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
   }
 };
 

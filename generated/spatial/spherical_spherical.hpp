@@ -15,7 +15,7 @@
 namespace cdot::spatial {
 
 struct spherical_spherical {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "spherical_spherical";
   static constexpr std::string_view title =
       "The points pa of a and pb of b keep the square of their distance.";
@@ -678,37 +678,6 @@ struct spherical_spherical::a_immovable : spherical_spherical {
     D[0][10] = mb.I * J.rb_x_d_y;
     D[0][11] = mb.I * J.rb_x_d_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.d_x;
-    D[0][7] = J.d_y;
-    D[0][8] = J.d_z;
-    D[0][9] = J.rb_x_d_x * b.xx + J.rb_x_d_y * b.yx + J.rb_x_d_z * b.zx;
-    D[0][10] = J.rb_x_d_x * b.xy + J.rb_x_d_y * b.yy + J.rb_x_d_z * b.zy;
-    D[0][11] = J.rb_x_d_x * b.xz + J.rb_x_d_y * b.yz + J.rb_x_d_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.d_x;
-    D[0][8] = J.d_y;
-    D[0][9] = J.d_z;
-    D[0][10] = T(-2) * (J.rb_x_d_x * b.e1 + J.rb_x_d_y * b.e2 + J.rb_x_d_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_d_x * b.e0 + J.rb_x_d_y * b.e3 - J.rb_x_d_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_d_y * b.e0 - J.rb_x_d_x * b.e3 + J.rb_x_d_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_d_x * b.e2 - J.rb_x_d_y * b.e1 + J.rb_x_d_z * b.e0);
-  }
 };
 
 // spherical_spherical with b immovable: its velocity and inverse mass are zero and gone.
@@ -853,37 +822,6 @@ struct spherical_spherical::b_immovable : spherical_spherical {
     D[0][3] = -ma.I * J.ra_x_d_x;
     D[0][4] = -ma.I * J.ra_x_d_y;
     D[0][5] = -ma.I * J.ra_x_d_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.d_x;
-    D[0][1] = -J.d_y;
-    D[0][2] = -J.d_z;
-    D[0][3] = -J.ra_x_d_x * a.xx - J.ra_x_d_y * a.yx - J.ra_x_d_z * a.zx;
-    D[0][4] = -J.ra_x_d_x * a.xy - J.ra_x_d_y * a.yy - J.ra_x_d_z * a.zy;
-    D[0][5] = -J.ra_x_d_x * a.xz - J.ra_x_d_y * a.yz - J.ra_x_d_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.d_x;
-    D[0][1] = -J.d_y;
-    D[0][2] = -J.d_z;
-    D[0][3] = T(2) * (J.ra_x_d_x * a.e1 + J.ra_x_d_y * a.e2 + J.ra_x_d_z * a.e3);
-    D[0][4] = T(2) * (J.ra_x_d_z * a.e2 - J.ra_x_d_x * a.e0 - J.ra_x_d_y * a.e3);
-    D[0][5] = T(2) * (J.ra_x_d_x * a.e3 - J.ra_x_d_y * a.e0 - J.ra_x_d_z * a.e1);
-    D[0][6] = T(2) * (J.ra_x_d_y * a.e1 - J.ra_x_d_x * a.e2 - J.ra_x_d_z * a.e0);
   }
 };
 

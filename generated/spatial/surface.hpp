@@ -45,7 +45,7 @@
 namespace cdot::spatial {
 
 struct surface {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "surface";
   static constexpr std::string_view title =
       "The point pb of b stays on the surface z = height sin(k x) sin(k y) in the frame "
@@ -1977,37 +1977,6 @@ struct surface::a_immovable : surface {
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.vb_x;
-    D[0][7] = J.vb_y;
-    D[0][8] = J.vb_z;
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.vb_x;
-    D[0][8] = J.vb_y;
-    D[0][9] = J.vb_z;
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
 };
 
 // surface with b immovable: its velocity and inverse mass are zero and gone.
@@ -2182,37 +2151,6 @@ struct surface::b_immovable : surface {
     D[0][4] = ma.I * J.wa_y;
     D[0][5] = ma.I * J.wa_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = J.va_x;
-    D[0][1] = J.va_y;
-    D[0][2] = J.va_z;
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = J.va_x;
-    D[0][1] = J.va_y;
-    D[0][2] = J.va_z;
-    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-  }
 };
 
 // surface::x with a immovable: its velocity and inverse mass are zero and gone.
@@ -2357,37 +2295,6 @@ struct surface::x::a_immovable : surface::x {
     D[0][9] = mb.I * J.rb_x_fa_x_x;
     D[0][10] = mb.I * J.rb_x_fa_x_y;
     D[0][11] = mb.I * J.rb_x_fa_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_x_x;
-    D[0][7] = J.fa_x_y;
-    D[0][8] = J.fa_x_z;
-    D[0][9] = J.rb_x_fa_x_x * b.xx + J.rb_x_fa_x_y * b.yx + J.rb_x_fa_x_z * b.zx;
-    D[0][10] = J.rb_x_fa_x_x * b.xy + J.rb_x_fa_x_y * b.yy + J.rb_x_fa_x_z * b.zy;
-    D[0][11] = J.rb_x_fa_x_x * b.xz + J.rb_x_fa_x_y * b.yz + J.rb_x_fa_x_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_x_x;
-    D[0][8] = J.fa_x_y;
-    D[0][9] = J.fa_x_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_x_x * b.e1 + J.rb_x_fa_x_y * b.e2 + J.rb_x_fa_x_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_x_x * b.e0 + J.rb_x_fa_x_y * b.e3 - J.rb_x_fa_x_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_x_y * b.e0 - J.rb_x_fa_x_x * b.e3 + J.rb_x_fa_x_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
   }
 };
 
@@ -2538,37 +2445,6 @@ struct surface::x::b_immovable : surface::x {
     D[0][4] = -ma.I * J.ra_d_x_fa_x_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_x_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = -J.ra_d_x_fa_x_x * a.xx - J.ra_d_x_fa_x_y * a.yx - J.ra_d_x_fa_x_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_x_x * a.xy - J.ra_d_x_fa_x_y * a.yy - J.ra_d_x_fa_x_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_x_x * a.xz - J.ra_d_x_fa_x_y * a.yz - J.ra_d_x_fa_x_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_x_x;
-    D[0][1] = -J.fa_x_y;
-    D[0][2] = -J.fa_x_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_x_x * a.e1 + J.ra_d_x_fa_x_y * a.e2 + J.ra_d_x_fa_x_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_x_z * a.e2 - J.ra_d_x_fa_x_x * a.e0 - J.ra_d_x_fa_x_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_x_x * a.e3 - J.ra_d_x_fa_x_y * a.e0 - J.ra_d_x_fa_x_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_x_y * a.e1 - J.ra_d_x_fa_x_x * a.e2 - J.ra_d_x_fa_x_z * a.e0);
-  }
 };
 
 // surface::y with a immovable: its velocity and inverse mass are zero and gone.
@@ -2713,37 +2589,6 @@ struct surface::y::a_immovable : surface::y {
     D[0][9] = mb.I * J.rb_x_fa_y_x;
     D[0][10] = mb.I * J.rb_x_fa_y_y;
     D[0][11] = mb.I * J.rb_x_fa_y_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = J.fa_y_x;
-    D[0][7] = J.fa_y_y;
-    D[0][8] = J.fa_y_z;
-    D[0][9] = J.rb_x_fa_y_x * b.xx + J.rb_x_fa_y_y * b.yx + J.rb_x_fa_y_z * b.zx;
-    D[0][10] = J.rb_x_fa_y_x * b.xy + J.rb_x_fa_y_y * b.yy + J.rb_x_fa_y_z * b.zy;
-    D[0][11] = J.rb_x_fa_y_x * b.xz + J.rb_x_fa_y_y * b.yz + J.rb_x_fa_y_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][7] = J.fa_y_x;
-    D[0][8] = J.fa_y_y;
-    D[0][9] = J.fa_y_z;
-    D[0][10] = T(-2) * (J.rb_x_fa_y_x * b.e1 + J.rb_x_fa_y_y * b.e2 + J.rb_x_fa_y_z * b.e3);
-    D[0][11] = T(2) * (J.rb_x_fa_y_x * b.e0 + J.rb_x_fa_y_y * b.e3 - J.rb_x_fa_y_z * b.e2);
-    D[0][12] = T(2) * (J.rb_x_fa_y_y * b.e0 - J.rb_x_fa_y_x * b.e3 + J.rb_x_fa_y_z * b.e1);
-    D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
   }
 };
 
@@ -2893,37 +2738,6 @@ struct surface::y::b_immovable : surface::y {
     D[0][3] = -ma.I * J.ra_d_x_fa_y_x;
     D[0][4] = -ma.I * J.ra_d_x_fa_y_y;
     D[0][5] = -ma.I * J.ra_d_x_fa_y_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_y_x;
-    D[0][1] = -J.fa_y_y;
-    D[0][2] = -J.fa_y_z;
-    D[0][3] = -J.ra_d_x_fa_y_x * a.xx - J.ra_d_x_fa_y_y * a.yx - J.ra_d_x_fa_y_z * a.zx;
-    D[0][4] = -J.ra_d_x_fa_y_x * a.xy - J.ra_d_x_fa_y_y * a.yy - J.ra_d_x_fa_y_z * a.zy;
-    D[0][5] = -J.ra_d_x_fa_y_x * a.xz - J.ra_d_x_fa_y_y * a.yz - J.ra_d_x_fa_y_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 11 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = -J.fa_y_x;
-    D[0][1] = -J.fa_y_y;
-    D[0][2] = -J.fa_y_z;
-    D[0][3] = T(2) * (J.ra_d_x_fa_y_x * a.e1 + J.ra_d_x_fa_y_y * a.e2 + J.ra_d_x_fa_y_z * a.e3);
-    D[0][4] = T(2) * (J.ra_d_x_fa_y_z * a.e2 - J.ra_d_x_fa_y_x * a.e0 - J.ra_d_x_fa_y_y * a.e3);
-    D[0][5] = T(2) * (J.ra_d_x_fa_y_x * a.e3 - J.ra_d_x_fa_y_y * a.e0 - J.ra_d_x_fa_y_z * a.e1);
-    D[0][6] = T(2) * (J.ra_d_x_fa_y_y * a.e1 - J.ra_d_x_fa_y_x * a.e2 - J.ra_d_x_fa_y_z * a.e0);
   }
 };
 

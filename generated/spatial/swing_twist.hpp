@@ -28,7 +28,7 @@
 namespace cdot::spatial {
 
 struct swing_twist {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "swing_twist";
   static constexpr std::string_view title =
       "The point pb of b stays at the point pa of a; the swing and the twist of b "
@@ -1552,63 +1552,6 @@ struct swing_twist::a_immovable : swing_twist {
     D[2][9] = -ib_rb_y;
     D[2][10] = ib_rb_x;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 18 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = T(-1);
-    D[0][9] = J.rb_y * b.zx - J.rb_z * b.yx;
-    D[0][10] = J.rb_y * b.zy - J.rb_z * b.yy;
-    D[0][11] = J.rb_y * b.zz - J.rb_z * b.yz;
-    D[1][7] = T(-1);
-    D[1][9] = J.rb_z * b.xx - J.rb_x * b.zx;
-    D[1][10] = J.rb_z * b.xy - J.rb_x * b.zy;
-    D[1][11] = J.rb_z * b.xz - J.rb_x * b.zz;
-    D[2][8] = T(-1);
-    D[2][9] = J.rb_x * b.yx - J.rb_y * b.xx;
-    D[2][10] = J.rb_x * b.yy - J.rb_y * b.xy;
-    D[2][11] = J.rb_x * b.yz - J.rb_y * b.xz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 12 +, 24 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T D1_1 = J.rb_y * b.e3;
-    const T D1_2 = J.rb_z * b.e2;
-    const T D1_1_2 = J.rb_y * b.e2;
-    const T D1_2_2 = J.rb_z * b.e3;
-    const T D1_1_3 = J.rb_y * b.e1;
-    const T D1_2_3 = J.rb_z * b.e0;
-    const T D1_1_4 = J.rb_y * b.e0;
-    const T D1_2_4 = J.rb_z * b.e1;
-    const T D2_1 = J.rb_x * b.e3;
-    const T D2_1_2 = J.rb_x * b.e2;
-    const T D2_1_3 = J.rb_x * b.e1;
-    const T D2_1_4 = J.rb_x * b.e0;
-    D[0][7] = T(-1);
-    D[0][10] = T(2) * (D1_2 - D1_1);
-    D[0][11] = T(-2) * (D1_1_2 + D1_2_2);
-    D[0][12] = T(2) * (D1_1_3 - D1_2_3);
-    D[0][13] = T(2) * (D1_1_4 + D1_2_4);
-    D[1][8] = T(-1);
-    D[1][10] = T(2) * (D2_1 - D1_2_4);
-    D[1][11] = T(2) * (D2_1_2 + D1_2_3);
-    D[1][12] = T(-2) * (D2_1_3 + D1_2_2);
-    D[1][13] = T(2) * (D1_2 - D2_1_4);
-    D[2][9] = T(-1);
-    D[2][10] = T(2) * (D1_1_3 - D2_1_2);
-    D[2][11] = T(2) * (D2_1 - D1_1_4);
-    D[2][12] = T(2) * (D2_1_4 + D1_1);
-    D[2][13] = T(-2) * (D2_1_3 + D1_1_2);
-  }
 };
 
 // swing_twist with b immovable: its velocity and inverse mass are zero and gone.
@@ -1779,63 +1722,6 @@ struct swing_twist::b_immovable : swing_twist {
     D[2][3] = ia_ra_y;
     D[2][4] = -ia_ra_x;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 18 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = T(1);
-    D[0][3] = J.ra_z * a.yx - J.ra_y * a.zx;
-    D[0][4] = J.ra_z * a.yy - J.ra_y * a.zy;
-    D[0][5] = J.ra_z * a.yz - J.ra_y * a.zz;
-    D[1][1] = T(1);
-    D[1][3] = J.ra_x * a.zx - J.ra_z * a.xx;
-    D[1][4] = J.ra_x * a.zy - J.ra_z * a.xy;
-    D[1][5] = J.ra_x * a.zz - J.ra_z * a.xz;
-    D[2][2] = T(1);
-    D[2][3] = J.ra_y * a.xx - J.ra_x * a.yx;
-    D[2][4] = J.ra_y * a.xy - J.ra_x * a.yy;
-    D[2][5] = J.ra_y * a.xz - J.ra_x * a.yz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 12 +, 24 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[3][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const T D1_1 = J.ra_y * a.e3;
-    const T D1_2 = J.ra_z * a.e2;
-    const T D1_1_2 = J.ra_y * a.e2;
-    const T D1_2_2 = J.ra_z * a.e3;
-    const T D1_1_3 = J.ra_y * a.e1;
-    const T D1_2_3 = J.ra_z * a.e0;
-    const T D1_1_4 = J.ra_y * a.e0;
-    const T D1_2_4 = J.ra_z * a.e1;
-    const T D2_1 = J.ra_x * a.e3;
-    const T D2_1_2 = J.ra_x * a.e2;
-    const T D2_1_3 = J.ra_x * a.e1;
-    const T D2_1_4 = J.ra_x * a.e0;
-    D[0][0] = T(1);
-    D[0][3] = T(2) * (D1_1 - D1_2);
-    D[0][4] = T(2) * (D1_1_2 + D1_2_2);
-    D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
-    D[1][1] = T(1);
-    D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
-    D[1][5] = T(2) * (D2_1_3 + D1_2_2);
-    D[1][6] = T(2) * (D2_1_4 - D1_2);
-    D[2][2] = T(1);
-    D[2][3] = T(2) * (D2_1_2 - D1_1_3);
-    D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = T(-2) * (D2_1_4 + D1_1);
-    D[2][6] = T(2) * (D2_1_3 + D1_1_2);
-  }
 };
 
 // swing_twist::twist with a immovable: its velocity and inverse mass are zero and gone.
@@ -1973,31 +1859,6 @@ struct swing_twist::twist::a_immovable : swing_twist::twist {
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
 };
 
 // swing_twist::twist with b immovable: its velocity and inverse mass are zero and gone.
@@ -2089,31 +1950,6 @@ struct swing_twist::twist::b_immovable : swing_twist::twist {
     D[0][3] = -ma.I * J.wa_x;
     D[0][4] = -ma.I * J.wa_y;
     D[0][5] = -ma.I * J.wa_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = -J.wa_x * a.xx - J.wa_y * a.yx - J.wa_z * a.zx;
-    D[0][4] = -J.wa_x * a.xy - J.wa_y * a.yy - J.wa_z * a.zy;
-    D[0][5] = -J.wa_x * a.xz - J.wa_y * a.yz - J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_z * a.e2 - J.wa_x * a.e0 - J.wa_y * a.e3);
-    D[0][5] = T(2) * (J.wa_x * a.e3 - J.wa_y * a.e0 - J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_y * a.e1 - J.wa_x * a.e2 - J.wa_z * a.e0);
   }
 };
 
@@ -2212,35 +2048,6 @@ struct swing_twist::swing::a_immovable : swing_twist::swing {
     D[0][10] = mb.I * J.dir_fa_x_x_fb_x_y;
     D[0][11] = mb.I * J.dir_fa_x_x_fb_x_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.dir_fa_x_x_fb_x_x * b.xx + J.dir_fa_x_x_fb_x_y * b.yx + J.dir_fa_x_x_fb_x_z * b.zx;
-    D[0][10] = J.dir_fa_x_x_fb_x_x * b.xy + J.dir_fa_x_x_fb_x_y * b.yy + J.dir_fa_x_x_fb_x_z * b.zy;
-    D[0][11] = J.dir_fa_x_x_fb_x_x * b.xz + J.dir_fa_x_x_fb_x_y * b.yz + J.dir_fa_x_x_fb_x_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.dir_fa_x_x_fb_x_x * b.e1 + J.dir_fa_x_x_fb_x_y * b.e2 +
-        J.dir_fa_x_x_fb_x_z * b.e3);
-    D[0][11] = T(2) * (J.dir_fa_x_x_fb_x_x * b.e0 + J.dir_fa_x_x_fb_x_y * b.e3 -
-        J.dir_fa_x_x_fb_x_z * b.e2);
-    D[0][12] = T(2) * (J.dir_fa_x_x_fb_x_y * b.e0 - J.dir_fa_x_x_fb_x_x * b.e3 +
-        J.dir_fa_x_x_fb_x_z * b.e1);
-    D[0][13] = T(2) * (J.dir_fa_x_x_fb_x_x * b.e2 - J.dir_fa_x_x_fb_x_y * b.e1 +
-        J.dir_fa_x_x_fb_x_z * b.e0);
-  }
 };
 
 // swing_twist::swing with b immovable: its velocity and inverse mass are zero and gone.
@@ -2338,35 +2145,6 @@ struct swing_twist::swing::b_immovable : swing_twist::swing {
     D[0][3] = -ma.I * J.dir_fa_x_x_fb_x_x;
     D[0][4] = -ma.I * J.dir_fa_x_x_fb_x_y;
     D[0][5] = -ma.I * J.dir_fa_x_x_fb_x_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 9 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = -J.dir_fa_x_x_fb_x_x * a.xx - J.dir_fa_x_x_fb_x_y * a.yx - J.dir_fa_x_x_fb_x_z * a.zx;
-    D[0][4] = -J.dir_fa_x_x_fb_x_x * a.xy - J.dir_fa_x_x_fb_x_y * a.yy - J.dir_fa_x_x_fb_x_z * a.zy;
-    D[0][5] = -J.dir_fa_x_x_fb_x_x * a.xz - J.dir_fa_x_x_fb_x_y * a.yz - J.dir_fa_x_x_fb_x_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(2) * (J.dir_fa_x_x_fb_x_x * a.e1 + J.dir_fa_x_x_fb_x_y * a.e2 +
-        J.dir_fa_x_x_fb_x_z * a.e3);
-    D[0][4] = T(2) * (J.dir_fa_x_x_fb_x_z * a.e2 - J.dir_fa_x_x_fb_x_x * a.e0 -
-        J.dir_fa_x_x_fb_x_y * a.e3);
-    D[0][5] = T(2) * (J.dir_fa_x_x_fb_x_x * a.e3 - J.dir_fa_x_x_fb_x_y * a.e0 -
-        J.dir_fa_x_x_fb_x_z * a.e1);
-    D[0][6] = T(2) * (J.dir_fa_x_x_fb_x_y * a.e1 - J.dir_fa_x_x_fb_x_x * a.e2 -
-        J.dir_fa_x_x_fb_x_z * a.e0);
   }
 };
 

@@ -54,7 +54,7 @@
 namespace cdot::spatial {
 
 struct universal {
-  static_assert(kernel_contract == 1);
+  static_assert(kernel_contract == 2);
   static constexpr std::string_view name = "universal";
   static constexpr std::string_view title =
       "The point pb of b stays at the point pa of a, and the arm fb.z of b "
@@ -1885,70 +1885,6 @@ struct universal::a_immovable : universal {
     D[3][10] = -mb.I * J.fa_y_x_fb_z_y;
     D[3][11] = -mb.I * J.fa_y_x_fb_z_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 18 +, 27 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][6] = T(-1);
-    D[0][9] = J.rb_y * b.zx - J.rb_z * b.yx;
-    D[0][10] = J.rb_y * b.zy - J.rb_z * b.yy;
-    D[0][11] = J.rb_y * b.zz - J.rb_z * b.yz;
-    D[1][7] = T(-1);
-    D[1][9] = J.rb_z * b.xx - J.rb_x * b.zx;
-    D[1][10] = J.rb_z * b.xy - J.rb_x * b.zy;
-    D[1][11] = J.rb_z * b.xz - J.rb_x * b.zz;
-    D[2][8] = T(-1);
-    D[2][9] = J.rb_x * b.yx - J.rb_y * b.xx;
-    D[2][10] = J.rb_x * b.yy - J.rb_y * b.xy;
-    D[2][11] = J.rb_x * b.yz - J.rb_y * b.xz;
-    D[3][9] = -J.fa_y_x_fb_z_x * b.xx - J.fa_y_x_fb_z_y * b.yx - J.fa_y_x_fb_z_z * b.zx;
-    D[3][10] = -J.fa_y_x_fb_z_x * b.xy - J.fa_y_x_fb_z_y * b.yy - J.fa_y_x_fb_z_z * b.zy;
-    D[3][11] = -J.fa_y_x_fb_z_x * b.xz - J.fa_y_x_fb_z_y * b.yz - J.fa_y_x_fb_z_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 40 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    const T D1_1 = J.rb_y * b.e3;
-    const T D1_2 = J.rb_z * b.e2;
-    const T D1_1_2 = J.rb_y * b.e2;
-    const T D1_2_2 = J.rb_z * b.e3;
-    const T D1_1_3 = J.rb_y * b.e1;
-    const T D1_2_3 = J.rb_z * b.e0;
-    const T D1_1_4 = J.rb_y * b.e0;
-    const T D1_2_4 = J.rb_z * b.e1;
-    const T D2_1 = J.rb_x * b.e3;
-    const T D2_1_2 = J.rb_x * b.e2;
-    const T D2_1_3 = J.rb_x * b.e1;
-    const T D2_1_4 = J.rb_x * b.e0;
-    D[0][7] = T(-1);
-    D[0][10] = T(2) * (D1_2 - D1_1);
-    D[0][11] = T(-2) * (D1_1_2 + D1_2_2);
-    D[0][12] = T(2) * (D1_1_3 - D1_2_3);
-    D[0][13] = T(2) * (D1_1_4 + D1_2_4);
-    D[1][8] = T(-1);
-    D[1][10] = T(2) * (D2_1 - D1_2_4);
-    D[1][11] = T(2) * (D2_1_2 + D1_2_3);
-    D[1][12] = T(-2) * (D2_1_3 + D1_2_2);
-    D[1][13] = T(2) * (D1_2 - D2_1_4);
-    D[2][9] = T(-1);
-    D[2][10] = T(2) * (D1_1_3 - D2_1_2);
-    D[2][11] = T(2) * (D2_1 - D1_1_4);
-    D[2][12] = T(2) * (D2_1_4 + D1_1);
-    D[2][13] = T(-2) * (D2_1_3 + D1_1_2);
-    D[3][10] = T(2) * (J.fa_y_x_fb_z_x * b.e1 + J.fa_y_x_fb_z_y * b.e2 + J.fa_y_x_fb_z_z * b.e3);
-    D[3][11] = T(2) * (J.fa_y_x_fb_z_z * b.e2 - J.fa_y_x_fb_z_x * b.e0 - J.fa_y_x_fb_z_y * b.e3);
-    D[3][12] = T(2) * (J.fa_y_x_fb_z_x * b.e3 - J.fa_y_x_fb_z_y * b.e0 - J.fa_y_x_fb_z_z * b.e1);
-    D[3][13] = T(2) * (J.fa_y_x_fb_z_y * b.e1 - J.fa_y_x_fb_z_x * b.e2 - J.fa_y_x_fb_z_z * b.e0);
-  }
 };
 
 // universal with b immovable: its velocity and inverse mass are zero and gone.
@@ -2161,70 +2097,6 @@ struct universal::b_immovable : universal {
     D[3][4] = ma.I * J.fa_y_x_fb_z_y;
     D[3][5] = ma.I * J.fa_y_x_fb_z_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 15 +, 27 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][0] = T(1);
-    D[0][3] = J.ra_z * a.yx - J.ra_y * a.zx;
-    D[0][4] = J.ra_z * a.yy - J.ra_y * a.zy;
-    D[0][5] = J.ra_z * a.yz - J.ra_y * a.zz;
-    D[1][1] = T(1);
-    D[1][3] = J.ra_x * a.zx - J.ra_z * a.xx;
-    D[1][4] = J.ra_x * a.zy - J.ra_z * a.xy;
-    D[1][5] = J.ra_x * a.zz - J.ra_z * a.xz;
-    D[2][2] = T(1);
-    D[2][3] = J.ra_y * a.xx - J.ra_x * a.yx;
-    D[2][4] = J.ra_y * a.xy - J.ra_x * a.yy;
-    D[2][5] = J.ra_y * a.xz - J.ra_x * a.yz;
-    D[3][3] = J.fa_y_x_fb_z_x * a.xx + J.fa_y_x_fb_z_y * a.yx + J.fa_y_x_fb_z_z * a.zx;
-    D[3][4] = J.fa_y_x_fb_z_x * a.xy + J.fa_y_x_fb_z_y * a.yy + J.fa_y_x_fb_z_z * a.zy;
-    D[3][5] = J.fa_y_x_fb_z_x * a.xz + J.fa_y_x_fb_z_y * a.yz + J.fa_y_x_fb_z_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 20 +, 40 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[4][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    const T D1_1 = J.ra_y * a.e3;
-    const T D1_2 = J.ra_z * a.e2;
-    const T D1_1_2 = J.ra_y * a.e2;
-    const T D1_2_2 = J.ra_z * a.e3;
-    const T D1_1_3 = J.ra_y * a.e1;
-    const T D1_2_3 = J.ra_z * a.e0;
-    const T D1_1_4 = J.ra_y * a.e0;
-    const T D1_2_4 = J.ra_z * a.e1;
-    const T D2_1 = J.ra_x * a.e3;
-    const T D2_1_2 = J.ra_x * a.e2;
-    const T D2_1_3 = J.ra_x * a.e1;
-    const T D2_1_4 = J.ra_x * a.e0;
-    D[0][0] = T(1);
-    D[0][3] = T(2) * (D1_1 - D1_2);
-    D[0][4] = T(2) * (D1_1_2 + D1_2_2);
-    D[0][5] = T(2) * (D1_2_3 - D1_1_3);
-    D[0][6] = T(-2) * (D1_1_4 + D1_2_4);
-    D[1][1] = T(1);
-    D[1][3] = T(2) * (D1_2_4 - D2_1);
-    D[1][4] = T(-2) * (D2_1_2 + D1_2_3);
-    D[1][5] = T(2) * (D2_1_3 + D1_2_2);
-    D[1][6] = T(2) * (D2_1_4 - D1_2);
-    D[2][2] = T(1);
-    D[2][3] = T(2) * (D2_1_2 - D1_1_3);
-    D[2][4] = T(2) * (D1_1_4 - D2_1);
-    D[2][5] = T(-2) * (D2_1_4 + D1_1);
-    D[2][6] = T(2) * (D2_1_3 + D1_1_2);
-    D[3][3] = T(-2) * (J.fa_y_x_fb_z_x * a.e1 + J.fa_y_x_fb_z_y * a.e2 + J.fa_y_x_fb_z_z * a.e3);
-    D[3][4] = T(2) * (J.fa_y_x_fb_z_x * a.e0 + J.fa_y_x_fb_z_y * a.e3 - J.fa_y_x_fb_z_z * a.e2);
-    D[3][5] = T(2) * (J.fa_y_x_fb_z_y * a.e0 - J.fa_y_x_fb_z_x * a.e3 + J.fa_y_x_fb_z_z * a.e1);
-    D[3][6] = T(2) * (J.fa_y_x_fb_z_x * a.e2 - J.fa_y_x_fb_z_y * a.e1 + J.fa_y_x_fb_z_z * a.e0);
-  }
 };
 
 // universal::bend_a with a immovable: its velocity and inverse mass are zero and gone.
@@ -2351,31 +2223,6 @@ struct universal::bend_a::a_immovable : universal::bend_a {
     D[0][9] = mb.I * J.wb_x;
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
   }
 };
 
@@ -2507,31 +2354,6 @@ struct universal::bend_a::b_immovable : universal::bend_a {
     D[0][4] = ma.I * J.wa_y;
     D[0][5] = ma.I * J.wa_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
-  }
 };
 
 // universal::bend_b with a immovable: its velocity and inverse mass are zero and gone.
@@ -2662,31 +2484,6 @@ struct universal::bend_b::a_immovable : universal::bend_b {
     D[0][10] = mb.I * J.wb_y;
     D[0][11] = mb.I * J.wb_z;
   }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
-    D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
-    D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& b = q[1];
-    D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
-    D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
-    D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
-    D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
-  }
 };
 
 // universal::bend_b with b immovable: its velocity and inverse mass are zero and gone.
@@ -2813,31 +2610,6 @@ struct universal::bend_b::b_immovable : universal::bend_b {
     D[0][3] = ma.I * J.wa_x;
     D[0][4] = ma.I * J.wa_y;
     D[0][5] = ma.I * J.wa_z;
-  }
-
-  // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 6 +, 9 *
-  template <class T>
-  static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
-    D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
-    D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
-  }
-
-  // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 8 +, 16 *
-  template <class T>
-  static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
-    for (auto& row : D) {
-      for (T& entry : row) entry = T(0);
-    }
-    const Pose<T>& a = q[0];
-    D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
-    D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
-    D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
-    D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
   }
 };
 

@@ -54,6 +54,12 @@ inline constexpr std::array<std::string_view, number_of_functions> function_name
     "local_jacobian",
     "euler_jacobian"};
 
+// What a variant does not have of its own, but of the block that it is a variant of.
+constexpr bool inherited_by_variants(Function f) {
+  return f == gamma || f == time_derivative || f == stiffness || f == local_jacobian ||
+         f == euler_jacobian;
+}
+
 // All that a block's functions read, laid out as in the contract: x y c s angle of each body, ...
 // or, in space, x y z e0 e1 e2 e3 xx ... zz. Sphere-like bodies have the masses in m_isotropic.
 struct Inputs {

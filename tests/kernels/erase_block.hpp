@@ -75,22 +75,33 @@ struct Space {
   using Joints = spatial::Joints;
 };
 
-// What only blocks in space have: sphere-like bodies, and J by the other forms of velocity.
-template <class Block, class T, class Pose, class Jacobian, class Velocity>
-void evaluate_in_space(std::span<const Inputs> lanes, const Pose& q, const Jacobian& J,
-                       const T (&lambda)[Block::rows], Velocity& v, std::vector<Outputs>& out) {
+// What only blocks in space have for sphere-like bodies.
+template <class Block, class T, class Jacobian, class Velocity>
+void evaluate_isotropic(std::span<const Inputs> lanes, const Jacobian& J,
+                        const T (&lambda)[Block::rows], Velocity& v, std::vector<Outputs>& out) {
   constexpr int n = Block::bodies, rows = Block::rows;
   spatial::IsotropicInverseMass<T> m[n];
   load<T>(m, lanes, &Inputs::m_isotropic);
-  T K[rows * (rows + 1) / 2], D[rows][6 * n], by_parameters[rows][7 * n];
+  T K[rows * (rows + 1) / 2], D[rows][6 * n];
   Block::effective_mass(J, m, K), keep<T>(out, effective_mass_isotropic, K);
   Block::inverse_mass_jacobian(J, m, D), keep<T>(out, inverse_mass_jacobian_isotropic, D);
-  Block::local_jacobian(q, J, D), keep<T>(out, local_jacobian, D);
-  Block::euler_jacobian(q, J, by_parameters), keep<T>(out, euler_jacobian, by_parameters);
   Block::apply(J, m, lambda, v), keep<T>(out, apply_isotropic, v);
 }
 
-template <template <class> class In, class Joint, class Block, class T>
+// J by the other forms of velocity in space, from J of `General`: that a variant is a variant of, or
+// the block itself.
+template <class General, class Block, class T, class Pose, class Parameters>
+void evaluate_forms(const Pose& q, const Parameters& p, T time, std::vector<Outputs>& out) {
+  constexpr int n = Block::bodies, rows = Block::rows;
+  typename General::template Jacobian<T> J;
+  T C[rows], local[rows][6 * n], by_parameters[rows][7 * n];
+  General::jacobian(q, p, time, C, J);
+  if constexpr (requires { T::taken; }) T::taken = {};
+  Block::local_jacobian(q, J, local), keep<T>(out, local_jacobian, local);
+  Block::euler_jacobian(q, J, by_parameters), keep<T>(out, euler_jacobian, by_parameters);
+}
+
+template <template <class> class In, class Joint, class General, class Block, class T>
 std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
   constexpr int n = Block::bodies, rows = Block::rows, triangle = rows * (rows + 1) / 2;
   constexpr int columns = In<T>::width * n;
@@ -125,7 +136,8 @@ std::vector<Outputs> evaluate(std::span<const Inputs> lanes) {
   if constexpr (In<T>::dimension == 3) {
     typename In<T>::Velocity pushed[n];
     std::copy(v, v + n, pushed);
-    evaluate_in_space<Block>(lanes, q, J, lambda, pushed, out);
+    evaluate_isotropic<Block>(lanes, J, lambda, pushed, out);
+    evaluate_forms<General, Block>(q, p, time[0], out);
   }
   Block::apply(J, m, lambda, v), keep<T>(out, apply, v);
   return out;
@@ -156,7 +168,7 @@ void set_defaults(Inputs& in) {
   std::memcpy(in.p.data(), &p, in.p.size() * sizeof(double));
 }
 
-template <template <class> class In, class Joint, class Block, class T>
+template <template <class> class In, class Joint, class General, class Block, class T>
 AnyBlock erased(std::string name, std::size_t general, bool is_coordinate) {
   int immovable = -1;
   if constexpr (requires { Block::immovable_body; }) immovable = Block::immovable_body;
@@ -172,7 +184,7 @@ AnyBlock erased(std::string name, std::size_t general, bool is_coordinate) {
           Block::row_names,
           Block::row_kinds,
           Joint::parameters,
-          evaluate<In, Joint, Block, T>,
+          evaluate<In, Joint, General, Block, T>,
           factor_and_solve<Block>,
           set_defaults<In, Joint>};
 }
@@ -182,11 +194,11 @@ template <template <class> class In, class Joint, class Block, class T>
 void add_with_variants(std::vector<AnyBlock>& all, const std::string& name,
                        const std::string& prefix) {
   const std::size_t general = all.size();
-  all.push_back(erased<In, Joint, Block, T>(name, general, !prefix.empty()));
+  all.push_back(erased<In, Joint, Block, Block, T>(name, general, !prefix.empty()));
   const auto add = [&]<class Variant>(std::type_identity<Variant>) {
     const std::string body(Joint::body_names[Variant::immovable_body]);
     all.push_back(
-        erased<In, Joint, Variant, T>(prefix + body + "_immovable", general, !prefix.empty()));
+        erased<In, Joint, Block, Variant, T>(prefix + body + "_immovable", general, !prefix.empty()));
   };
   [&]<class... Variants>(std::type_identity<std::tuple<Variants...>>) {
     (add(std::type_identity<Variants>{}), ...);
