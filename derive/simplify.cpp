@@ -49,7 +49,6 @@ Program copy(const Program& program, const Rewrite& rewrite) {
 struct Pair {
   int x = 0, y = 0;
   Rational ratio;
-  friend bool operator==(const Pair&, const Pair&) = default;
 };
 
 std::vector<Pair> term_pairs(const Program& program, const Operation& op) {
