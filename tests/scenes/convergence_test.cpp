@@ -31,7 +31,7 @@ class Convergence : public testing::TestWithParam<Problem> {};
 
 TEST_P(Convergence, FirstOrder) {
   const Problem& problem = GetParam();
-  Scene scene = read_scene((scenes_dir() / (std::string(problem.scene) + ".toml")).string());
+  Scene scene = scene_named(problem.scene);
   const Reference reference = read_reference(problem.scene, problem.until);
   double before = 0, now = 0;
   for (int halvings = 0; halvings < 4; ++halvings) {
@@ -67,7 +67,7 @@ INSTANTIATE_TEST_SUITE_P(Problems, Convergence,
 class Standing : public testing::TestWithParam<const char*> {};
 
 TEST_P(Standing, StaysAtEveryStep) {
-  Scene scene = read_scene((scenes_dir() / (std::string(GetParam()) + ".toml")).string());
+  Scene scene = scene_named(GetParam());
   for (const double step : {1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480}) {
     scene.step = step;
     double moved = 0, turned = 0;

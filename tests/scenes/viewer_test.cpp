@@ -3,45 +3,21 @@
 #include "runtime/viewer.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
 #include "runtime/run_output.hpp"
 #include "runtime/viewer_marks.hpp"
-#include "tests/scenes/support.hpp"
+#include "tests/scenes/browser.hpp"
 
 namespace cdot::test {
 namespace {
 
-std::vector<Frame> film_of(const Scene& scene) {
-  RunOptions options;
-  options.film_times = film_times(scene);
-  std::string warnings;
-  return simulate(scene, options, warnings).film;
-}
-
 Scene short_scene(const char* name, double duration) {
-  Scene scene = read_scene((scenes_dir() / (std::string(name) + ".toml")).string());
+  Scene scene = scene_named(name);
   scene.duration = duration;
   return scene;
-}
-
-// The page's document after its script ran for so many milliseconds of its own time.
-std::string rendered(const TemporaryFolder& folder, const std::string& page,
-                     const std::string& fragment) {
-  const std::string path = folder / "page.html", profile = folder / "profile";
-  write_file(path, page);
-  const CommandResult result = run_command(fmt::format(
-      "'{}' --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
-      "--disable-component-update --disable-sync --user-data-dir='{}' --virtual-time-budget=3000 "
-      "--dump-dom 'file://{}{}'",
-      CDOT_CHROMIUM, profile, path, fragment));
-  EXPECT_EQ(result.status, 0) << result.err;
-  return result.out;
 }
 
 std::string attribute(const std::string& document, const std::string& element,
@@ -54,18 +30,12 @@ std::string attribute(const std::string& document, const std::string& element,
   return document.substr(first, document.find('"', first) - first);
 }
 
-class Page : public testing::Test {
- protected:
-  void SetUp() override {
-    ASSERT_STRNE(CDOT_CHROMIUM, "CDOT_CHROMIUM-NOTFOUND") << "this test needs chromium";
-  }
-  TemporaryFolder folder_;
-};
+using Page = PageTest;
 
 TEST_F(Page, ScriptRunsAndShowsTheTimeAskedFor) {
   const Scene scene = short_scene("double_pendulum", 1);
   const std::vector<Frame> film = film_of(scene);
-  const std::string document = rendered(folder_, html_page(scene, film), "#t=0.5");
+  const std::string document = rendered(html_page(scene, film), "#t=0.5");
   EXPECT_EQ(attribute(document, "<html", "data-ready"), std::to_string(film.size()));
   EXPECT_EQ(attribute(document, "<html", "data-time"), "0.5");
   const View view = view_of(scene, film);
@@ -84,23 +54,13 @@ TEST_F(Page, ScriptRunsAndShowsTheTimeAskedFor) {
   }
 }
 
-// Under the virtual clock a browser short of time draws no frame at all: frames come from the clock's
-// own timers here, so that the page plays as far on a loaded machine as on an idle one.
-constexpr const char* kFramesByTheClock = R"(<script>
-  window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 16);
-</script>)";
-
-// A person at the controls, played by a script that the test adds to the page.
 TEST_F(Page, PlaysScrubsAndAnswersKeys) {
   const Scene scene = short_scene("four_bar", 1);
-  std::string page = html_page(scene, film_of(scene));
-  const std::string person = R"(<pre id="seen"></pre><script>
-    const seen = {}, root2 = document.documentElement, at = () => +root2.dataset.time;
-    const place = () => document.querySelector('[data-body="0"]').getAttribute('transform');
-    const key = k => document.dispatchEvent(new KeyboardEvent('keydown', {key: k}));
-    const click = id => document.getElementById(id).click();
-    window.addEventListener('error', e => { seen.error = e.message; });
-    setTimeout(() => {
+  const auto seen = seen_by(html_page(scene, film_of(scene)), R"(
+      const root2 = document.documentElement, at = () => +root2.dataset.time;
+      const place = () => document.querySelector('[data-body="0"]').getAttribute('transform');
+      const key = k => document.dispatchEvent(new KeyboardEvent('keydown', {key: k}));
+      const click = id => document.getElementById(id).click();
       seen.played = at();
       click('play'); seen.paused = document.getElementById('play').textContent;
       const slider = document.getElementById('scrub');
@@ -114,18 +74,8 @@ TEST_F(Page, PlaysScrubsAndAnswersKeys) {
       key('t'); seen.tracesOff = document.getElementById('traces').getAttribute('aria-pressed');
       seen.trace = document.querySelector('.path').getAttribute('points').length;
       seen.plots = document.querySelectorAll('.plot polyline').length;
-      seen.size = document.querySelector('[data-body="0"]').getBoundingClientRect().width;
-      document.getElementById('seen').textContent = JSON.stringify(seen);
-    }, 1500);
-  </script></body>)";
-  page.replace(page.find("</body>"), 7, person);
-  page.insert(page.find("<script>"), kFramesByTheClock);
-  const std::string document = rendered(folder_, page, "");
-  const std::size_t start = document.find("<pre id=\"seen\">{");
-  ASSERT_NE(start, std::string::npos);
-  const auto seen = nlohmann::json::parse(
-      document.substr(start + 15, document.find("</pre>", start) - start - 15));
-  EXPECT_FALSE(seen.contains("error")) << seen;
+      seen.size = document.querySelector('[data-body="0"]').getBoundingClientRect().width;)");
+  ASSERT_FALSE(seen.contains("error")) << seen;
   EXPECT_GT(seen["played"], 0.1);
   EXPECT_EQ(seen["paused"], "Play");
   EXPECT_NEAR(seen["scrubbed"], 0.75, 1e-6);
@@ -142,29 +92,13 @@ TEST_F(Page, PlaysScrubsAndAnswersKeys) {
 
 TEST_F(Page, DrawsOnTheScreen) {
   const Scene scene = short_scene("four_bar", 1);
-  const std::string path = folder_ / "page.html", picture = folder_ / "picture.png",
-                    profile = folder_ / "profile";
-  write_file(path, html_page(scene, film_of(scene)));
-  run_command(fmt::format(
-      "'{}' --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
-      "--disable-component-update --disable-sync --user-data-dir='{}' --window-size=900,600 "
-      "--virtual-time-budget=500 --screenshot='{}' 'file://{}#t=0.5'",
-      CDOT_CHROMIUM, profile, picture, path));
   // A page of one colour compresses to about 3 kB.
-  EXPECT_GT(read_text(picture).size(), 15000u);
+  EXPECT_GT(screenshot(html_page(scene, film_of(scene)), "#t=0.5").size(), 15000u);
 }
 
 TEST(Pictures, PageIsSelfContained) {
   const Scene scene = short_scene("slider_crank", 0.02);
-  const std::string page = html_page(scene, film_of(scene));
-  std::string rest = page;
-  for (const char* name : {"http://www.w3.org/2000/svg"}) {  // a name, not a place to fetch from
-    for (std::size_t at; (at = rest.find(name)) != std::string::npos;)
-      rest.erase(at, std::string(name).size());
-  }
-  for (const char* outside : {"http:", "https:", "src=", "@import", "url(", "fetch(", "{{"}) {
-    EXPECT_EQ(rest.find(outside), std::string::npos) << outside;
-  }
+  EXPECT_EQ(foreign_to(html_page(scene, film_of(scene))), std::vector<std::string>());
 }
 
 TEST(Pictures, NamesCannotBreakOutOfThePage) {
