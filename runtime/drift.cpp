@@ -72,21 +72,27 @@ void factor_rows_with_errors(Island<S>& island) {
   island.system.factor();
 }
 
-// K lambda = -C with the factor at hand; q += M^-1 J^T lambda.
+// K lambda = what was loaded, with the factor at hand; `moved` += M^-1 J^T lambda.
 template <class S>
-void move_by_newton(WorldState<S>& world, Island<S>& island) {
+void solve_and_apply(WorldState<S>& world, Island<S>& island, typename S::Velocity* moved) {
   using T = typename S::Scalar;
-  Bodies<S>& all = world.bodies;
-  System<S>& system = island.system;
-  system.load([](const Batch<S>& batch, int i) { return -double(batch.scratch[i]); });
-  system.solve();
-  system.store([](Batch<S>& batch, int i, double lambda) {
+  island.system.solve();
+  island.system.store([](Batch<S>& batch, int i, double lambda) {
     batch.scratch[i] = T(lambda);
     batch.correction[i] += T(lambda);
   });
   for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all,
-                              segment.batch->scratch.data(), all.increment.data());
+    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies,
+                              segment.batch->scratch.data(), moved);
+}
+
+// K lambda = -C, q += M^-1 J^T lambda.
+template <class S>
+void move_by_newton(WorldState<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  island.system.load([](const Batch<S>& batch, int i) { return -double(batch.scratch[i]); });
+  solve_and_apply(world, island, all.increment.data());
   for (int i : island.bodies) {
     all.pose[i] = S::moved(all.pose[i], all.increment[i]);
     all.displacement[i] = S::sum(all.displacement[i], all.increment[i], T(1));
@@ -162,7 +168,6 @@ void sweep_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar tim
 // next step.
 template <class S>
 void project_velocities(WorldState<S>& world, Island<S>& island, bool direct) {
-  using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   if (!direct) {
     factorize_rows(world, island);
@@ -181,14 +186,7 @@ void project_velocities(WorldState<S>& world, Island<S>& island, bool direct) {
   system.choose([](const Batch<S>& batch, int) { return !batch.law; });
   system.assemble(all);
   island.redundant_rows = system.factor();
-  system.solve();
-  system.store([](Batch<S>& batch, int i, double lambda) {
-    batch.scratch[i] = T(lambda);
-    batch.correction[i] += T(lambda);
-  });
-  for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all,
-                              segment.batch->scratch.data(), all.velocity.data());
+  solve_and_apply(world, island, all.velocity.data());
 }
 
 // What bends a path back onto its curve is a small part of the way: 2 |displacement| <= |h v| in
