@@ -40,12 +40,6 @@ double off_unit(const spatial::Pose<T>& q) {
   return off < 4 * std::numeric_limits<T>::epsilon() ? 0 : off;
 }
 
-template <class T>
-void run(SpatialWorld<T>& world, double duration, double h) {
-  const long steps = std::lround(duration / h);
-  for (long i = 0; i < steps; ++i) world.step(h);
-}
-
 inline SpatialBodyDefinition brick(double x, double y, double z, double mass = 1) {
   SpatialBodyDefinition d;
   d.x = x, d.y = y, d.z = z;

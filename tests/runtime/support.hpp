@@ -58,10 +58,28 @@ std::vector<int> add_chain(World<T>& world, int links, double angle, double mass
   return rods;
 }
 
-template <class T>
-void run(World<T>& world, double duration, double h) {
+template <class S>
+void run(BasicWorld<S>& world, double duration, double h) {
   const long steps = std::lround(duration / h);
   for (long i = 0; i < steps; ++i) world.step(h);
+}
+
+// The largest distance of the energy from what it was, in the first quarter of so many seconds and in the rest.
+struct EnergyOff {
+  double early = 0, late = 0;
+};
+
+template <class S>
+EnergyOff energy_off(BasicWorld<S>& world, double duration, double h) {
+  EnergyOff off;
+  const double start = world.energy();
+  const long steps = std::lround(duration / h);
+  for (long i = 0; i < steps; ++i) {
+    world.step(h);
+    double& worst = i < steps / 4 ? off.early : off.late;
+    worst = std::max(worst, std::abs(world.energy() - start));
+  }
+  return off;
 }
 
 template <class T>
