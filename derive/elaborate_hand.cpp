@@ -1,35 +1,24 @@
 // An entry of a hand derivation: its trees to matrices of expressions.
 #include <algorithm>
 
-#include "derive/evaluate.hpp"
-#include "derive/hand.hpp"
+#include "derive/hand_names.hpp"
 #include "derive/hand_readings.hpp"
 #include "derive/lexer.hpp"
-#include "derive/symbols.hpp"
 
 namespace cdot::derive {
 namespace {
 
 using Kind = HandItemAst::Kind;
 
-Value of_matrix(Matrix m) {
-  if (m.rows == 1 && m.columns == 1) return scalar(m.at(0, 0), {});
-  Value v;
-  v.type = Type::matrix;
-  v.matrix = std::make_shared<const Matrix>(std::move(m));
-  return v;
-}
-
-class EntryElaborator final : public Scope {
+class EntryElaborator {
  public:
   EntryElaborator(const HandEntryAst& ast, const HandFile& file, const ReadResult& read,
                   const GeneratedRows& generated, Diagnostics& diagnostics)
       : ast_(ast),
         file_(file),
-        read_(read),
         joint_(*read.joint),
         pool_(*read.joint->pool),
-        generated_(generated),
+        names_(ast, file, read, generated),
         diagnostics_(diagnostics) {
     entry_.id = ast.id;
     entry_.title = ast.title;
@@ -54,16 +43,6 @@ class EntryElaborator final : public Scope {
     return std::move(entry_);
   }
 
-  const Value* find(const std::string& name) override;
-  int body(const std::string& letter) const override {
-    const int body = body_of_letter(letter);
-    return body < static_cast<int>(joint_.bodies.size()) ? body : -1;
-  }
-  void use_body(int, Span) override {}
-  void use_world() override {}
-  std::vector<std::string> known() const override;
-  std::string hint(const std::string& name) const override;
-
  private:
   void elaborate(const HandItemAst& item);
   void let(const HandItemAst& item);
@@ -77,8 +56,6 @@ class EntryElaborator final : public Scope {
   std::vector<HandReading> readings(const Ast& ast);
 
   void begin_part(std::vector<std::string> rows);
-  const Value* special(const std::string& name);
-  Value lambda();
   // Of v and w of each body in a row of J.
   std::vector<int> widths_of_J() const {
     std::vector<int> widths;
@@ -88,7 +65,6 @@ class EntryElaborator final : public Scope {
     }
     return widths;
   }
-  bool name_is_free(const Word& word);
   Value evaluate(const Ast& ast, bool rows_of_J = false);
   void store(const Value& v, std::optional<Matrix>& matrix, Expr& expression);
   std::string problem(const Ast& ast, std::size_t since) const;
@@ -97,17 +73,13 @@ class EntryElaborator final : public Scope {
 
   const HandEntryAst& ast_;
   const HandFile& file_;
-  const ReadResult& read_;
   const Joint& joint_;
   Pool& pool_;
-  const GeneratedRows& generated_;
+  HandNames names_;
   Diagnostics& diagnostics_;
   HandEntry entry_;
   Diagnostics findings_;
-  std::map<std::string, Value> names_;          // lets and free symbols of the entry
   std::map<std::string, std::string> reasons_;  // why a name of the entry has no value
-  std::map<std::string, Value> said_;           // C, Cdot, J, K, lambda of this part
-  std::optional<Generated> generated_now_;      // of this part's rows
 };
 
 void EntryElaborator::elaborate(const HandItemAst& item) {
@@ -133,62 +105,12 @@ void EntryElaborator::elaborate(const HandItemAst& item) {
 }
 
 void EntryElaborator::begin_part(std::vector<std::string> rows) {
+  names_.begin_part(rows);
   entry_.parts.push_back({std::move(rows), {}});
-  said_.clear();
-  generated_now_.reset();
-}
-
-const Value* EntryElaborator::find(const std::string& name) {
-  if (const auto own = names_.find(name); own != names_.end()) return &own->second;
-  if (const auto spec = read_.names.find(name); spec != read_.names.end()) return &spec->second;
-  return special(name);
-}
-
-// What has a meaning of its own in hand derivations.
-const Value* EntryElaborator::special(const std::string& name) {
-  if (const auto said = said_.find(name); said != said_.end()) return &said->second;
-  if (name == "E") return &(said_["E"] = of_matrix({0, 0, {pool_.number(1)}}));
-  if (name != "C" && name != "Cdot" && name != "J" && name != "K" && name != "lambda")
-    return nullptr;
-  if (!generated_now_) generated_now_ = generated_(entry_.parts.back().rows);
-  const Value v = name == "C"      ? of_matrix(generated_now_->C)
-                  : name == "Cdot" ? of_matrix(generated_now_->Cdot)
-                  : name == "J"    ? of_matrix(generated_now_->J)
-                  : name == "K"    ? of_matrix(generated_now_->K)
-                                   : lambda();
-  return &(said_[name] = v);
-}
-
-// A number for one row, a column for several.
-Value EntryElaborator::lambda() {
-  const int rows = generated_now_->C.rows;
-  if (rows == 1) return scalar(pool_.symbol("lambda", Role::multiplier), {});
-  Matrix column{rows, 1, {}};
-  for (int i = 1; i <= rows; ++i)
-    column.entries.push_back(pool_.symbol("lambda_" + std::to_string(i), Role::multiplier));
-  return of_matrix(std::move(column));
-}
-
-std::vector<std::string> EntryElaborator::known() const {
-  std::vector<std::string> all = {"time", "pi", "world", "E", "C", "Cdot", "J", "K", "lambda"};
-  for (const auto& [name, value] : names_) all.push_back(name);
-  for (const auto& [name, value] : read_.names) all.push_back(name);
-  return all;
-}
-
-std::string EntryElaborator::hint(const std::string& name) const {
-  for (const HandItemAst& item : ast_.items) {
-    const bool listed = std::any_of(item.names.begin(), item.names.end(),
-                                    [&](const Word& w) { return w.text == name; });
-    if ((item.kind == Kind::let && item.word.text == name) || (item.kind == Kind::free && listed))
-      return quote(name) + " is declared only in line " +
-             std::to_string(file_.file->line(item.where.begin)) + "; move that up";
-  }
-  return {};
 }
 
 Value EntryElaborator::evaluate(const Ast& ast, bool rows_of_J) {
-  Evaluator evaluator(pool_, *this, diagnostics_, findings_);
+  Evaluator evaluator(pool_, names_, diagnostics_, findings_);
   if (rows_of_J) evaluator.expect_columns(widths_of_J());
   Value v = evaluator(ast);
   if (v.type != Type::body && v.type != Type::frame) return v;
@@ -217,17 +139,13 @@ std::string EntryElaborator::problem(const Ast& ast, std::size_t since) const {
 
 void EntryElaborator::store(const Value& v, std::optional<Matrix>& matrix, Expr& expression) {
   if (v.type == Type::scalar || v.type == Type::vector || v.type == Type::point) expression = v.e;
-  if (v.type == Type::scalar) matrix = Matrix{1, 1, {v.e}};
-  if (v.type == Type::vector || v.type == Type::point) matrix = column_of(v.e);
-  if (v.type == Type::matrix) {
-    matrix = v.inverted ? inverse(*v.matrix) : *v.matrix;
-    if (!matrix->any_size()) return;
-    const int n = pool_.dimension();
-    Matrix full{n, n, {}};
-    for (int i = 0; i < n * n; ++i)
-      full.entries.push_back(i % (n + 1) == 0 ? matrix->entries[0] : pool_.number(0));
-    matrix = full;
-  }
+  if (v.type == Type::poison) return;
+  matrix = as_matrix(v);
+  if (!matrix->any_size()) return;
+  const Expr diagonal = matrix->entries[0];
+  const int n = pool_.dimension();
+  matrix = Matrix{n, n, {}};
+  for (int i = 0; i < n * n; ++i) matrix->entries.push_back(i % (n + 1) == 0 ? diagonal : pool_.number(0));
 }
 
 HandItem EntryElaborator::begin(const HandItemAst& item, HandItem::Kind kind) const {
@@ -239,19 +157,6 @@ HandItem EntryElaborator::begin(const HandItemAst& item, HandItem::Kind kind) co
   return out;
 }
 
-bool EntryElaborator::name_is_free(const Word& word) {
-  const auto spec = read_.names.find(word.text);
-  const bool taken = names_.contains(word.text) || spec != read_.names.end();
-  if (!taken && word.text != "C" && word.text != "Cdot" && word.text != "J" && word.text != "K" &&
-      word.text != "lambda" && word.text != "E" && !is_symbol_of_tool(word.text))
-    return true;
-  diagnostics_.error(word.where,
-                     spec != read_.names.end() ? quote(word.text) + " is a name of the spec already"
-                                               : quote(word.text) + " has a meaning already",
-                     "choose another name");
-  return false;
-}
-
 // let NAME = expression
 void EntryElaborator::let(const HandItemAst& item) {
   const std::size_t before = findings();
@@ -260,16 +165,16 @@ void EntryElaborator::let(const HandItemAst& item) {
   if (v.type == Type::point) v = vector(v.e, v.unit);
   if (v.zero) v.unit.reset();
   v.zero = false;
-  if (!name_is_free(item.word)) return;
+  if (!names_.is_free(item.word, diagnostics_)) return;
   if (v.type == Type::scalar || v.type == Type::vector) pool_.name(v.e, item.word.text, true);
-  names_[item.word.text] = v;
+  names_.define(item.word.text, v);
 }
 
 void EntryElaborator::free(const HandItemAst& item) {
   for (const Word& word : item.names) {
-    if (word.text.empty() || !name_is_free(word)) continue;
+    if (word.text.empty() || !names_.is_free(word, diagnostics_)) continue;
     entry_.free.push_back(word.text);
-    names_[word.text] = scalar(pool_.symbol(word.text, Role::given), {});
+    names_.define(word.text, scalar(pool_.symbol(word.text, Role::given), {}));
   }
 }
 
@@ -296,7 +201,7 @@ void EntryElaborator::assume(const HandItemAst& item) {
   a.where = item.where;
   a.text = item.text;
   if (!item.body.text.empty()) {
-    const bool known_body = item.body.text == "world" || body(item.body.text) >= 0;
+    const bool known_body = item.body.text == "world" || names_.body(item.body.text) >= 0;
     if (!known_body)
       diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
     const auto parameter =
@@ -326,7 +231,7 @@ void EntryElaborator::quantity(const HandItemAst& item) {
     out.readings = readings(item.right);
   }
   store(v, out.value, out.expression);
-  if (item.word.text != "b") said_[item.word.text] = v;
+  if (item.word.text != "b") names_.say(item.word.text, v);
   entry_.parts.back().items.push_back(std::move(out));
 }
 
@@ -347,7 +252,7 @@ void EntryElaborator::update(const HandItemAst& item) {
                : item.word.text == "w" ? HandItem::Target::spin
                : item.word.text == "x" ? HandItem::Target::position
                                        : HandItem::Target::angle;
-  out.body = body(item.body.text);
+  out.body = names_.body(item.body.text);
   if (out.body < 0)
     return diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
   const std::size_t before = findings();

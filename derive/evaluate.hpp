@@ -75,7 +75,6 @@ class Evaluator {
                    const std::vector<Span>& parts);
   Value matrix_power(const Value& base, int exponent, const Ast& ast);
   std::optional<Matrix> multiply(const Value& a, const Value& b, Span where);
-  Value simplest(Matrix m, bool as_vector);
 
   Pool& pool_;
   Scope& names_;

@@ -8,20 +8,6 @@ namespace {
 
 constexpr int largest_side = 64;
 
-Value wrapped(Matrix m) {
-  Value v;
-  v.type = Type::matrix;
-  v.matrix = std::make_shared<const Matrix>(std::move(m));
-  return v;
-}
-
-// A number is 1 x 1, a vector a column.
-Matrix as_matrix(const Value& v) {
-  if (v.type == Type::matrix) return v.inverted ? inverse(*v.matrix) : *v.matrix;
-  if (v.type == Type::scalar) return {1, 1, {v.e}};
-  return column_of(v.e);
-}
-
 // Whether the size is only fixed by the place: the literal 0 and multiples of E.
 bool any_size(const Value& v) { return v.zero || (v.type == Type::matrix && v.matrix->any_size()); }
 
@@ -55,7 +41,7 @@ Matrix scaled_by(const Matrix& m, Expr factor) {
 
 // In space, so that what a person writes in matrices stays as readable as what is derived in vectors.
 Value row_of(Expr n) {
-  Value v = wrapped(transposed(column_of(n)));
+  Value v = of_matrix(transposed(column_of(n)));
   v.row = n;
   return v;
 }
@@ -167,16 +153,6 @@ class Blocks {
 
 }  // namespace
 
-Value Evaluator::simplest(Matrix m, bool as_vector) {
-  if (m.rows == 1 && m.columns == 1) return scalar(m.at(0, 0), {});
-  if (as_vector && m.rows == pool_.dimension() && m.columns == 1) {
-    Expr sum = zero_vector(pool_);
-    for (int i = 0; i < m.rows; ++i) sum = sum + m.at(i, 0) * world_axes(pool_)[static_cast<std::size_t>(i)];
-    return vector(sum, {});
-  }
-  return wrapped(std::move(m));
-}
-
 Value Evaluator::transpose(const Ast& ast) {
   const Value v = plain(ast.args[0], "has no transpose");
   if (v.type == Type::poison || v.type == Type::scalar) return v;
@@ -184,7 +160,7 @@ Value Evaluator::transpose(const Ast& ast) {
   if (v.row) return vector(v.row, {});
   if (v.tensor) return v;
   if (v.type == Type::vector && pool_.dimension() == 3) return row_of(v.e);
-  Value result = wrapped(transposed(as_matrix(v)));
+  Value result = of_matrix(transposed(as_matrix(v)));
   if (v.type == Type::matrix) return simplest(*result.matrix, true);
   return result;
 }
@@ -198,7 +174,6 @@ Value Evaluator::matrix_sum(const std::vector<Value>& terms, const std::string& 
   const bool open = first == terms.end();  // nothing but multiples of E and 0
   if (!open) {
     const Matrix size = as_matrix(*first);
-    total = sized(scalar(pool_.number(0), {}), 0, 0, pool_);
     total = {size.rows, size.columns, std::vector<Expr>(size.entries.size(), pool_.number(0))};
   }
   for (std::size_t i = 0; i < terms.size(); ++i) {
@@ -212,7 +187,7 @@ Value Evaluator::matrix_sum(const std::vector<Value>& terms, const std::string& 
       total.entries[k] =
           signs[i] == '-' ? total.entries[k] - m.entries[k] : total.entries[k] + m.entries[k];
   }
-  return open ? wrapped(std::move(total)) : simplest(std::move(total), false);
+  return open ? of_matrix(std::move(total)) : simplest(std::move(total), false);
 }
 
 std::optional<Matrix> Evaluator::multiply(const Value& a, const Value& b, Span where) {
@@ -270,13 +245,13 @@ Value Evaluator::matrix_power(const Value& base, int exponent, const Ast& ast) {
     plain.inverted = false;
     return plain;
   }
-  if (m.any_size()) return wrapped({0, 0, {pow(m.entries[0], exponent)}});
+  if (m.any_size()) return of_matrix({0, 0, {pow(m.entries[0], exponent)}});
   if (m.rows != m.columns || exponent == 0 || exponent < -1 || exponent > 8 || m.rows > 4)
     return error(ast.where, "this power of a matrix of " + size_in_words(m) + " is not supported",
                  "square matrices up to 4 x 4 have an inverse ^-1 and powers up to ^8");
-  if (exponent == -1) return wrapped(inverse(m));
+  if (exponent == -1) return of_matrix(inverse(m));
   Value power = base;
-  for (int i = 1; i < exponent; ++i) power = wrapped(*multiply(power, base, ast.where));
+  for (int i = 1; i < exponent; ++i) power = of_matrix(*multiply(power, base, ast.where));
   return power;
 }
 
@@ -312,7 +287,7 @@ Value Evaluator::matrix(const Ast& ast) {
     if (m.rows > largest_side || m.columns > largest_side)
       return error(ast.where, "a matrix with more than 64 rows or columns");
   }
-  return wrapped(std::move(m));
+  return of_matrix(std::move(m));
 }
 
 }  // namespace cdot::derive

@@ -5,13 +5,6 @@
 namespace cdot::derive {
 namespace {
 
-Value matrix_of(Matrix m) {
-  Value v;
-  v.type = Type::matrix;
-  v.matrix = std::make_shared<Matrix>(std::move(m));
-  return v;
-}
-
 // w = 2 G de/dt.
 Matrix matrix_of_rates(Pool& pool, int body) {
   const std::vector<Expr> e = body_euler_parameters(pool, body);
@@ -28,7 +21,7 @@ Value build_mass(Pool& pool, std::span<const Value> a) {
 Value build_inertia(Pool& pool, std::span<const Value> a) {
   const Expr inverse_I = inverse_inertia(pool, a[0].body);
   if (pool.dimension() == 2) return scalar(pow(inverse_I, -1));
-  Value v = matrix_of(tensor_matrix(inverse_I));
+  Value v = of_matrix(tensor_matrix(inverse_I));
   v.tensor = inverse_I;
   v.inverted = true;
   return v;
@@ -40,7 +33,7 @@ Value build_skew(Pool& pool, std::span<const Value> a) {
 }
 
 Value build_inverse(Pool&, std::span<const Value> a) {
-  if (!a[0].inverted) return matrix_of(inverse(*a[0].matrix));
+  if (!a[0].inverted) return of_matrix(inverse(*a[0].matrix));
   Value v = a[0];
   v.inverted = false;
   return v;
@@ -54,15 +47,15 @@ Value build_rotation(Pool& pool, std::span<const Value> a) {
   for (int i = 0; i < n; ++i) {
     for (const Expr axis : axes) R.entries.push_back(component(axis, static_cast<std::size_t>(i)));
   }
-  return matrix_of(std::move(R));
+  return of_matrix(std::move(R));
 }
 
 Value build_euler_parameters(Pool& pool, std::span<const Value> a) {
-  return matrix_of({4, 1, body_euler_parameters(pool, a[0].body)});
+  return of_matrix({4, 1, body_euler_parameters(pool, a[0].body)});
 }
 
 Value build_matrix_of_rates(Pool& pool, std::span<const Value> a) {
-  return matrix_of(matrix_of_rates(pool, a[0].body));
+  return of_matrix(matrix_of_rates(pool, a[0].body));
 }
 
 // de/dt = 1/2 G^T w, since G G^T is the identity.
@@ -75,7 +68,7 @@ Value build_euler_rates(Pool& pool, std::span<const Value> a) {
     for (int i = 0; i < 3; ++i) sum = sum + G.at(i, k) * component(w, static_cast<std::size_t>(i));
     rates.entries.push_back(Rational(1, 2) * sum);
   }
-  return matrix_of(std::move(rates));
+  return of_matrix(std::move(rates));
 }
 
 }  // namespace cdot::derive

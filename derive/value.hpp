@@ -49,6 +49,12 @@ inline Value vector(Expr e, std::optional<Unit> unit = Unit{}) {
   return v;
 }
 
+Value of_matrix(Matrix m);
+// A matrix of one entry as a number; in hand derivations a column may be a vector.
+Value simplest(Matrix m, bool column_is_vector = false);
+// A matrix as it is, a number as 1 x 1, a vector as a column.
+Matrix as_matrix(const Value& v);
+
 // In space: the matrix with skew(r) u = r x u.
 Value skew_of(Expr r);
 
