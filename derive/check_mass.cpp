@@ -15,8 +15,6 @@
 namespace cdot::derive {
 namespace {
 
-using GiNaC::ex;
-
 // With more minors than the first, formulas become too long for algebra: then numbers at the random
 // poses decide.
 constexpr double most_minors_by_algebra = 250, most_minors = 20000;
@@ -187,7 +185,7 @@ class MassCheck {
     for (std::size_t k = 0; k < s.size(); ++k) {
       if (!(std::fabs(c.seen[k] - ratio * s[k] * s[k]) <= 1e-8 * c.seen[k])) return std::nullopt;
     }
-    return GiNaC::numeric(static_cast<long>(twelfths)) / 12;
+    return numeric(static_cast<long>(twelfths)) / 12;
   }
 
   bool recognise(Coefficient& c) {

@@ -4,8 +4,6 @@
 
 namespace cdot::derive {
 
-using GiNaC::ex;
-
 ex determinant(const std::vector<std::vector<ex>>& J, const std::vector<std::size_t>& columns) {
   GiNaC::matrix m(static_cast<unsigned>(J.size()), static_cast<unsigned>(J.size()));
   for (unsigned i = 0; i < J.size(); ++i) {
@@ -39,7 +37,7 @@ double determinant(const std::vector<std::vector<double>>& J,
 }
 
 bool is_positive(const ex& expanded, const std::vector<ex>& symbols) {
-  const GiNaC::exvector terms = GiNaC::is_a<GiNaC::add>(expanded)
+  const GiNaC::exvector terms = is_a<GiNaC::add>(expanded)
                                     ? GiNaC::exvector(expanded.begin(), expanded.end())
                                     : GiNaC::exvector{expanded};
   bool constant = false;
@@ -51,7 +49,7 @@ bool is_positive(const ex& expanded, const std::vector<ex>& symbols) {
       factor = factor.coeff(s, degree);
     }
     if (!factor.info(GiNaC::info_flags::positive)) return false;
-    constant = constant || GiNaC::is_a<GiNaC::numeric>(term);
+    constant = constant || is_a<numeric>(term);
   }
   return constant;
 }

@@ -8,8 +8,7 @@
 namespace cdot::derive {
 
 // The determinant of J's columns as chosen: as many as J has rows.
-GiNaC::ex determinant(const std::vector<std::vector<GiNaC::ex>>& J,
-                      const std::vector<std::size_t>& columns);
+ex determinant(const std::vector<std::vector<ex>>& J, const std::vector<std::size_t>& columns);
 double determinant(const std::vector<std::vector<double>>& J,
                    const std::vector<std::size_t>& columns);
 // n over k.
@@ -17,6 +16,6 @@ double number_of_choices(std::size_t n, std::size_t k);
 
 // All even powers with positive factors, and a constant: never zero. A number other than zero is
 // one.
-bool is_positive(const GiNaC::ex& expanded, const std::vector<GiNaC::ex>& symbols);
+bool is_positive(const ex& expanded, const std::vector<ex>& symbols);
 
 }  // namespace cdot::derive

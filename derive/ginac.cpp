@@ -5,10 +5,6 @@
 
 namespace cdot::derive {
 
-using GiNaC::ex;
-using GiNaC::ex_to;
-using GiNaC::numeric;
-
 Algebra::Algebra(const Joint& joint, Route route, int immovable)
     : joint_(joint), route_(route), immovable_(immovable), evaluation_(*this) {}
 
@@ -55,7 +51,7 @@ EulerParameters<ex> rates_of(const EulerParameters<ex>& e, const ex& w_x, const 
 }
 
 ex derivative(const ex& e, const ex& symbol) {
-  return GiNaC::is_a<GiNaC::symbol>(symbol) ? e.diff(ex_to<GiNaC::symbol>(symbol)) : 0;
+  return is_a<GiNaC::symbol>(symbol) ? e.diff(ex_to<GiNaC::symbol>(symbol)) : 0;
 }
 
 }  // namespace

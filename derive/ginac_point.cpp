@@ -5,11 +5,6 @@
 
 namespace cdot::derive {
 
-using GiNaC::ex;
-using GiNaC::ex_to;
-using GiNaC::is_a;
-using GiNaC::numeric;
-
 namespace {
 
 Modular modular(const numeric& n) {

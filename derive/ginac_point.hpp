@@ -2,11 +2,10 @@
 // probability, where algebra would take too long, and what sorts terms in the same way on every run.
 #pragma once
 
-#include <ginac/ginac.h>
-
 #include <map>
 #include <vector>
 
+#include "derive/ginac_names.hpp"
 #include "derive/modular_point.hpp"
 
 namespace cdot::derive {
@@ -18,19 +17,19 @@ class PointValues {
   PointValues(std::uint64_t seed, Roots roots) : point_(seed), roots_(roots) {}
 
   // Small whole numbers, which angles have to be.
-  void put(const GiNaC::ex& symbol) { values_[symbol] = Modular(point_.small()); }
-  void put_direction(const std::vector<GiNaC::ex>& unit_vector);
+  void put(const ex& symbol) { values_[symbol] = Modular(point_.small()); }
+  void put_direction(const std::vector<ex>& unit_vector);
 
-  Modular of(const GiNaC::ex& e);
+  Modular of(const ex& e);
 
  private:
-  Modular compound(const GiNaC::ex& e);
-  Modular power(Modular base, const GiNaC::numeric& exponent) const;
-  Modular function(const GiNaC::ex& e);
+  Modular compound(const ex& e);
+  Modular power(Modular base, const numeric& exponent) const;
+  Modular function(const ex& e);
 
   ModularPoint point_;
   Roots roots_;
-  std::map<GiNaC::ex, Modular, GiNaC::ex_is_less> values_;
+  std::map<ex, Modular, GiNaC::ex_is_less> values_;
 };
 
 }  // namespace cdot::derive

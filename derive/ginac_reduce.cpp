@@ -6,11 +6,6 @@
 
 namespace cdot::derive {
 
-using GiNaC::ex;
-using GiNaC::ex_to;
-using GiNaC::is_a;
-using GiNaC::numeric;
-
 namespace {
 
 std::size_t size_of(const ex& polynomial) {

@@ -7,15 +7,11 @@
 
 namespace cdot::derive {
 
-using GiNaC::ex;
-using GiNaC::ex_to;
-using GiNaC::is_a;
-
 namespace {
 
 Expr converted(const ex& e, Pool& pool) {
-  if (is_a<GiNaC::numeric>(e)) {
-    const GiNaC::numeric& n = ex_to<GiNaC::numeric>(e);
+  if (is_a<numeric>(e)) {
+    const numeric& n = ex_to<numeric>(e);
     return pool.number(Rational(n.numer().to_long(), n.denom().to_long()));
   }
   if (is_a<GiNaC::symbol>(e)) {
@@ -24,8 +20,8 @@ Expr converted(const ex& e, Pool& pool) {
   std::vector<Expr> args;
   for (const ex& arg : e) args.push_back(converted(arg, pool));
   if (is_a<GiNaC::power>(e)) {
-    const bool root = e.op(1).is_equal(GiNaC::numeric(1) / 2);
-    return root ? call(Fn::sqrt, args[0]) : pow(args[0], ex_to<GiNaC::numeric>(e.op(1)).to_int());
+    const bool root = e.op(1).is_equal(numeric(1) / 2);
+    return root ? call(Fn::sqrt, args[0]) : pow(args[0], ex_to<numeric>(e.op(1)).to_int());
   }
   if (GiNaC::is_the_function<GiNaC::sin_SERIAL>(e)) return call(Fn::sin, args);
   if (GiNaC::is_the_function<GiNaC::cos_SERIAL>(e)) return call(Fn::cos, args);
@@ -66,7 +62,7 @@ std::vector<std::string> Algebra::factors_of(const ex& polynomial) const {
   std::set<std::string> names;
   for (const ex& f : factors) {
     const ex base = is_a<GiNaC::power>(f) ? f.op(0) : f;
-    if (is_a<GiNaC::numeric>(base)) continue;
+    if (is_a<numeric>(base)) continue;
     names.insert(text(with_leading_sign(converted(in_names(base), pool))));
   }
   return {names.begin(), names.end()};

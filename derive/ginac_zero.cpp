@@ -10,11 +10,6 @@
 
 namespace cdot::derive {
 
-using GiNaC::ex;
-using GiNaC::ex_to;
-using GiNaC::is_a;
-using GiNaC::numeric;
-
 namespace {
 
 constexpr int digits = 80;       // of the numbers that decide what algebra does not

@@ -4,33 +4,12 @@
 
 #include <stdexcept>
 
-#include "derive/finite_field.hpp"
 #include "derive/ginac.hpp"
 #include "derive/prove_momentum.hpp"
+#include "derive/prove_rank.hpp"
 
 namespace cdot::derive {
 namespace {
-
-using GiNaC::ex;
-
-// "the row of J of C3 is 2 C1 - C2"
-std::string dependence_text(const GenericRank::Dependence& d, const Block& block) {
-  const auto name = [&](int row) { return block.rows[static_cast<std::size_t>(row)].name; };
-  if (d.on.empty()) return "the row of J of " + name(d.row) + " is zero";
-  std::string sum;
-  for (const int row : d.on) {
-    if (d.coefs.empty()) {
-      sum += (sum.empty() ? "" : " and ") + name(row);
-      continue;
-    }
-    const Rational coef = -d.coefs[static_cast<std::size_t>(row)];
-    sum += coef.sign() < 0 ? (sum.empty() ? "-" : " - ") : (sum.empty() ? "" : " + ");
-    sum += (abs(coef) == Rational(1) ? "" : abs(coef).text() + " ") + name(row);
-  }
-  if (!d.coefs.empty()) return "the row of J of " + name(d.row) + " is that of " + sum;
-  return "the row of J of " + name(d.row) + " is a combination of those of " + sum +
-         ", with factors that depend on the pose or on parameters";
-}
 
 class Prover {
  public:
@@ -92,7 +71,8 @@ class Prover {
         law_ = conserves_momentum(joint_, block_, names_);
         return;
       case LawId::rank:
-        return rank();
+        law_ = rows_are_independent(block_);
+        return;
     }
   }
 
@@ -265,7 +245,7 @@ class Prover {
     const Triple<ex> J_w = {J[3], J[4], J[5]};
     std::array<ex, 4> slope;
     for (std::size_t k = 0; k < 4; ++k) slope[k] = derivative(raw_.of(row.C), e[k]);
-    const ex half = GiNaC::numeric(1, 2), along = raw_.of(time_derivative(row.C, joint_, {.stretched = b}));
+    const ex half = numeric(1, 2), along = raw_.of(time_derivative(row.C, joint_, {.stretched = b}));
     for (std::size_t k = 0; k < 3; ++k) {
       EulerParameters<ex> turn = {0, 0, 0, 0};
       turn[k + 1] = half;
@@ -287,28 +267,8 @@ class Prover {
     }
   }
 
-  void rank() {
-    if (block_.immovable >= 0) {  // a row may well speak of that body alone
-      law_.verdict = Verdict::does_not_apply;
-      return;
-    }
-    const GenericRank found = generic_rank(block_.rows);
-    if (found.poses == 0) {
-      law_.verdict = Verdict::undecided;
-      law_.text = "no pose was found at which every row is defined";
-      return;
-    }
-    if (found.dependences.empty()) return;
-    law_.verdict = Verdict::fails;
-    const GenericRank::Dependence& first = found.dependences.front();
-    law_.row = block_.rows[static_cast<std::size_t>(first.row)].row;
-    law_.text = std::to_string(block_.rows.size()) + " rows, but only " +
-                std::to_string(found.rank) + " independent: " + dependence_text(first, block_);
-    law_.fix = "drop one of these rows: the others hold it already";
-  }
-
   static ex derivative(const ex& e, const ex& symbol) {
-    return GiNaC::is_a<GiNaC::symbol>(symbol) ? e.diff(GiNaC::ex_to<GiNaC::symbol>(symbol)) : 0;
+    return is_a<GiNaC::symbol>(symbol) ? e.diff(ex_to<GiNaC::symbol>(symbol)) : 0;
   }
 
   std::vector<ex> velocities(Algebra& algebra) const {

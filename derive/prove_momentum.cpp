@@ -9,8 +9,6 @@
 namespace cdot::derive {
 namespace {
 
-using GiNaC::ex;
-
 // What a row of J makes of all bodies moving as one: of a unit velocity, and of a unit spin about
 // the origin.
 struct Felt {
@@ -38,8 +36,8 @@ GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
       const auto q = names.coordinates(static_cast<int>(b));
       for (int k = 0; k < joint.dimension; ++k) {
         const ex& x = q[static_cast<std::size_t>(k)];
-        const ex slope = rest.diff(GiNaC::ex_to<GiNaC::symbol>(x));
-        if (!GiNaC::is_a<GiNaC::numeric>(slope) || slope.is_zero()) continue;
+        const ex slope = rest.diff(ex_to<GiNaC::symbol>(x));
+        if (!is_a<numeric>(slope) || slope.is_zero()) continue;
         const ex value = (x - rest / slope).expand();
         for (auto& [symbol, earlier] : solved) earlier = earlier.subs(x == value).expand();
         solved[x] = value;
