@@ -286,26 +286,17 @@ Formula Rates::function_rate(Expr e, Formula x_dot) {
   throw std::logic_error("no rule for the derivative of " + std::string(name_of(e->fn)));
 }
 
-// The angle from u to v grows as v turns and falls as u turns.
+// The angle from u to v grows as v turns and falls as u turns; in space by what turns v against u about their common
+// normal.
 std::optional<Formula> Rates::angle_rule(const AngleBetween& angle) {
-  if (joint_.dimension == 3) return angle_rule_in_space(angle);
-  used(
-      "derivative of an angle between directions: how fast the second turns, less how fast the "
-      "first does");
+  const bool in_space = joint_.dimension == 3;
+  used(std::string("derivative of an angle between directions: ") +
+       (in_space ? "what turns the second against the first, about their common normal"
+                 : "how fast the second turns, less how fast the first does"));
   std::vector<SignedFormula> terms;
   append(terms, turning(angle.to));
   append(terms, turning(angle.from), true);
-  return total(std::move(terms));
-}
-
-// In space it grows by what turns v against u about their common normal.
-std::optional<Formula> Rates::angle_rule_in_space(const AngleBetween& angle) {
-  used(
-      "derivative of an angle between directions: what turns the second against the first, about "
-      "their common normal");
-  std::vector<SignedFormula> terms;
-  append(terms, turning(angle.to));
-  append(terms, turning(angle.from), true);
+  if (!in_space) return total(std::move(terms));
   const Formula normal = notation_.of(unit(cross(angle.from, angle.to)));
   return dot(normal, sum(std::move(terms)));
 }

@@ -32,7 +32,6 @@ class Rates {
   std::optional<Formula> function_rule(Expr e);
   Formula function_rate(Expr e, Formula rate);
   std::optional<Formula> angle_rule(const AngleBetween& angle);
-  std::optional<Formula> angle_rule_in_space(const AngleBetween& angle);
   std::optional<Formula> turning(Expr u);
 
   Formula by_name(Expr e, const std::string& name);

@@ -103,32 +103,25 @@ Expr Pool::number(Rational value) {
   return intern(std::move(n));
 }
 
-Expr Pool::symbol(std::string_view name, Role role, int body) {
+Expr Pool::leaf(std::string_view name, Role role, int body, bool vector, bool unit_length) {
   if (const Expr known = find(name)) {
-    assert(!known->vector && known->role == role && known->body == body);
+    assert(known->vector == vector && known->role == role && known->body == body);
     return known;
   }
   Node n;
   n.kind = Kind::symbol;
+  n.vector = vector;
+  n.unit_length = unit_length;
   n.symbol = name;
   n.role = role;
   n.body = body;
   return intern(std::move(n));
 }
 
+Expr Pool::symbol(std::string_view name, Role role, int body) { return leaf(name, role, body, false, false); }
+
 Expr Pool::vector_symbol(std::string_view name, Role role, int body, bool unit_length) {
-  if (const Expr known = find(name)) {
-    assert(known->vector && known->role == role && known->body == body);
-    return known;
-  }
-  Node n;
-  n.kind = Kind::symbol;
-  n.vector = true;
-  n.unit_length = unit_length;
-  n.symbol = name;
-  n.role = role;
-  n.body = body;
-  return intern(std::move(n));
+  return leaf(name, role, body, true, unit_length);
 }
 
 Triad Pool::triad(std::string_view name, Role role, int body) {

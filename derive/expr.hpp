@@ -124,6 +124,8 @@ class Pool {
   Expr intern(Node node);  // for the builders below
 
  private:
+  Expr leaf(std::string_view name, Role role, int body, bool vector, bool unit_length);
+
   std::deque<Node> nodes_;
   std::map<std::string, const Node*, std::less<>> by_key_;
   std::map<std::string, const Node*, std::less<>> symbols_;
