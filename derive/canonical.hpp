@@ -9,8 +9,9 @@
 namespace cdot::derive {
 
 // Writes expressions out in components along the world's axes. A vector leaf `t` becomes the scalars `t_x`, `t_y` (and
-// `t_z` in space) with the same role and body, a tensor leaf its six; dot, cross, perp, norm and unit vanish; a negative power becomes the guarded `inverse`.
-// Components and products of named things get names from them: u_x, ra_x_t (ra x t), dot_u_t, u_len, inv_u_len.
+// `t_z` in space) with the same role and body, a tensor leaf its six; dot, cross, perp, norm and unit vanish; a
+// negative power becomes the guarded `inverse`. Components and products of named things get names from them: u_x,
+// ra_x_t (ra x t), dot_u_t, u_len, inv_u_len.
 class Components {
  public:
   Expr of(Expr scalar);

@@ -197,8 +197,8 @@ void add_derive_command(CLI::App& app, Command& selected) {
   CLI::App* command = app.add_subcommand(
       "derive", "Prove every spec and write its kernel, the registry and the ledger of operation counts");
   command->add_option("SPEC", options->specs,
-                      "Specs, by path or by name; all of the specs folder if none is given. With some given, DIR holds\n"
-                      "just these afterwards, so it should not be the folder of all");
+                      "Specs, by path or by name; all of the specs folder if none is given. With some given, DIR "
+                      "holds\njust these afterwards, so it should not be the folder of all");
   command->add_option("-o,--output", options->output, "Folder to write to")->type_name("DIR")->capture_default_str();
   command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
   command->add_flag("--check", options->check,

@@ -59,7 +59,10 @@ class Pose final : public Arithmetic<Modular> {
     if (axis.triad && symbol.symbol.starts_with("axis_")) {
       return axes_of(orientation(symbol.body))[static_cast<std::size_t>(axis.index)];
     }
-    if (axis.triad) return triads_.try_emplace(axis.triad, any_triad()).first->second[static_cast<std::size_t>(axis.index)];
+    if (axis.triad) {
+      const auto& triad = triads_.try_emplace(axis.triad, any_triad()).first->second;
+      return triad[static_cast<std::size_t>(axis.index)];
+    }
     if (symbol.unit_length) return any_triad()[0];
     return {point_.any(), point_.any(), point_.any()};
   }

@@ -228,7 +228,9 @@ struct Sample {
     EulerParameters<double> e{1, 0, 0, 0};  // in space
     // Along column k of J: x, y, angle in the plane; x, y, z and a turn about a world axis in space.
     void move(int dimension, std::size_t k, double amount);
-    double velocity(int dimension, std::size_t k) const { return k < std::size_t(dimension) ? v[k] : w[dimension == 2 ? 2 : k - 3]; }
+    double velocity(int dimension, std::size_t k) const {
+      return k < std::size_t(dimension) ? v[k] : w[dimension == 2 ? 2 : k - 3];
+    }
   };
   std::vector<Body> bodies;
   Values scalars;  // parameters, time, masses, multipliers

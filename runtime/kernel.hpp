@@ -28,21 +28,21 @@
 //
 // In space (`cdot::spatial::revolute`) a body has six columns, x y z of v and of w in world axes: dense is D[rows][6
 // bodies], stiffness H[6 bodies][6 bodies], its turns being small rotations about the world's axes. Besides:
-//   B::effective_mass, B::apply, B::inverse_mass_jacobian           overloads for m: IsotropicInverseMass<T>[bodies]
-//   B::local_jacobian  (q, J, D)                                    J by v and w' = A^T w (body axes), D[rows][6 bodies]
-//   B::euler_jacobian  (q, J, D)                                    J by v and the rates of e0 e1 e2 e3, D[rows][7 bodies]
+//   B::effective_mass, B::apply, B::inverse_mass_jacobian          overloads for m: IsotropicInverseMass<T>[bodies]
+//   B::local_jacobian  (q, J, D)                                   J by v and w' = A^T w (body axes), D[rows][6 bodies]
+//   B::euler_jacobian  (q, J, D)                                   J by v, rates of e0 e1 e2 e3, D[rows][7 bodies]
 //
 // What the three kinds of row block have besides (strings are std::string_view, arrays std::array):
-//   members of a joint                                               and of
-//   name                                                             a coordinate: "line"; "slide"
-//   title                                                            what it does, in a sentence
-//   unit                                                             a coordinate only: "m", "rad"
-//   body_names, row_names, row_kinds                                 a coordinate: the last two
-//   Parameters<T>, parameters                                        the numbers, and a ParameterInfo for each parameter
-//   default_value      (index, q, p, t)                              writes p's parameter `index` from q and those before
-//   Coordinates                                                      std::tuple of the coordinates
-//   Immovable                                                        a coordinate: std::tuple of the variants
-//   immovable_body                                                   a variant only: the index of that body
+//   members of a joint                                             and of
+//   name                                                           a coordinate: "line"; "slide"
+//   title                                                          what it does, in a sentence
+//   unit                                                           a coordinate only: "m", "rad"
+//   body_names, row_names, row_kinds                               a coordinate: the last two
+//   Parameters<T>, parameters                                      the numbers, and a ParameterInfo for each parameter
+//   default_value      (index, q, p, t)                            writes p's parameter `index` from q and those before
+//   Coordinates                                                    std::tuple of the coordinates
+//   Immovable                                                      a coordinate: std::tuple of the variants
+//   immovable_body                                                 a variant only: the index of that body
 // A variant inherits from the block that it is a variant of whatever is the same there.
 // T is float, double, cdot::Pack, or any type with + - * /, comparison, select and the functions used.
 #pragma once
@@ -68,7 +68,7 @@ enum class ParameterKind {
   point,   // a point fixed on a body, in that body's frame; 2 numbers in the plane, 3 in space [m]
   vector,  // a vector fixed in a body, in that body's frame; 2 numbers, 3 in space
   unit,    // the same of length 1; the runtime normalises what a scene gives and refuses a zero vector
-  frame,   // a triad fixed in a body: its x axis in the body's frame; 2 numbers, length 1; in space x, y, z axis, 9 numbers
+  frame,   // a triad fixed in a body: its x axis in the body's frame, 2 numbers; in space x, y and z axis, 9 numbers
   scalar   // 1 number
 };
 

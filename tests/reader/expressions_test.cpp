@@ -124,7 +124,8 @@ TEST(Expressions, OfSpace) {
   EXPECT_EQ(value_of("angle(f.y, g.y, f.x)", "spatial"), "atan2(dot(cross(f_y, g_y), f_x), dot(f_y, g_y)) [rad]");
   EXPECT_EQ(value_of("twist(f, g)", "spatial"), "twist(f, g) [rad]");
   EXPECT_EQ(value_of("swing(f, g)", "spatial"), "atan2(norm(cross(f_x, g_x)), dot(f_x, g_x)) [rad]");
-  EXPECT_EQ(value_of("rotation(f, g)", "spatial"), "1/2*cross(f_x, g_x) + 1/2*cross(f_y, g_y) + 1/2*cross(f_z, g_z) [rad]");
+  EXPECT_EQ(value_of("rotation(f, g)", "spatial"),
+            "1/2*cross(f_x, g_x) + 1/2*cross(f_y, g_y) + 1/2*cross(f_z, g_z) [rad]");
   EXPECT_EQ(value_of("dot(f.x, f.y)", "spatial"), "0 [1]");
   EXPECT_EQ(value_of("cross(f.x, f.y)", "spatial"), "f_z [1]");
   EXPECT_EQ(value_of("v(pa)", "spatial"), "v_a - cross(ra, w_a) [m/s]");
