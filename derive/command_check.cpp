@@ -7,6 +7,7 @@
 
 #include "derive/check.hpp"
 #include "derive/commands.hpp"
+#include "derive/operators.hpp"
 #include "derive/specs_folder.hpp"
 
 namespace cdot::derive {
@@ -116,7 +117,9 @@ void add_check_command(CLI::App& app, Command& selected) {
       "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where "
       "the joint\n"
       "is singular or undefined and what the kernel does there.\n"
-      "Exit status: 0 nothing but notes; 1 problems; 2 a spec cannot be read.");
+      "Exit status: 0 nothing but notes; 1 problems; 2 a spec cannot be read.\n\n"
+      "Operators\n" +
+      operators_help());
   command->callback([options, &selected] { selected = [options] { return run(*options); }; });
 }
 

@@ -14,15 +14,10 @@ namespace {
 Shape read_shape(Entry& body, Dimension dimension) {
   const bool in_space = dimension == Dimension::spatial;
   Shape shape;
-  std::optional<Entry> entry = body.table("shape", "`shape` of " + body.what());
-  if (!entry) {
-    if (body.has("shape")) {
-      body.error(body.where("shape"), "`shape` must be a table",
-                 in_space ? "shape = { rod = 1.0 }, { box = [1, 0.5, 0.2] } or { ball = 0.2 }"
-                          : "shape = { rod = 1.0 }, { box = [1, 0.5] } or { disc = 0.2 }");
-    }
-    return shape;
-  }
+  std::optional<Entry> entry =
+      body.table("shape", in_space ? "shape = { rod = 1.0 }, { box = [1, 0.5, 0.2] } or { ball = 0.2 }"
+                                   : "shape = { rod = 1.0 }, { box = [1, 0.5] } or { disc = 0.2 }");
+  if (!entry) return shape;
   const bool rod = entry->has("rod"), box = entry->has("box"), disc = entry->has("disc"),
              ball = in_space && entry->has("ball");
   if (rod + box + disc + ball != 1) {
@@ -94,15 +89,7 @@ void read_motion(Entry& body, BodyDefinition& definition) {
   definition.vx = velocity[0];
   definition.vy = velocity[1];
   definition.w = body.number("spin", {Sign::any, true}).value_or(0);
-  for (const char* key : {"velocity", "spin"}) {
-    const bool moves = std::string_view(key) == "spin" ? definition.w != 0 : velocity != Vec3{};
-    if (definition.is_static && moves) {
-      body.error(body.where(key), fmt::format("a static body cannot move: `{}` is not 0", key));
-    }
-  }
-  if (definition.fixed_rotation && definition.w != 0) {
-    body.error(body.where("spin"), "a body with fixed_rotation cannot turn: `spin` is not 0");
-  }
+  check_motion(body, definition, velocity != Vec3{}, definition.w != 0);
 }
 
 void read_forces(Entry& body, BodyDefinition& definition) {

@@ -122,12 +122,7 @@ void read_motion(Entry& body, SpatialBodyDefinition& definition) {
   const auto spin = body.numbers("spin", 3, {Sign::any, true});
   const Vec3 w = spin ? Vec3{(*spin)[0], (*spin)[1], (*spin)[2]} : Vec3{};
   definition.wx = w[0], definition.wy = w[1], definition.wz = w[2];
-  if (definition.is_static && velocity != Vec3{})
-    body.error(body.where("velocity"), "a static body cannot move: `velocity` is not 0");
-  if (definition.is_static && w != Vec3{})
-    body.error(body.where("spin"), "a static body cannot move: `spin` is not 0");
-  if (definition.fixed_rotation && w != Vec3{})
-    body.error(body.where("spin"), "a body with fixed_rotation cannot turn: `spin` is not 0");
+  check_motion(body, definition, velocity != Vec3{}, w != Vec3{});
 }
 
 void read_forces(Entry& body, SpatialBodyDefinition& definition) {

@@ -190,16 +190,12 @@ std::optional<std::vector<std::string>> Entry::texts(const std::string& key) {
   return result;
 }
 
-std::optional<Entry> Entry::table(const std::string& key, const std::string& what) {
+std::optional<Entry> Entry::table(const std::string& key, const std::string& example) {
   const toml::node* node = find(key);
-  if (!node || !node->is_table()) return {};
-  Entry entry(*node->as_table(), span_of(node->source()), what, *mistakes_, copy_);
-  return entry;
-}
-
-bool Entry::is_table(const std::string& key) {
-  const toml::node* node = find(key);
-  return node && node->is_table();
+  if (node && node->is_table())
+    return Entry(*node->as_table(), span_of(node->source()), fmt::format("`{}` of {}", key, what_), *mistakes_, copy_);
+  if (node && !example.empty()) error(where(key), fmt::format("`{}` must be a table", key), example);
+  return {};
 }
 
 bool Entry::is_array(const std::string& key) {

@@ -52,9 +52,8 @@ class Entry {
                                              Quantity = {});
   // `count` lists of three numbers, one after the other.
   std::optional<std::vector<double>> rows(const std::string& key, std::size_t count);
-  std::optional<Entry> table(const std::string& key,
-                             const std::string& what);  // nothing if it is no table
-  bool is_table(const std::string& key);
+  // Nothing if it is no table, which is a mistake if there is an example of one.
+  std::optional<Entry> table(const std::string& key, const std::string& example = "");
   bool is_array(const std::string& key);
   bool is_array_of_arrays(const std::string& key);
   std::optional<std::string> choice(const std::string& key,

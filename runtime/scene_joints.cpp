@@ -9,6 +9,8 @@
 namespace cdot {
 namespace {
 
+constexpr const char* soft_example = "{ frequency = 2, damping_ratio = 0.5 }";
+
 // "the point pa on body a", "the direction t on the world", "the scalar l [m]"
 std::string described(const ParameterInfo& parameter) {
   if (parameter.kind == ParameterKind::scalar)
@@ -143,7 +145,7 @@ void read_parameters(Entry& joint, const JointType& type, const BodyNames& names
 // [lower, upper] or { lower = …, upper = … }
 std::optional<Limit> read_limit(Entry& effects, Quantity quantity) {
   Limit limit;
-  if (std::optional<Entry> table = effects.table("limit", "`limit` of " + effects.what())) {
+  if (std::optional<Entry> table = effects.table("limit")) {
     limit.lower = table->number("lower", quantity);
     limit.upper = table->number("upper", quantity);
     if (!table->has("lower") && !table->has("upper"))
@@ -165,12 +167,8 @@ std::optional<Limit> read_limit(Entry& effects, Quantity quantity) {
 }
 
 std::optional<Motor> read_motor(Entry& effects, Quantity quantity) {
-  std::optional<Entry> table = effects.table("motor", "`motor` of " + effects.what());
-  if (!table) {
-    if (effects.has("motor"))
-      effects.error(effects.where("motor"), "`motor` must be a table", "{ speed = 2, max = 10 }");
-    return {};
-  }
+  std::optional<Entry> table = effects.table("motor", "{ speed = 2, max = 10 }");
+  if (!table) return {};
   Motor motor;
   table->required("speed", "speed = 2.0");
   motor.speed = table->number("speed", quantity).value_or(0);
@@ -181,13 +179,10 @@ std::optional<Motor> read_motor(Entry& effects, Quantity quantity) {
 
 std::vector<SceneSpring> read_coordinate_springs(Entry& effects, Quantity quantity) {
   std::vector<SceneSpring> springs;
-  if (std::optional<Entry> table = effects.table("spring", "`spring` of " + effects.what())) {
+  if (std::optional<Entry> table = effects.table("spring", soft_example)) {
     const std::optional<double> rest = table->number("rest", quantity);
     if (const auto softness = read_softness(*table)) springs.push_back({*softness, rest});
     table->close();
-  } else if (effects.has("spring")) {
-    effects.error(effects.where("spring"), "`spring` must be a table",
-                  "{ frequency = 2, damping_ratio = 0.5 }");
   }
   if (const auto damping = effects.number("damper", {Sign::not_negative})) {
     Softness softness;
@@ -201,7 +196,7 @@ std::vector<SceneSpring> read_coordinate_springs(Entry& effects, Quantity quanti
 void read_effects(Entry& joint, const JointType& type, std::vector<SceneEffects>& all) {
   for (const CoordinateInfo& coordinate : type.coordinates) {
     const std::string key(coordinate.name);
-    std::optional<Entry> entry = joint.table(key, fmt::format("`{}` of {}", key, joint.what()));
+    std::optional<Entry> entry = joint.table(key);
     if (!entry) {
       if (joint.has(key)) {
         joint.error(joint.where(key), fmt::format("`{}` is a coordinate: it takes effects", key),
@@ -223,13 +218,8 @@ void read_effects(Entry& joint, const JointType& type, std::vector<SceneEffects>
 }
 
 std::optional<Softness> read_soft(Entry& joint) {
-  std::optional<Entry> table = joint.table("soft", "`soft` of " + joint.what());
-  if (!table) {
-    if (joint.has("soft"))
-      joint.error(joint.where("soft"), "`soft` must be a table",
-                  "{ frequency = 2, damping_ratio = 0.5 }");
-    return {};
-  }
+  std::optional<Entry> table = joint.table("soft", soft_example);
+  if (!table) return {};
   const std::optional<Softness> softness = read_softness(*table);
   table->close();
   return softness;

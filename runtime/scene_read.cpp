@@ -129,7 +129,7 @@ namespace {
 template <class FromWorld>
 std::optional<Vec3> in_body_or_world(Entry& entry, const std::string& key, Dimension dimension,
                                      FromWorld from_world) {
-  std::optional<Entry> table = entry.table(key, fmt::format("`{}` of {}", key, entry.what()));
+  std::optional<Entry> table = entry.table(key);
   if (!table) return read_vector(entry, key, dimension);
   const std::optional<Vec3> world = read_vector(*table, "world", dimension);
   if (!table->has("world"))

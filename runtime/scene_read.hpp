@@ -51,6 +51,16 @@ std::optional<Softness> read_softness(Entry& entry);
 std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
                                      const std::optional<std::string>& fallback);
 
+// Refuses a velocity or spin of a body that cannot move or turn.
+template <class Definition>
+void check_motion(Entry& body, const Definition& definition, bool moves, bool turns) {
+  if (definition.is_static && moves)
+    body.error(body.where("velocity"), "a static body cannot move: `velocity` is not 0");
+  if (definition.is_static && turns) body.error(body.where("spin"), "a static body cannot move: `spin` is not 0");
+  if (definition.fixed_rotation && turns)
+    body.error(body.where("spin"), "a body with fixed_rotation cannot turn: `spin` is not 0");
+}
+
 void read_settings(Entry& top, Scene& scene);                         // scene_settings.cpp
 void read_bodies(Entry& top, Scene& scene);                           // scene_bodies.cpp
 void read_spatial_body(Entry& entry, SceneBody& body);                // scene_bodies_spatial.cpp

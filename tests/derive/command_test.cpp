@@ -12,6 +12,8 @@
 #include <sstream>
 #include <thread>
 
+#include "derive/operators.hpp"
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -80,6 +82,17 @@ const char* const pin =
     "  angle(a) - angle(b) = 0\n";
 
 }  // namespace
+
+// What a mistake about operators sends a person to.
+TEST_F(Derive, TheOperatorsAreInTheHelpOfCheck) {
+  const Result help = cdot("check --help");
+  EXPECT_EQ(help.status, 0);
+  for (const ::cdot::derive::Operator& o : ::cdot::derive::operators()) {
+    const std::size_t at = help.said.find("  " + std::string(o.signature) + "  ");
+    EXPECT_NE(at, std::string::npos) << o.signature;
+    EXPECT_NE(help.said.find(o.help, at), std::string::npos) << o.help;
+  }
+}
 
 TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
   const Result derived = cdot("derive");

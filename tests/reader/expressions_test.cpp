@@ -76,12 +76,6 @@ TEST(Expressions, KnowVelocitiesOfPoints) {
   EXPECT_EQ(value_of("w(b)"), "w_b [rad/s]");
 }
 
-TEST(Operators, AreAllInTheHelp) {
-  const std::string help = operators_help();
-  for (const Operator& o : operators())
-    EXPECT_NE(help.find(std::string(o.signature)), std::string::npos) << o.name;
-}
-
 // One call of each operator of the specs; adding an operator means adding it here.
 TEST(Operators, AreAllCalled) {
   const std::map<std::string, std::string> calls = {{"dot", "dot(t, d)"},

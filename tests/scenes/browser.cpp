@@ -2,9 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-
 #include "runtime/run_output.hpp"
+#include "runtime/viewer.hpp"
 
 namespace cdot::test {
 namespace {
