@@ -40,14 +40,15 @@ class Variables {
         add([=, this](Sample& s, double by) { s.bodies[b].move(dimension_, k, by); });
       }
     }
+    // `name = name`: Clang 14 cannot capture a structured binding otherwise.
     for (const auto& [name, value] : sample.scalars) {
-      add([name](Sample& s, double by) { s.scalars.at(name) += by; });
+      add([name = name](Sample& s, double by) { s.scalars.at(name) += by; });
     }
     for (const auto& [name, value] : sample.local) {
       if (name.starts_with("world.") || name.starts_with("axis_")) continue;
       const bool direction = directions.contains(name);
       for (std::size_t k = 0; k < (direction ? turns : linear); ++k) {
-        add([=, this](Sample& s, double by) {
+        add([=, this, name = name](Sample& s, double by) {
           Triple<double>& u = s.local.at(name);
           direction ? turn(u, k, by) : void(u[k] += by);
         });
