@@ -120,7 +120,8 @@ class Algebra final : public Arithmetic<ex> {
   std::map<std::string, Leaf> leaves_;
   std::vector<Atom> atoms_;
   std::vector<std::vector<ex>> units_;    // symbols whose squares sum to 1
-  GiNaC::exmap known_;                    // compounds that have been replaced, as GiNaC wrote them
+  GiNaC::exmap known_;                    // symbols for compounds of which nothing is known
+  GiNaC::exmap atomised_;                 // what atomised() made of compounds, by their old variables
   GiNaC::exmap inverses_;                 // by their operand in normal form
   std::vector<std::pair<ex, ex>> roots_;  // operand -> symbol
   std::vector<std::pair<ex, std::array<ex, 2>>> turns_;  // angle -> (cos, sin)

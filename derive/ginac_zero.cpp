@@ -53,10 +53,15 @@ ex Algebra::symbol_for(const ex& compound) {
   return symbol;
 }
 
+// After the change of variables, which is made at the leaves: what occurs many times is walked once.
 ex Algebra::atomised(const ex& e) {
-  if (is_a<GiNaC::symbol>(e) || is_a<numeric>(e)) return e;
-  const auto found = known_.find(e);
-  if (found != known_.end()) return found->second;
+  if (is_a<numeric>(e)) return e;
+  if (is_a<GiNaC::symbol>(e)) {
+    const auto changed = change_.find(e);
+    return changed == change_.end() ? e : atomised(changed->second);
+  }
+  const auto found = atomised_.find(e);
+  if (found != atomised_.end()) return found->second;
   ex result;
   if (is_a<GiNaC::add>(e)) {
     result = 0;
@@ -67,9 +72,9 @@ ex Algebra::atomised(const ex& e) {
   } else if (is_a<GiNaC::power>(e)) {
     result = atomised_power(e.op(0), e.op(1));
   } else {
-    return atomised_function(e);
+    result = atomised_function(e);
   }
-  known_.emplace(e, result);
+  atomised_.emplace(e, result);
   return result;
 }
 
@@ -176,7 +181,7 @@ ex Algebra::turned(bool cosine, const ex& angle) {
 
 std::optional<ex> Algebra::reduced_numerator(const ex& e) try {
   left_for_test_ = std::min(allowance_, left_in_all_);
-  ex p = reduced(atomised(e.subs(change_, GiNaC::subs_options::no_pattern)));
+  ex p = reduced(atomised(e));
   for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
     if (atom->kind == Atom::Kind::inverse) p = inverse_cancelled(p, atom->symbol, atom->operand);
   }
@@ -219,12 +224,13 @@ bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) 
     earlier = earlier.subs(x == value, GiNaC::subs_options::no_pattern);
   }
   change_[x] = value.expand();
+  atomised_.clear();
   return true;
 }
 
 std::optional<ex> Algebra::numerator(const ex& e) try {
   left_for_test_ = std::min(allowance_, left_in_all_);
-  return without_inverses(atomised(e.subs(change_, GiNaC::subs_options::no_pattern)));
+  return without_inverses(atomised(e));
 } catch (const std::exception&) {  // too long; or GiNaC's own complaints, say of a pole
   return std::nullopt;
 }
