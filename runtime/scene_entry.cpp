@@ -92,6 +92,10 @@ const toml::node* Entry::find(const std::string& key) {
 
 bool Entry::has(const std::string& key) { return find(key) != nullptr; }
 
+bool Entry::leaves_table_unread(const std::string& key) const {
+  return table_->get_as<toml::table>(key) && !asked_.contains(key);
+}
+
 Span Entry::where(const std::string& key) const {
   const toml::node* node = table_->get(key);
   if (!node && repeated_) {

@@ -35,6 +35,7 @@ class Entry {
   std::vector<Entry> list(const std::string& key);
 
   bool has(const std::string& key);
+  bool leaves_table_unread(const std::string& key) const;  // nobody has asked for it
   Span where(const std::string& key) const;  // of its value; of the entry's header if it is absent
   Span element(const std::string& key, std::size_t index);  // of one value of a list
   Span header() const { return header_; }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 
 #include "runtime/scene_read.hpp"
 
@@ -217,6 +218,29 @@ void read_effects(Entry& joint, const JointType& type, std::vector<SceneEffects>
   }
 }
 
+// An effect on a coordinate that other joints have, but not this one: revolute, where hinge was
+// meant.
+void refuse_other_coordinates(Entry& joint, const JointType& type, Dimension dimension) {
+  std::map<std::string, std::string> owners;  // by coordinate: the joints of as many bodies
+  for (const JointType& other : joint_types(dimension)) {
+    if (other.bodies != type.bodies) continue;
+    for (const CoordinateInfo& coordinate : other.coordinates) {
+      std::string& names = owners[std::string(coordinate.name)];
+      names += fmt::format("{}`{}`", names.empty() ? "" : ", ", other.name);
+    }
+  }
+  for (const auto& [coordinate, names] : owners) {
+    if (!joint.leaves_table_unread(coordinate)) continue;
+    std::string own;
+    for (const CoordinateInfo& c : type.coordinates)
+      own += fmt::format("{}`{}`", own.empty() ? "it has " : ", ", c.name);
+    joint.error(joint.where(coordinate),
+                fmt::format("`{}` has no coordinate `{}`", type.name, coordinate),
+                fmt::format("{}{}joints that have it: {}", own, own.empty() ? "" : "; ", names));
+    joint.has(coordinate);  // read now: one complaint is enough
+  }
+}
+
 std::optional<Softness> read_soft(Entry& joint) {
   std::optional<Entry> table = joint.table("soft", soft_example);
   if (!table) return {};
@@ -244,6 +268,7 @@ void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
     read_effects(entry, *type, joint.effects);
     joint.definition.soft = read_soft(entry);
     joint.breaking = entry.number("breaking", {Sign::positive});
+    refuse_other_coordinates(entry, *type, scene.dimension);
     entry.close();
     scene.joints.push_back(std::move(joint));
   }
