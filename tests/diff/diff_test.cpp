@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <ostream>
 
 #include "tests/diff/support.hpp"
 
@@ -18,6 +19,8 @@ struct Lesson {
   const char* J;
   const char *column, *kind, *generated, *hand, *difference, *sentence;
 };
+
+void PrintTo(const Lesson& lesson, std::ostream* out) { *out << lesson.mistake; }
 
 class Teaching : public testing::TestWithParam<Lesson> {};
 
