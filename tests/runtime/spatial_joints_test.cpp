@@ -221,6 +221,7 @@ TEST(SpatialJoints, SixDofStaysWithinItsLimits) {
     }
     EXPECT_NEAR(lowest, -0.5, 1e-6);
     EXPECT_NEAR(world.coordinate(joint, "slide_z"), -0.5, 1e-6);
+    EXPECT_NEAR(world.coordinate_rate(joint, "slide_z"), 0, 1e-6);
     EXPECT_NEAR(widest, 0.3, 1e-5);
     EXPECT_GT(std::abs(world.coordinate_rate(joint, "turn_z")), 0.05);  // left free
   }
