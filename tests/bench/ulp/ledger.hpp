@@ -1,0 +1,12 @@
+// Operations of a generated function, from generated/ledger.csv.
+#pragma once
+
+#include <string>
+
+#include "tests/bench/ulp/measured.hpp"
+
+namespace cdot::ulp {
+
+int operations(const AnyBlock& block, Measured which);
+
+}  // namespace cdot::ulp
