@@ -47,8 +47,10 @@ struct BlockOps {
   // in displacement, the impulses in correction.
   void (*correct)(Slots, int begin, int end, Bodies<S>&, T time);
   void (*correct_bounded)(Slots, int begin, int end, Bodies<S>&, T time);
-  // J and (M^-1 J^T)^T of one slot, [rows][freedom * bodies].
-  void (*dense)(const Batch<S>&, int slot, const Bodies<S>&, double* J, double* weighted);
+  // J and (M^-1 J^T)^T of one slot, [rows][freedom * bodies], and the lower triangle of K, row by
+  // row `stride` apart, all computed in doubles.
+  void (*dense)(const Batch<S>&, int slot, const Bodies<S>&, double* J, double* weighted, double* K,
+                int stride);
   // J^T lambda of one slot: the impulse by body.
   void (*transposed)(const Batch<S>&, int slot, const T* lambda, Velocity* impulse);
   // stiffness -= what d(J^T lambda)/dq says of each body's own turning, lambda from the last step

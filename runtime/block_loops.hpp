@@ -2,6 +2,7 @@
 // kernels in step().
 #pragma once
 
+#include <algorithm>
 #include <type_traits>
 
 #include "runtime/block.hpp"
@@ -226,18 +227,39 @@ struct BlockLoops {
     }
   }
 
+  // The same numbers in doubles.
+  template <class Exact, class Struct>
+  static Exact exact(const Struct& of) {
+    static_assert(sizeof(Exact) / sizeof(double) == sizeof(Struct) / sizeof(T));
+    Exact to{};
+    if constexpr (std::is_same_v<Exact, Struct>) {
+      to = of;
+    } else if constexpr (!std::is_empty_v<Struct>) {
+      const T* from = reinterpret_cast<const T*>(&of);
+      std::copy_n(from, numbers<Struct>(), reinterpret_cast<double*>(&to));
+    }
+    return to;
+  }
+
   static void dense(const Batch<S>& batch, int slot, const Bodies<S>& all, double* J,
-                    double* weighted) {
-    InverseMass m[bodies];
-    gather(all.effective_mass, bodies_of(batch, slot), m);
-    T D[rows][width], W[rows][width];
-    Block::dense(as<Jacobian>(batch.jacobian.data(), slot), D);
-    Block::inverse_mass_jacobian(as<Jacobian>(batch.jacobian.data(), slot), m, W);
+                    double* weighted, double* K, int stride) {
+    using Exact = typename S::Exact;
+    typename Exact::InverseMass m[bodies];
+    for (int k = 0; k < bodies; ++k)
+      m[k] = exact<typename Exact::InverseMass>(
+          all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
+    const auto entries = exact<typename Block::template Jacobian<double>>(
+        as<Jacobian>(batch.jacobian.data(), slot));
+    double D[rows][width], W[rows][width], own[triangle];
+    Block::dense(entries, D);
+    Block::inverse_mass_jacobian(entries, m, W);
+    Block::effective_mass(entries, m, own);
     for (int r = 0; r < rows; ++r) {
       for (int c = 0; c < width; ++c) {
         J[r * width + c] = D[r][c];
         weighted[r * width + c] = W[r][c];
       }
+      for (int s = 0; s <= r; ++s) K[r * stride + s] = own[r * (r + 1) / 2 + s];
     }
   }
 

@@ -1,157 +1,178 @@
 #include "runtime/ldlt.hpp"
 
-#include <Eigen/OrderingMethods>
-#include <Eigen/SparseCore>
 #include <algorithm>
 
 namespace cdot {
 namespace {
 
-std::vector<int> minimum_degree_order(int size, const std::vector<std::pair<int, int>>& entries) {
-  std::vector<Eigen::Triplet<double>> triplets;
-  for (const auto& [row, column] : entries) {
-    triplets.emplace_back(row, column, 1.0);
-    triplets.emplace_back(column, row, 1.0);
+constexpr auto eliminates = dense::eliminates(dense::Sizes{});
+constexpr auto forwards = dense::forwards(dense::Sizes{});
+constexpr auto backwards = dense::backwards(dense::Sizes{});
+constexpr auto updates = dense::updates<false>(dense::Sizes{});
+constexpr auto updates_of_squares = dense::updates<true>(dense::Sizes{});
+
+std::vector<std::vector<int>> neighbours_of(int count,
+                                            const std::vector<std::pair<int, int>>& coupled) {
+  std::vector<std::vector<int>> neighbours(static_cast<size_t>(count));
+  for (const auto& [i, j] : coupled) {
+    if (i == j) continue;
+    neighbours[i].push_back(j);
+    neighbours[j].push_back(i);
   }
-  Eigen::SparseMatrix<double> pattern(size, size);
-  pattern.setFromTriplets(triplets.begin(), triplets.end());
-  Eigen::PermutationMatrix<Eigen::Dynamic, Eigen::Dynamic, int> permutation;
-  Eigen::AMDOrdering<int>()(pattern, permutation);
-  std::vector<int> order(static_cast<size_t>(size));
-  for (int k = 0; k < size; ++k) order[static_cast<size_t>(k)] = permutation.indices()[k];
-  return order;
+  for (auto& of : neighbours) {
+    std::sort(of.begin(), of.end());
+    of.erase(std::unique(of.begin(), of.end()), of.end());
+  }
+  return neighbours;
 }
 
 }  // namespace
 
-void Ldlt::analyse(int size, const std::vector<std::pair<int, int>>& given) {
-  size_ = size;
-  const auto n = static_cast<size_t>(size);
-  auto entries = given;
-  for (int k = 0; k < size; ++k) entries.emplace_back(k, k);
-  order_ = minimum_degree_order(size, entries);
-  place_.assign(n, 0);
-  for (int k = 0; k < size; ++k) place_[order_[k]] = k;
-  order_by_columns(std::move(entries));
-  build_tree();
-  inverse_pivot_.assign(n, 0.0);
-  pattern_.assign(n, 0);
-  y_.assign(n, 0.0);
+void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled) {
+  const auto order =
+      minimum_degree_order(rows, neighbours_of(static_cast<int>(rows.size()), coupled));
+  lay_out(rows, order);
+  list_updates(rows, order);
+  const size_t n = diagonal_.size();
+  l_.assign(values_.size(), 0.0);
+  inverse_.assign(n, 0.0);
+  out_.assign(n, 0);
+  x_.assign(n, 0.0);
 }
 
-void Ldlt::order_by_columns(std::vector<std::pair<int, int>> entries) {
-  for (auto& [first, second] : entries) {  // column and row of the permuted upper triangle
-    const int i = place_[first], j = place_[second];
-    first = std::max(i, j);
-    second = std::min(i, j);
+void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order) {
+  columns_.clear();
+  panel_row_.clear();
+  diagonal_.clear();
+  column_of_unknown_.clear();
+  column_of_.assign(rows.size(), 0);
+  int first = 0, numbers = 0, largest_panel = 0;
+  for (const Elimination& one : order) {
+    const int width = rows[one.block], kind = dense::kind(width);
+    column_of_[one.block] = static_cast<int>(columns_.size());
+    Column column{first, width, numbers, numbers + width * width, 0, 0, 0, 0, eliminates[kind],
+                  forwards[kind], backwards[kind]};
+    for (int neighbour : one.neighbours) column.height += rows[neighbour];
+    for (int r = 0; r < width; ++r) {
+      diagonal_.push_back(numbers + r * (width + 1));
+      column_of_unknown_.push_back(static_cast<int>(columns_.size()));
+    }
+    columns_.push_back(column);
+    first += width;
+    numbers += width * (width + column.height);
+    largest_panel = std::max(largest_panel, width * column.height);
   }
-  std::sort(entries.begin(), entries.end());
-  entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
-  column_start_.assign(static_cast<size_t>(size_) + 1, 0);
-  row_.clear();
-  for (const auto& [column, row] : entries) {
-    ++column_start_[column + 1];
-    row_.push_back(row);
+  values_.assign(static_cast<size_t>(numbers), 0.0);
+  unscaled_.assign(static_cast<size_t>(largest_panel), 0.0);
+  for (size_t k = 0; k < order.size(); ++k) {
+    columns_[k].rows = static_cast<int>(panel_row_.size());
+    for (int neighbour : order[k].neighbours)
+      for (int r = 0; r < rows[neighbour]; ++r)
+        panel_row_.push_back(columns_[column_of_[neighbour]].first + r);
   }
-  for (int k = 0; k < size_; ++k) column_start_[k + 1] += column_start_[k];
-  values_.assign(row_.size(), 0.0);
 }
 
-// Elimination tree and the number of entries in each column of L: row k of L is what the tree
-// reaches from K's entries above the diagonal in column k.
-void Ldlt::build_tree() {
-  const auto n = static_cast<size_t>(size_);
-  parent_.assign(n, -1);
-  mark_.assign(n, -1);
-  l_count_.assign(n, 0);
-  for (int k = 0; k < size_; ++k) {
-    mark_[k] = k;
-    for (int p = column_start_[k]; p < column_start_[k + 1]; ++p) {
-      for (int i = row_[p]; mark_[i] != k; i = parent_[i]) {
-        if (parent_[i] < 0) parent_[i] = k;
-        ++l_count_[i];
-        mark_[i] = k;
+void Ldlt::list_updates(const std::vector<int>& rows, const std::vector<Elimination>& order) {
+  updates_.clear();
+  for (size_t k = 0; k < order.size(); ++k) {
+    Column& column = columns_[k];
+    const int width = column.width, kind = dense::kind(width);
+    column.updates_begin = static_cast<int>(updates_.size());
+    int above = 0;
+    for (size_t j = 0; j < order[k].neighbours.size(); ++j) {
+      const int of = order[k].neighbours[j], columns = rows[of];
+      int left = above;
+      for (size_t i = j; i < order[k].neighbours.size(); ++i) {
+        const int to = order[k].neighbours[i];
+        const auto& table = i == j ? updates_of_squares : updates;
+        updates_.push_back({table[kind][dense::kind(columns)], left * width, above * width,
+                            rows[to], columns, place(first(to), first(of)).at});
+        left += rows[to];
       }
+      above += columns;
+    }
+    column.updates_end = static_cast<int>(updates_.size());
+  }
+}
+
+Ldlt::Place Ldlt::place(int row, int column) const {
+  const Column& of = columns_[column_of_unknown_[column]];
+  const int within = column - of.first;
+  if (column_of_unknown_[row] == column_of_unknown_[column])
+    return {of.square + (row - of.first) * of.width + within, of.width};
+  const auto begin = panel_row_.begin() + of.rows;
+  const auto below = std::lower_bound(begin, begin + of.height, row) - begin;
+  return {of.panel + static_cast<int>(below) * of.width + within, of.width};
+}
+
+int Ldlt::factor(const double* added, const char* out) {
+  std::copy(values_.begin(), values_.end(), l_.begin());
+  std::copy_n(out, out_.size(), out_.begin());
+  double* l = l_.data();
+  int dependent = 0;
+  for (const Column& column : columns_) {
+    dependent += column.eliminate(
+        {l + column.square, l + column.panel, unscaled_.data(), inverse_.data() + column.first,
+         values_.data() + column.square, added + column.first, out + column.first, column.width,
+         column.height},
+        pivot_tolerance);
+    const double* panel = l + column.panel;
+    for (int k = column.updates_begin; k < column.updates_end; ++k) {
+      const Update& update = updates_[k];
+      update.run(panel + update.left, unscaled_.data() + update.above, column.width, update.rows,
+                 update.columns, l + update.target);
     }
   }
-  l_start_.assign(n + 1, 0);
-  for (size_t k = 0; k < n; ++k) l_start_[k + 1] = l_start_[k] + l_count_[k];
-  l_row_.assign(static_cast<size_t>(l_start_[n]), 0);
-  l_value_.assign(static_cast<size_t>(l_start_[n]), 0.0);
-}
-
-int Ldlt::entry(int row, int column) const {
-  const int i = std::min(place_[row], place_[column]), j = std::max(place_[row], place_[column]);
-  const auto first = row_.begin() + column_start_[j], last = row_.begin() + column_start_[j + 1];
-  return static_cast<int>(std::lower_bound(first, last, i) - row_.begin());
-}
-
-int Ldlt::factor(const double* added, const char* fixed) {
-  std::fill(mark_.begin(), mark_.end(), -1);
-  std::fill(l_count_.begin(), l_count_.end(), 0);
-  std::fill(y_.begin(), y_.end(), 0.0);
-  int dependent = 0;
-  for (int k = 0; k < size_; ++k) dependent += eliminate(k, added, fixed);
   return dependent;
 }
 
-// Row k of L by a sparse triangular solve with the rows before it (up-looking: Davis, "Algorithm
-// 849: LDL").
-int Ldlt::eliminate(int k, const double* added, const char* fixed) {
-  const bool out = fixed[order_[k]] != 0;
-  int top = size_;
-  mark_[k] = k;
-  for (int p = column_start_[k]; p < column_start_[k + 1]; ++p) {
-    int i = row_[p];
-    y_[i] = out || fixed[order_[i]] ? 0.0 : values_[p];
-    int length = 0;
-    for (; mark_[i] != k; i = parent_[i]) {
-      pattern_[length++] = i;
-      mark_[i] = k;
-    }
-    while (length > 0) pattern_[--top] = pattern_[--length];
-  }
-  const double diagonal = out ? 1.0 : y_[k] + added[order_[k]];
-  double pivot = diagonal;
-  y_[k] = 0.0;
-  for (; top < size_; ++top) {
-    const int i = pattern_[top];
-    const double y = y_[i], l = y * inverse_pivot_[i];
-    y_[i] = 0.0;
-    const int end = l_start_[i] + l_count_[i];
-    for (int p = l_start_[i]; p < end; ++p) y_[l_row_[p]] -= l_value_[p] * y;
-    pivot -= l * y;
-    l_row_[end] = k;
-    l_value_[end] = l;
-    ++l_count_[i];
-  }
-  const bool independent = pivot > pivot_tolerance * diagonal;
-  inverse_pivot_[k] = independent ? 1.0 / pivot : 0.0;
-  return independent ? 0 : 1;
-}
-
-void Ldlt::solve(const double* b, double* x) {
-  for (int k = 0; k < size_; ++k) y_[k] = b[order_[k]];
-  for (int k = 0; k < size_; ++k)
-    for (int p = l_start_[k]; p < l_start_[k + 1]; ++p) y_[l_row_[p]] -= l_value_[p] * y_[k];
-  for (int k = 0; k < size_; ++k) y_[k] *= inverse_pivot_[k];
-  for (int k = size_ - 1; k >= 0; --k)
-    for (int p = l_start_[k]; p < l_start_[k + 1]; ++p) y_[k] -= l_value_[p] * y_[l_row_[p]];
-  for (int k = 0; k < size_; ++k) {
-    x[order_[k]] = y_[k];
-    y_[k] = 0.0;
-  }
+void Ldlt::solve(const double* b, double* to) {
+  std::copy_n(b, x_.size(), x_.begin());
+  double* x = x_.data();
+  const double* l = l_.data();
+  for (const Column& column : columns_)
+    column.forward(l + column.square, l + column.panel, inverse_.data() + column.first,
+                   panel_row_.data() + column.rows, column.width, column.height, x + column.first, x);
+  for (auto column = columns_.rbegin(); column != columns_.rend(); ++column)
+    column->backward(l + column->square, l + column->panel, panel_row_.data() + column->rows,
+                     column->width, column->height, x + column->first, x);
+  for (size_t k = 0; k < x_.size(); ++k) to[k] = out_[k] ? b[k] : x[k];
 }
 
 void Ldlt::multiply(const double* x, double* y) const {
-  for (int k = 0; k < size_; ++k) y[order_[k]] = 0.0;
-  for (int k = 0; k < size_; ++k) {
-    for (int p = column_start_[k]; p < column_start_[k + 1]; ++p) {
-      const int i = order_[row_[p]], j = order_[k];
-      y[i] += values_[p] * x[j];
-      if (i != j) y[j] += values_[p] * x[i];
+  std::fill_n(y, x_.size(), 0.0);
+  for (const Column& column : columns_) {
+    const double* square = values_.data() + column.square;
+    const double* panel = values_.data() + column.panel;
+    const double* own = x + column.first;
+    double* to = y + column.first;
+    for (int i = 0; i < column.width; ++i) {
+      for (int j = 0; j < i; ++j) {
+        to[i] += square[i * column.width + j] * own[j];
+        to[j] += square[i * column.width + j] * own[i];
+      }
+      to[i] += square[i * (column.width + 1)] * own[i];
+    }
+    const int* row = panel_row_.data() + column.rows;
+    for (int h = 0; h < column.height; ++h) {
+      for (int i = 0; i < column.width; ++i) {
+        y[row[h]] += panel[h * column.width + i] * own[i];
+        to[i] += panel[h * column.width + i] * x[row[h]];
+      }
     }
   }
+}
+
+long Ldlt::multiplications() const {
+  long sum = 0;
+  for (const Column& column : columns_) {
+    const long a = column.width, h = column.height;
+    const long square = a * (a - 1) / 2 + (a * (a - 1) * (a - 2)) / 6 + a * (a - 1);
+    const long panel = h * (a * (a - 1) / 2 + a), update = a * h * (h + 1) / 2;
+    const long solve = 2 * (a * (a - 1) / 2 + a * h) + a;
+    sum += square + panel + update + solve;
+  }
+  return sum;
 }
 
 }  // namespace cdot

@@ -1,10 +1,13 @@
-// A sparse K = L D L^T whose pattern is analysed once and whose numbers come every step, without
-// allocating then. Eigen orders the unknowns; its own factorisation allocates, and does not survive
-// dependent rows.
+// A sparse K = L D L^T in dense blocks, whose pattern is analysed once and whose numbers come every
+// step, without allocating then. Its blocks are the rows of joints, where a general library goes
+// number by number.
 #pragma once
 
 #include <utility>
 #include <vector>
+
+#include "runtime/elimination_order.hpp"
+#include "runtime/ldlt_kernels.hpp"
 
 namespace cdot {
 
@@ -15,35 +18,66 @@ class Ldlt {
   // all.
   static constexpr double pivot_tolerance = 1e-10;
 
-  // The pattern of one triangle: (row, column) of every entry that may be nonzero; repetitions do
-  // no harm, the diagonal is always there.
-  void analyse(int size, const std::vector<std::pair<int, int>>& entries);
-  // Where the entry (row, column) or (column, row) lies in values().
-  int entry(int row, int column) const;
-  std::vector<double>& values() { return values_; }
+  // rows: of each block. coupled: pairs of blocks between which K may be nonzero; repetitions do no
+  // harm.
+  void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled);
+  int size() const { return static_cast<int>(diagonal_.size()); }
+  // Unknowns are numbered in the order of elimination. A block's first one:
+  int first(int block) const { return columns_[column_of_[block]].first; }
 
-  // Factors values() with `added` on the diagonal and the unknowns marked in `fixed` taken out
-  // (their rows become those of the identity). Returns how many rows depend on others.
-  int factor(const double* added, const char* fixed);
+  // Where in values() K's numbers from (row, column) on lie, row by row `stride` apart, within the
+  // two's blocks. These are coupled, and row >= column; of a block with itself the lower triangle
+  // counts.
+  struct Place {
+    int at, stride;
+  };
+  Place place(int row, int column) const;
+  std::vector<double>& values() { return values_; }
+  double diagonal(int unknown) const { return values_[diagonal_[unknown]]; }
+
+  // Factors values() with `added` on the diagonal and the unknowns marked in `out` taken out (their
+  // rows become those of the identity). Returns how many rows depend on others.
+  int factor(const double* added, const char* out);
   // x = K^-1 b for the last factor(); may be in place.
   void solve(const double* b, double* x);
   // y = K x, with values() alone.
   void multiply(const double* x, double* y) const;
 
- private:
-  void order_by_columns(std::vector<std::pair<int, int>> entries);
-  void build_tree();
-  int eliminate(int column, const double* added, const char* fixed);
+  // Of one factor() and one solve(): what the order of elimination costs.
+  long multiplications() const;
 
-  int size_ = 0;
-  std::vector<int> order_, place_;  // order_[k]: unknown eliminated as k-th; place_: its inverse
-  std::vector<int> column_start_, row_;  // upper triangle of the permuted K, by columns
-  std::vector<double> values_;
-  std::vector<int> parent_;  // elimination tree
-  std::vector<int> l_start_, l_count_, l_row_;
-  std::vector<double> l_value_, inverse_pivot_;
-  std::vector<int> mark_, pattern_;  // scratch
-  std::vector<double> y_;
+ private:
+  // A square on the diagonal and, below it, the panel of all rows that it is coupled with.
+  struct Column {
+    int first, width;   // unknowns
+    int square, panel;  // into values_ and l_
+    int height;         // rows of the panel
+    int rows;           // into panel_row_
+    int updates_begin, updates_end;
+    dense::Eliminate eliminate;
+    dense::Forward forward;
+    dense::Backward backward;
+  };
+  // What an eliminated column takes from the rows of one block in the column of another.
+  struct Update {
+    dense::Update run;
+    int left, above;  // numbers from the panel's start
+    int rows, columns;
+    int target;  // into l_
+  };
+  void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
+  void list_updates(const std::vector<int>& rows, const std::vector<Elimination>& order);
+
+  std::vector<int> column_of_;          // by block
+  std::vector<int> column_of_unknown_;
+  std::vector<Column> columns_;
+  std::vector<int> panel_row_;  // unknown of each row of a panel
+  std::vector<Update> updates_;
+  std::vector<int> diagonal_;  // by unknown, into values_
+  std::vector<double> values_, l_;
+  std::vector<double> inverse_;  // D^-1 by unknown
+  std::vector<char> out_;
+  std::vector<double> unscaled_, x_;
 };
 
 }  // namespace cdot

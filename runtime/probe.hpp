@@ -71,7 +71,10 @@ class Probe {
   }
 
   // J and (M^-1 J^T)^T, [rows][freedom * bodies].
-  void dense(double* J, double* weighted) const { ops_->dense(batch_, 0, bodies_, J, weighted); }
+  void dense(double* J, double* weighted) const {
+    std::vector<double> K(static_cast<size_t>(ops_->rows * ops_->rows));
+    ops_->dense(batch_, 0, bodies_, J, weighted, K.data(), ops_->rows);
+  }
 
   // J^T lambda on the body at this position of the joint.
   typename S::Velocity impulse_on(int position, const std::vector<T>& lambda) const {

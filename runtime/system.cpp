@@ -2,103 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 
 #include "runtime/spaces.hpp"
 
 namespace cdot {
-
-template <class S>
-void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies) {
-  blocks.clear();
-  offset_.clear();
-  rows_ = 0;
-  lawful_ = false;
-  int numbers = 0;
-  for (const Segment<S>& segment : segments) {
-    lawful_ |= segment.batch->law != nullptr;
-    for (int slot = segment.begin; slot < segment.end; ++slot) {
-      blocks.push_back({segment.batch, slot, rows_});
-      offset_.push_back(numbers);
-      rows_ += segment.batch->ops->rows;
-      numbers += segment.batch->ops->rows * segment.batch->ops->bodies * S::freedom;
-    }
-  }
-  jacobian_.assign(static_cast<size_t>(numbers), 0.0);
-  weighted_ = jacobian_;
-  const auto n = static_cast<size_t>(rows_);
-  for (auto* vector : {&b, &lambda, &softness, &right_side_, &product_}) vector->assign(n, 0.0);
-  lower.assign(n, -std::numeric_limits<double>::infinity());
-  upper.assign(n, std::numeric_limits<double>::infinity());
-  for (auto* flags : {&fixed, &broken, &out_, &held_}) flags->assign(n, 0);
-  list_products(bodies);
-  built_ = true;
-}
-
-template <class S>
-void System<S>::list_products(const Bodies<S>& bodies) {
-  struct Use {
-    int block, position;
-  };
-  std::map<int, std::vector<Use>> uses;  // by movable body
-  for (int i = 0; i < static_cast<int>(blocks.size()); ++i) {
-    const Batch<S>& batch = *blocks[i].batch;
-    for (int k = 0; k < batch.ops->bodies; ++k) {
-      const int body = batch.body[blocks[i].slot * batch.ops->bodies + k];
-      if (!bodies.immovable(body)) uses[body].push_back({i, k});
-    }
-  }
-  products_.clear();
-  std::vector<std::pair<int, int>> entries;
-  for (const auto& [body, list] : uses) {
-    for (const Use& u : list) {
-      for (const Use& v : list) {
-        if (v.block > u.block) continue;
-        products_.push_back({u.block, v.block, u.position, v.position, 0});
-        for (int r = 0; r < blocks[u.block].batch->ops->rows; ++r)
-          for (int s = 0; s < blocks[v.block].batch->ops->rows; ++s)
-            entries.emplace_back(blocks[u.block].first + r, blocks[v.block].first + s);
-      }
-    }
-  }
-  ldlt_.analyse(rows_, entries);
-  targets_.clear();
-  for (Product& product : products_) {
-    product.target = static_cast<int>(targets_.size());
-    for (int r = 0; r < blocks[product.i].batch->ops->rows; ++r)
-      for (int s = 0; s < blocks[product.j].batch->ops->rows; ++s)
-        targets_.push_back(
-            product.i == product.j && s > r
-                ? -1
-                : ldlt_.entry(blocks[product.i].first + r, blocks[product.j].first + s));
-  }
-}
-
-template <class S>
-void System<S>::assemble(const Bodies<S>& bodies) {
-  for (size_t i = 0; i < blocks.size(); ++i)
-    blocks[i].batch->ops->dense(*blocks[i].batch, blocks[i].slot, bodies,
-                                jacobian_.data() + offset_[i], weighted_.data() + offset_[i]);
-  std::vector<double>& K = ldlt_.values();
-  std::fill(K.begin(), K.end(), 0.0);
-  for (const Product& product : products_) {
-    const BlockOps<S>& ops_i = *blocks[product.i].batch->ops;
-    const BlockOps<S>& ops_j = *blocks[product.j].batch->ops;
-    const int width_i = S::freedom * ops_i.bodies, width_j = S::freedom * ops_j.bodies;
-    const double* J = jacobian_.data() + offset_[product.i] + S::freedom * product.body_i;
-    const double* W = weighted_.data() + offset_[product.j] + S::freedom * product.body_j;
-    const int* target = targets_.data() + product.target;
-    for (int r = 0; r < ops_i.rows; ++r) {
-      for (int s = 0; s < ops_j.rows; ++s, ++target) {
-        if (*target < 0) continue;
-        double sum = 0;
-        for (int c = 0; c < S::freedom; ++c) sum += J[r * width_i + c] * W[s * width_j + c];
-        K[*target] += sum;
-      }
-    }
-  }
-}
 
 template <class S>
 void System<S>::remove(const Batch<S>* batch, int slot, int last) {
@@ -106,7 +13,7 @@ void System<S>::remove(const Batch<S>* batch, int slot, int last) {
     if (block.batch != batch || (block.slot != slot && block.slot != last)) continue;
     const bool removed = block.slot == slot;
     block.slot = removed ? last : slot;
-    if (removed) std::fill_n(broken.begin() + block.first, batch->ops->rows, 1);
+    if (removed) std::fill_n(broken.begin() + block.first, block.rows, 1);
   }
 }
 
@@ -190,7 +97,7 @@ bool System<S>::part_contradicting_rows() {
     any |= bounded(r) && !fixed[r] && !broken[r] &&
            std::abs(product_[r] + softness[r] * lambda[r] - b[r]) > missed * scale;
   for (int r = 0; any && r < rows_; ++r)
-    if (bounded(r)) softness[r] += slight_softness * ldlt_.values()[ldlt_.entry(r, r)];
+    if (bounded(r)) softness[r] += slight_softness * ldlt_.diagonal(r);
   return any;
 }
 

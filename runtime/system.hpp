@@ -52,8 +52,8 @@ class System {
   template <class F>
   void each_row(F f) {
     for (const Block& block : blocks)
-      for (int r = 0; r < block.batch->ops->rows; ++r)
-        f(block.first + r, *block.batch, block.slot * block.batch->ops->rows + r);
+      for (int r = 0; r < block.rows; ++r)
+        f(block.first + r, *block.batch, block.slot * block.rows + r);
   }
 
   // Vectors over all rows, in the order of the blocks; the caller's to fill between the calls.
@@ -72,22 +72,29 @@ class System {
   // not vanish. Returns the number of dependent rows of the last factorisation.
   int solve_bounded();
 
-  // One block: rows [first, first + ops->rows) belong to a slot of a batch.
+  // One block: rows [first, first + rows) belong to a slot of a batch.
   struct Block {
     Batch<S>* batch;
     int slot;
-    int first;
+    int first, rows;
+    int jacobian;     // into jacobian_ and weighted_
+    Ldlt::Place own;  // its square in K
   };
   std::vector<Block> blocks;
 
- private:
-  // J of block i times the weighted J of block j over one body that they share.
+  // J of one block times the weighted J of another over one body that they share.
   struct Product {
-    int i, j;
-    int body_i, body_j;  // position of the body in the block
-    int target;          // into targets_
+    void (*add)(const Product&, const double* J, const double* weighted, double* K);
+    int J, weighted;                // into jacobian_ and weighted_
+    int J_stride, weighted_stride;  // between rows
+    int rows, columns;
+    Ldlt::Place to;
   };
+
+ private:
+  void order_rows(const Bodies<S>& bodies);
   void list_products(const Bodies<S>& bodies);
+  std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
   bool revise_active_set(bool one_by_one);
   int find_active_set();
   bool part_contradicting_rows();
@@ -96,9 +103,6 @@ class System {
   int rows_ = 0;
   Ldlt ldlt_;
   std::vector<Product> products_;
-  std::vector<int>
-      targets_;  // places in ldlt_.values(), [rows of i][rows of j] per product; -1: other triangle
-  std::vector<int> offset_;  // by block, into jacobian_ and weighted_
   std::vector<double> jacobian_, weighted_;
   std::vector<double> right_side_, product_;
   std::vector<char> out_, held_;  // held_: the active set of the last solve_bounded()
