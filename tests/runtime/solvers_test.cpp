@@ -1,73 +1,9 @@
 // The direct solver is exact, the iterative one tends to it, both do the same to the bit every
 // time.
-#include <Eigen/Cholesky>
-#include <random>
-
-#include "runtime/ldlt.hpp"
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
 namespace {
-
-// A sparse positive matrix with the pattern of a random graph.
-Eigen::MatrixXd random_matrix(int n, std::mt19937& random,
-                              std::vector<std::pair<int, int>>* entries) {
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(n, n);
-  for (int i = 0; i < n; ++i) {
-    G(i, i) = 1;
-    for (int k = 0; k < 2; ++k) G(i, static_cast<int>(random() % n)) += uniform(random);
-  }
-  const Eigen::MatrixXd K = G * G.transpose();
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j <= i; ++j)
-      if (K(i, j) != 0) entries->emplace_back(i, j);
-  return K;
-}
-
-TEST(Ldlt, AgreesWithADenseSolve) {
-  std::mt19937 random(1);
-  for (int n : {1, 2, 7, 30, 80}) {
-    std::vector<std::pair<int, int>> entries;
-    const Eigen::MatrixXd K = random_matrix(n, random, &entries);
-    Ldlt ldlt;
-    ldlt.analyse(n, entries);
-    for (const auto& [i, j] : entries) ldlt.values()[ldlt.entry(i, j)] = K(i, j);
-    const std::vector<double> none(n, 0.0);
-    const std::vector<char> free(n, 0);
-    EXPECT_EQ(ldlt.factor(none.data(), free.data()), 0);
-    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, -1, 2);
-    Eigen::VectorXd x(n), y(n);
-    ldlt.solve(b.data(), x.data());
-    ldlt.multiply(x.data(), y.data());
-    EXPECT_LT((K * x - b).norm(), 1e-9 * K.norm() * x.norm()) << n;
-    EXPECT_LT((y - K * x).norm(), 1e-12 * K.norm() * x.norm()) << n;
-  }
-}
-
-TEST(Ldlt, FixedUnknownsAndAddedDiagonals) {
-  std::mt19937 random(2);
-  const int n = 12;
-  std::vector<std::pair<int, int>> entries;
-  const Eigen::MatrixXd K = random_matrix(n, random, &entries);
-  Ldlt ldlt;
-  ldlt.analyse(n, entries);
-  for (const auto& [i, j] : entries) ldlt.values()[ldlt.entry(i, j)] = K(i, j);
-  std::vector<double> added(n, 0.5);
-  std::vector<char> fixed(n, 0);
-  fixed[3] = fixed[7] = 1;
-  ldlt.factor(added.data(), fixed.data());
-  Eigen::MatrixXd expected = K + 0.5 * Eigen::MatrixXd::Identity(n, n);
-  for (int f : {3, 7}) {
-    expected.row(f).setZero();
-    expected.col(f).setZero();
-    expected(f, f) = 1;
-  }
-  const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, 1, 2);
-  Eigen::VectorXd x(n);
-  ldlt.solve(b.data(), x.data());
-  EXPECT_LT((expected * x - b).norm(), 1e-12);
-}
 
 TEST(Solvers, DirectSatisfiesEveryRowToRoundOff) {
   World<double> world(settings(Solver::direct, Drift::projection, -9.81));

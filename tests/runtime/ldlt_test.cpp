@@ -1,0 +1,221 @@
+// The sparse block LDL^T against dense solves of Eigen, on K = J J^T of random joints between
+// random bodies.
+#include "runtime/ldlt.hpp"
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <random>
+
+namespace cdot::test {
+namespace {
+
+struct Joints {
+  std::vector<int> rows;                    // of each joint
+  std::vector<std::pair<int, int>> bodies;  // of each joint; -1: the ground
+};
+
+// A system with its K also as a dense matrix, in the order of the unknowns.
+struct Problem {
+  Ldlt ldlt;
+  Eigen::MatrixXd J, K;
+};
+
+bool coupled(const std::pair<int, int>& a, const std::pair<int, int>& b) {
+  for (int i : {a.first, a.second})
+    if (i >= 0 && (i == b.first || i == b.second)) return true;
+  return false;
+}
+
+// Each body has `freedom` columns of J.
+Problem random_problem(const Joints& joints, int freedom, std::mt19937& random) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Problem problem;
+  std::vector<std::pair<int, int>> pairs;
+  int last = 0;
+  for (int i = 0; i < static_cast<int>(joints.rows.size()); ++i) {
+    last = std::max({last, joints.bodies[i].first, joints.bodies[i].second});
+    for (int j = 0; j < i; ++j)
+      if (coupled(joints.bodies[i], joints.bodies[j])) pairs.emplace_back(i, j);
+  }
+  problem.ldlt.analyse(joints.rows, pairs);
+  problem.J.setZero(problem.ldlt.size(), freedom * (last + 1));
+  for (size_t i = 0; i < joints.rows.size(); ++i)
+    for (int body : {joints.bodies[i].first, joints.bodies[i].second})
+      for (int r = 0; body >= 0 && r < joints.rows[i]; ++r)
+        for (int c = 0; c < freedom; ++c)
+          problem.J(problem.ldlt.first(static_cast<int>(i)) + r, freedom * body + c) =
+              uniform(random);
+  return problem;
+}
+
+// K = J J^T into the dense matrix and, number by number, into the sparse one.
+void assemble(Problem& problem) {
+  problem.K = problem.J * problem.J.transpose();
+  std::fill(problem.ldlt.values().begin(), problem.ldlt.values().end(), 0.0);
+  for (int i = 0; i < problem.K.rows(); ++i)
+    for (int j = 0; j <= i; ++j)
+      if (problem.K(i, j) != 0) problem.ldlt.values()[problem.ldlt.place(i, j).at] = problem.K(i, j);
+}
+
+// Sizes of all kinds in a connected tangle.
+Joints tangle(int count, int bodies, std::mt19937& random) {
+  const int sizes[] = {1, 2, 3, 5, 6, 4, 9};
+  Joints joints;
+  for (int i = 0; i < count; ++i) {
+    joints.rows.push_back(sizes[random() % std::size(sizes)]);
+    const int a = static_cast<int>(random() % bodies), b = static_cast<int>(random() % bodies);
+    joints.bodies.emplace_back(a, a == b ? -1 : b);
+  }
+  return joints;
+}
+
+// Body i hangs from body i - 1, body 0 from the ground.
+Joints chain(int links, int rows) {
+  Joints joints;
+  for (int i = 0; i < links; ++i) {
+    joints.rows.push_back(rows);
+    joints.bodies.emplace_back(i - 1, i);
+  }
+  return joints;
+}
+
+Eigen::VectorXd solved(Problem& problem, const Eigen::VectorXd& b) {
+  Eigen::VectorXd x(b.size());
+  problem.ldlt.solve(b.data(), x.data());
+  return x;
+}
+
+std::vector<double> none(const Problem& problem) {
+  return std::vector<double>(static_cast<size_t>(problem.ldlt.size()), 0.0);
+}
+std::vector<char> free(const Problem& problem) {
+  return std::vector<char>(static_cast<size_t>(problem.ldlt.size()), 0);
+}
+
+// As many columns a body as make every row independent.
+constexpr int ample = 40;
+
+TEST(Ldlt, AgreesWithADenseSolve) {
+  std::mt19937 random(1);
+  double worst = 0;
+  for (int count : {1, 2, 5, 12, 40}) {
+    for (int attempt = 0; attempt < 5; ++attempt) {
+      Problem problem = random_problem(tangle(count, count / 2 + 2, random), ample, random);
+      assemble(problem);
+      EXPECT_EQ(problem.ldlt.factor(none(problem).data(), free(problem).data()), 0);
+      const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(problem.K.rows(), -1, 2);
+      const Eigen::VectorXd x = solved(problem, b), expected = problem.K.llt().solve(b);
+      const double off = (x - expected).norm() / expected.norm();
+      EXPECT_LT(off, 1e-11) << count;
+      EXPECT_LT((problem.K * x - b).norm(), 1e-13 * problem.K.norm() * x.norm());
+      worst = std::max(worst, off);
+      Eigen::VectorXd y(b.size()), in_place = b;
+      problem.ldlt.multiply(x.data(), y.data());
+      EXPECT_LT((y - problem.K * x).norm(), 1e-14 * problem.K.norm() * x.norm());
+      problem.ldlt.solve(in_place.data(), in_place.data());
+      EXPECT_EQ(in_place, x);
+    }
+  }
+  fmt::print("off a dense solve by at most {:.2g}\n", worst);
+}
+
+TEST(Ldlt, RowsThatAreOutAndAddedDiagonals) {
+  std::mt19937 random(2);
+  for (int attempt = 0; attempt < 10; ++attempt) {
+    Problem problem = random_problem(tangle(12, 6, random), ample, random);
+    assemble(problem);
+    const int n = problem.ldlt.size();
+    std::vector<double> added(static_cast<size_t>(n));
+    std::vector<char> out(static_cast<size_t>(n));
+    Eigen::MatrixXd expected = problem.K;
+    for (int i = 0; i < n; ++i) {
+      added[i] = 0.1 * static_cast<double>(random() % 10);
+      expected(i, i) += added[i];
+      out[i] = static_cast<char>(random() % 3 == 0 ? 1 + random() % 2 : 0);
+    }
+    for (int i = 0; i < n; ++i) {
+      if (!out[i]) continue;
+      expected.row(i).setZero();
+      expected.col(i).setZero();
+      expected(i, i) = 1;
+    }
+    EXPECT_EQ(problem.ldlt.factor(added.data(), out.data()), 0);
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(n, 1, 2), x = solved(problem, b);
+    EXPECT_LT((x - expected.llt().solve(b)).norm(), 1e-11 * x.norm());
+    for (int i = 0; i < n; ++i)
+      if (out[i]) {
+        EXPECT_EQ(x[i], b[i]);
+      }
+  }
+}
+
+// More rows than the bodies have freedom, and rows that repeat combinations of others: as many are
+// dropped as the rank lacks, and what is left solves every consistent system.
+TEST(Ldlt, DependentRowsAreCountedAndDropped) {
+  std::mt19937 random(3);
+  for (int attempt = 0; attempt < 60; ++attempt) {
+    const int freedom = attempt % 2 ? 3 : 6;
+    Problem problem = random_problem(tangle(4 + attempt / 2, 5, random), freedom, random);
+    const int n = problem.ldlt.size();
+    for (int k = 0; k < 3; ++k)  // some row three times another
+      problem.J.row(static_cast<int>(random() % n)) *= 3;
+    assemble(problem);
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(problem.J);
+    qr.setThreshold(1e-8);
+    EXPECT_EQ(problem.ldlt.factor(none(problem).data(), free(problem).data()), n - qr.rank());
+    const Eigen::VectorXd b = problem.K * Eigen::VectorXd::LinSpaced(n, -1, 2);
+    const Eigen::VectorXd x = solved(problem, b);
+    EXPECT_LT((problem.K * x - b).norm(), 1e-7 * b.norm()) << n << " rows, rank " << qr.rank();
+    EXPECT_GE((x.array() == 0).count(), n - qr.rank());
+  }
+}
+
+// A chain, a star and a tree have an order without fill: of each joint K's own blocks and no other.
+TEST(Ldlt, ChainsAndTreesFillNothingIn) {
+  for (int rows : {1, 2, 5}) {
+    const auto numbers = [&](const Joints& joints) {
+      std::mt19937 random(4);
+      return random_problem(joints, 1, random).ldlt.values().size();
+    };
+    EXPECT_EQ(numbers(chain(50, rows)), 50 * rows * rows + 49 * rows * rows);
+    Joints shuffled = chain(50, rows);
+    std::mt19937 random(5);
+    std::shuffle(shuffled.bodies.begin(), shuffled.bodies.end(), random);
+    EXPECT_EQ(numbers(shuffled), 50 * rows * rows + 49 * rows * rows);
+    Joints comb = chain(20, rows);
+    for (int i = 0; i < 20; ++i) {
+      comb.rows.push_back(rows);
+      comb.bodies.emplace_back(i, 20 + i);  // a tooth at every link: a triangle with its neighbours
+    }
+    EXPECT_EQ(numbers(comb), (40 + 19 + 19 + 20) * rows * rows);
+  }
+}
+
+TEST(Ldlt, AChainCostsInProportionToItsLength) {
+  for (int rows : {1, 2, 3, 5, 6}) {
+    long cost[3];
+    for (int k = 0; k < 3; ++k) {
+      std::mt19937 random(6);
+      cost[k] = random_problem(chain(100 << k, rows), 1, random).ldlt.multiplications();
+    }
+    EXPECT_EQ(cost[2] - cost[1], 2 * (cost[1] - cost[0]));
+    fmt::print("{} rows a joint: {} multiplications for 100 joints, {} for 200, {} for 400\n", rows,
+               cost[0], cost[1], cost[2]);
+  }
+}
+
+// From both ends: the middle joint comes last, and its first neighbour is not the one before it in
+// the order.
+TEST(Ldlt, AChainIsEliminatedFromBothItsEnds) {
+  std::mt19937 random(7);
+  const Problem problem = random_problem(chain(9, 2), 3, random);
+  std::vector<int> place;
+  for (int i = 0; i < 9; ++i) place.push_back(problem.ldlt.first(i) / 2);
+  EXPECT_EQ(place, (std::vector<int>{0, 2, 4, 6, 8, 7, 5, 3, 1}));
+}
+
+}  // namespace
+}  // namespace cdot::test
