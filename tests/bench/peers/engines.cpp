@@ -1,0 +1,35 @@
+// The registered engines, and the steps that all of them try.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/bench/peers/peer.hpp"
+
+namespace cdot::peers {
+namespace {
+
+std::vector<Engine>& registered() {
+  static std::vector<Engine> all;
+  return all;
+}
+
+}  // namespace
+
+Registration::Registration(Engine engine) {
+  const auto rank = [](const Engine& e) { return std::pair{!e.name.starts_with("Cdot"), e.name}; };
+  std::vector<Engine>& all = registered();
+  const auto place =
+      std::find_if(all.begin(), all.end(), [&](const Engine& other) { return rank(engine) < rank(other); });
+  all.insert(place, std::move(engine));
+}
+
+const std::vector<Engine>& engines() { return registered(); }
+
+std::vector<double> steps(const Problem& problem) {
+  const double interval = problem.duration / double(problem.times.size());
+  std::vector<double> all;
+  const double coarsest = std::ceil(interval * 60);
+  for (int halvings = 0; halvings <= 14; ++halvings) all.push_back(interval / std::ldexp(coarsest, halvings));
+  return all;
+}
+
+}  // namespace cdot::peers

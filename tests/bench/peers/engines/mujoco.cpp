@@ -1,0 +1,170 @@
+// MuJoCo: space, double precision, minimal coordinates; loops are closed by soft equality constraints.
+#include <fmt/format.h>
+#include <mujoco/mujoco.h>
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+
+#include "tests/bench/peers/tree.hpp"
+
+namespace cdot::peers {
+namespace {
+
+std::string text(const Vec3& a) { return fmt::format("{} {} {}", a[0], a[1], a[2]); }
+std::string text(const Quaternion& q) { return fmt::format("{} {} {} {}", q[0], q[1], q[2], q[3]); }
+
+std::string joint_text(const Problem& problem, const Branch& branch) {
+  if (branch.joint < 0) return "<freejoint/>";
+  const Joint& joint = problem.joints[std::size_t(branch.joint)];
+  const char* type = joint.kind == JointKind::revolute    ? "hinge"
+                     : joint.kind == JointKind::prismatic ? "slide"
+                                                          : "ball";
+  std::string out =
+      fmt::format("<joint type='{}' pos='{}'", type, text(local_point(problem, branch.body, joint.anchor)));
+  if (joint.kind != JointKind::spherical)
+    out += fmt::format(" axis='{}'", text(local_direction(problem, branch.body, joint.axis)));
+  return out + "/>";
+}
+
+std::string body_text(const Problem& problem, const Tree& tree, const Branch& branch) {
+  const Body& body = problem.bodies[std::size_t(branch.body)];
+  Quaternion q = body.start.q;
+  if (branch.parent != world) q = conjugate(problem.bodies[std::size_t(branch.parent)].start.q) * q;
+  std::string out =
+      fmt::format("<body name='b{}' pos='{}' quat='{}'><inertial pos='0 0 0' mass='{}' diaginertia='{}'/>{}\n",
+                  branch.body, text(local_point(problem, branch.parent, body.start.x)), text(q), body.mass,
+                  text(body.inertia), joint_text(problem, branch));
+  for (const Branch& child : tree.branches)
+    if (child.parent == branch.body) out += body_text(problem, tree, child);
+  return out + "</body>\n";
+}
+
+std::string model_text(const Problem& problem, const Tree& tree) {
+  std::string out = fmt::format(
+      "<mujoco><compiler inertiafromgeom='false'/><option gravity='{}'><flag contact='disable'/>"
+      "</option><worldbody>",
+      text(problem.gravity));
+  for (const Branch& branch : tree.branches)
+    if (branch.parent == world) out += body_text(problem, tree, branch);
+  out += "</worldbody><equality>";
+  for (const int loop : tree.loops) {
+    const Joint& joint = problem.joints[std::size_t(loop)];
+    out += fmt::format("<connect body1='b{}' body2='b{}' anchor='{}'/>", joint.a, joint.b,
+                       text(local_point(problem, joint.a, joint.anchor)));
+  }
+  return out + "</equality></mujoco>";
+}
+
+using Model = std::shared_ptr<mjModel>;
+
+Model model_of(const Problem& problem) {
+  mju_user_warning = [](const char*) {};
+  mju_user_error = [](const char* message) { throw std::runtime_error(message); };
+  const std::string xml = model_text(problem, tree_of(problem));
+  const auto files = std::make_unique<mjVFS>();
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), "model.xml", int(xml.size()));
+  std::memcpy(files->filedata[0], xml.data(), xml.size());
+  char error[500] = "";
+  mjModel* model = mj_loadXML("model.xml", files.get(), error, sizeof error);
+  mj_deleteVFS(files.get());
+  if (model == nullptr) throw std::runtime_error(error);
+  return {model, mj_deleteModel};
+}
+
+struct Way {
+  std::string name, changed;
+  int integrator;
+  double solref = 0;  // steps in which a loop's error decays; 0: the default, 0.02 s
+};
+
+class MujocoRun final : public SteppedRun {
+ public:
+  MujocoRun(const Problem& problem, const mjModel& model, const Way& way, double h)
+      : SteppedRun(h), model_(mj_copyModel(nullptr, &model)), data_(mj_makeData(model_)) {
+    model_->opt.timestep = h;
+    model_->opt.integrator = way.integrator;
+    if (way.solref > 0) {
+      model_->opt.disableflags |= mjDSBL_REFSAFE;
+      for (int k = 0; k < model_->neq; ++k) {
+        model_->eq_solref[mjNREF * k] = way.solref * h;
+        model_->eq_solimp[mjNIMP * k] = model_->eq_solimp[mjNIMP * k + 1] = 0.9999;
+      }
+    }
+    for (const Branch& branch : tree_of(problem).branches) {
+      bodies_.push_back(0);
+      set_velocity(problem, branch);
+    }
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+      bodies_[k] = mj_name2id(model_, mjOBJ_BODY, fmt::format("b{}", k).c_str());
+  }
+  ~MujocoRun() override {
+    mj_deleteData(data_);
+    mj_deleteModel(model_);
+  }
+  MujocoRun(const MujocoRun&) = delete;
+  MujocoRun& operator=(const MujocoRun&) = delete;
+
+  State state(int body) const override {
+    mj_kinematics(model_, data_);
+    mj_comPos(model_, data_);
+    mj_comVel(model_, data_);
+    const int b = bodies_[std::size_t(body)];
+    const double *x = data_->xpos + 3 * b, *q = data_->xquat + 4 * b;
+    double v[6];  // spin, then velocity
+    mj_objectVelocity(model_, data_, mjOBJ_BODY, b, v, 0);
+    return {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
+  }
+
+ private:
+  void set_velocity(const Problem& problem, const Branch& branch) {
+    const std::string name = fmt::format("b{}", branch.body);
+    const int b = mj_name2id(model_, mjOBJ_BODY, name.c_str());
+    double* qvel = data_->qvel + model_->body_dofadr[b];
+    const State& s = problem.bodies[std::size_t(branch.body)].start;
+    const auto put = [](double* to, const Vec3& u) { std::copy(u.begin(), u.end(), to); };
+    if (branch.joint < 0) {
+      put(qvel, s.v);
+      put(qvel + 3, turned(conjugate(s.q), s.w));
+    } else if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
+      put(qvel, turned(conjugate(s.q), spin(problem, branch)));
+    } else {
+      qvel[0] = rate(problem, branch);
+    }
+  }
+
+  void step() override {
+    mj_step(model_, data_);
+    for (const int bad : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
+      if (data_->warning[bad].number > 0) throw std::runtime_error("MuJoCo: the run is no number");
+  }
+
+  mjModel* model_;
+  mjData* data_;
+  std::vector<int> bodies_;
+};
+
+std::vector<Series> series(const Problem& problem) {
+  std::vector<Way> ways{{"RK4", "integrator RK4", mjINT_RK4},
+                        {"Euler", "", mjINT_EULER},
+                        {"implicit", "integrator implicit", mjINT_IMPLICIT}};
+  if (!tree_of(problem).loops.empty()) {
+    const std::string hard = "loop: solimp 0.9999, refsafe off, solref ";
+    ways.push_back({"RK4, loop 1 h", "integrator RK4; " + hard + "1 h", mjINT_RK4, 1});
+    ways.push_back({"RK4, loop 2 h", "integrator RK4; " + hard + "2 h", mjINT_RK4, 2});
+    ways.push_back({"Euler, loop 2 h", hard + "2 h", mjINT_EULER, 2});
+  }
+  std::vector<Series> all;
+  const Model model = model_of(problem);
+  for (const Way& way : ways)
+    all.push_back({way.name, way.changed, "h", steps(problem),
+                   [&problem, model, way](double h) { return std::make_unique<MujocoRun>(problem, *model, way, h); }});
+  return all;
+}
+
+const Registration registration{{"MuJoCo", mj_versionString(), "double", "#1a7f37",
+                                 "a tree of joints, loops closed by connect; contacts disabled", series}};
+
+}  // namespace
+}  // namespace cdot::peers

@@ -1,0 +1,161 @@
+// Simbody: space, double precision, minimal coordinates, integrators that control their error; loops are closed by
+// constraints that are projected.
+#include <Simbody.h>
+
+#include <string>
+#include <utility>
+
+#include "tests/bench/peers/tree.hpp"
+
+namespace cdot::peers {
+namespace {
+
+SimTK::Vec3 vec(const Vec3& a) { return {a[0], a[1], a[2]}; }
+Vec3 vec(const SimTK::Vec3& a) { return {a[0], a[1], a[2]}; }
+SimTK::Rotation rotation(const Quaternion& q) { return SimTK::Rotation(SimTK::Quaternion(q[0], q[1], q[2], q[3])); }
+
+struct Way {
+  std::string name, changed;
+  enum Kind { merson, feldberg, rk3, cpodes, euler } kind;
+};
+
+class SimbodyRun final : public Run {
+ public:
+  SimbodyRun(const Problem& problem, const Way& way, double knob)
+      : matter_(system_),
+        forces_(system_),
+        gravity_(forces_, matter_, vec(problem.gravity)),
+        bodies_(problem.bodies.size()) {
+    const Tree tree = tree_of(problem);
+    for (const Branch& branch : tree.branches) add(problem, branch);
+    for (const int loop : tree.loops) close(problem, problem.joints[std::size_t(loop)]);
+    SimTK::State state = system_.realizeTopology();
+    system_.realizeModel(state);
+    for (const Branch& branch : tree.branches) {
+      system_.realize(state, SimTK::Stage::Position);
+      set_velocity(problem, branch, state);
+    }
+    choose(way, knob);
+    integrator_->setAllowInterpolation(false);
+    integrator_->initialize(state);
+  }
+
+  void advance(double to) override {
+    while (integrator_->getTime() < to) integrator_->stepTo(to);
+  }
+
+  State state(int body) const override {
+    const SimTK::State& s = integrator_->getState();
+    system_.realize(s, SimTK::Stage::Velocity);
+    const SimTK::MobilizedBody& b = bodies_[std::size_t(body)];
+    const SimTK::Quaternion q = b.getBodyRotation(s).convertRotationToQuaternion();
+    return {vec(b.getBodyOriginLocation(s)),
+            {q[0], q[1], q[2], q[3]},
+            vec(b.getBodyOriginVelocity(s)),
+            vec(b.getBodyAngularVelocity(s))};
+  }
+
+ private:
+  SimTK::MobilizedBody& mobile(int body) {
+    return body == peers::world ? static_cast<SimTK::MobilizedBody&>(matter_.Ground()) : bodies_[std::size_t(body)];
+  }
+
+  // The frame of a joint, placed in the world at the start, in a body's own frame.
+  static SimTK::Transform frame(const Problem& problem, int body, const SimTK::Rotation& axes, const Vec3& anchor) {
+    const Quaternion q = body == peers::world ? Quaternion{1, 0, 0, 0} : problem.bodies[std::size_t(body)].start.q;
+    return {SimTK::Rotation(~rotation(q) * axes), vec(local_point(problem, body, anchor))};
+  }
+
+  void add(const Problem& problem, const Branch& branch) {
+    const Body& body = problem.bodies[std::size_t(branch.body)];
+    const SimTK::Body::Rigid rigid(SimTK::MassProperties(body.mass, SimTK::Vec3(0), SimTK::Inertia(vec(body.inertia))));
+    SimTK::MobilizedBody& parent = mobile(branch.parent);
+    SimTK::MobilizedBody& made = bodies_[std::size_t(branch.body)];
+    if (branch.joint < 0) {
+      const SimTK::Transform start(rotation(body.start.q), vec(body.start.x));
+      made = SimTK::MobilizedBody::Free(parent, start, rigid, SimTK::Transform());
+      return;
+    }
+    const Joint& joint = problem.joints[std::size_t(branch.joint)];
+    const auto both = [&](const SimTK::Rotation& axes) {
+      return std::pair{frame(problem, branch.parent, axes, joint.anchor),
+                       frame(problem, branch.body, axes, joint.anchor)};
+    };
+    if (joint.kind == JointKind::spherical) {
+      const auto [in, out] = both(SimTK::Rotation());
+      made = SimTK::MobilizedBody::Ball(parent, in, rigid, out);
+    } else if (joint.kind == JointKind::revolute) {
+      const auto [in, out] = both(SimTK::Rotation(SimTK::UnitVec3(vec(joint.axis)), SimTK::ZAxis));
+      made = SimTK::MobilizedBody::Pin(parent, in, rigid, out);
+    } else {
+      const auto [in, out] = both(SimTK::Rotation(SimTK::UnitVec3(vec(joint.axis)), SimTK::XAxis));
+      made = SimTK::MobilizedBody::Slider(parent, in, rigid, out);
+    }
+  }
+
+  // The tree keeps the plane, so that a pin which closes a loop is two rows.
+  void close(const Problem& problem, const Joint& joint) {
+    if (!problem.planar) throw std::runtime_error("Simbody: only loops of the plane are closed here");
+    for (const Vec3& side : {Vec3{1, 0, 0}, Vec3{0, 1, 0}}) {
+      const Vec3 normal = local_direction(problem, joint.a, side);
+      SimTK::Constraint::PointInPlane(mobile(joint.a), SimTK::UnitVec3(vec(normal)),
+                                      dot(normal, local_point(problem, joint.a, joint.anchor)), mobile(joint.b),
+                                      vec(local_point(problem, joint.b, joint.anchor)));
+    }
+  }
+
+  void set_velocity(const Problem& problem, const Branch& branch, SimTK::State& state) {
+    SimTK::MobilizedBody& made = bodies_[std::size_t(branch.body)];
+    const State& start = problem.bodies[std::size_t(branch.body)].start;
+    if (branch.joint < 0) {
+      const Quaternion back = conjugate(start.q);
+      made.setUToFitVelocity(state, SimTK::SpatialVec(vec(turned(back, start.w)), vec(turned(back, start.v))));
+    } else if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
+      made.setUToFitAngularVelocity(state, vec(spin(problem, branch)));
+    } else {
+      made.setOneU(state, 0, rate(problem, branch));
+    }
+  }
+
+  void choose(const Way& way, double knob) {
+    if (way.kind == Way::merson)
+      integrator_ = std::make_unique<SimTK::RungeKuttaMersonIntegrator>(system_);
+    else if (way.kind == Way::feldberg)
+      integrator_ = std::make_unique<SimTK::RungeKuttaFeldbergIntegrator>(system_);
+    else if (way.kind == Way::rk3)
+      integrator_ = std::make_unique<SimTK::RungeKutta3Integrator>(system_);
+    else if (way.kind == Way::cpodes)
+      integrator_ = std::make_unique<SimTK::CPodesIntegrator>(system_);
+    else
+      integrator_ = std::make_unique<SimTK::SemiExplicitEulerIntegrator>(system_, knob);
+    if (way.kind != Way::euler) integrator_->setAccuracy(knob);
+  }
+
+  SimTK::MultibodySystem system_;
+  SimTK::SimbodyMatterSubsystem matter_;
+  SimTK::GeneralForceSubsystem forces_;
+  SimTK::Force::UniformGravity gravity_;
+  std::vector<SimTK::MobilizedBody> bodies_;
+  std::unique_ptr<SimTK::Integrator> integrator_;
+};
+
+std::vector<Series> series(const Problem& problem) {
+  std::vector<double> accuracies;
+  for (int half_digits = 2; half_digits <= 26; ++half_digits) accuracies.push_back(std::pow(10.0, -half_digits / 2.0));
+  std::vector<Series> all;
+  for (const Way& way : {Way{"Runge-Kutta-Merson", "", Way::merson}, Way{"Runge-Kutta-Fehlberg", "", Way::feldberg},
+                         Way{"Runge-Kutta 3", "", Way::rk3}, Way{"CPodes", "", Way::cpodes},
+                         Way{"semi-explicit Euler", "fixed steps", Way::euler}}) {
+    const bool fixed = way.kind == Way::euler;
+    all.push_back({way.name, way.changed, fixed ? "h" : "accuracy", fixed ? steps(problem) : accuracies,
+                   [&problem, way](double knob) { return std::make_unique<SimbodyRun>(problem, way, knob); }});
+  }
+  return all;
+}
+
+const Registration registration{
+    {"Simbody", "3.7", "double", "#bf8700",
+     "mobilizers; a planar loop is closed by two PointInPlane; no interpolation between steps", series}};
+
+}  // namespace
+}  // namespace cdot::peers

@@ -1,0 +1,51 @@
+// Vectors and quaternions as plain arrays: what all adapters need to place bodies and joints.
+#pragma once
+
+#include <cmath>
+
+#include "tests/bench/peers/peer.hpp"
+
+namespace cdot::peers {
+
+inline Vec3 operator+(const Vec3& a, const Vec3& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+inline Vec3 operator-(const Vec3& a, const Vec3& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+inline Vec3 operator*(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
+inline double dot(const Vec3& a, const Vec3& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
+
+inline Quaternion conjugate(const Quaternion& q) { return {q[0], -q[1], -q[2], -q[3]}; }
+inline Quaternion operator*(const Quaternion& p, const Quaternion& q) {
+  return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+          p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1], p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
+}
+// The vector u turned by the unit quaternion q.
+inline Vec3 turned(const Quaternion& q, const Vec3& u) {
+  const Vec3 e{q[1], q[2], q[3]}, t = 2.0 * cross(e, u);
+  return u + q[0] * t + cross(e, t);
+}
+
+// A point or a direction of the world in a body's frame; the world's own is the world's.
+inline Vec3 local_point(const Problem& problem, int body, const Vec3& p) {
+  if (body == world) return p;
+  const State& s = problem.bodies[std::size_t(body)].start;
+  return turned(conjugate(s.q), p - s.x);
+}
+inline Vec3 local_direction(const Problem& problem, int body, const Vec3& u) {
+  if (body == world) return u;
+  return turned(conjugate(problem.bodies[std::size_t(body)].start.q), u);
+}
+
+// Of planar poses.
+inline double angle(const Quaternion& q) { return 2 * std::atan2(q[3], q[0]); }
+inline Quaternion about_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
+
+// The angle of the shortest turn between two orientations, exact also where it is tiny.
+inline double angle_between(const Quaternion& p, const Quaternion& q) {
+  const Quaternion d = conjugate(p) * q;
+  return 2 * std::atan2(std::sqrt(d[1] * d[1] + d[2] * d[2] + d[3] * d[3]), std::fabs(d[0]));
+}
+
+}  // namespace cdot::peers

@@ -1,0 +1,112 @@
+// What a problem is, whoever solves it, and what an engine offers to be measured: a list of series
+// of settings, each of which starts a run. An engine is one file in engines/ that registers itself.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace cdot::peers {
+
+using Vec3 = std::array<double, 3>;
+using Quaternion = std::array<double, 4>;  // e0 (scalar), e1, e2, e3; from the body to the world
+
+// Of one body: centre of mass, orientation, and their rates in world axes.
+struct State {
+  Vec3 x{};
+  Quaternion q{1, 0, 0, 0};
+  Vec3 v{}, w{};
+};
+
+struct Body {
+  std::string name;
+  double mass = 0;
+  Vec3 inertia{};  // about the axes of the body's frame, which are principal
+  State start;
+};
+
+enum class JointKind { revolute, prismatic, spherical };
+
+inline constexpr int world = -1;
+
+struct Joint {
+  JointKind kind;
+  int a, b;       // indices of bodies, or `world`
+  Vec3 anchor{};  // at the start, in world axes
+  Vec3 axis{};    // likewise: what it turns about or slides along
+};
+
+// What an error is the largest of, over bodies and sample times.
+enum class Measure {
+  place,       // distance of the centre of mass from where it should be [m]
+  orientation  // angle of the body from where it should be [rad]
+};
+
+struct Problem {
+  std::string name, title, scene;
+  bool planar = false;  // all in the plane of x and y; inertias about x and y are free then
+  Vec3 gravity{};
+  double duration = 0;
+  Measure measure = Measure::place;
+  std::vector<Body> bodies;
+  std::vector<Joint> joints;
+  std::vector<double> times;                  // at which answers are compared
+  std::vector<std::vector<State>> reference;  // at these times, every body
+};
+
+class Run {
+ public:
+  virtual ~Run() = default;
+  virtual void advance(double to) = 0;  // may throw if the engine gives up
+  virtual State state(int body) const = 0;
+};
+
+// A run in equal steps.
+class SteppedRun : public Run {
+ public:
+  explicit SteppedRun(double h) : h_(h) {}
+  void advance(double to) final {
+    for (; double(taken_) * h_ < to - 0.5 * h_; ++taken_) step();
+  }
+
+ protected:
+  double h() const { return h_; }
+
+ private:
+  virtual void step() = 0;
+  double h_;
+  long taken_ = 0;
+};
+
+// One way to use an engine, with the one knob that trades time for accuracy.
+struct Series {
+  std::string name;
+  std::string changed;        // every default that it changes, in words; "" if none
+  std::string knob;           // "h" [s], or "accuracy"
+  std::vector<double> knobs;  // coarse to fine
+  std::function<std::unique_ptr<Run>(double knob)> start;
+};
+
+struct Engine {
+  std::string name;
+  std::string version;
+  std::string number;   // "double" or "float"
+  std::string colour;   // in pictures
+  std::string changed;  // the defaults that all its series change
+  // Empty if it cannot pose the problem. The problem outlives the series.
+  std::function<std::vector<Series>(const Problem&)> series;
+};
+
+// All registered engines by name, Cdot first.
+const std::vector<Engine>& engines();
+
+struct Registration {
+  explicit Registration(Engine engine);
+};
+
+// Steps that divide the time between samples, about 1/60 s and halved again and again.
+std::vector<double> steps(const Problem& problem);
+
+}  // namespace cdot::peers

@@ -1,0 +1,51 @@
+// The spanning tree, nearest to the world first, so that loops close at their far end.
+#include "tests/bench/peers/tree.hpp"
+
+#include <algorithm>
+
+namespace cdot::peers {
+namespace {
+
+const State& state(const Problem& problem, int body) {
+  static const State still;
+  return body == world ? still : problem.bodies[std::size_t(body)].start;
+}
+
+Vec3 velocity_at(const State& s, const Vec3& point) { return s.v + cross(s.w, point - s.x); }
+
+}  // namespace
+
+Tree tree_of(const Problem& problem) {
+  Tree tree;
+  std::vector<bool> reached(problem.bodies.size(), false), used(problem.joints.size(), false);
+  const auto grow = [&](int parent) {
+    for (int k = 0; k < int(problem.joints.size()); ++k) {
+      const Joint& joint = problem.joints[std::size_t(k)];
+      if (joint.a != parent && joint.b != parent) continue;
+      const int child = joint.a == parent ? joint.b : joint.a;
+      if (child == world || reached[std::size_t(child)]) continue;
+      reached[std::size_t(child)] = used[std::size_t(k)] = true;
+      tree.branches.push_back({child, parent, k});
+    }
+  };
+  grow(world);
+  for (std::size_t k = 0; k < tree.branches.size(); ++k) grow(tree.branches[k].body);
+  for (std::size_t k = 0; k < reached.size(); ++k)
+    if (!reached[k]) tree.branches.push_back({int(k), world, -1});
+  for (std::size_t k = 0; k < used.size(); ++k)
+    if (!used[k]) tree.loops.push_back(int(k));
+  return tree;
+}
+
+double rate(const Problem& problem, const Branch& branch) {
+  const Joint& joint = problem.joints[std::size_t(branch.joint)];
+  const State &parent = state(problem, branch.parent), &child = state(problem, branch.body);
+  if (joint.kind == JointKind::revolute) return dot(child.w - parent.w, joint.axis);
+  return dot(velocity_at(child, joint.anchor) - velocity_at(parent, joint.anchor), joint.axis);
+}
+
+Vec3 spin(const Problem& problem, const Branch& branch) {
+  return state(problem, branch.body).w - state(problem, branch.parent).w;
+}
+
+}  // namespace cdot::peers
