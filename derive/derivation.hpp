@@ -38,6 +38,7 @@ struct ScalarRow {
   Expr Cdot;               // J v + dC/dt, before the velocities are isolated
   Expr C_t;                // dC/dt at fixed q
   Expr gamma;              // -Jdot v - d/dt(dC/dt)
+  Expr gamma_by_entries;   // the same, entry of J by entry
   std::vector<JacobianEntry> J;  // one per body
 };
 

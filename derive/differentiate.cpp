@@ -1,4 +1,5 @@
 // C to Cdot, Cdot to J, J to K: the derivation, on vectors.
+#include <algorithm>
 #include <map>
 
 #include "derive/derivation.hpp"
@@ -29,6 +30,34 @@ std::vector<std::vector<Expr>> geometric_stiffness(const Joint& joint, Block& bl
   return H;
 }
 
+// -Jdot v - d(C_t)/dt, where what one entry of J multiplies is collected first: J (w_a - w_b), whose difference loses
+// nothing when the bodies turn nearly alike.
+Expr gamma_by_entries(const Joint& joint, const ScalarRow& row, int immovable) {
+  std::vector<std::pair<Expr, Expr>> entries;  // of J without numeric factor; the velocities times theirs
+  const auto collect = [&](Expr entry, Expr velocity) {
+    if (is_zero(entry)) return;
+    const Term part = split_coefficient(entry);
+    const auto found = std::find_if(entries.begin(), entries.end(),
+                                    [&](const auto& known) { return known.first == part.e; });
+    if (found == entries.end()) {
+      entries.emplace_back(part.e, part.coef * velocity);
+    } else {
+      found->second = found->second + part.coef * velocity;
+    }
+  };
+  for (std::size_t b = 0; b < row.J.size(); ++b) {
+    const BodySymbols body = body_symbols(joint, static_cast<int>(b));
+    collect(row.J[b].v, body.v);
+    collect(row.J[b].w, body.w);
+  }
+  Expr gamma = -time_derivative(row.C_t, joint, {immovable});
+  for (const auto& [entry, velocity] : entries) {
+    const Expr rate = time_derivative(entry, joint, {immovable});
+    gamma = gamma - (entry->vector ? dot(rate, velocity) : rate * velocity);
+  }
+  return gamma;
+}
+
 ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int immovable) {
   Pool& pool = *joint.pool;
   const bool at_velocity_level = row.kind == RowKind::velocity;
@@ -48,6 +77,7 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
   row.C_t = substitute(row.Cdot, at_rest, KeepNames::no);
   row.J = isolate_velocities(row.Cdot, joint);
   row.gamma = -time_derivative(row.Cdot, joint, {immovable});
+  row.gamma_by_entries = gamma_by_entries(joint, row, immovable);
   return row;
 }
 
@@ -113,12 +143,12 @@ Block derive_rows(const Joint& joint, int immovable) {
   const std::vector<Expr> axes = world_axes(*joint.pool);
   for (const Row& row : joint.rows) {
     if (!row.C->vector) {
-      block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, {}, {}, {}, {}, {}},
+      block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, {}, {}, {}, {}, {}, {}},
                                       row.C, immovable));
       continue;
     }
     for (std::size_t k = 0; k < axes.size(); ++k) {
-      ScalarRow part{row.name + "_" + "xyz"[k], &row, row.kind, static_cast<int>(k), {}, {}, {}, {}, {}};
+      ScalarRow part{row.name + "_" + "xyz"[k], &row, row.kind, static_cast<int>(k), {}, {}, {}, {}, {}, {}};
       block.rows.push_back(derive_row(joint, std::move(part), dot(axes[k], row.C), immovable));
     }
   }
@@ -129,7 +159,7 @@ Block derive_coordinate(const Joint& joint, const Coordinate& coordinate, int im
   Block block;
   block.name = coordinate.name;
   block.immovable = immovable;
-  ScalarRow row{coordinate.name, nullptr, RowKind::equality, -1, {}, {}, {}, {}, {}};
+  ScalarRow row{coordinate.name, nullptr, RowKind::equality, -1, {}, {}, {}, {}, {}, {}};
   block.rows.push_back(derive_row(joint, std::move(row), coordinate.value, immovable));
   return finished(joint, std::move(block));
 }

@@ -157,10 +157,7 @@ class BlockPlanner {
     }
     const std::string summary = "K = J M^-1 J^T, lower triangle, from J";
     add("effective_mass", summary, plain);
-    if (!complete) return;
-    Program shorter = simplify(assemble(simplified));
-    Program& kept = out_.functions.back().program;
-    if (count(shorter).total() <= count(kept).total()) kept = std::move(shorter);
+    if (complete) keep_if_no_dearer(simplified);
   }
 
   Expr plain_effective_mass(std::size_t i, std::size_t j) const {
@@ -294,9 +291,8 @@ class BlockPlanner {
   }
 
   void add_from_pose() {
-    std::vector<NamedExpr> gamma, C_t, H;
+    std::vector<NamedExpr> C_t, H;
     for (std::size_t i = 0; i < rows(); ++i) {
-      gamma.push_back({element("g", i), pose_.of(out_.block.rows[i].gamma)});
       C_t.push_back({element("C_t", i), pose_.of(out_.block.rows[i].C_t)});
     }
     for (std::size_t r = 0; r < out_.block.stiffness.size(); ++r) {
@@ -304,12 +300,30 @@ class BlockPlanner {
         H.push_back({element(element("H", r), c), pose_.of(out_.block.stiffness[r][c])});
       }
     }
-    add("gamma", "-Jdot v - d/dt(dC/dt)", gamma);
+    add_gamma();
     add("time_derivative", "dC/dt at fixed q", C_t);
     add("stiffness",
         std::string("d(J^T lambda)/dq: ") +
             (width_ == 3 ? "x, y, angle" : "x, y, z and small turns") + " of each body",
         H);
+  }
+
+  // The cheaper of two ways, J's if neither is: it loses fewer digits when the bodies move nearly alike.
+  void add_gamma() {
+    std::vector<NamedExpr> whole, by_entries;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      whole.push_back({element("g", i), pose_.of(out_.block.rows[i].gamma)});
+      by_entries.push_back({element("g", i), pose_.of(out_.block.rows[i].gamma_by_entries)});
+    }
+    add("gamma", "-Jdot v - d/dt(dC/dt)", whole);
+    keep_if_no_dearer(by_entries);
+  }
+
+  // In place of the function added last.
+  void keep_if_no_dearer(const std::vector<NamedExpr>& outputs) {
+    Program other = simplify(assemble(outputs));
+    Program& kept = out_.functions.back().program;
+    if (count(other).total() <= count(kept).total()) kept = std::move(other);
   }
 
   const Joint& joint_;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "derive/program_builder.hpp"
@@ -94,6 +95,22 @@ Rational ProgramBuilder::pull_coefficient(int& arg) const {
   return op.coefs[0];
 }
 
+// Sums are taken from the left: x_a - x_b + r keeps the digits of r far from the origin, r + x_a - x_b does not.
+void ProgramBuilder::positions_first(Operation& sum) const {
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < sum.args.size(); ++i) {
+    if (!at(sum.args[i]).is_position) continue;
+    const auto move_up = [&](auto& list) {
+      const auto first = list.begin() + static_cast<std::ptrdiff_t>(next);
+      std::rotate(first, list.begin() + static_cast<std::ptrdiff_t>(i),
+                  list.begin() + static_cast<std::ptrdiff_t>(i + 1));
+    };
+    move_up(sum.args);
+    move_up(sum.coefs);
+    ++next;
+  }
+}
+
 int ProgramBuilder::sum(std::vector<int> args, std::vector<Rational> coefs, std::string name) {
   Operation op;
   op.kind = OpKind::sum;
@@ -113,6 +130,7 @@ int ProgramBuilder::sum(std::vector<int> args, std::vector<Rational> coefs, std:
     op.args.erase(op.args.begin() + static_cast<std::ptrdiff_t>(i));
     op.coefs.erase(op.coefs.begin() + static_cast<std::ptrdiff_t>(i));
   }
+  positions_first(op);
   if (op.args.empty()) return number(0);
   if (op.args.size() == 1 && at(op.args[0]).kind == OpKind::number) {
     return number(op.coefs[0] * at(op.args[0]).value);

@@ -190,8 +190,10 @@ class Prover {
   void gamma() {
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const ScalarRow& row = block_.rows[i];
-      require_zero(names_, names_.of(row.gamma) + names_.rate(Cdot_[i]), row,
-                   ": gamma is not minus the second time derivative of C without accelerations");
+      for (const Expr gamma : {row.gamma, row.gamma_by_entries}) {
+        require_zero(names_, names_.of(gamma) + names_.rate(Cdot_[i]), row,
+                     ": gamma is not minus the second time derivative of C without accelerations");
+      }
     }
   }
 

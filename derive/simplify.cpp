@@ -106,10 +106,22 @@ std::size_t find(const std::vector<int>& args, int arg) {
   return static_cast<std::size_t>(std::find(args.begin(), args.end(), arg) - args.begin());
 }
 
+// What the spec calls x + ratio y, if it has a name there.
+std::string name_of(const Program& program, const Pair& pair) {
+  for (const Operation& op : program.ops) {
+    if (op.kind != OpKind::sum || op.args.size() != 2 || op.name.empty()) continue;
+    const std::size_t x = find(op.args, pair.x), y = 1 - x;
+    if (x < 2 && op.args[y] == pair.y && op.coefs[x] == Rational(1) && op.coefs[y] == pair.ratio)
+      return op.name;
+  }
+  return {};
+}
+
 // x + y once for all sums that contain it.
 std::optional<Program> share_terms(const Program& program) {
   const std::optional<Pair> pair = most_frequent(program, term_pairs);
   if (!pair) return std::nullopt;
+  const std::string name = name_of(program, *pair);
   return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
                            const std::vector<int>& at) -> std::optional<int> {
     if (op.kind != OpKind::sum) return std::nullopt;
@@ -118,7 +130,7 @@ std::optional<Program> share_terms(const Program& program) {
       return std::nullopt;
     }
     const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
-    std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio})};
+    std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio}, name)};
     std::vector<Rational> coefs{op.coefs[x]};
     for (std::size_t i = 0; i < op.args.size(); ++i) {
       if (i == x || i == y) continue;
@@ -297,6 +309,50 @@ Program flatten_sums(const Program& program) {
   });
 }
 
+// u + r = x_a - x_b where u = x_a - x_b - r: what was taken away and is added again costs an operation and digits.
+// The sum, and which of its terms is a sum as well.
+using Cancelling = std::pair<std::size_t, std::size_t>;
+std::optional<Cancelling> find_cancelling(const Program& program) {
+  const std::vector<int> uses = use_counts(program);
+  for (std::size_t s = 0; s < program.ops.size(); ++s) {
+    const Operation& outer = program.ops[s];
+    if (uses[s] == 0 || outer.kind != OpKind::sum) continue;
+    for (std::size_t k = 0; k < outer.args.size(); ++k) {
+      const Operation& inner = program.ops[static_cast<std::size_t>(outer.args[k])];
+      if (inner.kind != OpKind::sum) continue;
+      for (std::size_t i = 0; i < inner.args.size(); ++i) {
+        const std::size_t same = find(outer.args, inner.args[i]);
+        if (same < outer.args.size() && outer.coefs[same] == -(outer.coefs[k] * inner.coefs[i])) {
+          return Cancelling{s, k};
+        }
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Program> cancel_terms(const Program& program) {
+  const std::optional<Cancelling> found = find_cancelling(program);
+  if (!found) return std::nullopt;
+  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int index,
+                           const std::vector<int>& at) -> std::optional<int> {
+    if (index != static_cast<int>(found->first)) return std::nullopt;
+    std::vector<int> args;
+    std::vector<Rational> coefs;
+    const auto add = [&](const Operation& sum, Rational factor, std::size_t but) {
+      for (std::size_t i = 0; i < sum.args.size(); ++i) {
+        if (i == but) continue;
+        args.push_back(at[static_cast<std::size_t>(sum.args[i])]);
+        coefs.push_back(factor * sum.coefs[i]);
+      }
+    };
+    const Operation& inner = program.ops[static_cast<std::size_t>(op.args[found->second])];
+    add(inner, op.coefs[found->second], inner.args.size());
+    add(op, Rational(1), found->second);
+    return builder.sum(std::move(args), std::move(coefs), op.name);
+  });
+}
+
 using Pass = std::optional<Program> (*)(const Program&);
 
 Program exhaust(Program program, Pass pass) {
@@ -309,9 +365,8 @@ int weight(const Count& c) {
   return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call;
 }
 
-}  // namespace
-
-Program simplify(const Program& program) {
+// The cheapest that the passes find from here.
+Program searched(const Program& program) {
   static constexpr Pass orders[][3] = {{share_factors, share_terms, take_out_factor},
                                        {take_out_factor, share_factors, share_terms},
                                        {share_terms, take_out_factor, share_factors},
@@ -338,6 +393,15 @@ Program simplify(const Program& program) {
   // Of equals, x - w (2 y + z) rather than x + w (-2 y - z).
   Program positive = flatten_sums(take_out_coefficients(best));
   return weight(count(positive)) <= weight(count(best)) ? positive : best;
+}
+
+}  // namespace
+
+Program simplify(const Program& program) {
+  const Program best = searched(exhaust(program, cancel_terms));
+  if (!find_cancelling(program)) return best;
+  const Program as_written = searched(program);
+  return weight(count(best)) <= weight(count(as_written)) ? best : as_written;
 }
 
 }  // namespace cdot::derive

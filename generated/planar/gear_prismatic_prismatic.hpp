@@ -100,7 +100,7 @@ struct gear_prismatic_prismatic {
     C[0] = qa - p.offset + p.ratio * qb;
   }
 
-  // C and J: 36 +, 37 *
+  // C and J: 32 +, 37 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -110,26 +110,26 @@ struct gear_prismatic_prismatic {
     const Pose<T>& d = q[3];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rc_ua_x = a.x - c.x + ra_x;
+    const T rc_ua_y = a.y - c.y + ra_y;
     const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
     const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-    const T ua_x = a.x - c.x + ra_x - rc_x;
-    const T ua_y = a.y - c.y + ra_y - rc_y;
+    const T ua_x = rc_ua_x - rc_x;
+    const T ua_y = rc_ua_y - rc_y;
     const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
     const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
     const T qa = ua_x * ea_x + ua_y * ea_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
+    const T ub_x = rd_ub_x - rd_x;
+    const T ub_y = rd_ub_y - rd_y;
     const T eb_x = d.c * p.eb_x - d.s * p.eb_y;
     const T eb_y = d.c * p.eb_y + d.s * p.eb_x;
     const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T rc_ua_x = ua_x + rc_x;
-    const T rc_ua_y = ua_y + rc_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
     C[0] = qa - p.offset + p.ratio * qb;
     J.ea_x = ea_x;
     J.ea_y = ea_y;
@@ -258,7 +258,7 @@ struct gear_prismatic_prismatic {
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_eb;
   }
 
-  // -Jdot v - d/dt(dC/dt): 52 +, 63 *
+  // -Jdot v - d/dt(dC/dt): 37 +, 45 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -270,43 +270,27 @@ struct gear_prismatic_prismatic {
     const Velocity<T>& vc = v[2];
     const Pose<T>& d = q[3];
     const Velocity<T>& vd = v[3];
-    const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
-    const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
-    const T g1_1 = va.w * va.w;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T g1_2 = vc.w * vc.w;
-    const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
-    const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-    const T ua_dot_dot_x = g1_2 * rc_x - g1_1 * ra_x;
-    const T ua_dot_dot_y = g1_2 * rc_y - g1_1 * ra_y;
-    const T dot_ua_dot_dot_ea = ea_x * ua_dot_dot_x + ea_y * ua_dot_dot_y;
-    const T ua_dot_x = va.x - vc.x - va.w * ra_y + vc.w * rc_y;
-    const T ua_dot_y = va.y - vc.y + va.w * ra_x - vc.w * rc_x;
-    const T ua_dot_x_ea = ua_dot_x * ea_y - ua_dot_y * ea_x;
-    const T ua_x = a.x - c.x + ra_x - rc_x;
-    const T ua_y = a.y - c.y + ra_y - rc_y;
-    const T qa = ua_x * ea_x + ua_y * ea_y;
-    const T qa_dot_dot = dot_ua_dot_dot_ea - vc.w * (T(2) * ua_dot_x_ea + vc.w * qa);
-    const T eb_x = d.c * p.eb_x - d.s * p.eb_y;
-    const T eb_y = d.c * p.eb_y + d.s * p.eb_x;
-    const T g1_3 = vb.w * vb.w;
+    const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
+    const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
+    const T dot_ra_ea = ra_x * ea_x + ra_y * ea_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T g1_4 = vd.w * vd.w;
-    const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
-    const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_dot_dot_x = g1_4 * rd_x - g1_3 * rb_x;
-    const T ub_dot_dot_y = g1_4 * rd_y - g1_3 * rb_y;
-    const T dot_ub_dot_dot_eb = eb_x * ub_dot_dot_x + eb_y * ub_dot_dot_y;
-    const T ub_dot_x = vb.x - vd.x - vb.w * rb_y + vd.w * rd_y;
-    const T ub_dot_y = vb.y - vd.y + vb.w * rb_x - vd.w * rd_x;
-    const T ub_dot_x_eb = ub_dot_x * eb_y - ub_dot_y * eb_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
-    const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T qb_dot_dot = dot_ub_dot_dot_eb - vd.w * (T(2) * ub_dot_x_eb + vd.w * qb);
-    g[0] = -qa_dot_dot - p.ratio * qb_dot_dot;
+    const T eb_x = d.c * p.eb_x - d.s * p.eb_y;
+    const T eb_y = d.c * p.eb_y + d.s * p.eb_x;
+    const T dot_rb_eb = rb_x * eb_x + rb_y * eb_y;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
+    const T dot_rd_ub_eb = rd_ub_x * eb_x + rd_ub_y * eb_y;
+    const T rc_ua_x = a.x - c.x + ra_x;
+    const T rc_ua_y = a.y - c.y + ra_y;
+    const T dot_rc_ua_ea = rc_ua_x * ea_x + rc_ua_y * ea_y;
+    g[0] = p.ratio * (vd.w * (vd.w * dot_rd_ub_eb - eb_x * (T(2) * (vb.y - vd.y) + vb.w * rb_x) +
+        eb_y * (T(2) * (vb.x - vd.x) - vb.w * rb_y)) - vb.w * dot_rb_eb * (vd.w - vb.w)) - va.w *
+        dot_ra_ea * (vc.w - va.w) + vc.w *
+        (vc.w * dot_rc_ua_ea - ea_x * (T(2) * (va.y - vc.y) + va.w * ra_x) + ea_y *
+        (T(2) * (va.x - vc.x) - va.w * ra_y));
   }
 
   // dC/dt at fixed q: nothing
@@ -315,7 +299,7 @@ struct gear_prismatic_prismatic {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 40 +, 41 *
+  // d(J^T lambda)/dq: x, y, angle of each body: 28 +, 33 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[4], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[12][12]) {
@@ -343,19 +327,11 @@ struct gear_prismatic_prismatic {
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T dot_rb_eb = rb_x * eb_x + rb_y * eb_y;
     const T H6_1 = H4_1 * dot_rb_eb;
-    const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
-    const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-    const T ua_x = a.x - c.x + ra_x - rc_x;
-    const T ua_y = a.y - c.y + ra_y - rc_y;
-    const T rc_ua_x = ua_x + rc_x;
-    const T rc_ua_y = ua_y + rc_y;
+    const T rc_ua_x = a.x - c.x + ra_x;
+    const T rc_ua_y = a.y - c.y + ra_y;
     const T dot_rc_ua_ea = rc_ua_x * ea_x + rc_ua_y * ea_y;
-    const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
-    const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
     const T dot_rd_ub_eb = rd_ub_x * eb_x + rd_ub_y * eb_y;
     H[0][8] = -H1_1;
     H[1][8] = H2_1;
@@ -480,7 +456,7 @@ struct gear_prismatic_prismatic {
       C[0] = ua_x * ea_x + ua_y * ea_y;
     }
 
-    // C and J: 17 +, 18 *
+    // C and J: 15 +, 18 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -488,14 +464,14 @@ struct gear_prismatic_prismatic {
       const Pose<T>& c = q[2];
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+      const T rc_ua_x = a.x - c.x + ra_x;
+      const T rc_ua_y = a.y - c.y + ra_y;
       const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
       const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-      const T ua_x = a.x - c.x + ra_x - rc_x;
-      const T ua_y = a.y - c.y + ra_y - rc_y;
+      const T ua_x = rc_ua_x - rc_x;
+      const T ua_y = rc_ua_y - rc_y;
       const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
       const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
-      const T rc_ua_x = ua_x + rc_x;
-      const T rc_ua_y = ua_y + rc_y;
       C[0] = ua_x * ea_x + ua_y * ea_y;
       J.ea_x = ea_x;
       J.ea_y = ea_y;
@@ -581,7 +557,7 @@ struct gear_prismatic_prismatic {
       D[0][8] = -mc.I * J.rc_ua_x_ea;
     }
 
-    // -Jdot v - d/dt(dC/dt): 25 +, 31 *
+    // -Jdot v - d/dt(dC/dt): 18 +, 22 *
     template <class T>
     static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -589,26 +565,16 @@ struct gear_prismatic_prismatic {
       const Velocity<T>& va = v[0];
       const Pose<T>& c = q[2];
       const Velocity<T>& vc = v[2];
-      const T g1_1 = va.w * va.w;
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-      const T g1_2 = vc.w * vc.w;
-      const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
-      const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-      const T ua_dot_dot_x = g1_2 * rc_x;
-      const T ua_dot_dot_x_2 = ua_dot_dot_x - g1_1 * ra_x;
-      const T ua_dot_dot_y = g1_2 * rc_y;
-      const T ua_dot_dot_y_2 = ua_dot_dot_y - g1_1 * ra_y;
       const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
       const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
-      const T dot_ua_dot_dot_ea = ua_dot_dot_x_2 * ea_x + ua_dot_dot_y_2 * ea_y;
-      const T ua_dot_x = va.x - vc.x - va.w * ra_y + vc.w * rc_y;
-      const T ua_dot_y = va.y - vc.y + va.w * ra_x - vc.w * rc_x;
-      const T ua_dot_x_ea = ua_dot_x * ea_y - ua_dot_y * ea_x;
-      const T ua_x = a.x - c.x + ra_x - rc_x;
-      const T ua_y = a.y - c.y + ra_y - rc_y;
-      const T qa = ua_x * ea_x + ua_y * ea_y;
-      g[0] = vc.w * (T(2) * ua_dot_x_ea + vc.w * qa) - dot_ua_dot_dot_ea;
+      const T dot_ra_ea = ra_x * ea_x + ra_y * ea_y;
+      const T rc_ua_x = a.x - c.x + ra_x;
+      const T rc_ua_y = a.y - c.y + ra_y;
+      const T dot_rc_ua_ea = rc_ua_x * ea_x + rc_ua_y * ea_y;
+      g[0] = vc.w * (vc.w * dot_rc_ua_ea - ea_x * (T(2) * (va.y - vc.y) + va.w * ra_x) + ea_y *
+          (T(2) * (va.x - vc.x) - va.w * ra_y)) - va.w * dot_ra_ea * (vc.w - va.w);
     }
 
     // dC/dt at fixed q: nothing
@@ -617,7 +583,7 @@ struct gear_prismatic_prismatic {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, angle of each body: 20 +, 20 *
+    // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 16 *
     template <class T>
     static void stiffness(const Pose<T> (&q)[4], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -634,12 +600,8 @@ struct gear_prismatic_prismatic {
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
       const T dot_ra_ea = ra_x * ea_x + ra_y * ea_y;
       const T H3_1 = lambda[0] * dot_ra_ea;
-      const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
-      const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-      const T ua_x = a.x - c.x + ra_x - rc_x;
-      const T ua_y = a.y - c.y + ra_y - rc_y;
-      const T rc_ua_x = ua_x + rc_x;
-      const T rc_ua_y = ua_y + rc_y;
+      const T rc_ua_x = a.x - c.x + ra_x;
+      const T rc_ua_y = a.y - c.y + ra_y;
       const T dot_rc_ua_ea = rc_ua_x * ea_x + rc_ua_y * ea_y;
       H[0][8] = -H1_1;
       H[1][8] = H2_1;
@@ -680,7 +642,7 @@ struct gear_prismatic_prismatic::a_immovable : gear_prismatic_prismatic {
     T eb_x, ratio, eb_y, rb_x_eb, ea_x, ea_y, rc_ua_x_ea, rd_ub_x_eb;
   };
 
-  // C and J: 35 +, 35 *
+  // C and J: 31 +, 35 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -690,26 +652,26 @@ struct gear_prismatic_prismatic::a_immovable : gear_prismatic_prismatic {
     const Pose<T>& d = q[3];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rc_ua_x = a.x - c.x + ra_x;
+    const T rc_ua_y = a.y - c.y + ra_y;
     const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
     const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-    const T ua_x = a.x - c.x + ra_x - rc_x;
-    const T ua_y = a.y - c.y + ra_y - rc_y;
+    const T ua_x = rc_ua_x - rc_x;
+    const T ua_y = rc_ua_y - rc_y;
     const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
     const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
     const T qa = ua_x * ea_x + ua_y * ea_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
+    const T ub_x = rd_ub_x - rd_x;
+    const T ub_y = rd_ub_y - rd_y;
     const T eb_x = d.c * p.eb_x - d.s * p.eb_y;
     const T eb_y = d.c * p.eb_y + d.s * p.eb_x;
     const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T rc_ua_x = ua_x + rc_x;
-    const T rc_ua_y = ua_y + rc_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
     C[0] = qa - p.offset + p.ratio * qb;
     J.eb_x = eb_x;
     J.ratio = p.ratio;
@@ -818,7 +780,7 @@ struct gear_prismatic_prismatic::b_immovable : gear_prismatic_prismatic {
     T ea_x, ea_y, ra_x_ea, rc_ua_x_ea, eb_x, ratio, eb_y, rd_ub_x_eb;
   };
 
-  // C and J: 35 +, 35 *
+  // C and J: 31 +, 35 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -828,26 +790,26 @@ struct gear_prismatic_prismatic::b_immovable : gear_prismatic_prismatic {
     const Pose<T>& d = q[3];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rc_ua_x = a.x - c.x + ra_x;
+    const T rc_ua_y = a.y - c.y + ra_y;
     const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
     const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-    const T ua_x = a.x - c.x + ra_x - rc_x;
-    const T ua_y = a.y - c.y + ra_y - rc_y;
+    const T ua_x = rc_ua_x - rc_x;
+    const T ua_y = rc_ua_y - rc_y;
     const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
     const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
     const T qa = ua_x * ea_x + ua_y * ea_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
+    const T ub_x = rd_ub_x - rd_x;
+    const T ub_y = rd_ub_y - rd_y;
     const T eb_x = d.c * p.eb_x - d.s * p.eb_y;
     const T eb_y = d.c * p.eb_y + d.s * p.eb_x;
     const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T rc_ua_x = ua_x + rc_x;
-    const T rc_ua_y = ua_y + rc_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
     C[0] = qa - p.offset + p.ratio * qb;
     J.ea_x = ea_x;
     J.ea_y = ea_y;
@@ -954,7 +916,7 @@ struct gear_prismatic_prismatic::c_immovable : gear_prismatic_prismatic {
     T ea_x, ea_y, ra_x_ea, eb_x, ratio, eb_y, rb_x_eb, rd_ub_x_eb;
   };
 
-  // C and J: 33 +, 35 *
+  // C and J: 31 +, 35 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -973,15 +935,15 @@ struct gear_prismatic_prismatic::c_immovable : gear_prismatic_prismatic {
     const T qa = ua_x * ea_x + ua_y * ea_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
+    const T ub_x = rd_ub_x - rd_x;
+    const T ub_y = rd_ub_y - rd_y;
     const T eb_x = d.c * p.eb_x - d.s * p.eb_y;
     const T eb_y = d.c * p.eb_y + d.s * p.eb_x;
     const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
     C[0] = qa - p.offset + p.ratio * qb;
     J.ea_x = ea_x;
     J.ea_y = ea_y;
@@ -1090,7 +1052,7 @@ struct gear_prismatic_prismatic::d_immovable : gear_prismatic_prismatic {
     T ea_x, ea_y, ra_x_ea, eb_x, ratio, eb_y, rb_x_eb, rc_ua_x_ea;
   };
 
-  // C and J: 33 +, 35 *
+  // C and J: 31 +, 35 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -1100,10 +1062,12 @@ struct gear_prismatic_prismatic::d_immovable : gear_prismatic_prismatic {
     const Pose<T>& d = q[3];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rc_ua_x = a.x - c.x + ra_x;
+    const T rc_ua_y = a.y - c.y + ra_y;
     const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
     const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-    const T ua_x = a.x - c.x + ra_x - rc_x;
-    const T ua_y = a.y - c.y + ra_y - rc_y;
+    const T ua_x = rc_ua_x - rc_x;
+    const T ua_y = rc_ua_y - rc_y;
     const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
     const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
     const T qa = ua_x * ea_x + ua_y * ea_y;
@@ -1116,8 +1080,6 @@ struct gear_prismatic_prismatic::d_immovable : gear_prismatic_prismatic {
     const T eb_x = d.c * p.eb_x - d.s * p.eb_y;
     const T eb_y = d.c * p.eb_y + d.s * p.eb_x;
     const T qb = ub_x * eb_x + ub_y * eb_y;
-    const T rc_ua_x = ua_x + rc_x;
-    const T rc_ua_y = ua_y + rc_y;
     C[0] = qa - p.offset + p.ratio * qb;
     J.ea_x = ea_x;
     J.ea_y = ea_y;
@@ -1225,7 +1187,7 @@ struct gear_prismatic_prismatic::slide::a_immovable : gear_prismatic_prismatic::
     T ea_x, ea_y, rc_ua_x_ea;
   };
 
-  // C and J: 16 +, 16 *
+  // C and J: 14 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -1233,14 +1195,14 @@ struct gear_prismatic_prismatic::slide::a_immovable : gear_prismatic_prismatic::
     const Pose<T>& c = q[2];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rc_ua_x = a.x - c.x + ra_x;
+    const T rc_ua_y = a.y - c.y + ra_y;
     const T rc_x = c.c * p.pc_x - c.s * p.pc_y;
     const T rc_y = c.c * p.pc_y + c.s * p.pc_x;
-    const T ua_x = a.x - c.x + ra_x - rc_x;
-    const T ua_y = a.y - c.y + ra_y - rc_y;
+    const T ua_x = rc_ua_x - rc_x;
+    const T ua_y = rc_ua_y - rc_y;
     const T ea_x = c.c * p.ea_x - c.s * p.ea_y;
     const T ea_y = c.c * p.ea_y + c.s * p.ea_x;
-    const T rc_ua_x = ua_x + rc_x;
-    const T rc_ua_y = ua_y + rc_y;
     C[0] = ua_x * ea_x + ua_y * ea_y;
     J.ea_x = ea_x;
     J.ea_y = ea_y;

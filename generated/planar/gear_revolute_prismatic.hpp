@@ -72,7 +72,7 @@ struct gear_revolute_prismatic {
     C[0] = qa - p.phi + p.ratio * qb;
   }
 
-  // C and J: 20 +, 19 *
+  // C and J: 18 +, 19 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -83,15 +83,15 @@ struct gear_revolute_prismatic {
     const T qa = a.angle - c.angle;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
+    const T ub_x = rd_ub_x - rd_x;
+    const T ub_y = rd_ub_y - rd_y;
     const T e_x = d.c * p.e_x - d.s * p.e_y;
     const T e_y = d.c * p.e_y + d.s * p.e_x;
     const T qb = ub_x * e_x + ub_y * e_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
     C[0] = qa - p.phi + p.ratio * qb;
     J.e_x = e_x;
     J.ratio = p.ratio;
@@ -200,7 +200,7 @@ struct gear_revolute_prismatic {
     D[0][11] = -md.I * J.ratio * J.rd_ub_x_e;
   }
 
-  // -Jdot v - d/dt(dC/dt): 26 +, 32 *
+  // -Jdot v - d/dt(dC/dt): 18 +, 23 *
   template <class T>
   static void gamma(const Pose<T> (&q)[4], const Velocity<T> (&v)[4], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -208,25 +208,16 @@ struct gear_revolute_prismatic {
     const Velocity<T>& vb = v[1];
     const Pose<T>& d = q[3];
     const Velocity<T>& vd = v[3];
-    const T e_x = d.c * p.e_x - d.s * p.e_y;
-    const T e_y = d.c * p.e_y + d.s * p.e_x;
-    const T g1_1 = vb.w * vb.w;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T g1_2 = vd.w * vd.w;
-    const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
-    const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_dot_dot_x = g1_2 * rd_x - g1_1 * rb_x;
-    const T ub_dot_dot_y = g1_2 * rd_y - g1_1 * rb_y;
-    const T dot_ub_dot_dot_e = e_x * ub_dot_dot_x + e_y * ub_dot_dot_y;
-    const T ub_dot_x = vb.x - vd.x - vb.w * rb_y + vd.w * rd_y;
-    const T ub_dot_y = vb.y - vd.y + vb.w * rb_x - vd.w * rd_x;
-    const T ub_dot_x_e = ub_dot_x * e_y - ub_dot_y * e_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
-    const T qb = ub_x * e_x + ub_y * e_y;
-    const T qb_dot_dot = dot_ub_dot_dot_e - vd.w * (T(2) * ub_dot_x_e + vd.w * qb);
-    g[0] = -p.ratio * qb_dot_dot;
+    const T e_x = d.c * p.e_x - d.s * p.e_y;
+    const T e_y = d.c * p.e_y + d.s * p.e_x;
+    const T dot_rb_e = rb_x * e_x + rb_y * e_y;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
+    const T dot_rd_ub_e = rd_ub_x * e_x + rd_ub_y * e_y;
+    g[0] = p.ratio * (vd.w * (vd.w * dot_rd_ub_e - e_x * (T(2) * (vb.y - vd.y) + vb.w * rb_x) +
+        e_y * (T(2) * (vb.x - vd.x) - vb.w * rb_y)) - vb.w * dot_rb_e * (vd.w - vb.w));
   }
 
   // dC/dt at fixed q: nothing
@@ -235,7 +226,7 @@ struct gear_revolute_prismatic {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 20 +, 21 *
+  // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 17 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[4], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[12][12]) {
@@ -253,12 +244,8 @@ struct gear_revolute_prismatic {
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
     const T dot_rb_e = rb_x * e_x + rb_y * e_y;
     const T H6_1 = H4_1 * dot_rb_e;
-    const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
-    const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
     const T dot_rd_ub_e = rd_ub_x * e_x + rd_ub_y * e_y;
     H[3][11] = -H4_2;
     H[4][11] = H5_1;
@@ -419,7 +406,7 @@ struct gear_revolute_prismatic::b_immovable : gear_revolute_prismatic {
     T e_x, ratio, e_y, rd_ub_x_e;
   };
 
-  // C and J: 19 +, 17 *
+  // C and J: 17 +, 17 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[4], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -430,15 +417,15 @@ struct gear_revolute_prismatic::b_immovable : gear_revolute_prismatic {
     const T qa = a.angle - c.angle;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
+    const T rd_ub_x = b.x - d.x + rb_x;
+    const T rd_ub_y = b.y - d.y + rb_y;
     const T rd_x = d.c * p.pd_x - d.s * p.pd_y;
     const T rd_y = d.c * p.pd_y + d.s * p.pd_x;
-    const T ub_x = b.x - d.x + rb_x - rd_x;
-    const T ub_y = b.y - d.y + rb_y - rd_y;
+    const T ub_x = rd_ub_x - rd_x;
+    const T ub_y = rd_ub_y - rd_y;
     const T e_x = d.c * p.e_x - d.s * p.e_y;
     const T e_y = d.c * p.e_y + d.s * p.e_x;
     const T qb = ub_x * e_x + ub_y * e_y;
-    const T rd_ub_x = ub_x + rd_x;
-    const T rd_ub_y = ub_y + rd_y;
     C[0] = qa - p.phi + p.ratio * qb;
     J.e_x = e_x;
     J.ratio = p.ratio;

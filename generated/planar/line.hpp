@@ -63,7 +63,7 @@ struct line {
     C[0] = u_x * t_x + u_y * t_y;
   }
 
-  // C and J: 17 +, 18 *
+  // C and J: 15 +, 18 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -71,14 +71,14 @@ struct line {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     C[0] = u_x * t_x + u_y * t_y;
     J.t_x = t_x;
     J.t_y = t_y;
@@ -163,7 +163,7 @@ struct line {
     D[0][5] = -mb.I * J.rb_u_x_t;
   }
 
-  // -Jdot v - d/dt(dC/dt): 25 +, 31 *
+  // -Jdot v - d/dt(dC/dt): 18 +, 22 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -171,24 +171,16 @@ struct line {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T g1_1 = va.w * va.w;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T g1_2 = vb.w * vb.w;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_dot_x = g1_2 * rb_x - g1_1 * ra_x;
-    const T u_dot_dot_y = g1_2 * rb_y - g1_1 * ra_y;
-    const T dot_u_dot_dot_t = t_x * u_dot_dot_x + t_y * u_dot_dot_y;
-    const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
-    const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
-    const T u_dot_x_t = u_dot_x * t_y - u_dot_y * t_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T dot_u_t = u_x * t_x + u_y * t_y;
-    g[0] = vb.w * (T(2) * u_dot_x_t + vb.w * dot_u_t) - dot_u_dot_dot_t;
+    const T t_x = b.c * p.t_x - b.s * p.t_y;
+    const T t_y = b.c * p.t_y + b.s * p.t_x;
+    const T dot_ra_t = ra_x * t_x + ra_y * t_y;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
+    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
+    g[0] = vb.w * (vb.w * dot_rb_u_t - t_x * (T(2) * (va.y - vb.y) + va.w * ra_x) + t_y *
+        (T(2) * (va.x - vb.x) - va.w * ra_y)) - va.w * dot_ra_t * (vb.w - va.w);
   }
 
   // dC/dt at fixed q: nothing
@@ -197,7 +189,7 @@ struct line {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 20 +, 20 *
+  // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 16 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[6][6]) {
@@ -214,12 +206,8 @@ struct line {
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T dot_ra_t = ra_x * t_x + ra_y * t_y;
     const T H3_1 = lambda[0] * dot_ra_t;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
     H[0][5] = -H1_1;
     H[1][5] = H2_1;
@@ -303,7 +291,7 @@ struct line {
       C[0] = u_x * t_y - u_y * t_x;
     }
 
-    // C and J: 17 +, 18 *
+    // C and J: 15 +, 18 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -311,14 +299,14 @@ struct line {
       const Pose<T>& b = q[1];
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+      const T rb_u_x = a.x - b.x + ra_x;
+      const T rb_u_y = a.y - b.y + ra_y;
       const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
       const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_x = a.x - b.x + ra_x - rb_x;
-      const T u_y = a.y - b.y + ra_y - rb_y;
+      const T u_x = rb_u_x - rb_x;
+      const T u_y = rb_u_y - rb_y;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T rb_u_x = u_x + rb_x;
-      const T rb_u_y = u_y + rb_y;
       C[0] = u_x * t_y - u_y * t_x;
       J.t_y = t_y;
       J.t_x = t_x;
@@ -404,7 +392,7 @@ struct line {
       D[0][5] = mb.I * J.dot_rb_u_t;
     }
 
-    // -Jdot v - d/dt(dC/dt): 25 +, 31 *
+    // -Jdot v - d/dt(dC/dt): 18 +, 22 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -412,26 +400,17 @@ struct line {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T g1_1 = va.w * va.w;
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-      const T g1_2 = vb.w * vb.w;
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_dot_dot_x = g1_2 * rb_x;
-      const T u_dot_dot_x_2 = u_dot_dot_x - g1_1 * ra_x;
-      const T u_dot_dot_y = g1_2 * rb_y;
-      const T u_dot_dot_y_2 = u_dot_dot_y - g1_1 * ra_y;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T u_dot_dot_x_t = u_dot_dot_x_2 * t_y - u_dot_dot_y_2 * t_x;
-      const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
-      const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
-      const T dot_u_dot_t = u_dot_x * t_x + u_dot_y * t_y;
-      const T u_x = a.x - b.x + ra_x - rb_x;
-      const T u_y = a.y - b.y + ra_y - rb_y;
-      const T u_x_t = u_x * t_y - u_y * t_x;
-      g[0] = vb.w * (vb.w * u_x_t - T(2) * dot_u_dot_t) - u_dot_dot_x_t;
+      const T ra_x_t = ra_x * t_y - ra_y * t_x;
+      const T rb_u_x = a.x - b.x + ra_x;
+      const T rb_u_y = a.y - b.y + ra_y;
+      const T rb_u_x_t = rb_u_x * t_y - rb_u_y * t_x;
+      g[0] = va.w * ra_x_t * (va.w - vb.w) + vb.w *
+          (vb.w * rb_u_x_t - t_y * (T(2) * (va.y - vb.y) + va.w * ra_x) + t_x *
+          (va.w * ra_y - T(2) * (va.x - vb.x)));
     }
 
     // dC/dt at fixed q: nothing
@@ -440,7 +419,7 @@ struct line {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, angle of each body: 20 +, 20 *
+    // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 16 *
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[6][6]) {
@@ -457,12 +436,8 @@ struct line {
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
       const T ra_x_t = ra_x * t_y - ra_y * t_x;
       const T H3_1 = lambda[0] * ra_x_t;
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_x = a.x - b.x + ra_x - rb_x;
-      const T u_y = a.y - b.y + ra_y - rb_y;
-      const T rb_u_x = u_x + rb_x;
-      const T rb_u_y = u_y + rb_y;
+      const T rb_u_x = a.x - b.x + ra_x;
+      const T rb_u_y = a.y - b.y + ra_y;
       const T rb_u_x_t = rb_u_x * t_y - rb_u_y * t_x;
       H[0][5] = H1_1;
       H[1][5] = H2_1;
@@ -499,7 +474,7 @@ struct line::a_immovable : line {
     T t_x, t_y, rb_u_x_t;
   };
 
-  // C and J: 16 +, 16 *
+  // C and J: 14 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -507,14 +482,14 @@ struct line::a_immovable : line {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     C[0] = u_x * t_x + u_y * t_y;
     J.t_x = t_x;
     J.t_y = t_y;
@@ -661,7 +636,7 @@ struct line::slide::a_immovable : line::slide {
     T t_y, t_x, dot_rb_u_t;
   };
 
-  // C and J: 16 +, 16 *
+  // C and J: 14 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -669,14 +644,14 @@ struct line::slide::a_immovable : line::slide {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     C[0] = u_x * t_y - u_y * t_x;
     J.t_y = t_y;
     J.t_x = t_x;

@@ -70,7 +70,7 @@ struct prismatic {
     C[1] = a.angle - b.angle - p.phi;
   }
 
-  // C and J: 19 +, 18 *
+  // C and J: 17 +, 18 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[2],
       Jacobian<T>& J) {
@@ -78,14 +78,14 @@ struct prismatic {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     C[0] = u_x * t_x + u_y * t_y;
     C[1] = a.angle - b.angle - p.phi;
     J.t_x = t_x;
@@ -188,7 +188,7 @@ struct prismatic {
     D[1][5] = -mb.I;
   }
 
-  // -Jdot v - d/dt(dC/dt): 25 +, 31 *
+  // -Jdot v - d/dt(dC/dt): 18 +, 22 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[2]) {
@@ -196,24 +196,16 @@ struct prismatic {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
-    const T t_x = b.c * p.t_x - b.s * p.t_y;
-    const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T g1_1 = va.w * va.w;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T g1_2 = vb.w * vb.w;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_dot_x = g1_2 * rb_x - g1_1 * ra_x;
-    const T u_dot_dot_y = g1_2 * rb_y - g1_1 * ra_y;
-    const T dot_u_dot_dot_t = t_x * u_dot_dot_x + t_y * u_dot_dot_y;
-    const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
-    const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
-    const T u_dot_x_t = u_dot_x * t_y - u_dot_y * t_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T dot_u_t = u_x * t_x + u_y * t_y;
-    g[0] = vb.w * (T(2) * u_dot_x_t + vb.w * dot_u_t) - dot_u_dot_dot_t;
+    const T t_x = b.c * p.t_x - b.s * p.t_y;
+    const T t_y = b.c * p.t_y + b.s * p.t_x;
+    const T dot_ra_t = ra_x * t_x + ra_y * t_y;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
+    const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
+    g[0] = vb.w * (vb.w * dot_rb_u_t - t_x * (T(2) * (va.y - vb.y) + va.w * ra_x) + t_y *
+        (T(2) * (va.x - vb.x) - va.w * ra_y)) - va.w * dot_ra_t * (vb.w - va.w);
     g[1] = T(0);
   }
 
@@ -224,7 +216,7 @@ struct prismatic {
     C_t[1] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 20 +, 20 *
+  // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 16 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[2],
       T (&H)[6][6]) {
@@ -241,12 +233,8 @@ struct prismatic {
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T dot_ra_t = ra_x * t_x + ra_y * t_y;
     const T H3_1 = lambda[0] * dot_ra_t;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T dot_rb_u_t = rb_u_x * t_x + rb_u_y * t_y;
     H[0][5] = -H1_1;
     H[1][5] = H2_1;
@@ -336,7 +324,7 @@ struct prismatic {
       C[0] = u_x * t_y - u_y * t_x;
     }
 
-    // C and J: 17 +, 18 *
+    // C and J: 15 +, 18 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
@@ -344,14 +332,14 @@ struct prismatic {
       const Pose<T>& b = q[1];
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+      const T rb_u_x = a.x - b.x + ra_x;
+      const T rb_u_y = a.y - b.y + ra_y;
       const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
       const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_x = a.x - b.x + ra_x - rb_x;
-      const T u_y = a.y - b.y + ra_y - rb_y;
+      const T u_x = rb_u_x - rb_x;
+      const T u_y = rb_u_y - rb_y;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T rb_u_x = u_x + rb_x;
-      const T rb_u_y = u_y + rb_y;
       C[0] = u_x * t_y - u_y * t_x;
       J.t_y = t_y;
       J.t_x = t_x;
@@ -437,7 +425,7 @@ struct prismatic {
       D[0][5] = mb.I * J.dot_rb_u_t;
     }
 
-    // -Jdot v - d/dt(dC/dt): 25 +, 31 *
+    // -Jdot v - d/dt(dC/dt): 18 +, 22 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -445,26 +433,17 @@ struct prismatic {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T g1_1 = va.w * va.w;
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-      const T g1_2 = vb.w * vb.w;
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_dot_dot_x = g1_2 * rb_x;
-      const T u_dot_dot_x_2 = u_dot_dot_x - g1_1 * ra_x;
-      const T u_dot_dot_y = g1_2 * rb_y;
-      const T u_dot_dot_y_2 = u_dot_dot_y - g1_1 * ra_y;
       const T t_x = b.c * p.t_x - b.s * p.t_y;
       const T t_y = b.c * p.t_y + b.s * p.t_x;
-      const T u_dot_dot_x_t = u_dot_dot_x_2 * t_y - u_dot_dot_y_2 * t_x;
-      const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
-      const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
-      const T dot_u_dot_t = u_dot_x * t_x + u_dot_y * t_y;
-      const T u_x = a.x - b.x + ra_x - rb_x;
-      const T u_y = a.y - b.y + ra_y - rb_y;
-      const T u_x_t = u_x * t_y - u_y * t_x;
-      g[0] = vb.w * (vb.w * u_x_t - T(2) * dot_u_dot_t) - u_dot_dot_x_t;
+      const T ra_x_t = ra_x * t_y - ra_y * t_x;
+      const T rb_u_x = a.x - b.x + ra_x;
+      const T rb_u_y = a.y - b.y + ra_y;
+      const T rb_u_x_t = rb_u_x * t_y - rb_u_y * t_x;
+      g[0] = va.w * ra_x_t * (va.w - vb.w) + vb.w *
+          (vb.w * rb_u_x_t - t_y * (T(2) * (va.y - vb.y) + va.w * ra_x) + t_x *
+          (va.w * ra_y - T(2) * (va.x - vb.x)));
     }
 
     // dC/dt at fixed q: nothing
@@ -473,7 +452,7 @@ struct prismatic {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, angle of each body: 20 +, 20 *
+    // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 16 *
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[6][6]) {
@@ -490,12 +469,8 @@ struct prismatic {
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
       const T ra_x_t = ra_x * t_y - ra_y * t_x;
       const T H3_1 = lambda[0] * ra_x_t;
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_x = a.x - b.x + ra_x - rb_x;
-      const T u_y = a.y - b.y + ra_y - rb_y;
-      const T rb_u_x = u_x + rb_x;
-      const T rb_u_y = u_y + rb_y;
+      const T rb_u_x = a.x - b.x + ra_x;
+      const T rb_u_y = a.y - b.y + ra_y;
       const T rb_u_x_t = rb_u_x * t_y - rb_u_y * t_x;
       H[0][5] = H1_1;
       H[1][5] = H2_1;
@@ -532,7 +507,7 @@ struct prismatic::a_immovable : prismatic {
     T t_x, t_y, rb_u_x_t;
   };
 
-  // C and J: 18 +, 16 *
+  // C and J: 16 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[2],
       Jacobian<T>& J) {
@@ -540,14 +515,14 @@ struct prismatic::a_immovable : prismatic {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     C[0] = u_x * t_x + u_y * t_y;
     C[1] = a.angle - b.angle - p.phi;
     J.t_x = t_x;
@@ -708,7 +683,7 @@ struct prismatic::slide::a_immovable : prismatic::slide {
     T t_y, t_x, dot_rb_u_t;
   };
 
-  // C and J: 16 +, 16 *
+  // C and J: 14 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
@@ -716,14 +691,14 @@ struct prismatic::slide::a_immovable : prismatic::slide {
     const Pose<T>& b = q[1];
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T t_x = b.c * p.t_x - b.s * p.t_y;
     const T t_y = b.c * p.t_y + b.s * p.t_x;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     C[0] = u_x * t_y - u_y * t_x;
     J.t_y = t_y;
     J.t_x = t_x;

@@ -74,23 +74,23 @@ struct rolling {
     C[1] = s - p.start + p.radius * q_2;
   }
 
-  // C and J: 20 +, 17 *
+  // C and J: 18 +, 17 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[2],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
+    const T rb_u_x = a.x - b.x;
+    const T rb_u_y = a.y - b.y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
     const T dot_u_n = u_x * n_x + u_y * n_y;
     const T s = u_x * n_y - u_y * n_x;
     const T q_2 = a.angle - b.angle;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
     C[0] = dot_u_n - p.radius;
     C[1] = s - p.start + p.radius * q_2;
@@ -205,7 +205,7 @@ struct rolling {
     D[1][5] = mb.I * J.wb_2;
   }
 
-  // -Jdot v - d/dt(dC/dt): 24 +, 28 *
+  // -Jdot v - d/dt(dC/dt): 16 +, 21 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[2]) {
@@ -213,23 +213,18 @@ struct rolling {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_dot_x = va.x - vb.x + vb.w * rb_y;
-    const T u_dot_y = va.y - vb.y - vb.w * rb_x;
+    const T g1_1 = va.x - vb.x;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T u_dot_x_n = u_dot_x * n_y - u_dot_y * n_x;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
-    const T dot_u_n = u_x * n_x + u_y * n_y;
-    const T s_dot = u_dot_x_n + vb.w * dot_u_n;
-    const T dot_rb_n = n_x * rb_x + n_y * rb_y;
-    const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y;
-    const T s = u_x * n_y - u_y * n_x;
-    const T rb_x_n = n_y * rb_x - n_x * rb_y;
-    g[0] = vb.w * (s_dot + u_dot_x_n - vb.w * dot_rb_n);
-    g[1] = -vb.w * (T(2) * dot_u_dot_n + vb.w * (rb_x_n - s));
+    const T g1_2 = va.y - vb.y;
+    const T rb_u_x = a.x - b.x;
+    const T rb_u_y = a.y - b.y;
+    const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
+    const T dot_v_a_n = va.x * n_x + va.y * n_y;
+    const T dot_v_b_n = vb.x * n_x + vb.y * n_y;
+    const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
+    g[0] = vb.w * (T(2) * (g1_1 * n_y - g1_2 * n_x) + vb.w * dot_rb_u_n);
+    g[1] = vb.w * (dot_v_b_n - dot_v_a_n + vb.w * rb_u_x_n - g1_1 * n_x - g1_2 * n_y);
   }
 
   // dC/dt at fixed q: nothing
@@ -239,7 +234,7 @@ struct rolling {
     C_t[1] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 18 +, 18 *
+  // d(J^T lambda)/dq: x, y, angle of each body: 12 +, 14 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[2],
       T (&H)[6][6]) {
@@ -252,12 +247,8 @@ struct rolling {
     const T n_y = b.c * p.n_y + b.s * p.n_x;
     const T H1_1 = lambda[1] * n_x - lambda[0] * n_y;
     const T H2_1 = lambda[0] * n_x + lambda[1] * n_y;
-    const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-    const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
+    const T rb_u_x = a.x - b.x;
+    const T rb_u_y = a.y - b.y;
     const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
     const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
     H[0][5] = H1_1;
@@ -338,20 +329,20 @@ struct rolling {
       C[0] = u_x * n_y - u_y * n_x;
     }
 
-    // C and J: 13 +, 12 *
+    // C and J: 11 +, 12 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
+      const T rb_u_x = a.x - b.x;
+      const T rb_u_y = a.y - b.y;
       const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
       const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_x = a.x - b.x - rb_x;
-      const T u_y = a.y - b.y - rb_y;
+      const T u_x = rb_u_x - rb_x;
+      const T u_y = rb_u_y - rb_y;
       const T n_x = b.c * p.n_x - b.s * p.n_y;
       const T n_y = b.c * p.n_y + b.s * p.n_x;
-      const T rb_u_x = u_x + rb_x;
-      const T rb_u_y = u_y + rb_y;
       C[0] = u_x * n_y - u_y * n_x;
       J.n_y = n_y;
       J.n_x = n_x;
@@ -433,7 +424,7 @@ struct rolling {
       D[0][5] = mb.I * J.dot_rb_u_n;
     }
 
-    // -Jdot v - d/dt(dC/dt): 18 +, 19 *
+    // -Jdot v - d/dt(dC/dt): 13 +, 14 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -441,18 +432,15 @@ struct rolling {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_dot_x = va.x - vb.x + vb.w * rb_y;
-      const T u_dot_y = va.y - vb.y - vb.w * rb_x;
       const T n_x = b.c * p.n_x - b.s * p.n_y;
       const T n_y = b.c * p.n_y + b.s * p.n_x;
-      const T dot_u_dot_n = u_dot_x * n_x + u_dot_y * n_y;
-      const T u_x = a.x - b.x - rb_x;
-      const T u_y = a.y - b.y - rb_y;
-      const T s = u_x * n_y - u_y * n_x;
-      const T rb_x_n = n_y * rb_x - n_x * rb_y;
-      g[0] = -vb.w * (T(2) * dot_u_dot_n + vb.w * (rb_x_n - s));
+      const T dot_v_a_n = va.x * n_x + va.y * n_y;
+      const T dot_v_b_n = vb.x * n_x + vb.y * n_y;
+      const T rb_u_x = a.x - b.x;
+      const T rb_u_y = a.y - b.y;
+      const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
+      g[0] = vb.w * (dot_v_b_n - dot_v_a_n + vb.w * rb_u_x_n - (va.x - vb.x) * n_x -
+          (va.y - vb.y) * n_y);
     }
 
     // dC/dt at fixed q: nothing
@@ -461,7 +449,7 @@ struct rolling {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 13 *
+    // d(J^T lambda)/dq: x, y, angle of each body: 8 +, 9 *
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[6][6]) {
@@ -474,12 +462,8 @@ struct rolling {
       const T n_y = b.c * p.n_y + b.s * p.n_x;
       const T H1_1 = lambda[0] * n_x;
       const T H2_1 = lambda[0] * n_y;
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_x = a.x - b.x - rb_x;
-      const T u_y = a.y - b.y - rb_y;
-      const T rb_u_x = u_x + rb_x;
-      const T rb_u_y = u_y + rb_y;
+      const T rb_u_x = a.x - b.x;
+      const T rb_u_y = a.y - b.y;
       const T rb_u_x_n = rb_u_x * n_y - rb_u_y * n_x;
       H[0][5] = H1_1;
       H[1][5] = H2_1;
@@ -513,23 +497,23 @@ struct rolling::a_immovable : rolling {
     T n_x, n_y, rb_u_x_n, e_y, wb_2;
   };
 
-  // C and J: 20 +, 17 *
+  // C and J: 18 +, 17 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[2],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
+    const T rb_u_x = a.x - b.x;
+    const T rb_u_y = a.y - b.y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
     const T dot_u_n = u_x * n_x + u_y * n_y;
     const T s = u_x * n_y - u_y * n_x;
     const T q_2 = a.angle - b.angle;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     const T dot_rb_u_n = rb_u_x * n_x + rb_u_y * n_y;
     C[0] = dot_u_n - p.radius;
     C[1] = s - p.start + p.radius * q_2;
@@ -714,20 +698,20 @@ struct rolling::slide::a_immovable : rolling::slide {
     T n_y, e_y, dot_rb_u_n;
   };
 
-  // C and J: 13 +, 12 *
+  // C and J: 11 +, 12 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
+    const T rb_u_x = a.x - b.x;
+    const T rb_u_y = a.y - b.y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x - rb_x;
-    const T u_y = a.y - b.y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T n_x = b.c * p.n_x - b.s * p.n_y;
     const T n_y = b.c * p.n_y + b.s * p.n_x;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     C[0] = u_x * n_y - u_y * n_x;
     J.n_y = n_y;
     J.e_y = -n_x;

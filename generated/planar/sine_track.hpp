@@ -235,7 +235,7 @@ struct sine_track {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 52 +, 66 *, 2 call
+  // d(J^T lambda)/dq: x, y, angle of each body: 50 +, 66 *, 2 call
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[6][6]) {
@@ -250,10 +250,12 @@ struct sine_track {
     const T f_x_y = b.c * p.f_y + b.s * p.f_x;
     const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
     const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T rb_u_x = a.x - b.x + ra_x;
+    const T rb_u_y = a.y - b.y + ra_y;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T u_x = a.x - b.x + ra_x - rb_x;
-    const T u_y = a.y - b.y + ra_y - rb_y;
+    const T u_x = rb_u_x - rb_x;
+    const T u_y = rb_u_y - rb_y;
     const T s_x = u_x * f_x_x + u_y * f_x_y;
     const T H1_1 = p.k * s_x;
     const T H1_2 = p.amplitude * p.k;
@@ -284,8 +286,6 @@ struct sine_track {
     const T H6_1 = H1_4 * H1_4_2 - lambda[0];
     const T H6_2 = H1_3_2 + H6_1 * f_x_x;
     const T H6_1_2 = H6_1 * f_x_y - H2_1_3;
-    const T rb_u_x = u_x + rb_x;
-    const T rb_u_y = u_y + rb_y;
     const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y;
     H[0][0] = H1_6;
     H[0][1] = H1_1_2;
@@ -470,7 +470,7 @@ struct sine_track {
       D[0][5] = mb.I * J.wb;
     }
 
-    // -Jdot v - d/dt(dC/dt): 25 +, 31 *
+    // -Jdot v - d/dt(dC/dt): 27 +, 28 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -478,26 +478,23 @@ struct sine_track {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T g1_1 = va.w * va.w;
       const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-      const T g1_2 = vb.w * vb.w;
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_dot_dot_x = g1_2 * rb_x;
-      const T u_dot_dot_x_2 = u_dot_dot_x - g1_1 * ra_x;
-      const T u_dot_dot_y = g1_2 * rb_y;
-      const T u_dot_dot_y_2 = u_dot_dot_y - g1_1 * ra_y;
       const T f_x_x = b.c * p.f_x - b.s * p.f_y;
       const T f_x_y = b.c * p.f_y + b.s * p.f_x;
-      const T dot_u_dot_dot_f_x = u_dot_dot_x_2 * f_x_x + u_dot_dot_y_2 * f_x_y;
-      const T u_dot_x = va.x - vb.x - va.w * ra_y + vb.w * rb_y;
-      const T u_dot_y = va.y - vb.y + va.w * ra_x - vb.w * rb_x;
+      const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y;
+      const T g1_1 = va.x - vb.x;
+      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
+      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
+      const T u_dot_x = g1_1 - va.w * ra_y + vb.w * rb_y;
+      const T g1_2 = va.y - vb.y;
+      const T u_dot_y = g1_2 + va.w * ra_x - vb.w * rb_x;
       const T u_dot_x_f_x = u_dot_x * f_x_y - u_dot_y * f_x_x;
       const T u_x = a.x - b.x + ra_x - rb_x;
       const T u_y = a.y - b.y + ra_y - rb_y;
       const T s_x = u_x * f_x_x + u_y * f_x_y;
-      g[0] = vb.w * (T(2) * u_dot_x_f_x + vb.w * s_x) - dot_u_dot_dot_f_x;
+      const T s_y_dot = -u_dot_x_f_x - vb.w * s_x;
+      g[0] = vb.w * (g1_1 * f_x_y - s_y_dot - g1_2 * f_x_x) - va.w * dot_ra_f_x * (vb.w - va.w);
     }
 
     // dC/dt at fixed q: nothing
@@ -506,7 +503,7 @@ struct sine_track {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, angle of each body: 20 +, 20 *
+    // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 16 *
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[6][6]) {
@@ -523,12 +520,8 @@ struct sine_track {
       const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
       const T dot_ra_f_x = ra_x * f_x_x + ra_y * f_x_y;
       const T H3_1 = lambda[0] * dot_ra_f_x;
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T u_x = a.x - b.x + ra_x - rb_x;
-      const T u_y = a.y - b.y + ra_y - rb_y;
-      const T rb_u_x = u_x + rb_x;
-      const T rb_u_y = u_y + rb_y;
+      const T rb_u_x = a.x - b.x + ra_x;
+      const T rb_u_y = a.y - b.y + ra_y;
       const T dot_rb_u_f_x = rb_u_x * f_x_x + rb_u_y * f_x_y;
       H[0][5] = -H1_1;
       H[1][5] = H2_1;

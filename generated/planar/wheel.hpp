@@ -67,22 +67,22 @@ struct wheel {
     C[0] = d_y * ax_x - d_x * ax_y;
   }
 
-  // C and J: 17 +, 18 *
+  // C and J: 15 +, 18 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
+    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
     C[0] = d_y * ax_x - d_x * ax_y;
     J.ax_y = ax_y;
     J.ax_x = ax_x;
@@ -168,7 +168,7 @@ struct wheel {
     D[0][5] = mb.I * J.dot_rb_ax;
   }
 
-  // -Jdot v - d/dt(dC/dt): 25 +, 31 *
+  // -Jdot v - d/dt(dC/dt): 18 +, 22 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -178,22 +178,14 @@ struct wheel {
     const Velocity<T>& vb = v[1];
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T g1_1 = va.w * va.w;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-    const T g1_2 = vb.w * vb.w;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_dot_dot_x = g1_1 * ra_x - g1_2 * rb_x;
-    const T d_dot_dot_y = g1_1 * ra_y - g1_2 * rb_y;
-    const T d_dot_dot_x_ax = ax_y * d_dot_dot_x - ax_x * d_dot_dot_y;
-    const T d_dot_x = vb.x - va.x + va.w * ra_y - vb.w * rb_y;
-    const T d_dot_y = vb.y - va.y - va.w * ra_x + vb.w * rb_x;
-    const T dot_d_dot_ax = d_dot_x * ax_x + d_dot_y * ax_y;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T d_x_ax = d_x * ax_y - d_y * ax_x;
-    g[0] = d_dot_dot_x_ax + va.w * (T(2) * dot_d_dot_ax - va.w * d_x_ax);
+    const T rb_x_ax = ax_y * rb_x - ax_x * rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_d_x_ax = ra_d_x * ax_y - ra_d_y * ax_x;
+    g[0] = va.w * (ax_y * (vb.w * rb_x - T(2) * (va.y - vb.y)) - va.w * ra_d_x_ax - ax_x *
+        (T(2) * (va.x - vb.x) + vb.w * rb_y)) - vb.w * rb_x_ax * (vb.w - va.w);
   }
 
   // dC/dt at fixed q: nothing
@@ -202,7 +194,7 @@ struct wheel {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, angle of each body: 19 +, 20 *
+  // d(J^T lambda)/dq: x, y, angle of each body: 13 +, 16 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[6][6]) {
@@ -215,14 +207,10 @@ struct wheel {
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
     const T H1_1 = lambda[0] * ax_x;
     const T H2_1 = lambda[0] * ax_y;
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T ra_d_x_ax = ra_d_x * ax_y - ra_d_y * ax_x;
     const T rb_x_ax = ax_y * rb_x - ax_x * rb_y;
     const T H3_1 = lambda[0] * rb_x_ax;
@@ -295,22 +283,22 @@ struct wheel {
       C[0] = d_x * ax_x + d_y * ax_y;
     }
 
-    // C and J: 17 +, 18 *
+    // C and J: 15 +, 18 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-      const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
       const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
       const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
+      const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
+      const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+      const T d_x = ra_d_x - ra_x;
+      const T d_y = ra_d_y - ra_y;
       const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
       const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-      const T ra_d_x = d_x + ra_x;
-      const T ra_d_y = d_y + ra_y;
       C[0] = d_x * ax_x + d_y * ax_y;
       J.ax_x = ax_x;
       J.ax_y = ax_y;
@@ -396,7 +384,7 @@ struct wheel {
       D[0][5] = mb.I * J.rb_x_ax;
     }
 
-    // -Jdot v - d/dt(dC/dt): 25 +, 31 *
+    // -Jdot v - d/dt(dC/dt): 18 +, 22 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -404,26 +392,16 @@ struct wheel {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T g1_1 = vb.w * vb.w;
-      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
-      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T g1_2 = va.w * va.w;
-      const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-      const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
-      const T d_dot_dot_x = g1_2 * ra_x;
-      const T d_dot_dot_x_2 = d_dot_dot_x - g1_1 * rb_x;
-      const T d_dot_dot_y = g1_2 * ra_y;
-      const T d_dot_dot_y_2 = d_dot_dot_y - g1_1 * rb_y;
       const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
       const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-      const T dot_d_dot_dot_ax = d_dot_dot_x_2 * ax_x + d_dot_dot_y_2 * ax_y;
-      const T d_dot_x = vb.x - va.x + va.w * ra_y - vb.w * rb_y;
-      const T d_dot_y = vb.y - va.y - va.w * ra_x + vb.w * rb_x;
-      const T d_dot_x_ax = d_dot_x * ax_y - d_dot_y * ax_x;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
-      const T dot_d_ax = d_x * ax_x + d_y * ax_y;
-      g[0] = va.w * (T(2) * d_dot_x_ax + va.w * dot_d_ax) - dot_d_dot_dot_ax;
+      const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
+      const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
+      const T dot_rb_ax = ax_x * rb_x + ax_y * rb_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
+      const T dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y;
+      g[0] = va.w * (va.w * dot_ra_d_ax + ax_x * (T(2) * (va.y - vb.y) - vb.w * rb_x) - ax_y *
+          (T(2) * (va.x - vb.x) + vb.w * rb_y)) - vb.w * dot_rb_ax * (va.w - vb.w);
     }
 
     // dC/dt at fixed q: nothing
@@ -432,7 +410,7 @@ struct wheel {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, angle of each body: 20 +, 20 *
+    // d(J^T lambda)/dq: x, y, angle of each body: 14 +, 16 *
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[6][6]) {
@@ -445,14 +423,10 @@ struct wheel {
       const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
       const T H1_1 = lambda[0] * ax_y;
       const T H2_1 = lambda[0] * ax_x;
-      const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-      const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
       const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
       const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
-      const T ra_d_x = d_x + ra_x;
-      const T ra_d_y = d_y + ra_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
       const T dot_ra_d_ax = ra_d_x * ax_x + ra_d_y * ax_y;
       const T dot_rb_ax = ax_x * rb_x + ax_y * rb_y;
       const T H3_1 = lambda[0] * dot_rb_ax;
@@ -690,22 +664,22 @@ struct wheel::b_immovable : wheel {
     T ax_y, ax_x, dot_ra_d_ax;
   };
 
-  // C and J: 16 +, 16 *
+  // C and J: 14 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
+    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
     C[0] = d_y * ax_x - d_x * ax_y;
     J.ax_y = ax_y;
     J.ax_x = ax_x;
@@ -852,22 +826,22 @@ struct wheel::slide::b_immovable : wheel::slide {
     T ax_x, ax_y, ra_d_x_ax;
   };
 
-  // C and J: 16 +, 16 *
+  // C and J: 14 +, 16 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
-    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
     const T rb_x = b.c * p.pb_x - b.s * p.pb_y;
     const T rb_y = b.c * p.pb_y + b.s * p.pb_x;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.c * p.pa_x - a.s * p.pa_y;
+    const T ra_y = a.c * p.pa_y + a.s * p.pa_x;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T ax_x = a.c * p.ax_x - a.s * p.ax_y;
     const T ax_y = a.c * p.ax_y + a.s * p.ax_x;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
     C[0] = d_x * ax_x + d_y * ax_y;
     J.ax_x = ax_x;
     J.ax_y = ax_y;

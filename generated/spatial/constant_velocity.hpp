@@ -587,7 +587,7 @@ struct constant_velocity {
     D[3][13] = T(2) * (J.wb_4_x * b.e2 - J.wb_4_y * b.e1 + J.wb_4_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 92 +, 146 *
+  // -Jdot v - d/dt(dC/dt): 89 +, 129 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[4]) {
@@ -618,55 +618,45 @@ struct constant_velocity {
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
     const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
     const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y * w_b_x_w_b_x_fb_z_y +
-        fa_y_z * w_b_x_w_b_x_fb_z_z;
+    const T w_b_x_fb_z_x_fa_y_x = fa_y_z * w_b_x_fb_z_y - fa_y_y * w_b_x_fb_z_z;
+    const T w_b_x_fb_z_x_fa_y_y = fa_y_x * w_b_x_fb_z_z - fa_y_z * w_b_x_fb_z_x;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
     const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
     const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
     const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-    const T dot_w_b_x_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_w_b_x_fb_y_x + fa_z_y * w_b_x_w_b_x_fb_y_y +
-        fa_z_z * w_b_x_w_b_x_fb_y_z;
+    const T w_b_x_fb_y_x_fa_z_x = fa_z_z * w_b_x_fb_y_y - fa_z_y * w_b_x_fb_y_z;
+    const T w_b_x_fb_y_x_fa_z_y = fa_z_x * w_b_x_fb_y_z - fa_z_z * w_b_x_fb_y_x;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_w_a_x_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_w_a_x_fa_z_x + fb_y_y * w_a_x_w_a_x_fa_z_y +
-        fb_y_z * w_a_x_w_a_x_fa_z_z;
+    const T w_a_x_fa_z_x_fb_y_x = fb_y_z * w_a_x_fa_z_y - fb_y_y * w_a_x_fa_z_z;
+    const T w_a_x_fa_z_x_fb_y_y = fb_y_x * w_a_x_fa_z_z - fb_y_z * w_a_x_fa_z_x;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y * w_a_x_w_a_x_fa_y_y +
-        fb_z_z * w_a_x_w_a_x_fa_y_z;
-    const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y * w_b_x_fb_z_y +
-        w_a_x_fa_y_x * w_b_x_fb_z_x;
-    const T dot_w_a_x_fa_z_w_b_x_fb_y = w_a_x_fa_z_z * w_b_x_fb_y_z + w_a_x_fa_z_y * w_b_x_fb_y_y +
-        w_a_x_fa_z_x * w_b_x_fb_y_x;
+    const T w_a_x_fa_y_x_fb_z_x = fb_z_z * w_a_x_fa_y_y - fb_z_y * w_a_x_fa_y_z;
+    const T w_a_x_fa_y_x_fb_z_y = fb_z_x * w_a_x_fa_y_z - fb_z_z * w_a_x_fa_y_x;
+    const T w_b_x_fb_z_x_fa_y_z = fa_y_y * w_b_x_fb_z_x - fa_y_x * w_b_x_fb_z_y;
+    const T w_b_x_fb_y_x_fa_z_z = fa_z_y * w_b_x_fb_y_x - fa_z_x * w_b_x_fb_y_y;
+    const T w_a_x_fa_z_x_fb_y_z = fb_y_y * w_a_x_fa_z_x - fb_y_x * w_a_x_fa_z_y;
+    const T w_a_x_fa_y_x_fb_z_z = fb_z_y * w_a_x_fa_y_x - fb_z_x * w_a_x_fa_y_y;
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    g[3] = dot_w_b_x_w_b_x_fb_z_fa_y - dot_w_b_x_w_b_x_fb_y_fa_z - dot_w_a_x_w_a_x_fa_z_fb_y +
-        dot_w_a_x_w_a_x_fa_y_fb_z + T(2) * dot_w_a_x_fa_y_w_b_x_fb_z - T(2) *
-        dot_w_a_x_fa_z_w_b_x_fb_y;
+    g[3] = (w_b_x_fb_z_x_fa_y_x - w_b_x_fb_y_x_fa_z_x + w_a_x_fa_z_x_fb_y_x -
+        w_a_x_fa_y_x_fb_z_x) * (vb.wx - va.wx) +
+        (w_b_x_fb_z_x_fa_y_y - w_b_x_fb_y_x_fa_z_y + w_a_x_fa_z_x_fb_y_y - w_a_x_fa_y_x_fb_z_y) *
+        (vb.wy - va.wy) + (w_b_x_fb_z_x_fa_y_z - w_b_x_fb_y_x_fa_z_z + w_a_x_fa_z_x_fb_y_z -
+        w_a_x_fa_y_x_fb_z_z) * (vb.wz - va.wz);
   }
 
   // dC/dt at fixed q: nothing

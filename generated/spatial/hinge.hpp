@@ -640,7 +640,7 @@ struct hinge {
     D[4][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 79 +, 125 *
+  // -Jdot v - d/dt(dC/dt): 81 +, 117 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[5]) {
@@ -666,52 +666,48 @@ struct hinge {
     const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
     const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
     const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
+    const T g4_1 = va.wx - vb.wx;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
     const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y * w_b_x_w_b_x_fb_x_y +
-        fa_y_z * w_b_x_w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_y_x = fa_y_z * w_b_x_fb_x_y - fa_y_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_y_y = fa_y_x * w_b_x_fb_x_z - fa_y_z * w_b_x_fb_x_x;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y * w_a_x_w_a_x_fa_y_y +
-        fb_x_z * w_a_x_w_a_x_fa_y_z;
-    const T dot_w_a_x_fa_y_w_b_x_fb_x = w_a_x_fa_y_z * w_b_x_fb_x_z + w_a_x_fa_y_y * w_b_x_fb_x_y +
-        w_a_x_fa_y_x * w_b_x_fb_x_x;
+    const T w_a_x_fa_y_x_fb_x_x = fb_x_z * w_a_x_fa_y_y - fb_x_y * w_a_x_fa_y_z;
+    const T w_a_x_fa_y_x_fb_x_y = fb_x_x * w_a_x_fa_y_z - fb_x_z * w_a_x_fa_y_x;
+    const T g4_2 = va.wy - vb.wy;
+    const T g4_3 = va.wz - vb.wz;
+    const T w_b_x_fb_x_x_fa_y_z = fa_y_y * w_b_x_fb_x_x - fa_y_x * w_b_x_fb_x_y;
+    const T w_a_x_fa_y_x_fb_x_z = fb_x_y * w_a_x_fa_y_x - fb_x_x * w_a_x_fa_y_y;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y * w_b_x_w_b_x_fb_x_y +
-        fa_z_z * w_b_x_w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_z_x = fa_z_z * w_b_x_fb_x_y - fa_z_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_z_y = fa_z_x * w_b_x_fb_x_z - fa_z_z * w_b_x_fb_x_x;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y * w_a_x_w_a_x_fa_z_y +
-        fb_x_z * w_a_x_w_a_x_fa_z_z;
-    const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y * w_b_x_fb_x_y +
-        w_a_x_fa_z_x * w_b_x_fb_x_x;
+    const T w_a_x_fa_z_x_fb_x_x = fb_x_z * w_a_x_fa_z_y - fb_x_y * w_a_x_fa_z_z;
+    const T w_a_x_fa_z_x_fb_x_y = fb_x_x * w_a_x_fa_z_z - fb_x_z * w_a_x_fa_z_x;
+    const T w_b_x_fb_x_x_fa_z_z = fa_z_y * w_b_x_fb_x_x - fa_z_x * w_b_x_fb_x_y;
+    const T w_a_x_fa_z_x_fb_x_z = fb_x_y * w_a_x_fa_z_x - fb_x_x * w_a_x_fa_z_y;
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    g[3] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_y -
-        dot_w_a_x_w_a_x_fa_y_fb_x;
-    g[4] = T(-2) * dot_w_a_x_fa_z_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_z -
-        dot_w_a_x_w_a_x_fa_z_fb_x;
+    g[3] = -g4_1 * (w_a_x_fa_y_x_fb_x_x - w_b_x_fb_x_x_fa_y_x) - g4_2 *
+        (w_a_x_fa_y_x_fb_x_y - w_b_x_fb_x_x_fa_y_y) - g4_3 *
+        (w_a_x_fa_y_x_fb_x_z - w_b_x_fb_x_x_fa_y_z);
+    g[4] = -g4_1 * (w_a_x_fa_z_x_fb_x_x - w_b_x_fb_x_x_fa_z_x) - g4_2 *
+        (w_a_x_fa_z_x_fb_x_y - w_b_x_fb_x_x_fa_z_y) - g4_3 *
+        (w_a_x_fa_z_x_fb_x_z - w_b_x_fb_x_x_fa_z_z);
   }
 
   // dC/dt at fixed q: nothing

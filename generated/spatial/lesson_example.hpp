@@ -886,7 +886,7 @@ struct lesson_example {
     D[6][20] = T(-2) * (D6_1_7 + D5_1_6);
   }
 
-  // -Jdot v - d/dt(dC/dt): 86 +, 136 *
+  // -Jdot v - d/dt(dC/dt): 87 +, 129 *
   template <class T>
   static void gamma(const Pose<T> (&q)[3], const Velocity<T> (&v)[3], const Parameters<T>& p, T,
       T (&g)[7]) {
@@ -919,25 +919,19 @@ struct lesson_example {
     const T nb_x = b.xx * p.nb_x + b.xy * p.nb_y + b.xz * p.nb_z;
     const T nb_y = b.yx * p.nb_x + b.yy * p.nb_y + b.yz * p.nb_z;
     const T w_b_x_nb_z = vb.wx * nb_y - vb.wy * nb_x;
+    const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
     const T nb_z = b.zx * p.nb_x + b.zy * p.nb_y + b.zz * p.nb_z;
     const T w_b_x_nb_x = vb.wy * nb_z - vb.wz * nb_y;
     const T w_b_x_nb_y = vb.wz * nb_x - vb.wx * nb_z;
-    const T w_b_x_w_b_x_nb_x = vb.wy * w_b_x_nb_z - vb.wz * w_b_x_nb_y;
-    const T w_b_x_w_b_x_nb_y = vb.wz * w_b_x_nb_x - vb.wx * w_b_x_nb_z;
-    const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
-    const T w_b_x_w_b_x_nb_z = vb.wx * w_b_x_nb_y - vb.wy * w_b_x_nb_x;
-    const T dot_w_b_x_w_b_x_nb_na = na_x * w_b_x_w_b_x_nb_x + na_y * w_b_x_w_b_x_nb_y + na_z *
-        w_b_x_w_b_x_nb_z;
+    const T w_b_x_nb_x_na_x = na_z * w_b_x_nb_y - na_y * w_b_x_nb_z;
+    const T w_b_x_nb_x_na_y = na_x * w_b_x_nb_z - na_z * w_b_x_nb_x;
     const T w_a_x_na_z = va.wx * na_y - va.wy * na_x;
     const T w_a_x_na_x = va.wy * na_z - va.wz * na_y;
     const T w_a_x_na_y = va.wz * na_x - va.wx * na_z;
-    const T w_a_x_w_a_x_na_x = va.wy * w_a_x_na_z - va.wz * w_a_x_na_y;
-    const T w_a_x_w_a_x_na_y = va.wz * w_a_x_na_x - va.wx * w_a_x_na_z;
-    const T w_a_x_w_a_x_na_z = va.wx * w_a_x_na_y - va.wy * w_a_x_na_x;
-    const T dot_w_a_x_w_a_x_na_nb = nb_x * w_a_x_w_a_x_na_x + nb_y * w_a_x_w_a_x_na_y + nb_z *
-        w_a_x_w_a_x_na_z;
-    const T dot_w_a_x_na_w_b_x_nb = w_a_x_na_z * w_b_x_nb_z + w_a_x_na_y * w_b_x_nb_y +
-        w_a_x_na_x * w_b_x_nb_x;
+    const T w_a_x_na_x_nb_x = nb_z * w_a_x_na_y - nb_y * w_a_x_na_z;
+    const T w_a_x_na_x_nb_y = nb_x * w_a_x_na_z - nb_z * w_a_x_na_x;
+    const T w_b_x_nb_x_na_z = na_y * w_b_x_nb_x - na_x * w_b_x_nb_y;
+    const T w_a_x_na_x_nb_z = nb_y * w_a_x_na_x - nb_x * w_a_x_na_y;
     const T q_ra_x = b.xx * p.q_pa_x + b.xy * p.q_pa_y + b.xz * p.q_pa_z;
     const T q_ra_y = b.yx * p.q_pa_x + b.yy * p.q_pa_y + b.yz * p.q_pa_z;
     const T q_ra_x_w_b_z = vb.wy * q_ra_x - vb.wx * q_ra_y;
@@ -959,7 +953,8 @@ struct lesson_example {
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    g[3] = T(-2) * dot_w_a_x_na_w_b_x_nb - dot_w_b_x_w_b_x_nb_na - dot_w_a_x_w_a_x_na_nb;
+    g[3] = -(va.wx - vb.wx) * (w_a_x_na_x_nb_x - w_b_x_nb_x_na_x) - (va.wy - vb.wy) *
+        (w_a_x_na_x_nb_y - w_b_x_nb_x_na_y) - (va.wz - vb.wz) * (w_a_x_na_x_nb_z - w_b_x_nb_x_na_z);
     g[4] = w_b_x_q_ra_x_w_b_x - w_c_x_q_rb_x_w_c_x;
     g[5] = w_b_x_q_ra_x_w_b_y - w_c_x_q_rb_x_w_c_y;
     g[6] = w_b_x_q_ra_x_w_b_z - w_c_x_q_rb_x_w_c_z;

@@ -236,7 +236,7 @@ struct n1 {
     D[0][13] = T(2) * (J.na_x_nb_y * b.e1 - J.na_x_nb_x * b.e2 - J.na_x_nb_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 32 +, 52 *
+  // -Jdot v - d/dt(dC/dt): 33 +, 45 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -249,26 +249,21 @@ struct n1 {
     const T nb_x = b.xx * p.nb_x + b.xy * p.nb_y + b.xz * p.nb_z;
     const T nb_y = b.yx * p.nb_x + b.yy * p.nb_y + b.yz * p.nb_z;
     const T w_b_x_nb_z = vb.wx * nb_y - vb.wy * nb_x;
+    const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
     const T nb_z = b.zx * p.nb_x + b.zy * p.nb_y + b.zz * p.nb_z;
     const T w_b_x_nb_x = vb.wy * nb_z - vb.wz * nb_y;
     const T w_b_x_nb_y = vb.wz * nb_x - vb.wx * nb_z;
-    const T w_b_x_w_b_x_nb_x = vb.wy * w_b_x_nb_z - vb.wz * w_b_x_nb_y;
-    const T w_b_x_w_b_x_nb_y = vb.wz * w_b_x_nb_x - vb.wx * w_b_x_nb_z;
-    const T na_z = a.zx * p.na_x + a.zy * p.na_y + a.zz * p.na_z;
-    const T w_b_x_w_b_x_nb_z = vb.wx * w_b_x_nb_y - vb.wy * w_b_x_nb_x;
-    const T dot_w_b_x_w_b_x_nb_na = na_x * w_b_x_w_b_x_nb_x + na_y * w_b_x_w_b_x_nb_y + na_z *
-        w_b_x_w_b_x_nb_z;
+    const T w_b_x_nb_x_na_x = na_z * w_b_x_nb_y - na_y * w_b_x_nb_z;
+    const T w_b_x_nb_x_na_y = na_x * w_b_x_nb_z - na_z * w_b_x_nb_x;
     const T w_a_x_na_z = va.wx * na_y - va.wy * na_x;
     const T w_a_x_na_x = va.wy * na_z - va.wz * na_y;
     const T w_a_x_na_y = va.wz * na_x - va.wx * na_z;
-    const T w_a_x_w_a_x_na_x = va.wy * w_a_x_na_z - va.wz * w_a_x_na_y;
-    const T w_a_x_w_a_x_na_y = va.wz * w_a_x_na_x - va.wx * w_a_x_na_z;
-    const T w_a_x_w_a_x_na_z = va.wx * w_a_x_na_y - va.wy * w_a_x_na_x;
-    const T dot_w_a_x_w_a_x_na_nb = nb_x * w_a_x_w_a_x_na_x + nb_y * w_a_x_w_a_x_na_y + nb_z *
-        w_a_x_w_a_x_na_z;
-    const T dot_w_a_x_na_w_b_x_nb = w_a_x_na_z * w_b_x_nb_z + w_a_x_na_y * w_b_x_nb_y +
-        w_a_x_na_x * w_b_x_nb_x;
-    g[0] = T(-2) * dot_w_a_x_na_w_b_x_nb - dot_w_b_x_w_b_x_nb_na - dot_w_a_x_w_a_x_na_nb;
+    const T w_a_x_na_x_nb_x = nb_z * w_a_x_na_y - nb_y * w_a_x_na_z;
+    const T w_a_x_na_x_nb_y = nb_x * w_a_x_na_z - nb_z * w_a_x_na_x;
+    const T w_b_x_nb_x_na_z = na_y * w_b_x_nb_x - na_x * w_b_x_nb_y;
+    const T w_a_x_na_x_nb_z = nb_y * w_a_x_na_x - nb_x * w_a_x_na_y;
+    g[0] = -(va.wx - vb.wx) * (w_a_x_na_x_nb_x - w_b_x_nb_x_na_x) - (va.wy - vb.wy) *
+        (w_a_x_na_x_nb_y - w_b_x_nb_x_na_y) - (va.wz - vb.wz) * (w_a_x_na_x_nb_z - w_b_x_nb_x_na_z);
   }
 
   // dC/dt at fixed q: nothing

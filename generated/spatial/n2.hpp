@@ -65,27 +65,27 @@ struct n2 {
     C[0] = d_x * n_x + d_y * n_y + d_z * n_z;
   }
 
-  // C and J: 38 +, 42 *
+  // C and J: 35 +, 42 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T n_x = a.xx * p.n_x + a.xy * p.n_y + a.xz * p.n_z;
     const T n_y = a.yx * p.n_x + a.yy * p.n_y + a.yz * p.n_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T n_z = a.zx * p.n_x + a.zy * p.n_y + a.zz * p.n_z;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * n_x + d_y * n_y + d_z * n_z;
     J.n_x = n_x;
     J.n_y = n_y;
@@ -315,7 +315,7 @@ struct n2 {
     D[0][13] = T(2) * (J.rb_x_n_x * b.e2 - J.rb_x_n_y * b.e1 + J.rb_x_n_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 65 +, 73 *
+  // -Jdot v - d/dt(dC/dt): 56 +, 63 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[1]) {
@@ -323,47 +323,41 @@ struct n2 {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T n_x = a.xx * p.n_x + a.xy * p.n_y + a.xz * p.n_z;
     const T n_y = a.yx * p.n_x + a.yy * p.n_y + a.yz * p.n_z;
     const T w_a_x_n_z = va.wx * n_y - va.wy * n_x;
+    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
     const T n_z = a.zx * p.n_x + a.zy * p.n_y + a.zz * p.n_z;
     const T w_a_x_n_x = va.wy * n_z - va.wz * n_y;
     const T w_a_x_n_y = va.wz * n_x - va.wx * n_z;
-    const T w_a_x_w_a_x_n_x = va.wy * w_a_x_n_z - va.wz * w_a_x_n_y;
-    const T w_a_x_w_a_x_n_y = va.wz * w_a_x_n_x - va.wx * w_a_x_n_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T w_a_x_w_a_x_n_z = va.wx * w_a_x_n_y - va.wy * w_a_x_n_x;
-    const T dot_d_w_a_x_w_a_x_n = d_x * w_a_x_w_a_x_n_x + d_y * w_a_x_w_a_x_n_y + d_z *
-        w_a_x_w_a_x_n_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
+    const T ra_d_x_w_a_x_n_x = ra_d_y * w_a_x_n_z - ra_d_z * w_a_x_n_y;
+    const T ra_d_x_w_a_x_n_y = ra_d_z * w_a_x_n_x - ra_d_x * w_a_x_n_z;
+    const T g1_1 = va.y - vb.y;
     const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
     const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T d_dot_x = vb.x - va.x + ra_x_w_a_x - rb_x_w_b_x;
-    const T d_dot_y = vb.y - va.y + ra_x_w_a_y - rb_x_w_b_y;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
+    const T g1_2 = g1_1 + rb_x_w_b_y;
+    const T g1_3 = va.z - vb.z;
     const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T d_dot_z = vb.z - va.z + ra_x_w_a_z - rb_x_w_b_z;
-    const T dot_d_dot_w_a_x_n = d_dot_x * w_a_x_n_x + d_dot_y * w_a_x_n_y + d_dot_z * w_a_x_n_z;
-    const T w_a_x_ra_x_w_a_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    const T w_a_x_ra_x_w_a_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-    const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-    const T d_dot_dot_x = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
-    const T d_dot_dot_y = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
-    const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-    const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    const T dot_d_dot_dot_n = d_dot_dot_y * n_y + d_dot_dot_z * n_z + d_dot_dot_x * n_x;
-    g[0] = T(-2) * dot_d_dot_w_a_x_n - dot_d_w_a_x_w_a_x_n - dot_d_dot_dot_n;
+    const T g1_4 = g1_3 + rb_x_w_b_z;
+    const T g1_5 = va.x - vb.x;
+    const T g1_6 = g1_5 + rb_x_w_b_x;
+    const T ra_d_x_w_a_x_n_z = ra_d_x * w_a_x_n_y - ra_d_y * w_a_x_n_x;
+    const T rb_x_w_b_x_n_x = n_z * rb_x_w_b_y - n_y * rb_x_w_b_z;
+    const T rb_x_w_b_x_n_y = n_x * rb_x_w_b_z - n_z * rb_x_w_b_x;
+    const T rb_x_w_a_x_n_x = rb_y * w_a_x_n_z - rb_z * w_a_x_n_y;
+    const T rb_x_w_a_x_n_y = rb_z * w_a_x_n_x - rb_x * w_a_x_n_z;
+    const T rb_x_w_b_x_n_z = n_y * rb_x_w_b_x - n_x * rb_x_w_b_y;
+    const T rb_x_w_a_x_n_z = rb_x * w_a_x_n_y - rb_y * w_a_x_n_x;
+    g[0] = va.wx * (ra_d_x_w_a_x_n_x - g1_2 * n_z + g1_4 * n_y) + va.wy *
+        (ra_d_x_w_a_x_n_y + g1_6 * n_z - g1_4 * n_x) + va.wz *
+        (ra_d_x_w_a_x_n_z - g1_6 * n_y + g1_2 * n_x) - vb.wx * (rb_x_w_a_x_n_x - rb_x_w_b_x_n_x) -
+        vb.wy * (rb_x_w_a_x_n_y - rb_x_w_b_x_n_y) - vb.wz * (rb_x_w_a_x_n_z - rb_x_w_b_x_n_z) +
+        g1_5 * w_a_x_n_x + g1_1 * w_a_x_n_y + g1_3 * w_a_x_n_z;
   }
 
   // dC/dt at fixed q: nothing
@@ -372,7 +366,7 @@ struct n2 {
     C_t[0] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 51 +, 54 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 39 +, 45 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
       T (&H)[12][12]) {
@@ -387,19 +381,13 @@ struct n2 {
     const T n_y = a.yx * p.n_x + a.yy * p.n_y + a.yz * p.n_z;
     const T H1_1_2 = lambda[0] * n_y;
     const T H2_1 = lambda[0] * n_x;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T H4_1 = ra_d_y * n_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T ra_d_z = d_z + ra_z;
+    const T ra_d_z = b.z - a.z + rb_z;
     const T H4_2 = ra_d_z * n_z;
     const T H4_1_2 = n_y * rb_y;
     const T H4_2_2 = n_z * rb_z;
@@ -658,27 +646,27 @@ struct n2::b_immovable : n2 {
     T n_x, n_y, n_z, ra_d_x_n_x, ra_d_x_n_y, ra_d_x_n_z;
   };
 
-  // C and J: 35 +, 36 *
+  // C and J: 32 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T n_x = a.xx * p.n_x + a.xy * p.n_y + a.xz * p.n_z;
     const T n_y = a.yx * p.n_x + a.yy * p.n_y + a.yz * p.n_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T n_z = a.zx * p.n_x + a.zy * p.n_y + a.zz * p.n_z;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * n_x + d_y * n_y + d_z * n_z;
     J.n_x = n_x;
     J.n_y = n_y;

@@ -314,7 +314,7 @@ struct p1 {
     D[1][13] = T(2) * (J.fa_z_x_fb_x_y * b.e1 - J.fa_z_x_fb_x_x * b.e2 - J.fa_z_x_fb_x_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 52 +, 83 *
+  // -Jdot v - d/dt(dC/dt): 54 +, 75 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[2]) {
@@ -322,49 +322,45 @@ struct p1 {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
+    const T g1_1 = va.wx - vb.wx;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
     const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y * w_b_x_w_b_x_fb_x_y +
-        fa_y_z * w_b_x_w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_y_x = fa_y_z * w_b_x_fb_x_y - fa_y_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_y_y = fa_y_x * w_b_x_fb_x_z - fa_y_z * w_b_x_fb_x_x;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y * w_a_x_w_a_x_fa_y_y +
-        fb_x_z * w_a_x_w_a_x_fa_y_z;
-    const T dot_w_a_x_fa_y_w_b_x_fb_x = w_a_x_fa_y_z * w_b_x_fb_x_z + w_a_x_fa_y_y * w_b_x_fb_x_y +
-        w_a_x_fa_y_x * w_b_x_fb_x_x;
+    const T w_a_x_fa_y_x_fb_x_x = fb_x_z * w_a_x_fa_y_y - fb_x_y * w_a_x_fa_y_z;
+    const T w_a_x_fa_y_x_fb_x_y = fb_x_x * w_a_x_fa_y_z - fb_x_z * w_a_x_fa_y_x;
+    const T g1_2 = va.wy - vb.wy;
+    const T g1_3 = va.wz - vb.wz;
+    const T w_b_x_fb_x_x_fa_y_z = fa_y_y * w_b_x_fb_x_x - fa_y_x * w_b_x_fb_x_y;
+    const T w_a_x_fa_y_x_fb_x_z = fb_x_y * w_a_x_fa_y_x - fb_x_x * w_a_x_fa_y_y;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y * w_b_x_w_b_x_fb_x_y +
-        fa_z_z * w_b_x_w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_z_x = fa_z_z * w_b_x_fb_x_y - fa_z_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_z_y = fa_z_x * w_b_x_fb_x_z - fa_z_z * w_b_x_fb_x_x;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y * w_a_x_w_a_x_fa_z_y +
-        fb_x_z * w_a_x_w_a_x_fa_z_z;
-    const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y * w_b_x_fb_x_y +
-        w_a_x_fa_z_x * w_b_x_fb_x_x;
-    g[0] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_y -
-        dot_w_a_x_w_a_x_fa_y_fb_x;
-    g[1] = T(-2) * dot_w_a_x_fa_z_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_z -
-        dot_w_a_x_w_a_x_fa_z_fb_x;
+    const T w_a_x_fa_z_x_fb_x_x = fb_x_z * w_a_x_fa_z_y - fb_x_y * w_a_x_fa_z_z;
+    const T w_a_x_fa_z_x_fb_x_y = fb_x_x * w_a_x_fa_z_z - fb_x_z * w_a_x_fa_z_x;
+    const T w_b_x_fb_x_x_fa_z_z = fa_z_y * w_b_x_fb_x_x - fa_z_x * w_b_x_fb_x_y;
+    const T w_a_x_fa_z_x_fb_x_z = fb_x_y * w_a_x_fa_z_x - fb_x_x * w_a_x_fa_z_y;
+    g[0] = -g1_1 * (w_a_x_fa_y_x_fb_x_x - w_b_x_fb_x_x_fa_y_x) - g1_2 *
+        (w_a_x_fa_y_x_fb_x_y - w_b_x_fb_x_x_fa_y_y) - g1_3 *
+        (w_a_x_fa_y_x_fb_x_z - w_b_x_fb_x_x_fa_y_z);
+    g[1] = -g1_1 * (w_a_x_fa_z_x_fb_x_x - w_b_x_fb_x_x_fa_z_x) - g1_2 *
+        (w_a_x_fa_z_x_fb_x_y - w_b_x_fb_x_x_fa_z_y) - g1_3 *
+        (w_a_x_fa_z_x_fb_x_z - w_b_x_fb_x_x_fa_z_z);
   }
 
   // dC/dt at fixed q: nothing

@@ -116,7 +116,7 @@ struct planar_joint {
     C[2] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
   }
 
-  // C and J: 66 +, 87 *
+  // C and J: 63 +, 87 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -131,21 +131,21 @@ struct planar_joint {
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_z = d_z + ra_z;
     C[0] = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
     C[1] = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
     C[2] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
@@ -520,7 +520,7 @@ struct planar_joint {
     D[2][13] = T(2) * (J.rb_x_fa_x_x * b.e2 - J.rb_x_fa_x_y * b.e1 + J.rb_x_fa_x_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 117 +, 156 *
+  // -Jdot v - d/dt(dC/dt): 110 +, 138 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[3]) {
@@ -528,91 +528,81 @@ struct planar_joint {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
+    const T g1_1 = va.wx - vb.wx;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
     const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
     const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y * w_b_x_w_b_x_fb_x_y +
-        fa_y_z * w_b_x_w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_y_x = fa_y_z * w_b_x_fb_x_y - fa_y_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_y_y = fa_y_x * w_b_x_fb_x_z - fa_y_z * w_b_x_fb_x_x;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y * w_a_x_w_a_x_fa_y_y +
-        fb_x_z * w_a_x_w_a_x_fa_y_z;
-    const T dot_w_a_x_fa_y_w_b_x_fb_x = w_a_x_fa_y_z * w_b_x_fb_x_z + w_a_x_fa_y_y * w_b_x_fb_x_y +
-        w_a_x_fa_y_x * w_b_x_fb_x_x;
+    const T w_a_x_fa_y_x_fb_x_x = fb_x_z * w_a_x_fa_y_y - fb_x_y * w_a_x_fa_y_z;
+    const T w_a_x_fa_y_x_fb_x_y = fb_x_x * w_a_x_fa_y_z - fb_x_z * w_a_x_fa_y_x;
+    const T g1_2 = va.wy - vb.wy;
+    const T g1_3 = va.wz - vb.wz;
+    const T w_b_x_fb_x_x_fa_y_z = fa_y_y * w_b_x_fb_x_x - fa_y_x * w_b_x_fb_x_y;
+    const T w_a_x_fa_y_x_fb_x_z = fb_x_y * w_a_x_fa_y_x - fb_x_x * w_a_x_fa_y_y;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y * w_b_x_w_b_x_fb_x_y +
-        fa_z_z * w_b_x_w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_z_x = fa_z_z * w_b_x_fb_x_y - fa_z_y * w_b_x_fb_x_z;
+    const T w_b_x_fb_x_x_fa_z_y = fa_z_x * w_b_x_fb_x_z - fa_z_z * w_b_x_fb_x_x;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y * w_a_x_w_a_x_fa_z_y +
-        fb_x_z * w_a_x_w_a_x_fa_z_z;
-    const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y * w_b_x_fb_x_y +
-        w_a_x_fa_z_x * w_b_x_fb_x_x;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T w_a_x_fa_z_x_fb_x_x = fb_x_z * w_a_x_fa_z_y - fb_x_y * w_a_x_fa_z_z;
+    const T w_a_x_fa_z_x_fb_x_y = fb_x_x * w_a_x_fa_z_z - fb_x_z * w_a_x_fa_z_x;
+    const T w_b_x_fb_x_x_fa_z_z = fa_z_y * w_b_x_fb_x_x - fa_z_x * w_b_x_fb_x_y;
+    const T w_a_x_fa_z_x_fb_x_z = fb_x_y * w_a_x_fa_z_x - fb_x_x * w_a_x_fa_z_y;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
     const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T dot_d_w_a_x_w_a_x_fa_x = d_x * w_a_x_w_a_x_fa_x_x + d_y * w_a_x_w_a_x_fa_x_y + d_z *
-        w_a_x_w_a_x_fa_x_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
+    const T ra_d_x_w_a_x_fa_x_x = ra_d_y * w_a_x_fa_x_z - ra_d_z * w_a_x_fa_x_y;
+    const T ra_d_x_w_a_x_fa_x_y = ra_d_z * w_a_x_fa_x_x - ra_d_x * w_a_x_fa_x_z;
+    const T g3_1 = va.y - vb.y;
     const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
     const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T d_dot_x = vb.x - va.x + ra_x_w_a_x - rb_x_w_b_x;
-    const T d_dot_y = vb.y - va.y + ra_x_w_a_y - rb_x_w_b_y;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
+    const T g3_2 = g3_1 + rb_x_w_b_y;
+    const T g3_3 = va.z - vb.z;
     const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T d_dot_z = vb.z - va.z + ra_x_w_a_z - rb_x_w_b_z;
-    const T dot_d_dot_w_a_x_fa_x = d_dot_x * w_a_x_fa_x_x + d_dot_y * w_a_x_fa_x_y + d_dot_z *
-        w_a_x_fa_x_z;
-    const T w_a_x_ra_x_w_a_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    const T w_a_x_ra_x_w_a_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-    const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-    const T d_dot_dot_x = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
-    const T d_dot_dot_y = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
-    const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-    const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    const T dot_d_dot_dot_fa_x = d_dot_dot_y * fa_x_y + d_dot_dot_z * fa_x_z + d_dot_dot_x * fa_x_x;
-    g[0] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_y -
-        dot_w_a_x_w_a_x_fa_y_fb_x;
-    g[1] = T(-2) * dot_w_a_x_fa_z_w_b_x_fb_x - dot_w_b_x_w_b_x_fb_x_fa_z -
-        dot_w_a_x_w_a_x_fa_z_fb_x;
-    g[2] = T(-2) * dot_d_dot_w_a_x_fa_x - dot_d_w_a_x_w_a_x_fa_x - dot_d_dot_dot_fa_x;
+    const T g3_4 = g3_3 + rb_x_w_b_z;
+    const T g3_5 = va.x - vb.x;
+    const T g3_6 = g3_5 + rb_x_w_b_x;
+    const T ra_d_x_w_a_x_fa_x_z = ra_d_x * w_a_x_fa_x_y - ra_d_y * w_a_x_fa_x_x;
+    const T rb_x_w_b_x_fa_x_x = fa_x_z * rb_x_w_b_y - fa_x_y * rb_x_w_b_z;
+    const T rb_x_w_b_x_fa_x_y = fa_x_x * rb_x_w_b_z - fa_x_z * rb_x_w_b_x;
+    const T rb_x_w_a_x_fa_x_x = rb_y * w_a_x_fa_x_z - rb_z * w_a_x_fa_x_y;
+    const T rb_x_w_a_x_fa_x_y = rb_z * w_a_x_fa_x_x - rb_x * w_a_x_fa_x_z;
+    const T rb_x_w_b_x_fa_x_z = fa_x_y * rb_x_w_b_x - fa_x_x * rb_x_w_b_y;
+    const T rb_x_w_a_x_fa_x_z = rb_x * w_a_x_fa_x_y - rb_y * w_a_x_fa_x_x;
+    g[0] = -g1_1 * (w_a_x_fa_y_x_fb_x_x - w_b_x_fb_x_x_fa_y_x) - g1_2 *
+        (w_a_x_fa_y_x_fb_x_y - w_b_x_fb_x_x_fa_y_y) - g1_3 *
+        (w_a_x_fa_y_x_fb_x_z - w_b_x_fb_x_x_fa_y_z);
+    g[1] = -g1_1 * (w_a_x_fa_z_x_fb_x_x - w_b_x_fb_x_x_fa_z_x) - g1_2 *
+        (w_a_x_fa_z_x_fb_x_y - w_b_x_fb_x_x_fa_z_y) - g1_3 *
+        (w_a_x_fa_z_x_fb_x_z - w_b_x_fb_x_x_fa_z_z);
+    g[2] = va.wx * (ra_d_x_w_a_x_fa_x_x - g3_2 * fa_x_z + g3_4 * fa_x_y) + va.wy *
+        (ra_d_x_w_a_x_fa_x_y + g3_6 * fa_x_z - g3_4 * fa_x_x) + va.wz *
+        (ra_d_x_w_a_x_fa_x_z - g3_6 * fa_x_y + g3_2 * fa_x_x) - vb.wx *
+        (rb_x_w_a_x_fa_x_x - rb_x_w_b_x_fa_x_x) - vb.wy * (rb_x_w_a_x_fa_x_y - rb_x_w_b_x_fa_x_y) -
+        vb.wz * (rb_x_w_a_x_fa_x_z - rb_x_w_b_x_fa_x_z) + g3_5 * w_a_x_fa_x_x + g3_1 *
+        w_a_x_fa_x_y + g3_3 * w_a_x_fa_x_z;
   }
 
   // dC/dt at fixed q: nothing
@@ -623,7 +613,7 @@ struct planar_joint {
     C_t[2] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 105 +, 108 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 93 +, 99 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
       T (&H)[12][12]) {
@@ -652,19 +642,13 @@ struct planar_joint {
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T H4_4 = fa_z_z * fb_x_z;
     const T H4_5 = lambda[0] * (H4_1 + H4_2) + lambda[1] * (H4_3 + H4_4);
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T H4_6 = ra_d_y * fa_x_y;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T ra_d_z = d_z + ra_z;
+    const T ra_d_z = b.z - a.z + rb_z;
     const T H4_7 = ra_d_z * fa_x_z;
     const T H4_1_2 = lambda[0] * fa_y_x + lambda[1] * fa_z_x;
     const T H4_2_2 = fb_x_y * H4_1_2;
@@ -841,27 +825,27 @@ struct planar_joint {
       C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     }
 
-    // C and J: 38 +, 42 *
+    // C and J: 35 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-      const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
       const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
+      const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+      const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+      const T d_x = ra_d_x - ra_x;
+      const T d_y = ra_d_y - ra_y;
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-      const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-      const T d_z = b.z - a.z - ra_z + rb_z;
+      const T ra_d_z = b.z - a.z + rb_z;
+      const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+      const T d_z = ra_d_z - ra_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-      const T ra_d_x = d_x + ra_x;
-      const T ra_d_y = d_y + ra_y;
-      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
       J.fa_y_x = fa_y_x;
       J.fa_y_y = fa_y_y;
@@ -1094,7 +1078,7 @@ struct planar_joint {
       D[0][13] = T(2) * (J.rb_x_fa_y_x * b.e2 - J.rb_x_fa_y_y * b.e1 + J.rb_x_fa_y_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 56 +, 63 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1102,49 +1086,43 @@ struct planar_joint {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-      const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
       const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
       const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
       const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
+      const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
+      const T ra_d_z = b.z - a.z + rb_z;
       const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
       const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
       const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-      const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-      const T d_z = b.z - a.z - ra_z + rb_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_d_w_a_x_w_a_x_fa_y = d_x * w_a_x_w_a_x_fa_y_x + d_y * w_a_x_w_a_x_fa_y_y + d_z *
-          w_a_x_w_a_x_fa_y_z;
-      const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-      const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
+      const T ra_d_x_w_a_x_fa_y_x = ra_d_y * w_a_x_fa_y_z - ra_d_z * w_a_x_fa_y_y;
+      const T ra_d_x_w_a_x_fa_y_y = ra_d_z * w_a_x_fa_y_x - ra_d_x * w_a_x_fa_y_z;
+      const T g1_1 = va.y - vb.y;
       const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
       const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-      const T d_dot_x = vb.x - va.x + ra_x_w_a_x - rb_x_w_b_x;
-      const T d_dot_y = vb.y - va.y + ra_x_w_a_y - rb_x_w_b_y;
-      const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
+      const T g1_2 = g1_1 + rb_x_w_b_y;
+      const T g1_3 = va.z - vb.z;
       const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-      const T d_dot_z = vb.z - va.z + ra_x_w_a_z - rb_x_w_b_z;
-      const T dot_d_dot_w_a_x_fa_y = d_dot_x * w_a_x_fa_y_x + d_dot_y * w_a_x_fa_y_y + d_dot_z *
-          w_a_x_fa_y_z;
-      const T w_a_x_ra_x_w_a_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-      const T w_a_x_ra_x_w_a_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-      const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-      const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-      const T d_dot_dot_x = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
-      const T d_dot_dot_y = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
-      const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-      const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-      const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-      const T dot_d_dot_dot_fa_y = d_dot_dot_y * fa_y_y + d_dot_dot_z * fa_y_z + d_dot_dot_x *
-          fa_y_x;
-      g[0] = T(-2) * dot_d_dot_w_a_x_fa_y - dot_d_w_a_x_w_a_x_fa_y - dot_d_dot_dot_fa_y;
+      const T g1_4 = g1_3 + rb_x_w_b_z;
+      const T g1_5 = va.x - vb.x;
+      const T g1_6 = g1_5 + rb_x_w_b_x;
+      const T ra_d_x_w_a_x_fa_y_z = ra_d_x * w_a_x_fa_y_y - ra_d_y * w_a_x_fa_y_x;
+      const T rb_x_w_b_x_fa_y_x = fa_y_z * rb_x_w_b_y - fa_y_y * rb_x_w_b_z;
+      const T rb_x_w_b_x_fa_y_y = fa_y_x * rb_x_w_b_z - fa_y_z * rb_x_w_b_x;
+      const T rb_x_w_a_x_fa_y_x = rb_y * w_a_x_fa_y_z - rb_z * w_a_x_fa_y_y;
+      const T rb_x_w_a_x_fa_y_y = rb_z * w_a_x_fa_y_x - rb_x * w_a_x_fa_y_z;
+      const T rb_x_w_b_x_fa_y_z = fa_y_y * rb_x_w_b_x - fa_y_x * rb_x_w_b_y;
+      const T rb_x_w_a_x_fa_y_z = rb_x * w_a_x_fa_y_y - rb_y * w_a_x_fa_y_x;
+      g[0] = va.wx * (ra_d_x_w_a_x_fa_y_x - g1_2 * fa_y_z + g1_4 * fa_y_y) + va.wy *
+          (ra_d_x_w_a_x_fa_y_y + g1_6 * fa_y_z - g1_4 * fa_y_x) + va.wz *
+          (ra_d_x_w_a_x_fa_y_z - g1_6 * fa_y_y + g1_2 * fa_y_x) - vb.wx *
+          (rb_x_w_a_x_fa_y_x - rb_x_w_b_x_fa_y_x) - vb.wy *
+          (rb_x_w_a_x_fa_y_y - rb_x_w_b_x_fa_y_y) - vb.wz *
+          (rb_x_w_a_x_fa_y_z - rb_x_w_b_x_fa_y_z) + g1_5 * w_a_x_fa_y_x + g1_1 * w_a_x_fa_y_y +
+          g1_3 * w_a_x_fa_y_z;
     }
 
     // dC/dt at fixed q: nothing
@@ -1153,7 +1131,7 @@ struct planar_joint {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 51 +, 54 *
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 39 +, 45 *
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1168,19 +1146,13 @@ struct planar_joint {
       const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
       const T H1_1_2 = lambda[0] * fa_y_y;
       const T H2_1 = lambda[0] * fa_y_x;
-      const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-      const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
       const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
-      const T ra_d_x = d_x + ra_x;
-      const T ra_d_y = d_y + ra_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
       const T H4_1 = ra_d_y * fa_y_y;
-      const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-      const T d_z = b.z - a.z - ra_z + rb_z;
-      const T ra_d_z = d_z + ra_z;
+      const T ra_d_z = b.z - a.z + rb_z;
       const T H4_2 = ra_d_z * fa_y_z;
       const T H4_1_2 = fa_y_y * rb_y;
       const T H4_2_2 = fa_y_z * rb_z;
@@ -1298,27 +1270,27 @@ struct planar_joint {
       C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     }
 
-    // C and J: 38 +, 42 *
+    // C and J: 35 +, 42 *
     template <class T>
     static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
         Jacobian<T>& J) {
       const Pose<T>& a = q[0];
       const Pose<T>& b = q[1];
-      const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-      const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
       const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
+      const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+      const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+      const T d_x = ra_d_x - ra_x;
+      const T d_y = ra_d_y - ra_y;
       const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-      const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-      const T d_z = b.z - a.z - ra_z + rb_z;
+      const T ra_d_z = b.z - a.z + rb_z;
+      const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+      const T d_z = ra_d_z - ra_z;
       const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-      const T ra_d_x = d_x + ra_x;
-      const T ra_d_y = d_y + ra_y;
-      const T ra_d_z = d_z + ra_z;
       C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
       J.fa_z_x = fa_z_x;
       J.fa_z_y = fa_z_y;
@@ -1551,7 +1523,7 @@ struct planar_joint {
       D[0][13] = T(2) * (J.rb_x_fa_z_x * b.e2 - J.rb_x_fa_z_y * b.e1 + J.rb_x_fa_z_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 65 +, 73 *
+    // -Jdot v - d/dt(dC/dt): 56 +, 63 *
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -1559,49 +1531,43 @@ struct planar_joint {
       const Velocity<T>& va = v[0];
       const Pose<T>& b = q[1];
       const Velocity<T>& vb = v[1];
-      const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-      const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
       const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
       const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
       const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
+      const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
+      const T ra_d_z = b.z - a.z + rb_z;
       const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
       const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
       const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-      const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-      const T d_z = b.z - a.z - ra_z + rb_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_d_w_a_x_w_a_x_fa_z = d_x * w_a_x_w_a_x_fa_z_x + d_y * w_a_x_w_a_x_fa_z_y + d_z *
-          w_a_x_w_a_x_fa_z_z;
-      const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-      const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
+      const T ra_d_x_w_a_x_fa_z_x = ra_d_y * w_a_x_fa_z_z - ra_d_z * w_a_x_fa_z_y;
+      const T ra_d_x_w_a_x_fa_z_y = ra_d_z * w_a_x_fa_z_x - ra_d_x * w_a_x_fa_z_z;
+      const T g1_1 = va.y - vb.y;
       const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
       const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-      const T d_dot_x = vb.x - va.x + ra_x_w_a_x - rb_x_w_b_x;
-      const T d_dot_y = vb.y - va.y + ra_x_w_a_y - rb_x_w_b_y;
-      const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
+      const T g1_2 = g1_1 + rb_x_w_b_y;
+      const T g1_3 = va.z - vb.z;
       const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-      const T d_dot_z = vb.z - va.z + ra_x_w_a_z - rb_x_w_b_z;
-      const T dot_d_dot_w_a_x_fa_z = d_dot_x * w_a_x_fa_z_x + d_dot_y * w_a_x_fa_z_y + d_dot_z *
-          w_a_x_fa_z_z;
-      const T w_a_x_ra_x_w_a_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-      const T w_a_x_ra_x_w_a_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-      const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-      const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-      const T d_dot_dot_x = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
-      const T d_dot_dot_y = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
-      const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-      const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-      const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-      const T dot_d_dot_dot_fa_z = d_dot_dot_y * fa_z_y + d_dot_dot_z * fa_z_z + d_dot_dot_x *
-          fa_z_x;
-      g[0] = T(-2) * dot_d_dot_w_a_x_fa_z - dot_d_w_a_x_w_a_x_fa_z - dot_d_dot_dot_fa_z;
+      const T g1_4 = g1_3 + rb_x_w_b_z;
+      const T g1_5 = va.x - vb.x;
+      const T g1_6 = g1_5 + rb_x_w_b_x;
+      const T ra_d_x_w_a_x_fa_z_z = ra_d_x * w_a_x_fa_z_y - ra_d_y * w_a_x_fa_z_x;
+      const T rb_x_w_b_x_fa_z_x = fa_z_z * rb_x_w_b_y - fa_z_y * rb_x_w_b_z;
+      const T rb_x_w_b_x_fa_z_y = fa_z_x * rb_x_w_b_z - fa_z_z * rb_x_w_b_x;
+      const T rb_x_w_a_x_fa_z_x = rb_y * w_a_x_fa_z_z - rb_z * w_a_x_fa_z_y;
+      const T rb_x_w_a_x_fa_z_y = rb_z * w_a_x_fa_z_x - rb_x * w_a_x_fa_z_z;
+      const T rb_x_w_b_x_fa_z_z = fa_z_y * rb_x_w_b_x - fa_z_x * rb_x_w_b_y;
+      const T rb_x_w_a_x_fa_z_z = rb_x * w_a_x_fa_z_y - rb_y * w_a_x_fa_z_x;
+      g[0] = va.wx * (ra_d_x_w_a_x_fa_z_x - g1_2 * fa_z_z + g1_4 * fa_z_y) + va.wy *
+          (ra_d_x_w_a_x_fa_z_y + g1_6 * fa_z_z - g1_4 * fa_z_x) + va.wz *
+          (ra_d_x_w_a_x_fa_z_z - g1_6 * fa_z_y + g1_2 * fa_z_x) - vb.wx *
+          (rb_x_w_a_x_fa_z_x - rb_x_w_b_x_fa_z_x) - vb.wy *
+          (rb_x_w_a_x_fa_z_y - rb_x_w_b_x_fa_z_y) - vb.wz *
+          (rb_x_w_a_x_fa_z_z - rb_x_w_b_x_fa_z_z) + g1_5 * w_a_x_fa_z_x + g1_1 * w_a_x_fa_z_y +
+          g1_3 * w_a_x_fa_z_z;
     }
 
     // dC/dt at fixed q: nothing
@@ -1610,7 +1576,7 @@ struct planar_joint {
       C_t[0] = T(0);
     }
 
-    // d(J^T lambda)/dq: x, y, z and small turns of each body: 51 +, 54 *
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 39 +, 45 *
     template <class T>
     static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
         T (&H)[12][12]) {
@@ -1625,19 +1591,13 @@ struct planar_joint {
       const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
       const T H1_1_2 = lambda[0] * fa_z_y;
       const T H2_1 = lambda[0] * fa_z_x;
-      const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-      const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
       const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
       const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-      const T d_x = b.x - a.x - ra_x + rb_x;
-      const T d_y = b.y - a.y - ra_y + rb_y;
-      const T ra_d_x = d_x + ra_x;
-      const T ra_d_y = d_y + ra_y;
+      const T ra_d_x = b.x - a.x + rb_x;
+      const T ra_d_y = b.y - a.y + rb_y;
       const T H4_1 = ra_d_y * fa_z_y;
-      const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-      const T d_z = b.z - a.z - ra_z + rb_z;
-      const T ra_d_z = d_z + ra_z;
+      const T ra_d_z = b.z - a.z + rb_z;
       const T H4_2 = ra_d_z * fa_z_z;
       const T H4_1_2 = fa_z_y * rb_y;
       const T H4_2_2 = fa_z_z * rb_z;
@@ -2333,7 +2293,7 @@ struct planar_joint::b_immovable : planar_joint {
         fa_x_x, fa_x_y, fa_x_z, ra_d_x_fa_x_x, ra_d_x_fa_x_y, ra_d_x_fa_x_z;
   };
 
-  // C and J: 63 +, 81 *
+  // C and J: 60 +, 81 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[3],
       Jacobian<T>& J) {
@@ -2348,21 +2308,21 @@ struct planar_joint::b_immovable : planar_joint {
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_z = d_z + ra_z;
     C[0] = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
     C[1] = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
     C[2] = d_x * fa_x_x + d_y * fa_x_y + d_z * fa_x_z;
@@ -2695,27 +2655,27 @@ struct planar_joint::slide_y::b_immovable : planar_joint::slide_y {
     T fa_y_x, fa_y_y, fa_y_z, ra_d_x_fa_y_x, ra_d_x_fa_y_y, ra_d_x_fa_y_z;
   };
 
-  // C and J: 35 +, 36 *
+  // C and J: 32 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_y_x + d_y * fa_y_y + d_z * fa_y_z;
     J.fa_y_x = fa_y_x;
     J.fa_y_y = fa_y_y;
@@ -2989,27 +2949,27 @@ struct planar_joint::slide_z::b_immovable : planar_joint::slide_z {
     T fa_z_x, fa_z_y, fa_z_z, ra_d_x_fa_z_x, ra_d_x_fa_z_y, ra_d_x_fa_z_z;
   };
 
-  // C and J: 35 +, 36 *
+  // C and J: 32 +, 36 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_z = d_z + ra_z;
     C[0] = d_x * fa_z_x + d_y * fa_z_y + d_z * fa_z_z;
     J.fa_z_x = fa_z_x;
     J.fa_z_y = fa_z_y;

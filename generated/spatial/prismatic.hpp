@@ -125,23 +125,26 @@ struct prismatic {
     C[4] = T(0.5) * (fa_x_x_fb_x_z + fa_y_x_fb_y_z + fa_z_x_fb_z_z);
   }
 
-  // C and J: 112 +, 150 *
+  // C and J: 109 +, 150 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[5],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
@@ -185,9 +188,6 @@ struct prismatic {
     const T C5_5 = fa_z_x * fb_z_y;
     const T C5_6 = fa_z_y * fb_z_x;
     const T fa_z_x_fb_z_z = C5_5 - C5_6;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_z = d_z + ra_z;
     const T wa_3_x_1 = fa_z_y * fb_z_y + fa_x_y * fb_x_y + fa_y_y * fb_y_y;
     const T wa_3_x_2 = fa_z_z * fb_z_z + fa_x_z * fb_x_z + fa_y_z * fb_y_z;
     const T wa_3_x_3 = wa_3_x_1 + wa_3_x_2;
@@ -791,7 +791,7 @@ struct prismatic {
     D[4][13] = T(2) * (J.wb_5_x * b.e2 - J.wb_5_y * b.e1 + J.wb_5_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 184 +, 260 *
+  // -Jdot v - d/dt(dC/dt): 190 +, 243 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[5]) {
@@ -799,61 +799,51 @@ struct prismatic {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
+    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_d_w_a_x_w_a_x_fa_y = d_x * w_a_x_w_a_x_fa_y_x + d_y * w_a_x_w_a_x_fa_y_y + d_z *
-        w_a_x_w_a_x_fa_y_z;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
+    const T ra_d_x_w_a_x_fa_y_x = ra_d_y * w_a_x_fa_y_z - ra_d_z * w_a_x_fa_y_y;
+    const T ra_d_x_w_a_x_fa_y_y = ra_d_z * w_a_x_fa_y_x - ra_d_x * w_a_x_fa_y_z;
+    const T g1_1 = va.y - vb.y;
     const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
     const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-    const T d_dot_x = vb.x - va.x + ra_x_w_a_x - rb_x_w_b_x;
-    const T d_dot_y = vb.y - va.y + ra_x_w_a_y - rb_x_w_b_y;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
+    const T g1_2 = g1_1 + rb_x_w_b_y;
+    const T g1_3 = va.z - vb.z;
     const T rb_x_w_b_z = vb.wy * rb_x - vb.wx * rb_y;
-    const T d_dot_z = vb.z - va.z + ra_x_w_a_z - rb_x_w_b_z;
-    const T dot_d_dot_w_a_x_fa_y = d_dot_x * w_a_x_fa_y_x + d_dot_y * w_a_x_fa_y_y + d_dot_z *
-        w_a_x_fa_y_z;
-    const T w_a_x_ra_x_w_a_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    const T w_a_x_ra_x_w_a_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-    const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-    const T d_dot_dot_x = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
-    const T d_dot_dot_y = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
-    const T w_a_x_ra_x_w_a_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-    const T d_dot_dot_z = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    const T dot_d_dot_dot_fa_y = d_dot_dot_y * fa_y_y + d_dot_dot_z * fa_y_z + d_dot_dot_x * fa_y_x;
+    const T g1_4 = g1_3 + rb_x_w_b_z;
+    const T g1_5 = va.x - vb.x;
+    const T g1_6 = g1_5 + rb_x_w_b_x;
+    const T ra_d_x_w_a_x_fa_y_z = ra_d_x * w_a_x_fa_y_y - ra_d_y * w_a_x_fa_y_x;
+    const T rb_x_w_b_x_fa_y_x = fa_y_z * rb_x_w_b_y - fa_y_y * rb_x_w_b_z;
+    const T rb_x_w_b_x_fa_y_y = fa_y_x * rb_x_w_b_z - fa_y_z * rb_x_w_b_x;
+    const T rb_x_w_a_x_fa_y_x = rb_y * w_a_x_fa_y_z - rb_z * w_a_x_fa_y_y;
+    const T rb_x_w_a_x_fa_y_y = rb_z * w_a_x_fa_y_x - rb_x * w_a_x_fa_y_z;
+    const T rb_x_w_b_x_fa_y_z = fa_y_y * rb_x_w_b_x - fa_y_x * rb_x_w_b_y;
+    const T rb_x_w_a_x_fa_y_z = rb_x * w_a_x_fa_y_y - rb_y * w_a_x_fa_y_x;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-    const T dot_d_w_a_x_w_a_x_fa_z = d_x * w_a_x_w_a_x_fa_z_x + d_y * w_a_x_w_a_x_fa_z_y + d_z *
-        w_a_x_w_a_x_fa_z_z;
-    const T dot_d_dot_w_a_x_fa_z = d_dot_x * w_a_x_fa_z_x + d_dot_y * w_a_x_fa_z_y + d_dot_z *
-        w_a_x_fa_z_z;
-    const T dot_d_dot_dot_fa_z = d_dot_dot_y * fa_z_y + d_dot_dot_z * fa_z_z + d_dot_dot_x * fa_z_x;
+    const T ra_d_x_w_a_x_fa_z_x = ra_d_y * w_a_x_fa_z_z - ra_d_z * w_a_x_fa_z_y;
+    const T ra_d_x_w_a_x_fa_z_y = ra_d_z * w_a_x_fa_z_x - ra_d_x * w_a_x_fa_z_z;
+    const T ra_d_x_w_a_x_fa_z_z = ra_d_x * w_a_x_fa_z_y - ra_d_y * w_a_x_fa_z_x;
+    const T rb_x_w_b_x_fa_z_x = fa_z_z * rb_x_w_b_y - fa_z_y * rb_x_w_b_z;
+    const T rb_x_w_b_x_fa_z_y = fa_z_x * rb_x_w_b_z - fa_z_z * rb_x_w_b_x;
+    const T rb_x_w_a_x_fa_z_x = rb_y * w_a_x_fa_z_z - rb_z * w_a_x_fa_z_y;
+    const T rb_x_w_a_x_fa_z_y = rb_z * w_a_x_fa_z_x - rb_x * w_a_x_fa_z_z;
+    const T rb_x_w_b_x_fa_z_z = fa_z_y * rb_x_w_b_x - fa_z_x * rb_x_w_b_y;
+    const T rb_x_w_a_x_fa_z_z = rb_x * w_a_x_fa_z_y - rb_y * w_a_x_fa_z_x;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
@@ -861,76 +851,59 @@ struct prismatic {
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
     const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_w_b_x_fb_x_y - fa_x_y * w_b_x_w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_w_b_x_fb_x_z - fa_x_z * w_b_x_w_b_x_fb_x_x;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
     const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
     const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
     const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-    const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-    const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-    const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_x = fa_y_z * w_b_x_w_b_x_fb_y_y - fa_y_y * w_b_x_w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_y = fa_y_x * w_b_x_w_b_x_fb_y_z - fa_y_z * w_b_x_w_b_x_fb_y_x;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
     const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
     const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_x = fa_z_z * w_b_x_w_b_x_fb_z_y - fa_z_y * w_b_x_w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_y = fa_z_x * w_b_x_w_b_x_fb_z_z - fa_z_z * w_b_x_w_b_x_fb_z_x;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
     const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
+    const T g3_1 = fa_x_x * w_b_x_fb_x_y + fa_y_x * w_b_x_fb_y_y + fa_z_x * w_b_x_fb_z_y + fb_x_y *
+        w_a_x_fa_x_x + fb_y_y * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_z_x;
+    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+    const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+    const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
+    const T g3_2 = fa_x_x * w_b_x_fb_x_z + fa_y_x * w_b_x_fb_y_z + fa_z_x * w_b_x_fb_z_z + fb_x_z *
+        w_a_x_fa_x_x + fb_y_z * w_a_x_fa_y_x + fb_z_z * w_a_x_fa_z_x;
+    const T g3_3 = fa_x_y * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_y_x + fa_z_y * w_b_x_fb_z_x + fb_x_x *
+        w_a_x_fa_x_y + fb_y_x * w_a_x_fa_y_y + fb_z_x * w_a_x_fa_z_y;
     const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_w_a_x_fa_x_y - fb_x_y * w_a_x_w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_w_a_x_fa_x_z - fb_x_z * w_a_x_w_a_x_fa_x_x;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_x = fb_y_z * w_a_x_w_a_x_fa_y_y - fb_y_y * w_a_x_w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_y = fb_y_x * w_a_x_w_a_x_fa_y_z - fb_y_z * w_a_x_w_a_x_fa_y_x;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_x = fb_z_z * w_a_x_w_a_x_fa_z_y - fb_z_y * w_a_x_w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_y = fb_z_x * w_a_x_w_a_x_fa_z_z - fb_z_z * w_a_x_w_a_x_fa_z_x;
-    const T w_a_x_fa_x_x_w_b_x_fb_x_x = w_a_x_fa_x_y * w_b_x_fb_x_z - w_a_x_fa_x_z * w_b_x_fb_x_y;
-    const T w_a_x_fa_x_x_w_b_x_fb_x_y = w_a_x_fa_x_z * w_b_x_fb_x_x - w_a_x_fa_x_x * w_b_x_fb_x_z;
-    const T w_a_x_fa_y_x_w_b_x_fb_y_x = w_a_x_fa_y_y * w_b_x_fb_y_z - w_a_x_fa_y_z * w_b_x_fb_y_y;
-    const T w_a_x_fa_y_x_w_b_x_fb_y_y = w_a_x_fa_y_z * w_b_x_fb_y_x - w_a_x_fa_y_x * w_b_x_fb_y_z;
-    const T w_a_x_fa_z_x_w_b_x_fb_z_x = w_a_x_fa_z_y * w_b_x_fb_z_z - w_a_x_fa_z_z * w_b_x_fb_z_y;
-    const T w_a_x_fa_z_x_w_b_x_fb_z_y = w_a_x_fa_z_z * w_b_x_fb_z_x - w_a_x_fa_z_x * w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_w_b_x_fb_x_x - fa_x_x * w_b_x_w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_z = fa_y_y * w_b_x_w_b_x_fb_y_x - fa_y_x * w_b_x_w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_z = fa_z_y * w_b_x_w_b_x_fb_z_x - fa_z_x * w_b_x_w_b_x_fb_z_y;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_w_a_x_fa_x_x - fb_x_x * w_a_x_w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_z = fb_y_y * w_a_x_w_a_x_fa_y_x - fb_y_x * w_a_x_w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_z = fb_z_y * w_a_x_w_a_x_fa_z_x - fb_z_x * w_a_x_w_a_x_fa_z_y;
-    const T w_a_x_fa_x_x_w_b_x_fb_x_z = w_a_x_fa_x_x * w_b_x_fb_x_y - w_a_x_fa_x_y * w_b_x_fb_x_x;
-    const T w_a_x_fa_y_x_w_b_x_fb_y_z = w_a_x_fa_y_x * w_b_x_fb_y_y - w_a_x_fa_y_y * w_b_x_fb_y_x;
-    const T w_a_x_fa_z_x_w_b_x_fb_z_z = w_a_x_fa_z_x * w_b_x_fb_z_y - w_a_x_fa_z_y * w_b_x_fb_z_x;
-    g[0] = T(-2) * dot_d_dot_w_a_x_fa_y - dot_d_w_a_x_w_a_x_fa_y - dot_d_dot_dot_fa_y;
-    g[1] = T(-2) * dot_d_dot_w_a_x_fa_z - dot_d_w_a_x_w_a_x_fa_z - dot_d_dot_dot_fa_z;
-    g[2] = T(0.5) * w_b_x_w_b_x_fb_x_x_fa_x_x + T(0.5) * w_b_x_w_b_x_fb_y_x_fa_y_x + T(0.5) *
-        w_b_x_w_b_x_fb_z_x_fa_z_x - T(0.5) * w_a_x_w_a_x_fa_x_x_fb_x_x - T(0.5) *
-        w_a_x_w_a_x_fa_y_x_fb_y_x - T(0.5) * w_a_x_w_a_x_fa_z_x_fb_z_x -
-        w_a_x_fa_x_x_w_b_x_fb_x_x - w_a_x_fa_y_x_w_b_x_fb_y_x - w_a_x_fa_z_x_w_b_x_fb_z_x;
-    g[3] = T(0.5) * w_b_x_w_b_x_fb_x_x_fa_x_y + T(0.5) * w_b_x_w_b_x_fb_y_x_fa_y_y + T(0.5) *
-        w_b_x_w_b_x_fb_z_x_fa_z_y - T(0.5) * w_a_x_w_a_x_fa_x_x_fb_x_y - T(0.5) *
-        w_a_x_w_a_x_fa_y_x_fb_y_y - T(0.5) * w_a_x_w_a_x_fa_z_x_fb_z_y -
-        w_a_x_fa_x_x_w_b_x_fb_x_y - w_a_x_fa_y_x_w_b_x_fb_y_y - w_a_x_fa_z_x_w_b_x_fb_z_y;
-    g[4] = T(0.5) * w_b_x_w_b_x_fb_x_x_fa_x_z + T(0.5) * w_b_x_w_b_x_fb_y_x_fa_y_z + T(0.5) *
-        w_b_x_w_b_x_fb_z_x_fa_z_z - T(0.5) * w_a_x_w_a_x_fa_x_x_fb_x_z - T(0.5) *
-        w_a_x_w_a_x_fa_y_x_fb_y_z - T(0.5) * w_a_x_w_a_x_fa_z_x_fb_z_z -
-        w_a_x_fa_x_x_w_b_x_fb_x_z - w_a_x_fa_y_x_w_b_x_fb_y_z - w_a_x_fa_z_x_w_b_x_fb_z_z;
+    const T g3_4 = fa_x_z * w_b_x_fb_x_x + fa_y_z * w_b_x_fb_y_x + fa_z_z * w_b_x_fb_z_x + fb_x_x *
+        w_a_x_fa_x_z + fb_y_x * w_a_x_fa_y_z + fb_z_x * w_a_x_fa_z_z;
+    const T g3_5 = fb_z_y * w_a_x_fa_z_y + fb_y_y * w_a_x_fa_y_y + fb_x_y * w_a_x_fa_x_y + fa_z_y *
+        w_b_x_fb_z_y + fa_x_y * w_b_x_fb_x_y + fa_y_y * w_b_x_fb_y_y;
+    const T g3_6 = fb_z_z * w_a_x_fa_z_z + fb_y_z * w_a_x_fa_y_z + fb_x_z * w_a_x_fa_x_z + fa_z_z *
+        w_b_x_fb_z_z + fa_x_z * w_b_x_fb_x_z + fa_y_z * w_b_x_fb_y_z;
+    const T g4_1 = fa_x_y * w_b_x_fb_x_z + fa_y_y * w_b_x_fb_y_z + fa_z_y * w_b_x_fb_z_z + fb_x_z *
+        w_a_x_fa_x_y + fb_y_z * w_a_x_fa_y_y + fb_z_z * w_a_x_fa_z_y;
+    const T g4_2 = fa_x_z * w_b_x_fb_x_y + fa_y_z * w_b_x_fb_y_y + fa_z_z * w_b_x_fb_z_y + fb_x_y *
+        w_a_x_fa_x_z + fb_y_y * w_a_x_fa_y_z + fb_z_y * w_a_x_fa_z_z;
+    const T g4_3 = fb_z_x * w_a_x_fa_z_x + fb_y_x * w_a_x_fa_y_x + fb_x_x * w_a_x_fa_x_x + fa_z_x *
+        w_b_x_fb_z_x + fa_x_x * w_b_x_fb_x_x + fa_y_x * w_b_x_fb_y_x;
+    g[0] = va.wx * (ra_d_x_w_a_x_fa_y_x - g1_2 * fa_y_z + g1_4 * fa_y_y) + va.wy *
+        (ra_d_x_w_a_x_fa_y_y + g1_6 * fa_y_z - g1_4 * fa_y_x) + va.wz *
+        (ra_d_x_w_a_x_fa_y_z - g1_6 * fa_y_y + g1_2 * fa_y_x) - vb.wx *
+        (rb_x_w_a_x_fa_y_x - rb_x_w_b_x_fa_y_x) - vb.wy * (rb_x_w_a_x_fa_y_y - rb_x_w_b_x_fa_y_y) -
+        vb.wz * (rb_x_w_a_x_fa_y_z - rb_x_w_b_x_fa_y_z) + g1_5 * w_a_x_fa_y_x + g1_1 *
+        w_a_x_fa_y_y + g1_3 * w_a_x_fa_y_z;
+    g[1] = va.wx * (ra_d_x_w_a_x_fa_z_x - g1_2 * fa_z_z + g1_4 * fa_z_y) + va.wy *
+        (ra_d_x_w_a_x_fa_z_y + g1_6 * fa_z_z - g1_4 * fa_z_x) + va.wz *
+        (ra_d_x_w_a_x_fa_z_z - g1_6 * fa_z_y + g1_2 * fa_z_x) - vb.wx *
+        (rb_x_w_a_x_fa_z_x - rb_x_w_b_x_fa_z_x) - vb.wy * (rb_x_w_a_x_fa_z_y - rb_x_w_b_x_fa_z_y) -
+        vb.wz * (rb_x_w_a_x_fa_z_z - rb_x_w_b_x_fa_z_z) + g1_5 * w_a_x_fa_z_x + g1_1 *
+        w_a_x_fa_z_y + g1_3 * w_a_x_fa_z_z;
+    g[2] = T(0.5) * (vb.wy * g3_3 - va.wy * g3_1 - va.wz * g3_2 + vb.wz * g3_4 + (g3_5 + g3_6) *
+        (va.wx - vb.wx));
+    g[3] = T(0.5) * (vb.wx * g3_1 - va.wx * g3_3 - va.wz * g4_1 + vb.wz * g4_2 + (g4_3 + g3_6) *
+        (va.wy - vb.wy));
+    g[4] = T(0.5) * (vb.wx * g3_2 - va.wx * g3_4 - va.wy * g4_2 + vb.wy * g4_1 + (g3_5 + g4_3) *
+        (va.wz - vb.wz));
   }
 
   // dC/dt at fixed q: nothing
@@ -943,7 +916,7 @@ struct prismatic {
     C_t[4] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 265 +, 423 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 253 +, 414 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[5],
       T (&H)[12][12]) {
@@ -961,14 +934,10 @@ struct prismatic {
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T H1_1_2 = lambda[0] * fa_y_y + lambda[1] * fa_z_y;
     const T H2_1 = lambda[0] * fa_y_x + lambda[1] * fa_z_x;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T H4_1 = lambda[2] * fb_z_z;
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
@@ -990,10 +959,8 @@ struct prismatic {
     const T H4_8 = lambda[4] * fb_y_x;
     const T H4_9 = T(0.5) * H4_8 - lambda[0] * ra_d_y - T(0.5) * H4_7;
     const T H4_10 = fa_z_y * H4_3 + T(0.5) * (fa_x_y * H4_6 + T(2) * fa_y_y * H4_9);
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
-    const T ra_d_z = d_z + ra_z;
+    const T ra_d_z = b.z - a.z + rb_z;
     const T H4_11 = lambda[2] * fb_z_y;
     const T H4_12 = lambda[3] * fb_z_x;
     const T H4_13 = lambda[1] * ra_d_z - T(0.5) * H4_11 + T(0.5) * H4_12;
@@ -1554,23 +1521,26 @@ struct prismatic::b_immovable : prismatic {
         wa_4_z, wa_5_x, wa_5_y, wa_5_z;
   };
 
-  // C and J: 106 +, 129 *
+  // C and J: 103 +, 129 *
   template <class T>
   static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[5],
       Jacobian<T>& J) {
     const Pose<T>& a = q[0];
     const Pose<T>& b = q[1];
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
     const T rb_x = b.xx * p.pb_x + b.xy * p.pb_y + b.xz * p.pb_z;
     const T rb_y = b.yx * p.pb_x + b.yy * p.pb_y + b.yz * p.pb_z;
-    const T d_x = b.x - a.x - ra_x + rb_x;
-    const T d_y = b.y - a.y - ra_y + rb_y;
+    const T ra_d_x = b.x - a.x + rb_x;
+    const T ra_d_y = b.y - a.y + rb_y;
+    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
+    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
+    const T d_x = ra_d_x - ra_x;
+    const T d_y = ra_d_y - ra_y;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
     const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
-    const T d_z = b.z - a.z - ra_z + rb_z;
+    const T ra_d_z = b.z - a.z + rb_z;
+    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
+    const T d_z = ra_d_z - ra_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
@@ -1614,9 +1584,6 @@ struct prismatic::b_immovable : prismatic {
     const T C5_5 = fa_z_x * fb_z_y;
     const T C5_6 = fa_z_y * fb_z_x;
     const T fa_z_x_fb_z_z = C5_5 - C5_6;
-    const T ra_d_x = d_x + ra_x;
-    const T ra_d_y = d_y + ra_y;
-    const T ra_d_z = d_z + ra_z;
     const T wa_3_x_1 = fa_z_y * fb_z_y + fa_x_y * fb_x_y + fa_y_y * fb_y_y;
     const T wa_3_x_2 = fa_z_z * fb_z_z + fa_x_z * fb_x_z + fa_y_z * fb_y_z;
     const T wa_4_y_1 = fa_z_x * fb_z_x + fa_x_x * fb_x_x + fa_y_x * fb_y_x;

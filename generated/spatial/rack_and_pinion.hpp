@@ -836,10 +836,10 @@ struct rack_and_pinion {
       const T rb_z = b.zx * p.pb_x + b.zy * p.pb_y + b.zz * p.pb_z;
       const T rb_x_w_b_x = vb.wz * rb_y - vb.wy * rb_z;
       const T rb_x_w_b_y = vb.wx * rb_z - vb.wz * rb_x;
-      const T w_b_x_rb_x_w_b_x = vb.wy * rb_x_w_b_z - vb.wz * rb_x_w_b_y;
-      const T w_b_x_rb_x_w_b_y = vb.wz * rb_x_w_b_x - vb.wx * rb_x_w_b_z;
-      const T w_b_x_rb_x_w_b_z = vb.wx * rb_x_w_b_y - vb.wy * rb_x_w_b_x;
-      g[0] = p.e_x * w_b_x_rb_x_w_b_x + p.e_y * w_b_x_rb_x_w_b_y + p.e_z * w_b_x_rb_x_w_b_z;
+      const T rb_x_w_b_x_e_x = p.e_z * rb_x_w_b_y - p.e_y * rb_x_w_b_z;
+      const T rb_x_w_b_x_e_y = p.e_x * rb_x_w_b_z - p.e_z * rb_x_w_b_x;
+      const T rb_x_w_b_x_e_z = p.e_y * rb_x_w_b_x - p.e_x * rb_x_w_b_y;
+      g[0] = vb.wx * rb_x_w_b_x_e_x + vb.wy * rb_x_w_b_x_e_y + vb.wz * rb_x_w_b_x_e_z;
     }
 
     // dC/dt at fixed q: nothing

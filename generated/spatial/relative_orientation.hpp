@@ -465,7 +465,7 @@ struct relative_orientation {
     D[2][13] = T(2) * (J.wb_3_x * b.e2 - J.wb_3_y * b.e1 + J.wb_3_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 123 +, 198 *
+  // -Jdot v - d/dt(dC/dt): 117 +, 162 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[3]) {
@@ -480,13 +480,6 @@ struct relative_orientation {
     const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
     const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
     const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-    const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
-    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-    const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_x = fa_x_z * w_b_x_w_b_x_fb_x_y - fa_x_y * w_b_x_w_b_x_fb_x_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_y = fa_x_x * w_b_x_w_b_x_fb_x_z - fa_x_z * w_b_x_w_b_x_fb_x_x;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
@@ -494,13 +487,6 @@ struct relative_orientation {
     const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
     const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
     const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-    const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-    const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_x = fa_y_z * w_b_x_w_b_x_fb_y_y - fa_y_y * w_b_x_w_b_x_fb_y_z;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_y = fa_y_x * w_b_x_w_b_x_fb_y_z - fa_y_z * w_b_x_w_b_x_fb_y_x;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
@@ -508,64 +494,45 @@ struct relative_orientation {
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
     const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
     const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
-    const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_x = fa_z_z * w_b_x_w_b_x_fb_z_y - fa_z_y * w_b_x_w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_y = fa_z_x * w_b_x_w_b_x_fb_z_z - fa_z_z * w_b_x_w_b_x_fb_z_x;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
     const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_x = fb_x_z * w_a_x_w_a_x_fa_x_y - fb_x_y * w_a_x_w_a_x_fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_y = fb_x_x * w_a_x_w_a_x_fa_x_z - fb_x_z * w_a_x_w_a_x_fa_x_x;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_x = fb_y_z * w_a_x_w_a_x_fa_y_y - fb_y_y * w_a_x_w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_y = fb_y_x * w_a_x_w_a_x_fa_y_z - fb_y_z * w_a_x_w_a_x_fa_y_x;
+    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-    const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
+    const T g1_1 = fa_x_x * w_b_x_fb_x_y + fa_y_x * w_b_x_fb_y_y + fa_z_x * w_b_x_fb_z_y + fb_x_y *
+        w_a_x_fa_x_x + fb_y_y * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_z_x;
+    const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+    const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+    const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
+    const T g1_2 = fa_x_x * w_b_x_fb_x_z + fa_y_x * w_b_x_fb_y_z + fa_z_x * w_b_x_fb_z_z + fb_x_z *
+        w_a_x_fa_x_x + fb_y_z * w_a_x_fa_y_x + fb_z_z * w_a_x_fa_z_x;
+    const T g1_3 = fa_x_y * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_y_x + fa_z_y * w_b_x_fb_z_x + fb_x_x *
+        w_a_x_fa_x_y + fb_y_x * w_a_x_fa_y_y + fb_z_x * w_a_x_fa_z_y;
+    const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-    const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_x = fb_z_z * w_a_x_w_a_x_fa_z_y - fb_z_y * w_a_x_w_a_x_fa_z_z;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_y = fb_z_x * w_a_x_w_a_x_fa_z_z - fb_z_z * w_a_x_w_a_x_fa_z_x;
-    const T w_a_x_fa_x_x_w_b_x_fb_x_x = w_a_x_fa_x_y * w_b_x_fb_x_z - w_a_x_fa_x_z * w_b_x_fb_x_y;
-    const T w_a_x_fa_x_x_w_b_x_fb_x_y = w_a_x_fa_x_z * w_b_x_fb_x_x - w_a_x_fa_x_x * w_b_x_fb_x_z;
-    const T w_a_x_fa_y_x_w_b_x_fb_y_x = w_a_x_fa_y_y * w_b_x_fb_y_z - w_a_x_fa_y_z * w_b_x_fb_y_y;
-    const T w_a_x_fa_y_x_w_b_x_fb_y_y = w_a_x_fa_y_z * w_b_x_fb_y_x - w_a_x_fa_y_x * w_b_x_fb_y_z;
-    const T w_a_x_fa_z_x_w_b_x_fb_z_x = w_a_x_fa_z_y * w_b_x_fb_z_z - w_a_x_fa_z_z * w_b_x_fb_z_y;
-    const T w_a_x_fa_z_x_w_b_x_fb_z_y = w_a_x_fa_z_z * w_b_x_fb_z_x - w_a_x_fa_z_x * w_b_x_fb_z_z;
-    const T w_b_x_w_b_x_fb_x_x_fa_x_z = fa_x_y * w_b_x_w_b_x_fb_x_x - fa_x_x * w_b_x_w_b_x_fb_x_y;
-    const T w_b_x_w_b_x_fb_y_x_fa_y_z = fa_y_y * w_b_x_w_b_x_fb_y_x - fa_y_x * w_b_x_w_b_x_fb_y_y;
-    const T w_b_x_w_b_x_fb_z_x_fa_z_z = fa_z_y * w_b_x_w_b_x_fb_z_x - fa_z_x * w_b_x_w_b_x_fb_z_y;
-    const T w_a_x_w_a_x_fa_x_x_fb_x_z = fb_x_y * w_a_x_w_a_x_fa_x_x - fb_x_x * w_a_x_w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_y_x_fb_y_z = fb_y_y * w_a_x_w_a_x_fa_y_x - fb_y_x * w_a_x_w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_z_x_fb_z_z = fb_z_y * w_a_x_w_a_x_fa_z_x - fb_z_x * w_a_x_w_a_x_fa_z_y;
-    const T w_a_x_fa_x_x_w_b_x_fb_x_z = w_a_x_fa_x_x * w_b_x_fb_x_y - w_a_x_fa_x_y * w_b_x_fb_x_x;
-    const T w_a_x_fa_y_x_w_b_x_fb_y_z = w_a_x_fa_y_x * w_b_x_fb_y_y - w_a_x_fa_y_y * w_b_x_fb_y_x;
-    const T w_a_x_fa_z_x_w_b_x_fb_z_z = w_a_x_fa_z_x * w_b_x_fb_z_y - w_a_x_fa_z_y * w_b_x_fb_z_x;
-    g[0] = T(0.5) * w_b_x_w_b_x_fb_x_x_fa_x_x + T(0.5) * w_b_x_w_b_x_fb_y_x_fa_y_x + T(0.5) *
-        w_b_x_w_b_x_fb_z_x_fa_z_x - T(0.5) * w_a_x_w_a_x_fa_x_x_fb_x_x - T(0.5) *
-        w_a_x_w_a_x_fa_y_x_fb_y_x - T(0.5) * w_a_x_w_a_x_fa_z_x_fb_z_x -
-        w_a_x_fa_x_x_w_b_x_fb_x_x - w_a_x_fa_y_x_w_b_x_fb_y_x - w_a_x_fa_z_x_w_b_x_fb_z_x;
-    g[1] = T(0.5) * w_b_x_w_b_x_fb_x_x_fa_x_y + T(0.5) * w_b_x_w_b_x_fb_y_x_fa_y_y + T(0.5) *
-        w_b_x_w_b_x_fb_z_x_fa_z_y - T(0.5) * w_a_x_w_a_x_fa_x_x_fb_x_y - T(0.5) *
-        w_a_x_w_a_x_fa_y_x_fb_y_y - T(0.5) * w_a_x_w_a_x_fa_z_x_fb_z_y -
-        w_a_x_fa_x_x_w_b_x_fb_x_y - w_a_x_fa_y_x_w_b_x_fb_y_y - w_a_x_fa_z_x_w_b_x_fb_z_y;
-    g[2] = T(0.5) * w_b_x_w_b_x_fb_x_x_fa_x_z + T(0.5) * w_b_x_w_b_x_fb_y_x_fa_y_z + T(0.5) *
-        w_b_x_w_b_x_fb_z_x_fa_z_z - T(0.5) * w_a_x_w_a_x_fa_x_x_fb_x_z - T(0.5) *
-        w_a_x_w_a_x_fa_y_x_fb_y_z - T(0.5) * w_a_x_w_a_x_fa_z_x_fb_z_z -
-        w_a_x_fa_x_x_w_b_x_fb_x_z - w_a_x_fa_y_x_w_b_x_fb_y_z - w_a_x_fa_z_x_w_b_x_fb_z_z;
+    const T g1_4 = fa_x_z * w_b_x_fb_x_x + fa_y_z * w_b_x_fb_y_x + fa_z_z * w_b_x_fb_z_x + fb_x_x *
+        w_a_x_fa_x_z + fb_y_x * w_a_x_fa_y_z + fb_z_x * w_a_x_fa_z_z;
+    const T g1_5 = fb_z_y * w_a_x_fa_z_y + fb_y_y * w_a_x_fa_y_y + fb_x_y * w_a_x_fa_x_y + fa_z_y *
+        w_b_x_fb_z_y + fa_x_y * w_b_x_fb_x_y + fa_y_y * w_b_x_fb_y_y;
+    const T g1_6 = fb_z_z * w_a_x_fa_z_z + fb_y_z * w_a_x_fa_y_z + fb_x_z * w_a_x_fa_x_z + fa_z_z *
+        w_b_x_fb_z_z + fa_x_z * w_b_x_fb_x_z + fa_y_z * w_b_x_fb_y_z;
+    const T g2_1 = fa_x_y * w_b_x_fb_x_z + fa_y_y * w_b_x_fb_y_z + fa_z_y * w_b_x_fb_z_z + fb_x_z *
+        w_a_x_fa_x_y + fb_y_z * w_a_x_fa_y_y + fb_z_z * w_a_x_fa_z_y;
+    const T g2_2 = fa_x_z * w_b_x_fb_x_y + fa_y_z * w_b_x_fb_y_y + fa_z_z * w_b_x_fb_z_y + fb_x_y *
+        w_a_x_fa_x_z + fb_y_y * w_a_x_fa_y_z + fb_z_y * w_a_x_fa_z_z;
+    const T g2_3 = fb_z_x * w_a_x_fa_z_x + fb_y_x * w_a_x_fa_y_x + fb_x_x * w_a_x_fa_x_x + fa_z_x *
+        w_b_x_fb_z_x + fa_x_x * w_b_x_fb_x_x + fa_y_x * w_b_x_fb_y_x;
+    g[0] = T(0.5) * (vb.wy * g1_3 - va.wy * g1_1 - va.wz * g1_2 + vb.wz * g1_4 + (g1_5 + g1_6) *
+        (va.wx - vb.wx));
+    g[1] = T(0.5) * (vb.wx * g1_1 - va.wx * g1_3 - va.wz * g2_1 + vb.wz * g2_2 + (g2_3 + g1_6) *
+        (va.wy - vb.wy));
+    g[2] = T(0.5) * (vb.wx * g1_2 - va.wx * g1_4 - va.wy * g2_2 + vb.wy * g2_1 + (g1_5 + g2_3) *
+        (va.wz - vb.wz));
   }
 
   // dC/dt at fixed q: nothing

@@ -96,9 +96,9 @@ struct rolling_sphere {
     const T u_z = b.z - a.z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
-    const T ra_u_x = u_x + ra_x;
-    const T ra_u_y = u_y + ra_y;
-    const T ra_u_z = u_z + ra_z;
+    const T ra_u_x = b.x - a.x;
+    const T ra_u_y = b.y - a.y;
+    const T ra_u_z = b.z - a.z;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
@@ -549,7 +549,7 @@ struct rolling_sphere {
     D[2][13] = T(2) * (D2_2 * J.fa_y_x - D2_1 * J.fa_y_y + D2_1_2 * J.fa_y_z);
   }
 
-  // -Jdot v - d/dt(dC/dt): 108 +, 130 *
+  // -Jdot v - d/dt(dC/dt): 93 +, 113 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[3]) {
@@ -557,82 +557,73 @@ struct rolling_sphere {
     const Velocity<T>& va = v[0];
     const Pose<T>& b = q[1];
     const Velocity<T>& vb = v[1];
-    const T g1_1 = a.x - b.x;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T u_x = -g1_1 - ra_x;
-    const T g1_2 = a.y - b.y;
-    const T u_y = -g1_2 - ra_y;
+    const T ra_u_x = b.x - a.x;
+    const T ra_u_y = b.y - a.y;
     const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
     const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
     const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+    const T ra_u_z = b.z - a.z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
     const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-    const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-    const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-    const T g1_3 = a.z - b.z;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T u_z = -g1_3 - ra_z;
-    const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-    const T dot_u_w_a_x_w_a_x_fa_x = u_x * w_a_x_w_a_x_fa_x_x + u_y * w_a_x_w_a_x_fa_x_y + u_z *
-        w_a_x_w_a_x_fa_x_z;
-    const T g1_4 = va.x - vb.x;
-    const T ra_x_w_a_x = va.wz * ra_y - va.wy * ra_z;
-    const T ra_x_w_a_y = va.wx * ra_z - va.wz * ra_x;
-    const T u_dot_x = ra_x_w_a_x - g1_4;
-    const T g1_5 = va.y - vb.y;
-    const T u_dot_y = ra_x_w_a_y - g1_5;
-    const T g1_6 = va.z - vb.z;
-    const T ra_x_w_a_z = va.wy * ra_x - va.wx * ra_y;
-    const T u_dot_z = ra_x_w_a_z - g1_6;
-    const T dot_u_dot_w_a_x_fa_x = u_dot_x * w_a_x_fa_x_x + u_dot_y * w_a_x_fa_x_y + u_dot_z *
-        w_a_x_fa_x_z;
-    const T u_dot_dot_x = va.wy * ra_x_w_a_z - va.wz * ra_x_w_a_y;
-    const T u_dot_dot_y = va.wz * ra_x_w_a_x - va.wx * ra_x_w_a_z;
-    const T u_dot_dot_z = va.wx * ra_x_w_a_y - va.wy * ra_x_w_a_x;
-    const T dot_u_dot_dot_fa_x = fa_x_x * u_dot_dot_x + fa_x_y * u_dot_dot_y + fa_x_z * u_dot_dot_z;
-    const T arm_a_z = -g1_3 - p.radius * fa_x_z;
-    const T arm_a_x = -g1_1 - p.radius * fa_x_x;
-    const T arm_a_y = -g1_2 - p.radius * fa_x_y;
-    const T w_a_x_arm_a_x = va.wy * arm_a_z - va.wz * arm_a_y;
-    const T w_a_x_arm_a_y = va.wz * arm_a_x - va.wx * arm_a_z;
-    const T w_b_x_fa_x_x = vb.wy * fa_x_z - vb.wz * fa_x_y;
-    const T w_b_x_fa_x_y = vb.wz * fa_x_x - vb.wx * fa_x_z;
-    const T g2_1 = g1_4 + w_a_x_arm_a_x + p.radius * w_b_x_fa_x_x;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T ra_u_x_w_a_x_fa_x_x = ra_u_y * w_a_x_fa_x_z - ra_u_z * w_a_x_fa_x_y;
+    const T ra_u_x_w_a_x_fa_x_y = ra_u_z * w_a_x_fa_x_x - ra_u_x * w_a_x_fa_x_z;
+    const T g1_1 = vb.y - va.y;
+    const T g1_2 = vb.z - va.z;
+    const T g1_3 = vb.x - va.x;
+    const T ra_u_x_w_a_x_fa_x_z = ra_u_x * w_a_x_fa_x_y - ra_u_y * w_a_x_fa_x_x;
+    const T arm_a_x = b.x - a.x - p.radius * fa_x_x;
+    const T arm_a_y = b.y - a.y - p.radius * fa_x_y;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
+    const T arm_a_z = b.z - a.z - p.radius * fa_x_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T g2_2 = g1_5 + w_a_x_arm_a_y + p.radius * w_b_x_fa_x_y;
-    const T w_a_x_arm_a_z = va.wx * arm_a_y - va.wy * arm_a_x;
-    const T w_b_x_fa_x_z = vb.wx * fa_x_y - vb.wy * fa_x_x;
-    const T g2_3 = g1_6 + w_a_x_arm_a_z + p.radius * w_b_x_fa_x_z;
-    const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-    const T arm_a_dot_x = -g1_4 - p.radius * w_a_x_fa_x_x;
-    const T arm_a_dot_y = -g1_5 - p.radius * w_a_x_fa_x_y;
-    const T w_a_x_arm_a_dot_z = va.wx * arm_a_dot_y - va.wy * arm_a_dot_x;
-    const T w_b_x_w_a_x_fa_x_z = vb.wx * w_a_x_fa_x_y - vb.wy * w_a_x_fa_x_x;
-    const T g2_4 = w_a_x_arm_a_dot_z + p.radius * w_b_x_w_a_x_fa_x_z;
-    const T arm_a_dot_z = -g1_6 - p.radius * w_a_x_fa_x_z;
-    const T w_a_x_arm_a_dot_x = va.wy * arm_a_dot_z - va.wz * arm_a_dot_y;
-    const T w_a_x_arm_a_dot_y = va.wz * arm_a_dot_x - va.wx * arm_a_dot_z;
-    const T w_b_x_w_a_x_fa_x_x = vb.wy * w_a_x_fa_x_z - vb.wz * w_a_x_fa_x_y;
-    const T w_b_x_w_a_x_fa_x_y = vb.wz * w_a_x_fa_x_x - vb.wx * w_a_x_fa_x_z;
-    const T g2_5 = w_a_x_arm_a_dot_y + p.radius * w_b_x_w_a_x_fa_x_y;
-    const T g2_6 = w_a_x_arm_a_dot_x + p.radius * w_b_x_w_a_x_fa_x_x;
+    const T arm_a_x_w_a_x_fa_y_x = arm_a_y * w_a_x_fa_y_z - arm_a_z * w_a_x_fa_y_y;
+    const T arm_a_x_w_a_x_fa_y_y = arm_a_z * w_a_x_fa_y_x - arm_a_x * w_a_x_fa_y_z;
+    const T arm_a_dot_x = vb.x - va.x - p.radius * w_a_x_fa_x_x;
+    const T arm_a_dot_y = vb.y - va.y - p.radius * w_a_x_fa_x_y;
+    const T arm_a_dot_z = vb.z - va.z - p.radius * w_a_x_fa_x_z;
+    const T arm_a_dot_x_fa_y_x = arm_a_dot_y * fa_y_z - arm_a_dot_z * fa_y_y;
+    const T arm_a_dot_x_fa_y_y = arm_a_dot_z * fa_y_x - arm_a_dot_x * fa_y_z;
+    const T arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_x = arm_a_x_w_a_x_fa_y_x + arm_a_dot_x_fa_y_x;
+    const T arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_y = arm_a_x_w_a_x_fa_y_y + arm_a_dot_x_fa_y_y;
+    const T arm_a_x_w_a_x_fa_y_z = arm_a_x * w_a_x_fa_y_y - arm_a_y * w_a_x_fa_y_x;
+    const T arm_a_dot_x_fa_y_z = arm_a_dot_x * fa_y_y - arm_a_dot_y * fa_y_x;
+    const T arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_z = arm_a_x_w_a_x_fa_y_z + arm_a_dot_x_fa_y_z;
+    const T dot_w_a_arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y = va.wx *
+        arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_x + va.wy * arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_y +
+        va.wz * arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y_z;
     const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
     const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
     const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
     const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
     const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
     const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-    g[0] = T(-2) * dot_u_dot_w_a_x_fa_x - dot_u_w_a_x_w_a_x_fa_x - dot_u_dot_dot_fa_x;
-    g[1] = g2_1 * w_a_x_fa_y_x + g2_2 * w_a_x_fa_y_y + g2_3 * w_a_x_fa_y_z + g2_4 * fa_y_z + g2_5 *
-        fa_y_y + g2_6 * fa_y_x;
-    g[2] = g2_1 * w_a_x_fa_z_x + g2_2 * w_a_x_fa_z_y + g2_3 * w_a_x_fa_z_z + g2_4 * fa_z_z + g2_5 *
-        fa_z_y + g2_6 * fa_z_x;
+    const T dot_w_b_w_a_x_fa_z = vb.wx * w_a_x_fa_z_x + vb.wy * w_a_x_fa_z_y + vb.wz * w_a_x_fa_z_z;
+    const T arm_a_x_w_a_x_fa_z_x = arm_a_y * w_a_x_fa_z_z - arm_a_z * w_a_x_fa_z_y;
+    const T arm_a_x_w_a_x_fa_z_y = arm_a_z * w_a_x_fa_z_x - arm_a_x * w_a_x_fa_z_z;
+    const T arm_a_dot_x_fa_z_x = arm_a_dot_y * fa_z_z - arm_a_dot_z * fa_z_y;
+    const T arm_a_dot_x_fa_z_y = arm_a_dot_z * fa_z_x - arm_a_dot_x * fa_z_z;
+    const T arm_a_x_w_a_x_fa_z_arm_a_dot_x_fa_z_x = arm_a_x_w_a_x_fa_z_x + arm_a_dot_x_fa_z_x;
+    const T arm_a_x_w_a_x_fa_z_arm_a_dot_x_fa_z_y = arm_a_x_w_a_x_fa_z_y + arm_a_dot_x_fa_z_y;
+    const T arm_a_x_w_a_x_fa_z_z = arm_a_x * w_a_x_fa_z_y - arm_a_y * w_a_x_fa_z_x;
+    const T arm_a_dot_x_fa_z_z = arm_a_dot_x * fa_z_y - arm_a_dot_y * fa_z_x;
+    const T arm_a_x_w_a_x_fa_z_arm_a_dot_x_fa_z_z = arm_a_x_w_a_x_fa_z_z + arm_a_dot_x_fa_z_z;
+    const T dot_w_a_arm_a_x_w_a_x_fa_z_arm_a_dot_x_fa_z = va.wx *
+        arm_a_x_w_a_x_fa_z_arm_a_dot_x_fa_z_x + va.wy * arm_a_x_w_a_x_fa_z_arm_a_dot_x_fa_z_y +
+        va.wz * arm_a_x_w_a_x_fa_z_arm_a_dot_x_fa_z_z;
+    const T dot_w_b_w_a_x_fa_y = vb.wx * w_a_x_fa_y_x + vb.wy * w_a_x_fa_y_y + vb.wz * w_a_x_fa_y_z;
+    g[0] = va.wx * (ra_u_x_w_a_x_fa_x_x + g1_1 * fa_x_z - g1_2 * fa_x_y) + va.wy *
+        (ra_u_x_w_a_x_fa_x_y - g1_3 * fa_x_z + g1_2 * fa_x_x) + va.wz *
+        (ra_u_x_w_a_x_fa_x_z + g1_3 * fa_x_y - g1_1 * fa_x_x) - g1_3 * w_a_x_fa_x_x - g1_1 *
+        w_a_x_fa_x_y - g1_2 * w_a_x_fa_x_z;
+    g[1] = dot_w_a_arm_a_x_w_a_x_fa_y_arm_a_dot_x_fa_y + p.radius * dot_w_b_w_a_x_fa_z - g1_3 *
+        w_a_x_fa_y_x - g1_1 * w_a_x_fa_y_y - g1_2 * w_a_x_fa_y_z;
+    g[2] = dot_w_a_arm_a_x_w_a_x_fa_z_arm_a_dot_x_fa_z - p.radius * dot_w_b_w_a_x_fa_y - g1_3 *
+        w_a_x_fa_z_x - g1_1 * w_a_x_fa_z_y - g1_2 * w_a_x_fa_z_z;
   }
 
   // dC/dt at fixed q: nothing
@@ -643,7 +634,7 @@ struct rolling_sphere {
     C_t[2] = T(0);
   }
 
-  // d(J^T lambda)/dq: x, y, z and small turns of each body: 84 +, 89 *
+  // d(J^T lambda)/dq: x, y, z and small turns of each body: 67 +, 80 *
   template <class T>
   static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[3],
       T (&H)[12][12]) {
@@ -677,20 +668,11 @@ struct rolling_sphere {
     const T H4_5 = arm_a_z * fa_y_z;
     const T H4_6 = arm_a_y * fa_z_y;
     const T H4_7 = arm_a_z * fa_z_z;
-    const T ra_x = a.xx * p.pa_x + a.xy * p.pa_y + a.xz * p.pa_z;
-    const T ra_y = a.yx * p.pa_x + a.yy * p.pa_y + a.yz * p.pa_z;
-    const T u_x = -H4_1 - ra_x;
-    const T u_y = -H4_2 - ra_y;
-    const T ra_u_x = u_x + ra_x;
-    const T ra_u_y = u_y + ra_y;
-    const T H4_8 = lambda[0] * ra_u_y + p.radius * H1_1_2;
+    const T H4_8 = lambda[0] * H4_2 - p.radius * H1_1_2;
     const T H4_9 = fa_x_y * H4_8;
-    const T ra_z = a.zx * p.pa_x + a.zy * p.pa_y + a.zz * p.pa_z;
-    const T u_z = -H4_4 - ra_z;
-    const T ra_u_z = u_z + ra_z;
-    const T H4_10 = lambda[0] * ra_u_z + p.radius * H1_1;
+    const T H4_10 = p.radius * H1_1 - lambda[0] * H4_4;
     const T H4_11 = fa_x_z * H4_10;
-    const T H5_1 = lambda[0] * ra_u_x + p.radius * H2_1;
+    const T H5_1 = p.radius * H2_1 - lambda[0] * H4_1;
     const T H5_1_2 = arm_a_x * fa_y_x;
     const T H5_2 = arm_a_x * fa_z_x;
     const T H5_3 = fa_x_x * H5_1;
@@ -707,8 +689,8 @@ struct rolling_sphere {
     H[2][4] = H2_2;
     H[3][1] = H1_2;
     H[3][2] = H[2][3];
-    H[3][3] = -lambda[1] * (H4_3 + H4_5) - lambda[2] * (H4_6 + H4_7) - H4_9 - H4_11;
-    H[3][4] = fa_x_x * H4_8 + arm_a_y * H2_1;
+    H[3][3] = H4_9 - lambda[1] * (H4_3 + H4_5) - lambda[2] * (H4_6 + H4_7) - H4_11;
+    H[3][4] = arm_a_y * H2_1 - fa_x_x * H4_8;
     H[3][5] = fa_x_x * H4_10 + arm_a_z * H2_1;
     H[3][7] = H[0][4];
     H[3][8] = H1_2_2;
@@ -722,8 +704,8 @@ struct rolling_sphere {
     H[5][0] = H1_2_2;
     H[5][1] = H[1][5];
     H[5][3] = fa_x_z * H5_1 + arm_a_x * H1_1;
-    H[5][4] = fa_x_z * H4_8 + arm_a_y * H1_1;
-    H[5][5] = -lambda[1] * (H5_1_2 + H4_3) - lambda[2] * (H5_2 + H4_6) - H5_3 - H4_9;
+    H[5][4] = arm_a_y * H1_1 - fa_x_z * H4_8;
+    H[5][5] = H4_9 - lambda[1] * (H5_1_2 + H4_3) - lambda[2] * (H5_2 + H4_6) - H5_3;
     H[5][6] = H[2][3];
     H[5][7] = H2_2;
     H[6][4] = H1_2;
@@ -1019,9 +1001,9 @@ struct rolling_sphere::b_immovable : rolling_sphere {
     const T u_z = b.z - a.z - ra_z;
     const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
     const T dot_u_fa_x = u_x * fa_x_x + u_y * fa_x_y + u_z * fa_x_z;
-    const T ra_u_x = u_x + ra_x;
-    const T ra_u_y = u_y + ra_y;
-    const T ra_u_z = u_z + ra_z;
+    const T ra_u_x = b.x - a.x;
+    const T ra_u_y = b.y - a.y;
+    const T ra_u_z = b.z - a.z;
     const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
     const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
     const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;

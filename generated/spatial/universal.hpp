@@ -570,7 +570,7 @@ struct universal {
     D[3][13] = T(2) * (J.fa_y_x_fb_z_y * b.e1 - J.fa_y_x_fb_z_x * b.e2 - J.fa_y_x_fb_z_z * b.e0);
   }
 
-  // -Jdot v - d/dt(dC/dt): 59 +, 94 *
+  // -Jdot v - d/dt(dC/dt): 60 +, 87 *
   template <class T>
   static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
       T (&g)[4]) {
@@ -601,30 +601,25 @@ struct universal {
     const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
     const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
     const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
     const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
     const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
     const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-    const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-    const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
-    const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-    const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y * w_b_x_w_b_x_fb_z_y +
-        fa_y_z * w_b_x_w_b_x_fb_z_z;
+    const T w_b_x_fb_z_x_fa_y_x = fa_y_z * w_b_x_fb_z_y - fa_y_y * w_b_x_fb_z_z;
+    const T w_b_x_fb_z_x_fa_y_y = fa_y_x * w_b_x_fb_z_z - fa_y_z * w_b_x_fb_z_x;
     const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
     const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
     const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-    const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-    const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-    const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-    const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y * w_a_x_w_a_x_fa_y_y +
-        fb_z_z * w_a_x_w_a_x_fa_y_z;
-    const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y * w_b_x_fb_z_y +
-        w_a_x_fa_y_x * w_b_x_fb_z_x;
+    const T w_a_x_fa_y_x_fb_z_x = fb_z_z * w_a_x_fa_y_y - fb_z_y * w_a_x_fa_y_z;
+    const T w_a_x_fa_y_x_fb_z_y = fb_z_x * w_a_x_fa_y_z - fb_z_z * w_a_x_fa_y_x;
+    const T w_b_x_fb_z_x_fa_y_z = fa_y_y * w_b_x_fb_z_x - fa_y_x * w_b_x_fb_z_y;
+    const T w_a_x_fa_y_x_fb_z_z = fb_z_y * w_a_x_fa_y_x - fb_z_x * w_a_x_fa_y_y;
     g[0] = w_a_x_ra_x_w_a_x - w_b_x_rb_x_w_b_x;
     g[1] = w_a_x_ra_x_w_a_y - w_b_x_rb_x_w_b_y;
     g[2] = w_a_x_ra_x_w_a_z - w_b_x_rb_x_w_b_z;
-    g[3] = T(-2) * dot_w_a_x_fa_y_w_b_x_fb_z - dot_w_b_x_w_b_x_fb_z_fa_y -
-        dot_w_a_x_w_a_x_fa_y_fb_z;
+    g[3] = -(va.wx - vb.wx) * (w_a_x_fa_y_x_fb_z_x - w_b_x_fb_z_x_fa_y_x) - (va.wy - vb.wy) *
+        (w_a_x_fa_y_x_fb_z_y - w_b_x_fb_z_x_fa_y_y) - (va.wz - vb.wz) *
+        (w_a_x_fa_y_x_fb_z_z - w_b_x_fb_z_x_fa_y_z);
   }
 
   // dC/dt at fixed q: nothing
