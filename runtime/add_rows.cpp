@@ -49,6 +49,7 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
     grow(batch.softness, ops->rows);
     grow(batch.lower, ops->rows, -std::numeric_limits<T>::infinity());
     grow(batch.upper, ops->rows, std::numeric_limits<T>::infinity());
+    grow(batch.mode, ops->rows, Mode::bounded);
     for (double constant : constants) batch.constants.push_back(T(constant));
   }
   if (ops->start_counting) {

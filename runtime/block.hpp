@@ -2,6 +2,7 @@
 // joint, coordinate or immovable variant stands behind a block is not known here.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "runtime/bodies.hpp"
@@ -32,6 +33,8 @@ struct BlockOps {
   void (*evaluate)(Slots, int begin, int end, const Bodies<S>&, T time);
   // C alone, at the present poses.
   void (*position)(Slots, int begin, int end, const Bodies<S>&, T time);
+  // gamma = -Jdot v - d/dt(dC/dt) at the present poses and velocities.
+  void (*gamma)(const Batch<S>&, int begin, int end, const Bodies<S>&, T time, T* gamma);
   // K from J, one triangle, into `factor`; and in its place its factorisation.
   void (*effective_mass)(Slots, int begin, int end, const Bodies<S>&);
   void (*factorize)(Slots, int begin, int end);
@@ -59,6 +62,30 @@ struct BlockOps {
                         typename S::Stiffness* stiffness);
 };
 
+// What a row under a law does between two events, for integrators at acceleration level.
+enum class Mode : char {
+  bounded,  // whatever its bounds allow, found anew in every step: for the other integrators
+  off,      // out of reach or letting go: no force
+  held,     // keeps its rate, with a force within its bounds
+  pushed,   // its force is known: that of a spring, or a bound that it has reached
+};
+
+// When a row under a law acts, and what it then does. One bound at 0 makes it one-sided: it acts where C has come to
+// `end`, and its force then pushes away from there.
+template <class T>
+struct Guard {
+  T off_by;        // C - end: what is to be corrected while the row is held; 0 for rows without an end
+  T rate;          // that J v + dC/dt has while the row is held
+  T lower, upper;  // of its force
+  bool one_sided() const { return (lower == T(0)) != (upper == T(0)); }
+  bool bilateral() const { return std::isinf(lower) && std::isinf(upper); }
+  // How far from acting; only for one-sided rows.
+  T gap() const { return lower == T(0) ? off_by : -off_by; }
+};
+
+// No row block has more rows.
+inline constexpr int most_rows = 8;
+
 // How rows that are not plainly exact get their bias, softness and bounds: one constant per effect,
 // defined where the effect is. A batch under no law has none of these numbers.
 template <class S>
@@ -73,6 +100,9 @@ struct Law {
   void (*error)(const Batch<S>&, int slot, T* error);
   // Potential energy of one slot. Null: none.
   double (*energy)(const Batch<S>&, int slot);
+  // Of one slot, row by row, from C and its rate: the force of a spring; or, where that is null, when the row acts.
+  void (*force)(const Batch<S>&, int slot, const T* rate, T* force);
+  void (*guard)(const Batch<S>&, int slot, Guard<T>* guards);
 };
 
 // All blocks of one kind under one law, slot by slot. Slots of an island are neighbours.
@@ -95,13 +125,14 @@ struct Batch {
   std::vector<T> counters;  // [slot][ops->counters]
   // Only under a law:
   std::vector<T> softness, lower, upper;  // [slot][rows]
+  std::vector<Mode> mode;                 // [slot][rows]
   std::vector<T> constants;               // [slot][law->constants]
 
   int count() const { return static_cast<int>(joint.size()); }
   // Everything that is kept per slot.
   template <class F>
   void for_each_array(F f) {
-    f(joint), f(body);
+    f(joint), f(body), f(mode);
     for (auto* array : {&parameters, &jacobian, &factor, &C, &bias, &lambda, &correction, &scratch,
                         &counters, &softness, &lower, &upper, &constants})
       f(*array);

@@ -24,6 +24,7 @@ struct BlockLoops {
   static constexpr int rows = Block::rows;
   static constexpr int width = S::freedom * bodies;
   static constexpr int triangle = rows * (rows + 1) / 2;
+  static_assert(rows <= most_rows);
   using Turns = TurnCounters<S, Joint, Block>;
 
   // An empty struct (all entries of J known) has size 1 but holds nothing.
@@ -94,6 +95,18 @@ struct BlockLoops {
       Block::position(q, as<Parameters>(batch.parameters.data(), slot), time, C);
       count_angle(batch, slot, C);
       for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
+    }
+  }
+
+  static void gamma(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time, T* out) {
+    for (int slot = begin; slot < end; ++slot) {
+      Pose q[bodies];
+      Velocity v[bodies];
+      gather(all.pose, bodies_of(batch, slot), q);
+      gather(all.velocity, bodies_of(batch, slot), v);
+      T g[rows];
+      Block::gamma(q, v, as<Parameters>(batch.parameters.data(), slot), time, g);
+      for (int r = 0; r < rows; ++r) out[slot * rows + r] = g[r];
     }
   }
 
@@ -304,6 +317,7 @@ struct BlockLoops {
             starter(),
             evaluate,
             position,
+            gamma,
             effective_mass,
             factorize,
             velocity,
@@ -329,6 +343,7 @@ constexpr BlockOps<S> ops_without_rows() {
   ops.bodies = Joint::bodies;
   ops.parameter_size = sizeof(Parameters) / sizeof(typename S::Scalar);
   ops.evaluate = ops.position = do_nothing;
+  ops.gamma = do_nothing;
   ops.effective_mass = do_nothing;
   ops.factorize = do_nothing;
   ops.velocity = do_nothing;

@@ -21,6 +21,7 @@ struct Bodies {
   std::vector<typename S::Velocity> force;  // constant, beside gravity
   std::vector<typename S::Velocity>
       acceleration;  // M^-1 force + gravity, constant between calls to set_force
+  std::vector<typename S::Velocity> velocity_rate;  // dv/dt, of integrators at acceleration level
   std::vector<typename S::Velocity> displacement;  // of the drift correction in this step
   std::vector<typename S::Velocity> increment;     // scratch: 0 between its uses
   std::vector<typename S::Stiffness> stiffness;    // of the last step's impulses

@@ -47,6 +47,14 @@ void error_limit(const Batch<S>& batch, int slot, typename S::Scalar* error) {
       nearer_to_lower(C, limits) ? std::fmin(C - limits[0], T(0)) : std::fmax(C - limits[1], T(0));
 }
 
+template <class S>
+void guard_limit(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* guard) {
+  using T = typename S::Scalar;
+  const T C = batch.C[slot], *limits = batch.constants.data() + 2 * slot;
+  *guard = nearer_to_lower(C, limits) ? Guard<T>{C - limits[0], T(0), T(0), T(unlimited)}
+                                      : Guard<T>{C - limits[1], T(0), -T(unlimited), T(0)};
+}
+
 // --- lock, a limit whose ends are one: C = at. Constants: at.
 
 template <class S>
@@ -62,6 +70,12 @@ void error_lock(const Batch<S>& batch, int slot, typename S::Scalar* error) {
   *error = batch.C[slot] - batch.constants[slot];
 }
 
+template <class S>
+void guard_lock(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* guard) {
+  using T = typename S::Scalar;
+  *guard = {batch.C[slot] - batch.constants[slot], T(0), -T(unlimited), T(unlimited)};
+}
+
 // --- motor: J v = speed, as far as its force reaches. Constants: speed, largest force.
 // --- dry friction is a motor of speed 0.
 
@@ -73,6 +87,12 @@ void fill_motor(Batch<S>& batch, int begin, int end, typename S::Scalar h, const
     batch.upper[i] = h * constants[1];
     batch.lower[i] = -batch.upper[i];
   }
+}
+
+template <class S>
+void guard_motor(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* guard) {
+  const auto* constants = batch.constants.data() + 2 * slot;
+  *guard = {0, constants[0], -constants[1], constants[1]};
 }
 
 // --- spring and damper about a rest position. Constants: those of spring_constants(), rest.
@@ -95,13 +115,22 @@ double energy_spring(const Batch<S>& batch, int slot) {
 }
 
 template <class S>
-constexpr Law<S> limit_law{2, false, fill_limit<S>, error_limit<S>, nullptr};
+void force_of_spring(const Batch<S>& batch, int slot, const typename S::Scalar* rate,
+                     typename S::Scalar* force) {
+  const auto* constants = batch.constants.data() + 4 * slot;
+  *force = spring_force(batch.C[slot] - constants[3], *rate, batch.factor[slot], constants);
+}
+
 template <class S>
-constexpr Law<S> lock_law{1, false, fill_lock<S>, error_lock<S>, nullptr};
+constexpr Law<S> limit_law{2,       false,   fill_limit<S>, error_limit<S>,
+                           nullptr, nullptr, guard_limit<S>};
 template <class S>
-constexpr Law<S> motor_law{2, false, fill_motor<S>, nullptr, nullptr};
+constexpr Law<S> lock_law{1, false, fill_lock<S>, error_lock<S>, nullptr, nullptr, guard_lock<S>};
 template <class S>
-constexpr Law<S> spring_law{4, false, fill_spring<S>, nullptr, energy_spring<S>};
+constexpr Law<S> motor_law{2, false, fill_motor<S>, nullptr, nullptr, nullptr, guard_motor<S>};
+template <class S>
+constexpr Law<S> spring_law{4,       false, fill_spring<S>, nullptr, energy_spring<S>, force_of_spring<S>,
+                            nullptr};
 
 }  // namespace
 

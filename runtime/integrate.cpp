@@ -13,7 +13,16 @@ void turn_inertias(WorldState<S>& world, Island<S>& island) {
     S::turn(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
     S::turn_acceleration(gyroscope, all.inverse_mass[i], all.acceleration[i]);
     // Under geometric stiffness the effective mass is that of the step's start until the next.
-    if (!world.settings.geometric_stiffness) all.effective_mass[i] = all.inverse_mass[i];
+    if (world.settings.integrator != Integrator::implicit) all.effective_mass[i] = all.inverse_mass[i];
+  });
+}
+
+template <class S>
+void set_inertias(WorldState<S>& world, Island<S>& island) {
+  Bodies<S>& all = world.bodies;
+  for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
+    S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
+    all.effective_mass[i] = all.inverse_mass[i];
   });
 }
 
@@ -36,6 +45,8 @@ void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 
 template void turn_inertias(WorldState<Spatial<double>>&, Island<Spatial<double>>&);
 template void turn_inertias(WorldState<Spatial<float>>&, Island<Spatial<float>>&);
+template void set_inertias(WorldState<Spatial<double>>&, Island<Spatial<double>>&);
+template void set_inertias(WorldState<Spatial<float>>&, Island<Spatial<float>>&);
 #define CDOT_INSTANTIATE(S) template void integrate(WorldState<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

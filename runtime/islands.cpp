@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "runtime/joints.hpp"
+#include "runtime/runge_kutta.hpp"
 #include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 
@@ -140,6 +141,10 @@ void prepare_topology(WorldState<S>& world) {
     std::stable_partition(island.segments.begin(), island.segments.end(),
                           [](const Segment<S>& segment) { return segment.batch->law != nullptr; });
     if (world.settings.solver == Solver::direct) island.system.build(island.segments, world.bodies);
+    island.flow.pose.resize(island.bodies.size());
+    island.flow.velocity.resize(island.bodies.size());
+    if (works_on_accelerations(world.settings.integrator))
+      prepare_flow(island, runge_kutta(world.settings.integrator));
     world.awake.push_back(i);
   }
   world.prepared = true;

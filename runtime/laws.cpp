@@ -35,6 +35,15 @@ void error_unilateral(const Batch<S>& batch, int slot, typename S::Scalar* error
   }
 }
 
+template <class S>
+void guard_unilateral(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* guards) {
+  using T = typename S::Scalar;
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    const T low = batch.kinds[r] == RowKind::inequality ? T(0) : -unbounded<T>;
+    guards[r] = {batch.C[slot * batch.ops->rows + r], T(0), low, unbounded<T>};
+  }
+}
+
 // Out of a unilateral spring's reach the row is exact, so that C cannot leap over 0 within the
 // step.
 template <class S>
@@ -53,6 +62,19 @@ void fill_soft(Batch<S>& batch, int begin, int end, typename S::Scalar h, const 
             : spring_row(C, K, batch.constants.data() + slot * spring_constants_count, h);
     batch.bias[i] += row.bias;
     batch.softness[i] = row.softness;
+  }
+}
+
+template <class S>
+void force_of_soft(const Batch<S>& batch, int slot, const typename S::Scalar* rate,
+                   typename S::Scalar* force) {
+  using T = typename S::Scalar;
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    const T C = batch.C[slot * batch.ops->rows + r];
+    const bool inequality = batch.kinds[r] == RowKind::inequality;
+    const T K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
+    const T pull = spring_force(C, rate[r], K, batch.constants.data() + slot * spring_constants_count);
+    force[r] = inequality && (C > T(0) || pull < T(0)) ? T(0) : pull;
   }
 }
 
@@ -86,13 +108,15 @@ void spring_constants(const Softness& softness, double* constants) {
 
 template <class S>
 const Law<S>& unilateral_law() {
-  static constexpr Law<S> law{0, true, fill_unilateral<S>, error_unilateral<S>, nullptr};
+  static constexpr Law<S> law{0,       true,    fill_unilateral<S>, error_unilateral<S>,
+                              nullptr, nullptr, guard_unilateral<S>};
   return law;
 }
 
 template <class S>
 const Law<S>& soft_law() {
-  static constexpr Law<S> law{spring_constants_count, false, fill_soft<S>, nullptr, energy_soft<S>};
+  static constexpr Law<S> law{spring_constants_count, false, fill_soft<S>, nullptr, energy_soft<S>,
+                              force_of_soft<S>, nullptr};
   return law;
 }
 

@@ -19,32 +19,43 @@ inline constexpr int spring_constants_count = 3;
 // {by_frequency, frequency or stiffness, damping ratio or damping}. Throws Error.
 void spring_constants(const Softness& softness, double* constants);
 
-// An implicit Euler step of a spring with damping on one row, as bias and softness of that row.
-// With k, d from the effective mass if the spring is told by its frequency: k = (2 pi f)^2 / K, d =
-// 2 zeta 2 pi f / K; softness = 1 / (h (d + h k)), bias = C k / (d + h k)       (SFT-1 of the hand
-// derivations)
+// Stiffness k and damping d of a spring on one row; from the effective mass if it is told by its frequency: k = (2 pi
+// f)^2 / K, d = 2 zeta 2 pi f / K.
+template <class T>
+struct SpringNumbers {
+  T k, d;
+};
+template <class T>
+SpringNumbers<T> spring_numbers(T K, const T* constants) {
+  if (constants[0] == T(0)) return {constants[1], constants[2]};
+  const T w = T(6.283185307179586476925) * constants[1], mass = inverse(K);
+  return {mass * w * w, mass * T(2) * constants[2] * w};
+}
+
+// An implicit Euler step of that spring, as bias and softness of the row: softness = 1 / (h (d + h k)), bias = C k / (d
+// + h k)       (SFT-1 of the hand derivations)
 template <class T>
 struct SpringRow {
   T bias, softness;
 };
 template <class T>
 SpringRow<T> spring_row(T C, T K, const T* constants, T h) {
-  T k = constants[1], d = constants[2];
-  if (constants[0] != T(0)) {
-    const T w = T(6.283185307179586476925) * constants[1], mass = inverse(K);
-    k = mass * w * w;
-    d = mass * T(2) * constants[2] * w;
-  }
+  const auto [k, d] = spring_numbers(K, constants);
   const T divisor = inverse(d + h * k);
   return {C * k * divisor, divisor / h};
+}
+
+// -k C - d dC/dt of the same spring
+template <class T>
+T spring_force(T C, T rate, T K, const T* constants) {
+  const auto [k, d] = spring_numbers(K, constants);
+  return -k * C - d * rate;
 }
 
 // k of the same spring, for its energy k C^2 / 2.
 template <class T>
 double spring_stiffness(T K, const T* constants) {
-  if (constants[0] == T(0)) return constants[1];
-  const double w = 6.283185307179586476925 * double(constants[1]);
-  return K > T(0) ? w * w / double(K) : 0.0;
+  return double(spring_numbers(K, constants).k);
 }
 
 // The bias of a row that keeps C >= 0: far away it lets C shrink to 0 within the step but not

@@ -64,6 +64,16 @@ struct Planar {
     return pose(q.x + d.x, q.y + d.y, q.angle + d.w);
   }
 
+  // A pose as plain numbers, for integrators that combine them: {x, y, angle}, and their rates of change.
+  static constexpr int pose_numbers = 3;
+  static void write(const Pose& q, T* to) { to[0] = q.x, to[1] = q.y, to[2] = q.angle; }
+  static Pose read(const T* from) { return pose(from[0], from[1], from[2]); }
+  static void write(const Velocity& v, T* to) { to[0] = v.x, to[1] = v.y, to[2] = v.w; }
+  static Velocity read_velocity(const T* from) { return {from[0], from[1], from[2]}; }
+  static void write_rate(const Pose&, const Velocity& v, T* to) {
+    to[0] = v.x, to[1] = v.y, to[2] = v.w;
+  }
+
   // v + scale * d
   static Velocity sum(const Velocity& v, const Velocity& d, T scale) {
     return {v.x + scale * d.x, v.y + scale * d.y, v.w + scale * d.w};

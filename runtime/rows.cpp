@@ -9,7 +9,7 @@ namespace cdot {
 template <class S>
 void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  if (!world.settings.geometric_stiffness) return;
+  if (world.settings.integrator != Integrator::implicit) return;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.stiffness[i] = {};
   for (const Segment<S>& segment : island.segments)

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "runtime/methods.hpp"
 #include "runtime/run_jacobian.hpp"
 #include "runtime/run_list.hpp"
 #include "runtime/run_output.hpp"
@@ -17,9 +18,9 @@ enum Status { well = 0, answer_is_no = 1, bad_input = 2, stopped = 130 };
 
 struct Arguments {
   std::string scene, csv, html, svg;
-  double until = 0, step = 0, every = 0, tolerance = 0;
+  double until = 0, step = 0, every = 0, tolerance = 0, local_error = 0;
   std::vector<double> times;
-  std::string solver, drift;
+  std::string solver, integrator, drift;
   int iterations = 0, substeps = 0;
   bool project = false, json = false, progress = false;
 };
@@ -48,11 +49,19 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
       ->check(CLI::PositiveNumber);
   simulate->add_option("--step", arguments.step, "the time step [s]")->check(CLI::PositiveNumber);
   simulate->add_option("--solver", arguments.solver, "direct or iterative")
-      ->check(CLI::IsMember({"direct", "iterative"}));
+      ->check(CLI::IsMember(cdot::names_of(cdot::solvers)));
+  simulate
+      ->add_option("--integrator", arguments.integrator,
+                   "euler, implicit (heavy loads on light chains), rattle (long runs), rk4 or dop853 (accuracy)")
+      ->check(CLI::IsMember(cdot::names_of(cdot::integrators)));
+  simulate
+      ->add_option("--local-error", arguments.local_error,
+                   "let rk4 or dop853 choose its steps: the estimated error of one [m, rad, and per s]")
+      ->check(CLI::PositiveNumber);
   simulate
       ->add_option("--drift", arguments.drift,
                    "what keeps joints together: projection, baumgarte or none")
-      ->check(CLI::IsMember({"projection", "baumgarte", "none"}));
+      ->check(CLI::IsMember(cdot::names_of(cdot::drifts)));
   simulate->add_option("--iterations", arguments.iterations, "of the iterative solver, per substep")
       ->check(CLI::PositiveNumber);
   simulate->add_option("--substeps", arguments.substeps, "per step")->check(CLI::PositiveNumber);
@@ -103,11 +112,12 @@ void override_scene(const Arguments& arguments, cdot::Scene& scene) {
   if (arguments.substeps > 0) scene.settings.substeps = arguments.substeps;
   if (arguments.project) scene.project = true;
   cdot::Settings& settings = scene.settings;
-  if (arguments.solver == "direct") settings.solver = cdot::Solver::direct;
-  if (arguments.solver == "iterative") settings.solver = cdot::Solver::iterative;
-  if (arguments.drift == "projection") settings.drift = cdot::Drift::projection;
-  if (arguments.drift == "baumgarte") settings.drift = cdot::Drift::baumgarte;
-  if (arguments.drift == "none") settings.drift = cdot::Drift::none;
+  if (!arguments.solver.empty())
+    settings.solver = cdot::method_called(cdot::solvers, arguments.solver);
+  if (!arguments.integrator.empty())
+    settings.integrator = cdot::method_called(cdot::integrators, arguments.integrator);
+  if (!arguments.drift.empty()) settings.drift = cdot::method_called(cdot::drifts, arguments.drift);
+  if (arguments.local_error > 0) settings.local_error = arguments.local_error;
 }
 
 cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene,

@@ -1,6 +1,7 @@
 // The top of a scene file: what is simulated, for how long, and how.
 #include <fmt/format.h>
 
+#include "runtime/methods.hpp"
 #include "runtime/scene_read.hpp"
 
 namespace cdot {
@@ -16,20 +17,19 @@ void read_time(Entry& top, Scene& scene) {
 }
 
 void read_method(Entry& top, Settings& settings) {
-  if (const auto solver = top.choice("solver", {"direct", "iterative"})) {
-    settings.solver = *solver == "direct" ? Solver::direct : Solver::iterative;
-  }
-  if (const auto drift = top.choice("drift", {"projection", "baumgarte", "none"})) {
-    settings.drift = *drift == "none"        ? Drift::none
-                     : *drift == "baumgarte" ? Drift::baumgarte
-                                             : Drift::projection;
-  }
+  if (const auto solver = top.choice("solver", names_of(solvers)))
+    settings.solver = method_called(solvers, *solver);
+  if (const auto integrator = top.choice("integrator", names_of(integrators)))
+    settings.integrator = method_called(integrators, *integrator);
+  if (const auto drift = top.choice("drift", names_of(drifts)))
+    settings.drift = method_called(drifts, *drift);
+  settings.local_error = top.number("local_error", {Sign::positive}).value_or(settings.local_error);
   settings.iterations = top.whole("iterations", 1).value_or(settings.iterations);
   settings.substeps = top.whole("substeps", 1).value_or(settings.substeps);
   settings.baumgarte = top.number("baumgarte", {Sign::positive}).value_or(settings.baumgarte);
   settings.warm_start = top.flag("warm_start").value_or(settings.warm_start);
-  settings.geometric_stiffness =
-      top.flag("geometric_stiffness").value_or(settings.geometric_stiffness);
+  if (const char* wrong = wrong_with_methods(settings))
+    top.error(top.where(top.has("drift") ? "drift" : "local_error"), wrong);
   if (settings.baumgarte > 1) {
     top.error(top.where("baumgarte"),
               "`baumgarte` is the share of the error removed per step: at most 1");

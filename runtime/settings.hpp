@@ -26,22 +26,50 @@ enum class Drift {
   projection  // Newton on C after every step, the velocities projected as well
 };
 
+enum class Integrator {
+  euler,     // symplectic Euler: first order, cheap
+  implicit,  // linearly implicit in what the joints' tension stiffens: heavy loads on light chains stay quiet
+  rattle,    // RATTLE: second order, symmetric, C and Cdot held to round-off
+  rk4,       // Runge-Kutta of order 4 on accelerations, poses and velocities projected after each step
+  dop853     // Dormand-Prince of order 8, likewise
+};
+
+constexpr bool works_on_accelerations(Integrator integrator) {
+  return integrator == Integrator::rk4 || integrator == Integrator::dop853;
+}
+
 struct Settings {
   Solver solver = Solver::direct;
+  Integrator integrator = Integrator::euler;
+  // Of rk4 and dop853: 0: step(h) takes steps of h / substeps; above, it covers h in steps of their own length, each
+  // with an estimated error below this, in [m], [rad], [m/s] and [rad/s].
+  double local_error = 0;
   Drift drift = Drift::projection;
   int iterations = 10;     // of the iterative solver, per substep
   int substeps = 1;        // step(h) takes this many steps of h / substeps
   double baumgarte = 0.2;  // share of C removed per step, 0 to 1
   bool warm_start = true;  // the iterative solver starts from the impulses of the step before
-  // Adds to the inertias what the joints' tension stiffens (h r.lambda): heavy loads on light
-  // chains stay quiet.
-  bool geometric_stiffness = false;
   double gravity_x = 0;  // [m/s^2]
   double gravity_y = 0;
   double gravity_z = 0;    // in space
   double sleep_after = 0;  // [s] that an island must rest before it sleeps; 0: nothing ever sleeps
   double sleep_speed = 1e-3;  // [m/s] and [rad/s] below which a body counts as resting
 };
+
+// Why these methods do not go together; nullptr if they do.
+constexpr const char* wrong_with_methods(const Settings& s) {
+  const bool accelerations = works_on_accelerations(s.integrator);
+  if (s.local_error > 0 && !accelerations)
+    return "local_error chooses the steps of rk4 and dop853 only";
+  if (s.integrator == Integrator::rattle && s.drift != Drift::projection)
+    return "rattle holds the joints by itself: it needs drift = projection";
+  if (!accelerations) return nullptr;
+  if (s.drift == Drift::baumgarte)
+    return "baumgarte feeds velocities of Euler's steps: rk4 and dop853 need drift = projection";
+  if (s.drift == Drift::none && s.solver == Solver::iterative)
+    return "what the iterative solver leaves in accelerations only drift = projection takes away";
+  return nullptr;
+}
 
 struct BodyDefinition {
   double x = 0, y = 0, angle = 0;  // centre of mass [m], [rad]

@@ -7,10 +7,9 @@
 namespace cdot {
 
 template <class S>
-void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  const bool warm = world.settings.warm_start && world.last_step > 0;
-  const T share = warm ? h / T(world.last_step) : T(0);  // the same force over another time
+void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar share) {
+  const bool warm = world.settings.warm_start;
+  if (!warm) share = 0;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int rows = batch.ops->rows;

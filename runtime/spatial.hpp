@@ -108,6 +108,11 @@ struct Spatial {
     set_angular(v, g.spin);
   }
   static void set_torque(Gyroscope& g, const Velocity& f) { g.torque = angular(f); }
+  // rate += -I^-1 (w x I w), w as it was when the tensors were set
+  static void add_gyroscopic_rate(const Gyroscope& g, const InverseMass& m, Velocity& rate) {
+    const Vector torque = spatial::cross(g.momentum, g.spin);
+    set_angular(rate, angular(rate) + inverse_inertia(m) * torque);
+  }
   // The part of the acceleration that turns with the tensor.
   static void turn_acceleration(const Gyroscope& g, const InverseMass& m, Velocity& acceleration) {
     set_angular(acceleration, inverse_inertia(m) * g.torque);
@@ -141,6 +146,33 @@ struct Spatial {
     Pose to = spatial::turned_by(q, angular(d));
     to.x = q.x + d.x, to.y = q.y + d.y, to.z = q.z + d.z;
     return to;
+  }
+
+  // A pose as plain numbers, for integrators that combine them: {x, y, z, e0, e1, e2, e3}, and their rates of change.
+  // Off the unit sphere, where stages of a step lie, e stands for e / |e|: along the sphere the field is the same, so
+  // that a method keeps its order.
+  static constexpr int pose_numbers = 7;
+  static void write(const Pose& q, T* to) {
+    to[0] = q.x, to[1] = q.y, to[2] = q.z;
+    to[3] = q.e0, to[4] = q.e1, to[5] = q.e2, to[6] = q.e3;
+  }
+  static Pose read(const T* from) {
+    return spatial::oriented(from[0], from[1], from[2], from[3], from[4], from[5], from[6]);
+  }
+  static void write(const Velocity& v, T* to) {
+    to[0] = v.x, to[1] = v.y, to[2] = v.z, to[3] = v.wx, to[4] = v.wy, to[5] = v.wz;
+  }
+  static Velocity read_velocity(const T* from) {
+    return {from[0], from[1], from[2], from[3], from[4], from[5]};
+  }
+  // de/dt = (0, w) e / 2, w in world axes
+  static void write_rate(const Pose& q, const Velocity& v, T* to) {
+    const T x = T(0.5) * v.wx, y = T(0.5) * v.wy, z = T(0.5) * v.wz;
+    to[0] = v.x, to[1] = v.y, to[2] = v.z;
+    to[3] = -x * q.e1 - y * q.e2 - z * q.e3;
+    to[4] = x * q.e0 + y * q.e3 - z * q.e2;
+    to[5] = y * q.e0 + z * q.e1 - x * q.e3;
+    to[6] = z * q.e0 + x * q.e2 - y * q.e1;
   }
 
   // v + scale * d

@@ -14,6 +14,27 @@ void prepare_topology(WorldState<S>& world);
 template <class S>
 void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
 
+// M^-1 of the same forces, explicitly, into Bodies::velocity_rate; and with the gyroscopic torques dv/dt of bodies
+// without joints.
+template <class S>
+void push_free_bodies(WorldState<S>& world, Island<S>& island);
+template <class S>
+void free_accelerations(WorldState<S>& world, Island<S>& island);
+
+// Forces of springs on coordinates, from C and its rate, become both bounds of their rows: slots [begin, end) of a batch
+// under such a law.
+template <class S>
+void find_known_forces(WorldState<S>& world, Batch<S>& batch, int begin, int end);
+
+// The same, and -gamma for the bias of every row; forces of springs become both bounds of their rows.
+template <class S>
+void ask_for_gamma(WorldState<S>& world, Island<S>& island, typename S::Scalar time);
+
+// dv/dt with joints, at the present poses (where C and J are evaluated) and velocities: into Bodies::velocity_rate, and
+// the forces that hold the joints into the batches' lambda.
+template <class S>
+void accelerate(WorldState<S>& world, Island<S>& island, typename S::Scalar time);
+
 // Adds to the inertias what the tension of the last step's impulses stiffens. Only if the settings
 // ask for it.
 template <class S>
@@ -23,9 +44,10 @@ void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar 
 template <class S>
 void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
 
-// Impulses such that J v = -bias, by the solver of the settings.
+// Impulses such that J v = -bias, by the solver of the settings. The iterative one starts from `share` of the impulses
+// at hand, unless warm starting is off.
 template <class S>
-void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar share);
 template <class S>
 void solve_direct(WorldState<S>& world, Island<S>& island);
 
@@ -37,6 +59,9 @@ void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
 // space that has gyroscopes.
 template <class S>
 void turn_inertias(WorldState<S>& world, Island<S>& island);
+// The same with w kept in place of L.
+template <class S>
+void set_inertias(WorldState<S>& world, Island<S>& island);
 template <class S, class F>
 void for_each_gyroscope(WorldState<S>& world, const Island<S>& island, F f) {
   for (int index : island.gyroscopes) f(world.gyroscopes[index], world.gyroscopes[index].body);
@@ -47,6 +72,14 @@ template <class S>
 void settle_poses(WorldState<S>& world, Island<S>& island);
 template <class S>
 void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+
+// One step of h of the integrator of the settings, for one island.
+template <class S>
+void step_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+template <class S>
+void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+template <class S>
+void step_runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
 
 // Islands that have rested long enough fall asleep.
 template <class S>

@@ -44,6 +44,13 @@ class System {
       softness[row] = lambda[row] = 0;
     });
   }
+  // lambda of the rows that do not take part.
+  template <class F>
+  void give(F force) {
+    each_row([&](int row, const Batch<S>& batch, int i) {
+      if (fixed[row]) lambda[row] = force(batch, i);
+    });
+  }
   // Hands lambda of every row to put(batch, i, lambda).
   template <class F>
   void store(F put) {

@@ -26,6 +26,8 @@ void check(const Settings& s) {
   require(s.baumgarte >= 0 && s.baumgarte <= 1, "baumgarte must lie between 0 and 1");
   require(std::isfinite(s.gravity_x) && std::isfinite(s.gravity_y) && std::isfinite(s.gravity_z),
           "gravity must be finite");
+  require(s.local_error >= 0 && std::isfinite(s.local_error), "local_error must be finite and >= 0");
+  if (const char* wrong = wrong_with_methods(s)) throw Error(wrong);
   require(s.sleep_after >= 0 && s.sleep_speed >= 0, "sleep settings must be >= 0");
 }
 
@@ -109,6 +111,20 @@ void set_acceleration(WorldState<S>& world, int body) {
       if (gyroscope.body == body) S::set_torque(gyroscope, all.force[body]);
 }
 
+template <class S>
+void advance(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  switch (world.settings.integrator) {
+    case Integrator::euler:
+    case Integrator::implicit:
+      return step_euler(world, island, h);
+    case Integrator::rattle:
+      return step_rattle(world, island, h);
+    case Integrator::rk4:
+    case Integrator::dop853:
+      return step_runge_kutta(world, island, h);
+  }
+}
+
 }  // namespace
 
 template <class S>
@@ -135,7 +151,7 @@ int BasicWorld<S>::add_body(const BodyDefinition& d) {
   all.effective_mass.push_back(m);
   all.force.push_back(S::components(S::wrench_of(d)));
   all.stiffness.push_back({});
-  for (auto* array : {&all.acceleration, &all.displacement, &all.increment}) array->push_back({});
+  for (auto* array : {&all.acceleration, &all.velocity_rate, &all.displacement, &all.increment}) array->push_back({});
   all.start.push_back(all.pose.back());
   if constexpr (S::has_gyroscopes)
     if (S::is_gyroscope(d)) state_->gyroscopes.push_back(S::gyroscope_of(body, d));
@@ -254,19 +270,7 @@ void BasicWorld<S>::step(double h) {
   const double part = h / world.settings.substeps;
   const T dt = T(part);
   for (int substep = 0; substep < world.settings.substeps; ++substep) {
-    for (int index : world.awake) {
-      auto& island = world.islands[index];
-      settle_poses(world, island);
-      stiffen_bodies(world, island, dt);
-      evaluate_rows(world, island, dt);
-      apply_forces(world, island, dt);
-      if (world.settings.solver == Solver::direct)
-        solve_direct(world, island);
-      else
-        solve_iterative(world, island, dt);
-      integrate(world, island, dt);
-      correct_drift(world, island, dt);
-    }
+    for (int index : world.awake) advance(world, world.islands[index], dt);
     for (const auto& hook : world.after_substep) hook.run(world, dt);
     world.time += part;
     world.last_step = part;

@@ -36,6 +36,23 @@ struct Drag {
   T linear, angular;  // [1/s]
 };
 
+// What an integrator keeps of an island from one stage of a step to the next.
+template <class S>
+struct Flow {
+  using T = typename S::Scalar;
+  std::vector<typename S::Pose> pose;  // RATTLE: at the start of the step, [body]
+  std::vector<typename S::Velocity> velocity;
+  // Runge-Kutta:
+  std::vector<T> start, now;  // poses and velocities as numbers, [body][S::pose_numbers + S::freedom]
+  std::vector<T> rates;       // of them, [stage][...]
+  int guarded = 0;            // rows that come and go at events
+  std::vector<T> row_rates;   // [guarded] J v + dC/dt
+  std::vector<T> margins, margins_at_start;  // [guarded] how far from their next event
+  std::vector<T> low, high;                  // the same, on both sides of an event that is looked for
+  T next_step = 0;            // [s] that the error control proposes; 0: none yet
+  bool known = false;         // C, J, forces and dv/dt belong to the present state
+};
+
 // Bodies that push each other through joints and springs: solved together, and asleep together.
 template <class S>
 struct Island {
@@ -51,8 +68,19 @@ struct Island {
   T residual = std::numeric_limits<T>::infinity();  // largest C left by the last correction
   bool evaluated = false;                           // C and J belong to the present poses
   bool factored = false;                            // and system to that J, all rows free
+  // Integrated in continuous time, from event to event: rows under a law go by their mode.
+  bool continuous = false;
+  Flow<S> flow;
   bool asleep = false;
   double rested = 0;  // [s]
+};
+
+// What the steps of an integrator in continuous time came to.
+struct StepCounts {
+  long long taken = 0, rejected = 0;  // the error estimate was too large
+  long long events = 0;               // located: something touched, let go, slipped or stuck
+  long long rescued = 0;              // ends of steps left to Euler's, for too many events in one
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // [s]
 };
 
 template <class S>
@@ -77,6 +105,8 @@ struct WorldState {
   std::vector<std::pair<int, double>> breaking_loads;  // by joint
   std::vector<Hook> after_substep;
   std::vector<Note> notes;
+
+  StepCounts counts;
 
   bool prepared = false;  // islands, order of slots and patterns are those of the present joints
   std::vector<Island<S>> islands;

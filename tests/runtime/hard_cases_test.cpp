@@ -11,7 +11,7 @@ constexpr double g = 9.81, h = 1.0 / 60;
 
 Settings heavy() {
   Settings s = settings(Solver::direct, Drift::projection, -g);
-  s.geometric_stiffness = true;
+  s.integrator = Integrator::implicit;
   return s;
 }
 

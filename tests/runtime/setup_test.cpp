@@ -57,6 +57,12 @@ TEST(Setup, MistakesInBodiesAreNamed) {
   EXPECT_EQ(world.body_count(), 0);
   EXPECT_THROW(World<double>({.iterations = 0}), Error);
   EXPECT_THROW(World<double>({.baumgarte = 2}), Error);
+  EXPECT_THROW(World<double>({.local_error = 1e-6}), Error);
+  EXPECT_THROW(World<double>({.integrator = Integrator::rk4, .local_error = -1}), Error);
+  EXPECT_THROW(World<double>({.integrator = Integrator::rattle, .drift = Drift::none}), Error);
+  EXPECT_THROW(World<double>({.integrator = Integrator::rk4, .drift = Drift::baumgarte}), Error);
+  EXPECT_THROW(World<double>({.solver = Solver::iterative, .integrator = Integrator::dop853, .drift = Drift::none}),
+               Error);
 }
 
 TEST(Setup, MissingParametersTakeTheSpecsDefaults) {

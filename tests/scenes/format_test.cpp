@@ -108,7 +108,7 @@ TEST(Format, DefaultsAreThoseOfTheReadme) {
   EXPECT_EQ(scene.settings.sleep_after, 0);
   EXPECT_EQ(scene.settings.sleep_speed, 0.001);
   EXPECT_TRUE(scene.settings.warm_start);
-  EXPECT_FALSE(scene.settings.geometric_stiffness);
+  EXPECT_EQ(scene.settings.integrator, Integrator::euler);
   EXPECT_FALSE(scene.project);
 }
 

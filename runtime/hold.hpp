@@ -1,0 +1,41 @@
+// Keeping an island on C = 0 and J v = -dC/dt: Newton on the poses, a projection of the velocities. Shared by the drift
+// correction of first-order steps and by the integrators that work with accelerations.
+#pragma once
+
+#include "runtime/stages.hpp"
+
+namespace cdot {
+
+// C this small is left alone, in metres and radians: mechanisms are of the order of 1 m.
+template <class T>
+inline constexpr T converged = std::is_same_v<T, double> ? T(1e-13) : T(1e-6);
+
+// Displacements and their impulses start at 0.
+template <class S>
+void clear_correction(WorldState<S>& world, Island<S>& island);
+
+// What of C is to be removed at the present poses, into the batches' scratch. Returns its largest entry.
+template <class S>
+typename S::Scalar find_errors(WorldState<S>& world, Island<S>& island, typename S::Scalar time);
+
+// K lambda = share * the errors just found, with the factor at hand; `to` += M^-1 J^T lambda.
+template <class S>
+void solve_errors(WorldState<S>& world, Island<S>& island, typename S::Scalar share,
+                  typename S::Velocity* to);
+
+// C and J at the present poses, and the inertias there: of an island in continuous time with w as it is, of others with
+// the angular momentum as it is.
+template <class S>
+void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar time);
+
+// Moves the poses onto C = 0: with the factor at hand, or, if `fresh`, with J and K at the present poses; by the solver
+// of the settings. Leaves the moves in Bodies::displacement, the rest of C in Island::residual.
+template <class S>
+void hold_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
+
+// Velocities onto J v = -dC/dt, where C and J were just evaluated: exact rows and those that are held. The direct
+// solver then has their factor.
+template <class S>
+void hold_velocities(WorldState<S>& world, Island<S>& island);
+
+}  // namespace cdot

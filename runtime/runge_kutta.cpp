@@ -1,0 +1,147 @@
+#include "runtime/runge_kutta.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/events.hpp"
+#include "runtime/hold.hpp"
+#include "runtime/spaces.hpp"
+
+namespace cdot {
+namespace {
+
+template <class S>
+constexpr int numbers_per_body = S::pose_numbers + S::freedom;
+
+template <class S>
+void read_numbers(const WorldState<S>& world, const Island<S>& island, typename S::Scalar* to) {
+  for (int i : island.bodies) {
+    S::write(world.bodies.pose[i], to);
+    S::write(world.bodies.velocity[i], to + S::pose_numbers);
+    to += numbers_per_body<S>;
+  }
+}
+
+template <class S>
+void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S::Scalar* from) {
+  for (int i : island.bodies) {
+    world.bodies.pose[i] = S::read(from);
+    world.bodies.velocity[i] = S::read_velocity(from + S::pose_numbers);
+    from += numbers_per_body<S>;
+  }
+}
+
+template <class S>
+void read_rates(const WorldState<S>& world, Island<S>& island, int stage) {
+  typename S::Scalar* to = island.flow.rates.data() + static_cast<size_t>(stage) * island.flow.now.size();
+  for (int i : island.bodies) {
+    S::write_rate(world.bodies.pose[i], world.bodies.velocity[i], to);
+    S::write(world.bodies.velocity_rate[i], to + S::pose_numbers);
+    to += numbers_per_body<S>;
+  }
+}
+
+// now = start + h sum_j weights_j rates_j
+template <class S>
+void combine(Flow<S>& flow, const double* weights, int count, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const size_t n = flow.start.size();
+  std::fill(flow.now.begin(), flow.now.end(), T(0));
+  for (int j = 0; j < count; ++j) {
+    if (weights[j] == 0) continue;
+    const T weight = T(weights[j]), *rates = flow.rates.data() + static_cast<size_t>(j) * n;
+    for (size_t k = 0; k < n; ++k) flow.now[k] += weight * rates[k];
+  }
+  for (size_t k = 0; k < n; ++k) flow.now[k] = flow.start[k] + h * flow.now[k];
+}
+
+}  // namespace
+
+template <class S>
+void take_stages(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
+                 typename S::Scalar h) {
+  using T = typename S::Scalar;
+  for (int stage = 1; stage < method.stages; ++stage) {
+    combine(island.flow, method.a[stage], stage, h);
+    set_numbers(world, island, island.flow.now.data());
+    evaluate_anew(world, island, time + T(method.c[stage]) * h);
+    island.factored = false;
+    accelerate(world, island, time + T(method.c[stage]) * h);
+    read_rates(world, island, stage);
+  }
+  combine(island.flow, method.a[method.stages], method.stages, h);
+  set_numbers(world, island, island.flow.now.data());
+}
+
+template <class S>
+void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time) {
+  const bool holds = world.settings.drift == Drift::projection && !island.segments.empty();
+  if (holds) hold_poses(world, island, time, false);
+  evaluate_anew(world, island, time);
+  island.factored = false;
+  if (holds) {
+    hold_velocities(world, island);
+    if constexpr (S::has_gyroscopes) set_inertias(world, island);
+    island.factored = world.settings.solver == Solver::direct;
+  }
+  note_rates(world, island);
+  accelerate(world, island, time);
+  measure_margins(island);
+  read_rates(world, island, method.stages);
+}
+
+// The estimated error of the step in units of the one allowed. Velocities: relative where they exceed 1.
+template <class S>
+double error_of_step(const WorldState<S>& world, const Island<S>& island, const RungeKutta& method,
+                     typename S::Scalar h) {
+  const Flow<S>& flow = island.flow;
+  const size_t n = flow.now.size();
+  double worst[2] = {0, 0};
+  for (size_t k = 0; k < n; ++k) {
+    const bool velocity = k % numbers_per_body<S> >= S::pose_numbers;
+    const double size = velocity ? 1 + std::abs(double(flow.start[k])) : 1;
+    for (int estimate = 0; estimate < 2; ++estimate) {
+      double sum = 0;
+      for (int j = 0; j <= method.stages; ++j)
+        if (method.error[estimate][j] != 0)
+          sum += method.error[estimate][j] * double(flow.rates[static_cast<size_t>(j) * n + k]);
+      const double error = std::abs(double(h) * sum) / (size * world.settings.local_error);
+      if (!(error <= worst[estimate])) worst[estimate] = error;
+    }
+  }
+  if (worst[1] == 0) return worst[0];
+  return worst[0] * worst[0] / std::sqrt(worst[0] * worst[0] + 0.01 * worst[1] * worst[1]);
+}
+
+template <class S>
+void prepare_flow(Island<S>& island, const RungeKutta& method) {
+  Flow<S>& flow = island.flow;
+  const size_t n = island.bodies.size() * numbers_per_body<S>;
+  flow.start.assign(n, 0);
+  flow.now.assign(n, 0);
+  flow.rates.assign(n * static_cast<size_t>(method.stages + 1), 0);
+  count_guarded_rows(island);
+}
+
+template <class S>
+void keep_start(const WorldState<S>& world, Island<S>& island) {
+  read_numbers(world, island, island.flow.start.data());
+  read_rates(world, island, 0);
+}
+
+template <class S>
+void go_back(WorldState<S>& world, Island<S>& island) {
+  set_numbers(world, island, island.flow.start.data());
+}
+
+#define CDOT_INSTANTIATE(S)                                                                       \
+  template void prepare_flow(Island<S>&, const RungeKutta&);                                      \
+  template void keep_start(const WorldState<S>&, Island<S>&);                                     \
+  template void go_back(WorldState<S>&, Island<S>&);                                              \
+  template void take_stages(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar, S::Scalar); \
+  template void settle_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);             \
+  template double error_of_step(const WorldState<S>&, const Island<S>&, const RungeKutta&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,26 @@
+// Symplectic Euler, plain or linearly implicit: velocities first, with whatever holds the joints, then the poses with
+// the new ones, then the drift.
+#include "runtime/spaces.hpp"
+#include "runtime/stages.hpp"
+
+namespace cdot {
+
+template <class S>
+void step_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  settle_poses(world, island);
+  stiffen_bodies(world, island, h);
+  evaluate_rows(world, island, h);
+  apply_forces(world, island, h);
+  if (world.settings.solver == Solver::direct)
+    solve_direct(world, island);
+  else  // the same forces over another time
+    solve_iterative(world, island, world.last_step > 0 ? h / typename S::Scalar(world.last_step) : 0);
+  integrate(world, island, h);
+  correct_drift(world, island, h);
+}
+
+#define CDOT_INSTANTIATE(S) template void step_euler(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

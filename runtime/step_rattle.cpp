@@ -1,0 +1,183 @@
+// RATTLE: half a kick with the joints' impulses along J at the start, such that C = 0 after the drift; the drift; half
+// a kick with impulses along J at the end, such that J v = -dC/dt there. Second order and symmetric: what it does to
+// the energy does not add up. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Limits, motors and friction act at the end
+// of the step, of first order.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/hold.hpp"
+#include "runtime/spaces.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr int newton_rounds = 30;
+
+template <class S>
+void fill_lambda(const Island<S>& island, typename S::Scalar value) {
+  for (const Segment<S>& segment : island.segments) {
+    const int rows = segment.batch->ops->rows;
+    auto& lambda = segment.batch->lambda;
+    std::fill(lambda.begin() + segment.begin * rows, lambda.begin() + segment.end * rows, value);
+  }
+}
+
+// A state that is not the end of a step: on its joints, with the factor of its exact rows.
+template <class S>
+void begin(WorldState<S>& world, Island<S>& island) {
+  if (island.evaluated) return;
+  settle_poses(world, island);
+  evaluate_anew(world, island, typename S::Scalar(world.time));
+  clear_correction(world, island);
+  hold_velocities(world, island);
+  fill_lambda(island, typename S::Scalar(0));
+  island.evaluated = true;
+  island.factored = world.settings.solver == Solver::direct;
+}
+
+// velocity += h dv/dt of all forces, springs on coordinates among them, at the velocities that are in flow.velocity.
+template <class S>
+void kick(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  Bodies<S>& all = world.bodies;
+  std::vector<typename S::Velocity>& other = island.flow.velocity;
+  const auto exchange = [&] {
+    for (size_t k = 0; k < island.bodies.size(); ++k) std::swap(other[k], all.velocity[island.bodies[k]]);
+  };
+  exchange();
+  push_free_bodies(world, island);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law || !batch.law->force) continue;
+    find_known_forces(world, batch, segment.begin, segment.end);
+    batch.ops->apply(batch, segment.begin, segment.end, all, batch.lower.data(), all.velocity_rate.data());
+  }
+  exchange();
+  for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.velocity_rate[i], h);
+}
+
+// What the joints exerted at the end of the step before, they exert at the start of this one: the first guess.
+template <class S>
+void guess_impulses(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const T share = world.last_step > 0 ? h / T(world.last_step) : T(0);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    const int rows = batch.ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
+      batch.correction[i] = batch.scratch[i] = share * batch.lambda[i];
+    batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.scratch.data(),
+                     world.bodies.velocity.data());
+  }
+}
+
+// poses = start + h velocity; bodies whose inertia turns with them about their mean spin.
+template <class S>
+void drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  Bodies<S>& all = world.bodies;
+  const std::vector<typename S::Pose>& start = island.flow.pose;
+  for (size_t k = 0; k < start.size(); ++k) all.pose[island.bodies[k]] = start[k];
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island,
+                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
+  for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], S::sum({}, all.velocity[i], h));
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
+}
+
+// Newton with the factor of the start: K lambda = -C / h, velocity += M^-1 J^T lambda, and the drift again. False if
+// the error does not shrink: the step is too long for it.
+template <class S>
+bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const T time = T(world.time) + h;
+  T before = std::numeric_limits<T>::infinity();
+  for (int round = 0; round < newton_rounds; ++round) {
+    drift(world, island, h);
+    island.residual = find_errors(world, island, time);
+    if (!(island.residual > converged<T>)) return true;
+    // Round-off may stop it earlier than that.
+    if (!(island.residual < T(0.7) * before)) return island.residual <= T(100) * converged<T>;
+    before = island.residual;
+    solve_errors(world, island, T(-1) / h, world.bodies.velocity.data());
+  }
+  return false;
+}
+
+// Motors, limits and friction are solved for with the exact rows. Springs have pushed as forces.
+template <class S>
+void solve_bounded_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  factorize_rows(world, island);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law) continue;
+    batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
+    const int rows = batch.ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i) {
+      batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
+      batch.upper[i] *= T(0.5);
+      if (batch.law->force) batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
+    }
+  }
+  island.factored = false;
+  if (world.settings.solver == Solver::direct)
+    solve_direct(world, island);
+  else
+    solve_iterative(world, island, T(1));
+}
+
+template <class S>
+bool has_laws(const Island<S>& island) {
+  return std::any_of(island.segments.begin(), island.segments.end(),
+                     [](const Segment<S>& segment) { return segment.batch->law != nullptr; });
+}
+
+// The velocities at the end: J v = -dC/dt, the impulses in lambda.
+template <class S>
+void hold_end(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  if (has_laws(island)) return solve_bounded_rows(world, island, h);
+  island.factored = false;
+  if (world.settings.solver == Solver::direct) return solve_direct(world, island);
+  factorize_rows(world, island);
+  solve_iterative(world, island, typename S::Scalar(1));
+}
+
+// Where the drift of RATTLE does not find the joints, poses go there with J renewed on the way.
+template <class S>
+void drift_with_renewed_directions(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  drift(world, island, h);
+  island.residual = 0;
+  correct_drift(world, island, h);
+}
+
+}  // namespace
+
+template <class S>
+void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  Flow<S>& flow = island.flow;
+  begin(world, island);
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    flow.pose[k] = all.pose[island.bodies[k]];
+    flow.velocity[k] = all.velocity[island.bodies[k]];
+  }
+  clear_correction(world, island);
+  kick(world, island, h / 2);
+  guess_impulses(world, island, h);
+  if (world.settings.solver == Solver::iterative || !drift_onto_joints(world, island, h))
+    drift_with_renewed_directions(world, island, h);
+  // The velocity that the end will have, to second order: 2 v_half - v_start.
+  for (size_t k = 0; k < island.bodies.size(); ++k)
+    flow.velocity[k] = S::sum(S::sum({}, all.velocity[island.bodies[k]], T(2)), flow.velocity[k], T(-1));
+  evaluate_anew(world, island, T(world.time) + h);
+  kick(world, island, h / 2);
+  hold_end(world, island, h);
+  island.evaluated = true;
+}
+
+#define CDOT_INSTANTIATE(S) template void step_rattle(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
