@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runtime/methods.hpp"
 #include "runtime/run_simulate.hpp"
 
 namespace cdot {
@@ -14,14 +15,47 @@ std::string failure(const Scene& scene, const RunResult& result) {
         "joint \"{}\" is off by {:.3g} at t = {:.6g} s, more than the tolerance of {:.3g}",
         result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance);
   }
+  if (result.choice && !result.choice->reached)
+    return fmt::format("the accuracy of {:.1e} was not reached: two runs differ by {:.1e}; a shorter run may reach it",
+                       scene.accuracy, result.choice->achieved);
   return {};
 }
+
+namespace {
+
+std::string own_steps_text(const StepCounts& counts) {
+  std::string text = fmt::format("  own steps       {}, from {:.3g} s to {:.3g} s", counts.taken, counts.shortest, counts.longest);
+  if (counts.rejected > 0) text += fmt::format(", {} rejected", counts.rejected);
+  if (counts.events > 0) text += fmt::format(", {} event{} located", counts.events, counts.events == 1 ? "" : "s");
+  if (counts.rescued > 0) text += fmt::format(", {} left to Euler's for too many events", counts.rescued);
+  return text + "\n";
+}
+
+std::string choice_text(const Scene& scene, const Choice& choice) {
+  return fmt::format(
+      "  accuracy        {:.1e} asked for: {}, local error {:.1e}; {:.1e} achieved, from a run of a hundredth of that{}\n",
+      scene.accuracy, name_of(integrators, choice.integrator), choice.local_error, choice.achieved,
+      choice.reached ? "" : ": NOT reached");
+}
+
+nlohmann::ordered_json choice_json(const Scene& scene, const Choice& choice) {
+  return {{"asked", scene.accuracy},
+          {"integrator", name_of(integrators, choice.integrator)},
+          {"local_error", choice.local_error},
+          {"achieved", choice.achieved},
+          {"reached", choice.reached},
+          {"evaluations", choice.evaluations}};
+}
+
+}  // namespace
 
 std::string summary_text(const Scene& scene, const RunResult& result) {
   std::string text = fmt::format("{}\n", scene.title.empty() ? scene.file : scene.title);
   text += fmt::format("  bodies, joints  {}, {}\n", scene.bodies.size(), scene.joints.size());
   text += fmt::format("  time            {:.6g} s in {} steps of {:.6g} s\n", result.time,
                       result.steps, scene.step);
+  if (result.counts.taken > 0) text += own_steps_text(result.counts);
+  if (result.choice) text += choice_text(scene, *result.choice);
   text +=
       fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
                   result.steps > 0 ? 1e6 * result.cpu / static_cast<double>(result.steps) : 0.0);
@@ -44,7 +78,7 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
 
 std::string summary_json(const Scene& scene, const RunResult& result) {
   const std::string why = failure(scene, result);
-  const nlohmann::ordered_json json = {
+  nlohmann::ordered_json json = {
       {"scene", scene.file},
       {"title", scene.title},
       {"ok", why.empty()},
@@ -65,6 +99,12 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
       {"broken_joints", result.broken_joints},
       {"notes", result.notes},
   };
+  if (result.counts.taken > 0)
+    json["own_steps"] = {{"taken", result.counts.taken},
+                         {"rejected", result.counts.rejected},
+                         {"events", result.counts.events},
+                         {"rescued", result.counts.rescued}};
+  if (result.choice) json["accuracy"] = choice_json(scene, *result.choice);
   return json.dump(2) + "\n";
 }
 

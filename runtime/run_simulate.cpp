@@ -79,6 +79,7 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
     if (world.broken(static_cast<int>(k))) result.broken_joints.push_back(scene.joints[k].name);
   }
   result.redundant_rows = world.redundant_rows();
+  result.counts = world.step_counts();
   for (const Note& note : world.notes()) {
     const std::string& joint = scene.joints[static_cast<std::size_t>(note.joint)].name;
     result.notes.push_back(fmt::format("joint \"{}\" {}", joint, note.text));
@@ -125,6 +126,14 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
 }  // namespace
 
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
+  if (scene.accuracy > 0) {
+    const Choice choice = choose_method(scene);
+    Scene chosen = solved_by(choice, scene);
+    chosen.accuracy = 0;
+    RunResult result = simulate(chosen, options, warnings);
+    result.choice = choice;
+    return result;
+  }
   return scene.dimension == Dimension::planar
              ? simulate_in<Planar<double>>(scene, options, warnings)
              : simulate_in<Spatial<double>>(scene, options, warnings);

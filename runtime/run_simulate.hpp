@@ -1,9 +1,11 @@
 // Runs a scene from start to end: rows and film frames on the way, a verdict at the end.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "runtime/choose_method.hpp"
 #include "runtime/run_frame.hpp"
 #include "runtime/scene.hpp"
 
@@ -17,6 +19,8 @@ struct RunOptions {
 };
 
 struct RunResult {
+  std::optional<Choice> choice;  // of a scene that asks for an accuracy
+  StepCounts counts;             // of rk4 and dop853
   double time = 0;  // reached [s]
   long long steps = 0;
   double cpu = 0;  // spent in step() [s]

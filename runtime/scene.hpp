@@ -67,6 +67,7 @@ struct Scene {
   Settings settings;
   double duration = 10;     // [s]
   double step = 0.001;      // [s]
+  double accuracy = 0;      // [m], [rad] that the trajectory shall have, by a method of the runtime's choice; 0: as set
   double tolerance = 0.01;  // [m], [rad]: the joint error from which a run has failed
   bool project = false;     // move an inconsistent start onto the joints
   std::vector<SceneBody> bodies;

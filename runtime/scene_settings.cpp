@@ -1,15 +1,21 @@
 // The top of a scene file: what is simulated, for how long, and how.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "runtime/methods.hpp"
 #include "runtime/scene_read.hpp"
 
 namespace cdot {
 namespace {
 
+// Steps that are chosen for accuracy are only looked at in between, sixty times a second.
 void read_time(Entry& top, Scene& scene) {
   scene.duration = top.number("duration", {Sign::positive}).value_or(scene.duration);
-  scene.step = top.number("step", {Sign::positive}).value_or(scene.step);
+  const double looks = std::ceil(std::max(64.0, 60 * scene.duration));
+  const double step = top.has("local_error") || top.has("accuracy") ? scene.duration / looks : scene.step;
+  scene.step = top.number("step", {Sign::positive}).value_or(step);
   if (scene.step > scene.duration) {
     top.error(top.where("step"), fmt::format("the step of {} s is longer than the duration of {} s",
                                              scene.step, scene.duration));
@@ -36,6 +42,16 @@ void read_method(Entry& top, Settings& settings) {
   }
 }
 
+// An accuracy stands in the place of a method.
+void read_accuracy(Entry& top, Scene& scene) {
+  scene.accuracy = top.number("accuracy", {Sign::positive}).value_or(0);
+  if (!top.has("accuracy")) return;
+  for (const char* key : {"solver", "integrator", "local_error", "drift", "substeps", "iterations"})
+    if (top.has(key))
+      top.error(top.where(key), fmt::format("`accuracy` chooses the method: `{}` has no say beside it", key),
+                fmt::format("leave out `{}`, or `accuracy`", key));
+}
+
 }  // namespace
 
 void read_settings(Entry& top, Scene& scene) {
@@ -52,6 +68,7 @@ void read_settings(Entry& top, Scene& scene) {
   scene.settings.gravity_z = gravity[2];
   read_time(top, scene);
   read_method(top, scene.settings);
+  read_accuracy(top, scene);
   scene.settings.sleep_after = top.number("sleep_after", {Sign::not_negative}).value_or(0);
   scene.settings.sleep_speed =
       top.number("sleep_speed", {Sign::positive}).value_or(scene.settings.sleep_speed);

@@ -20,6 +20,7 @@
 #include "runtime/planar.hpp"
 #include "runtime/settings.hpp"
 #include "runtime/spaces.hpp"
+#include "runtime/step_counts.hpp"
 
 namespace cdot {
 
@@ -122,6 +123,8 @@ class BasicWorld {
   double energy() const;
   // Rows that the direct solver found to depend on others in its last factorisation.
   int redundant_rows() const;
+  // Of rk4 and dop853, since the World was made.
+  const StepCounts& step_counts() const;
   int island_count() const;
   int sleeping_islands() const;
   std::uint64_t hash() const;  // of every bit of poses and velocities

@@ -235,6 +235,10 @@ int BasicWorld<S>::redundant_rows() const {
   return sum;
 }
 template <class S>
+const StepCounts& BasicWorld<S>::step_counts() const {
+  return state_->counts;
+}
+template <class S>
 int BasicWorld<S>::island_count() const {
   return static_cast<int>(state_->islands.size());
 }

@@ -10,6 +10,7 @@
 #include "runtime/block.hpp"
 #include "runtime/bodies.hpp"
 #include "runtime/settings.hpp"
+#include "runtime/step_counts.hpp"
 #include "runtime/system.hpp"
 
 namespace cdot {
@@ -73,14 +74,6 @@ struct Island {
   Flow<S> flow;
   bool asleep = false;
   double rested = 0;  // [s]
-};
-
-// What the steps of an integrator in continuous time came to.
-struct StepCounts {
-  long long taken = 0, rejected = 0;  // the error estimate was too large
-  long long events = 0;               // located: something touched, let go, slipped or stuck
-  long long rescued = 0;              // ends of steps left to Euler's, for too many events in one
-  double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // [s]
 };
 
 template <class S>

@@ -1,0 +1,16 @@
+// What the steps of the integrators that choose their own came to, over all islands.
+#pragma once
+
+#include <limits>
+
+namespace cdot {
+
+struct StepCounts {
+  long long evaluations = 0;          // of an island's accelerations
+  long long taken = 0, rejected = 0;  // the error estimate was too large
+  long long events = 0;               // located: something touched, let go, slipped or stuck
+  long long rescued = 0;              // ends of steps left to Euler's, for too many events in one
+  double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // [s]
+};
+
+}  // namespace cdot
