@@ -17,11 +17,13 @@ double cubic(double p, double u, double q, double v, double h, double s) {
 
 double linear(double p, double q, double s) { return (1 - s) * p + s * q; }
 
-BodyState state_of(const planar::Pose<double>& q, const planar::Velocity<double>& v) {
+template <class T>
+BodyState state_of(const planar::Pose<T>& q, const planar::Velocity<T>& v) {
   return {q.x, q.y, q.angle, v.x, v.y, v.w};
 }
 
-BodyState state_of(const spatial::Pose<double>& q, const spatial::Velocity<double>& v) {
+template <class T>
+BodyState state_of(const spatial::Pose<T>& q, const spatial::Velocity<T>& v) {
   return {q.x, q.y, 0, v.x, v.y, 0, q.z, v.z, q.e0, q.e1, q.e2, q.e3, v.wx, v.wy, v.wz};
 }
 
@@ -62,8 +64,9 @@ Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
   return frame;
 }
 
-template Frame frame_of(const World<double>&, double, int);
-template Frame frame_of(const SpatialWorld<double>&, double, int);
+#define CDOT_INSTANTIATE(S) template Frame frame_of(const BasicWorld<S>&, double, int);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 bool finite(const Frame& frame) {
   for (const BodyState& b : frame.bodies) {

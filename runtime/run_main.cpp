@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "runtime/methods.hpp"
+#include "runtime/run_accuracy.hpp"
 #include "runtime/run_jacobian.hpp"
 #include "runtime/run_list.hpp"
 #include "runtime/run_output.hpp"
@@ -23,6 +24,7 @@ struct Arguments {
   std::string solver, integrator, drift;
   int iterations = 0, substeps = 0;
   bool project = false, json = false, progress = false;
+  cdot::AccuracyOptions accuracy;
 };
 
 constexpr const char* footer = R"(
@@ -31,6 +33,7 @@ Examples
   cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html then open the page
   cdot-run simulate specs/scenes/four_bar.toml --step 0.0001 --every 0.1 -o four_bar.csv
   cdot-run jacobian specs/scenes/four_bar.toml --svg four_bar.svg   the system in blocks and numbers
+  cdot-run accuracy specs/scenes/double_pendulum.toml               what accuracy costs in time
   cdot-run list                                                     the joints that a scene may name
 
 Exit status
@@ -111,6 +114,33 @@ CLI::App* add_jacobian(CLI::App& app, Arguments& arguments) {
   return jacobian;
 }
 
+CLI::App* add_accuracy(CLI::App& app, Arguments& arguments) {
+  CLI::App* accuracy = app.add_subcommand(
+      "accuracy", "Solve a scene in every way at every step, and show what accuracy costs in time");
+  cdot::AccuracyOptions& options = arguments.accuracy;
+  accuracy->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
+  accuracy->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
+      ->check(CLI::PositiveNumber);
+  accuracy->add_option("--budget", options.sweep.budget, "CPU time to spend [s]; more of it: finer steps")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  accuracy->add_option("--rounds", options.sweep.rounds, "how often each run is timed, in turns")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  accuracy->add_option("--levels", options.sweep.levels, "steps or local errors to try per way, at most")
+      ->check(CLI::PositiveNumber);
+  accuracy->add_option("--only", options.only, "only ways with this in their name: direct, rk4, float");
+  accuracy->add_option("--reference", options.reference,
+                       "a trajectory to measure against, as `simulate -o` writes it; else one is made by two methods");
+  accuracy->add_option("-o,--output", options.output,
+                       "write PREFIX.csv, PREFIX.json and PREFIX.svg; else the scene's name with .accuracy");
+  accuracy->add_flag("--resume", options.resume, "go on where this command was interrupted");
+  accuracy->add_flag("--json", options.json, "print JSON");
+  accuracy->add_flag("--progress", arguments.progress, "show progress even where stderr is no terminal");
+  accuracy->footer(footer);
+  return accuracy;
+}
+
 void override_scene(const Arguments& arguments, cdot::Scene& scene) {
   if (arguments.until > 0) scene.duration = arguments.until;
   if (arguments.step > 0) scene.step = arguments.step;
@@ -167,6 +197,17 @@ int simulate(const Arguments& arguments) {
   return cdot::failure(scene, result).empty() ? well : answer_is_no;
 }
 
+int accuracy(const Arguments& arguments) {
+  cdot::Scene scene = cdot::read_scene(arguments.scene);
+  override_scene(arguments, scene);
+  cdot::AccuracyOptions options = arguments.accuracy;
+  options.progress = arguments.progress || ::isatty(STDERR_FILENO) != 0;
+  const cdot::AccuracyOutcome outcome = cdot::measure_accuracy(scene, options);
+  if (!outcome.finished) return stopped;
+  fmt::print("{}", outcome.out);
+  return outcome.answered ? well : answer_is_no;
+}
+
 int jacobian(const Arguments& arguments) {
   const cdot::Scene scene = cdot::read_scene(arguments.scene);
   const cdot::SystemMatrix system = cdot::system_matrix(scene);
@@ -188,12 +229,14 @@ int main(int argc, char** argv) {
   Arguments arguments;
   add_simulate(app, arguments);
   const CLI::App* shown = add_jacobian(app, arguments);
+  const CLI::App* costs = add_accuracy(app, arguments);
   CLI::App* list =
       app.add_subcommand("list", "Show the joints that a scene may name, with their parameters");
   list->add_flag("--json", arguments.json, "as JSON");
   try {
     app.parse(argc, argv);
     if (shown->parsed()) return jacobian(arguments);
+    if (costs->parsed()) return accuracy(arguments);
     if (!list->parsed()) return simulate(arguments);
     fmt::print("{}", arguments.json ? cdot::list_json() : cdot::list_text());
     return well;

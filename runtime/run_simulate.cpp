@@ -3,37 +3,15 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <csignal>
 #include <ctime>
+
+#include "runtime/run_process.hpp"
 
 namespace cdot {
 namespace {
 
 constexpr double start_tolerance =
     1e-6;  // [m], [rad], and per second: what a start may be off unreported
-
-volatile std::sig_atomic_t interrupted = 0;
-void interrupt(int) { interrupted = 1; }
-
-double cpu_now() {
-  timespec now{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-// The world at the start, moved onto its joints if the scene asks for it.
-template <class S>
-BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
-  BasicWorld<S> world = build_world_in<S>(scene);
-  if (scene.project && !world.project(start_tolerance * start_tolerance)) {
-    warnings +=
-        fmt::format("{}: warning: the start could not be projected: joints contradict each other\n",
-                    scene.file);
-  }
-  warnings += inconsistency_report(scene, world, start_tolerance);
-  world.prepare();
-  return world;
-}
 
 // A line on stderr that is written over, at most a few times a second.
 class Progress {
@@ -84,7 +62,7 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
     const std::string& joint = scene.joints[static_cast<std::size_t>(note.joint)].name;
     result.notes.push_back(fmt::format("joint \"{}\" {}", joint, note.text));
   }
-  result.interrupted = interrupted != 0;
+  result.interrupted = Interrupt::asked();
 }
 
 template <class S>
@@ -96,8 +74,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   Sampler film(options.film_times, [&](const Frame& frame) { result.film.push_back(frame); });
   const bool every_step = options.row && options.row_times.empty();
   Progress progress(options.progress, scene.duration);
-  interrupted = 0;
-  const auto previous_handler = std::signal(SIGINT, interrupt);
+  const Interrupt interrupt;
 
   const int bodies = static_cast<int>(scene.bodies.size());
   const auto steps = static_cast<long long>(std::ceil(scene.duration / scene.step * (1 - 1e-12)));
@@ -109,7 +86,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (every_step) options.row(after);
     rows.step(before, after);
     film.step(before, after);
-    if (k == steps || interrupted != 0) break;
+    if (k == steps || Interrupt::asked()) break;
     const double start = cpu_now();
     world.step(scene.step);
     result.cpu += cpu_now() - start;
@@ -118,12 +95,24 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     after = frame_of(world, static_cast<double>(k + 1) * scene.step, bodies);
     progress.at(after.time);
   }
-  std::signal(SIGINT, previous_handler);
   finish(scene, world, result);
   return result;
 }
 
 }  // namespace
+
+template <class S>
+BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
+  BasicWorld<S> world = build_world_in<S>(scene);
+  if (scene.project && !world.project(start_tolerance * start_tolerance)) {
+    warnings +=
+        fmt::format("{}: warning: the start could not be projected: joints contradict each other\n",
+                    scene.file);
+  }
+  warnings += inconsistency_report(scene, world, start_tolerance);
+  world.prepare();
+  return world;
+}
 
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
   if (scene.accuracy > 0) {
@@ -138,5 +127,9 @@ RunResult simulate(const Scene& scene, const RunOptions& options, std::string& w
              ? simulate_in<Planar<double>>(scene, options, warnings)
              : simulate_in<Spatial<double>>(scene, options, warnings);
 }
+
+#define CDOT_INSTANTIATE(S) template BasicWorld<S> world_at_start(const Scene&, std::string&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -34,6 +34,10 @@ struct RunResult {
   std::vector<Frame> film;
 };
 
+// The world at the start, moved onto its joints if the scene asks for it, and prepared.
+template <class S>
+BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings);
+
 // `warnings` receives what was odd but not wrong (an inconsistent start), in the lines of the
 // scene.
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings);

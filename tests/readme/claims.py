@@ -148,6 +148,14 @@ def scenes():
         claim(status == 0, f"scene {k + 1} of specs/scenes/README.md runs" + ("" if status == 0 else ": " + said))
 
 
+def scene_commands():
+    """Every command of specs/scenes/README.md goes well."""
+    for _, language, lines in blocks("specs/scenes/README.md"):
+        for line in lines if language == "sh" else []:
+            status, said = run(line)
+            claim(status == 0, f"`{line}` goes well" + ("" if status == 0 else ": " + said))
+
+
 with tempfile.TemporaryDirectory() as folder:
     place = Path(folder) / "tree"
     place.mkdir()
@@ -162,6 +170,7 @@ with tempfile.TemporaryDirectory() as folder:
     pictures()
     teaching_message()
     scenes()
+    scene_commands()
     own_joint()
 print(f"{len(failures)} claims fail")
 sys.exit(1 if failures else 0)

@@ -1,0 +1,102 @@
+#include "runtime/accuracy_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/rotation.hpp"
+#include "runtime/run_process.hpp"
+#include "runtime/run_simulate.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr double least_measured = 2e-3;  // [s]: a shorter run is repeated,
+constexpr int most_repeats = 16;         // but no more often: every run builds a World, which may cost more than it
+
+// Calls at_sample(time, cpu so far) at every one of the times, until it returns false.
+template <class S, class F>
+void run(BasicWorld<S>& world, const Knob& knob, const std::vector<double>& times, F at_sample) {
+  double from = 0, cpu = 0;
+  for (const double to : times) {
+    const double h = (to - from) / knob.steps;
+    const double start = cpu_now();
+    for (int k = 0; k < knob.steps; ++k) world.step(h);
+    cpu += cpu_now() - start;
+    if (!at_sample(to, cpu)) return;
+    from = to;
+  }
+}
+
+// f(scene, space tag) for the space and precision in which the way computes.
+template <class F>
+auto in_space_of(const Scene& scene, const Way& way, F f) {
+  if (scene.dimension == Dimension::planar) return way.single ? f(Planar<float>{}) : f(Planar<double>{});
+  return way.single ? f(Spatial<float>{}) : f(Spatial<double>{});
+}
+
+}  // namespace
+
+Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
+                         const Stop& stop) {
+  return in_space_of(scene, way, [&]<class S>(S) {
+    Trajectory trajectory;
+    std::string warnings;  // the caller has seen them: they are the scene's, not the way's
+    BasicWorld<S> world = world_at_start<S>(solved_by(way, knob, scene), warnings);
+    const int bodies = static_cast<int>(scene.bodies.size());
+    run(world, knob, times, [&](double time, double cpu) {
+      trajectory.cpu = cpu;
+      const Frame frame = frame_of(world, time, bodies);
+      trajectory.finite = finite(frame);
+      if (!trajectory.finite) return false;
+      trajectory.C = std::max(trajectory.C, frame.worst.value);
+      trajectory.Cdot = std::max(trajectory.Cdot, world.worst_velocity_error().value);
+      trajectory.frames.push_back(frame);
+      trajectory.stopped = stop && stop();
+      return !trajectory.stopped;
+    });
+    return trajectory;
+  });
+}
+
+double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
+              const Stop& stop) {
+  return in_space_of(scene, way, [&]<class S>(S) {
+    const Scene own = solved_by(way, knob, scene);
+    std::string warnings;
+    double total = 0;
+    int runs = 0;
+    for (bool stopped = false; !stopped && total < least_measured && runs < most_repeats; ++runs) {
+      BasicWorld<S> world = world_at_start<S>(own, warnings);
+      double whole = 0;
+      run(world, knob, times, [&](double, double cpu) {
+        whole = cpu;
+        stopped = stop && stop();
+        return !stopped;
+      });
+      total += whole;
+    }
+    return total / runs;
+  });
+}
+
+Apart apart(const Frame& a, const Frame& b, Dimension dimension) {
+  const auto orientation = [](const BodyState& s) { return spatial::oriented(0.0, 0.0, 0.0, s.e0, s.e1, s.e2, s.e3); };
+  Apart worst;
+  for (std::size_t k = 0; k < a.bodies.size(); ++k) {
+    const BodyState &is = a.bodies[k], &was = b.bodies[k];
+    const double turned = dimension == Dimension::planar
+                              ? std::abs(is.angle - was.angle)
+                              : spatial::norm(spatial::turn_between(orientation(is), orientation(was)));
+    worst.position = std::max(worst.position, std::hypot(is.x - was.x, is.y - was.y, is.z - was.z));
+    worst.angle = std::max(worst.angle, turned);
+  }
+  return worst;
+}
+
+std::vector<double> equal_times(double until, int count) {
+  std::vector<double> times;
+  for (int k = 1; k <= count; ++k) times.push_back(until * k / count);
+  return times;
+}
+
+}  // namespace cdot

@@ -1,0 +1,40 @@
+// One run of a scene in one way: the trajectory at given times, what it cost, and how far it is from another.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "runtime/accuracy_ways.hpp"
+#include "runtime/run_frame.hpp"
+
+namespace cdot {
+
+using Stop = std::function<bool()>;  // asked at every sample: shall the run end here?
+
+struct Trajectory {
+  std::vector<Frame> frames;  // at the sample times, until it was stopped or not finite any more
+  double C = 0, Cdot = 0;     // the largest at the samples [m, rad], [m/s, rad/s]
+  double cpu = 0;             // spent in step() [s]
+  bool finite = true, stopped = false;
+};
+
+// `times` ascend and are greater than 0.
+Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
+                         const Stop& stop = {});
+
+// CPU time that step() takes for the whole run [s], nothing looked at on the way. Short runs are repeated until
+// their time can be measured.
+double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
+              const Stop& stop = {});
+
+// The largest differences over the bodies at one time, [m] and [rad]; in space the angle of the turn between.
+struct Apart {
+  double position = 0, angle = 0;
+  double larger() const { return position > angle ? position : angle; }
+};
+Apart apart(const Frame& a, const Frame& b, Dimension dimension);
+
+// n + 1 ends of n equal stretches of [0, until], less the first.
+std::vector<double> equal_times(double until, int count);
+
+}  // namespace cdot

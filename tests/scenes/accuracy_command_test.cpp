@@ -1,0 +1,199 @@
+// What `cdot-run accuracy` says, writes and refuses.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "runtime/run_accuracy.hpp"
+#include "runtime/run_output.hpp"
+#include "tests/scenes/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+// Two points of euler, one of it in float, one failure.
+AccuracyReport report_by_hand() {
+  SweepOptions options;
+  options.ways = {{Integrator::euler, Solver::direct, Drift::projection},
+                  {Integrator::euler, Solver::direct, Drift::projection, 0, true},
+                  {Integrator::euler, Solver::iterative, Drift::baumgarte, 4}};
+  SweepState state;
+  state.reference.times = equal_times(2, sample_count);
+  state.reference.made_by = "this test";
+  const auto point = [&](std::size_t way, int level, double error, double microseconds) {
+    return Point{options.ways[way], level, {}, {error, error / 2, 1e-9, 1e-8, 1e-3}, 0, {microseconds / 1e6}};
+  };
+  state.points = {point(0, 3, 0.04, 10), point(0, 6, 5e-3, 80), point(1, 3, 0.05, 8)};
+  state.points.push_back({options.ways[2], 0, "not finite", {}, 0, {}});
+  return report_of(scene_named("simple_pendulum"), options, state);
+}
+
+TEST(AccuracyReport, SaysWhatToUse) {
+  const std::string text = accuracy_text(report_by_hand());
+  EXPECT_NE(text.find("for 1e-1 use euler + projection, direct, float, step 0.01562 s: 8 us per simulated second; ten "
+                      "times more accuracy costs 10x\n"
+                      "  for 1e-2 use euler + projection, direct, step 0.001953 s: 80 us per simulated second\n"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find("reference       this test, as given\n"), std::string::npos) << text;
+  EXPECT_NE(text.find("3 runs with an answer, 1 without"), std::string::npos) << text;
+}
+
+TEST(AccuracyReport, SaysHowFarItsReferenceCarries) {
+  AccuracyReport report = report_by_hand();
+  report.reference.disagree.assign(sample_count, 1e-13);
+  EXPECT_NE(accuracy_text(report).find("this test agree to 1.0e-13 m, rad\n  error"), std::string::npos);
+  report.reference.disagree.back() = 1e-3;
+  report.reference.settled = "this is why";
+  EXPECT_NE(accuracy_text(report).find("this test agree to 1.0e-03 m, rad\n"
+                                       "                  more than 1e-12 apart: this is why\n"
+                                       "                  errors below 1.0e-02, ten times as much, are not told apart\n"
+                                       "                  until 1.875 s they agree to 1e-09: use --until 1.875\n"),
+            std::string::npos)
+      << accuracy_text(report);
+}
+
+TEST(AccuracyReport, CsvHasTheSameColumnsInEveryRow) {
+  const std::string csv = accuracy_csv(report_by_hand());
+  std::stringstream lines(csv);
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    bool quoted = false;
+    int commas = 0;
+    for (const char c : line) {
+      quoted ^= c == '"';
+      commas += !quoted && c == ',';
+    }
+    EXPECT_EQ(commas, 17) << line;
+  }
+  EXPECT_EQ(count, 5);
+  EXPECT_NE(csv.find("\"euler + projection, direct\",euler,direct,projection,0,double,0.001953125,0,0.005,0.005,0.0025,"
+                     "1e-09,1e-08,0.001,8e-05,0,1,\n"),
+            std::string::npos)
+      << csv;
+}
+
+TEST(AccuracyReport, JsonHasPointsFrontierAndAdvice) {
+  const auto json = nlohmann::json::parse(accuracy_json(report_by_hand()));
+  EXPECT_EQ(json["points"].size(), 3u);
+  EXPECT_EQ(json["failures"][0]["failure"], "not finite");
+  EXPECT_EQ(json["frontier"], (nlohmann::json{2, 0, 1}));
+  EXPECT_EQ(json["advice"][0]["point"], 2);
+  EXPECT_DOUBLE_EQ(json["points"][1]["cpu_per_second"], 80e-6);
+}
+
+TEST(AccuracyReport, PictureIsWellFormed) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "picture.svg";
+  write_file(path, accuracy_svg(report_by_hand()));
+  const CommandResult result =
+      run_command(fmt::format("python3 -c \"import sys, xml.dom.minidom as d; "
+                              "print(len([c for c in d.parse(sys.argv[1]).getElementsByTagName('circle')]))\" '{}'",
+                              path));
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.out, "4\n");  // three points of the frontier and the one of the legend
+}
+
+// --- the command ---
+
+std::string scene_path(const std::string& name) {
+  return fmt::format("'{}'", (scenes_dir() / (name + ".toml")).string());
+}
+
+TEST(AccuracyCommand, WritesThreeFilesAndNoMore) {
+  const TemporaryFolder folder;
+  const std::string prefix = folder / "pendulum";
+  const CommandResult result = cdot_run(fmt::format("accuracy {} --until 0.5 --levels 6 --rounds 1 --budget 5 -o '{}'",
+                                                    scene_path("simple_pendulum"), prefix));
+  EXPECT_EQ(result.status, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_EQ(folder.contents(), (std::vector<std::string>{"pendulum.csv", "pendulum.json", "pendulum.svg"}));
+  EXPECT_NE(result.out.find("the frontier"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("us per simulated second"), std::string::npos) << result.out;
+}
+
+TEST(AccuracyCommand, MeasuresAgainstATrajectory) {
+  const TemporaryFolder folder;
+  const std::string csv = folder / "fine.csv", prefix = folder / "p";
+  ASSERT_EQ(cdot_run(fmt::format("simulate {} --until 0.5 --step 1e-5 --every 0.03125 -o '{}'",
+                                 scene_path("compound_pendulum"), csv))
+                .status,
+            0);
+  const CommandResult result =
+      cdot_run(fmt::format("accuracy {} --until 0.5 --levels 5 --rounds 1 --only 'euler + projection, direct' "
+                           "--reference '{}' -o '{}' --json",
+                           scene_path("compound_pendulum"), csv, prefix));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["samples"], 16);
+  EXPECT_EQ(json["reference"]["made_by"], csv);
+  double before = 1e9;
+  for (const auto& point : json["points"]) {
+    if (point["precision"] != "double") continue;
+    EXPECT_LT(point["error"], 0.7 * before);
+    before = point["error"];
+  }
+  EXPECT_LT(before, 1e9);
+}
+
+TEST(AccuracyCommand, MistakesAreTwoAndSaySo) {
+  const TemporaryFolder folder;
+  const std::string prefix = folder / "p", pendulum = scene_path("simple_pendulum");
+  const auto refused = [&](const std::string& arguments) {
+    const CommandResult result = cdot_run("accuracy " + pendulum + " -o '" + prefix + "' " + arguments);
+    EXPECT_EQ(result.status, 2) << arguments;
+    EXPECT_EQ(result.out, "") << arguments;
+    return result.err;
+  };
+  EXPECT_EQ(refused("--resume"), "cdot-run: " + prefix + ".state.json: cannot be read\n");
+  EXPECT_TRUE(refused("--only magic")
+                  .starts_with("cdot-run: no way of solving has \"magic\" in its name; there are\n  euler, direct\n"));
+  EXPECT_EQ(refused("--reference no.csv"), "cdot-run: no.csv: cannot be read\n");
+  const std::string csv = folder / "r.csv";
+  write_file(csv, "time,bob.x\n");
+  EXPECT_EQ(refused("--reference '" + csv + "'"),
+            "cdot-run: " + csv +
+                ":1: not the columns of this scene, as `cdot-run simulate -o` writes them: "
+                "time,bob.x,bob.y,bob.angle,bob.vx,bob.vy,bob.omega\n");
+  const std::string head = "time,bob.x,bob.y,bob.angle,bob.vx,bob.vy,bob.omega\n";
+  write_file(csv, head);
+  EXPECT_EQ(refused("--reference '" + csv + "'"), "cdot-run: " + csv + ": no row between 0 and 10 s\n");
+  write_file(csv, head + "1,0,0,0,0,0,nan\n");
+  EXPECT_EQ(refused("--reference '" + csv + "'"), "cdot-run: " + csv + ":2: \"nan\" is no finite number\n");
+  write_file(csv, head + "1,0,0,0,0,0\n");
+  EXPECT_EQ(refused("--reference '" + csv + "'"), "cdot-run: " + csv + ":2: 6 numbers where the head names 7\n");
+  write_file(csv, head + "1,0,0,0,0,0,0\n1,0,0,0,0,0,0\n");
+  EXPECT_EQ(refused("--reference '" + csv + "'"), "cdot-run: " + csv + ":3: the times do not ascend\n");
+  EXPECT_EQ(cdot_run("accuracy no_such.toml").status, 2);
+  EXPECT_NE(refused("--budget 0").find("--budget"), std::string::npos);
+}
+
+// Ctrl-C, in the middle: what is there is kept, and the next command ends what this one began.
+TEST(AccuracyCommand, IsInterruptedAndResumed) {
+  const TemporaryFolder folder;
+  const std::string prefix = folder / "p";
+  const std::string arguments =
+      fmt::format("accuracy {} --until 2 -o '{}' --only euler --budget", scene_path("double_pendulum"), prefix);
+  const CommandResult cut =
+      run_command(fmt::format("timeout -s INT --preserve-status 3 '{}' {} 600", CDOT_RUN, arguments));
+  EXPECT_EQ(cut.status, 130) << cut.out << cut.err;
+  EXPECT_EQ(cut.out, "");
+  EXPECT_NE(cut.err.find("runs are kept in " + prefix + ".state.json; --resume goes on from there\n"),
+            std::string::npos)
+      << cut.err;
+  EXPECT_EQ(folder.contents(), std::vector<std::string>{"p.state.json"});
+  const CommandResult rest = cdot_run(arguments + " 2 --rounds 1 --resume");
+  EXPECT_EQ(rest.status, 0) << rest.err;
+  EXPECT_EQ(folder.contents(), (std::vector<std::string>{"p.csv", "p.json", "p.svg"}));
+}
+
+TEST(AccuracyCommand, HelpTeaches) {
+  const CommandResult result = cdot_run("accuracy --help");
+  EXPECT_EQ(result.status, 0);
+  for (const char* word : {"--reference", "--resume", "--budget", "--json", "Exit status"})
+    EXPECT_NE(result.out.find(word), std::string::npos) << word;
+}
+
+}  // namespace
+}  // namespace cdot::test
