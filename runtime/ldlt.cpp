@@ -5,11 +5,11 @@
 namespace cdot {
 namespace {
 
-constexpr auto eliminates = dense::eliminates(dense::Sizes{});
-constexpr auto forwards = dense::forwards(dense::Sizes{});
-constexpr auto backwards = dense::backwards(dense::Sizes{});
-constexpr auto updates = dense::updates<false>(dense::Sizes{});
-constexpr auto updates_of_squares = dense::updates<true>(dense::Sizes{});
+constexpr auto eliminate = dense::all_eliminate(dense::Sizes{});
+constexpr auto forward = dense::all_forward(dense::Sizes{});
+constexpr auto backward = dense::all_backward(dense::Sizes{});
+constexpr auto update = dense::all_update<false>(dense::Sizes{});
+constexpr auto update_of_square = dense::all_update<true>(dense::Sizes{});
 
 std::vector<std::vector<int>> neighbours_of(int count,
                                             const std::vector<std::pair<int, int>>& coupled) {
@@ -37,7 +37,7 @@ void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int
   l_.assign(values_.size(), 0.0);
   inverse_.assign(n, 0.0);
   out_.assign(n, 0);
-  x_.assign(n, 0.0);
+  given_.assign(n, 0.0);
 }
 
 void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order) {
@@ -50,8 +50,12 @@ void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>&
   for (const Elimination& one : order) {
     const int width = rows[one.block], kind = dense::kind(width);
     column_of_[one.block] = static_cast<int>(columns_.size());
-    Column column{first, width, numbers, numbers + width * width, 0, 0, 0, 0, eliminates[kind],
-                  forwards[kind], backwards[kind]};
+    Column column{{first, width, numbers, numbers + width * width, 0, 0},
+                  0,
+                  0,
+                  eliminate[kind],
+                  forward[kind],
+                  backward[kind]};
     for (int neighbour : one.neighbours) column.height += rows[neighbour];
     for (int r = 0; r < width; ++r) {
       diagonal_.push_back(numbers + r * (width + 1));
@@ -84,8 +88,8 @@ void Ldlt::list_updates(const std::vector<int>& rows, const std::vector<Eliminat
       int left = above;
       for (size_t i = j; i < order[k].neighbours.size(); ++i) {
         const int to = order[k].neighbours[i];
-        const auto& table = i == j ? updates_of_squares : updates;
-        updates_.push_back({table[kind][dense::kind(columns)], left * width, above * width,
+        const auto& table = i == j ? update_of_square : update;
+        updates_.push_back({table[kind][dense::kind(columns)], left * width, above,
                             rows[to], columns, place(first(to), first(of)).at});
         left += rows[to];
       }
@@ -105,42 +109,44 @@ Ldlt::Place Ldlt::place(int row, int column) const {
   return {of.panel + static_cast<int>(below) * of.width + within, of.width};
 }
 
+dense::Numbers Ldlt::numbers(const double* added, const char* out) {
+  return {l_.data(),       values_.data(),   added,           out,
+          inverse_.data(), unscaled_.data(), panel_row_.data()};
+}
+
 int Ldlt::factor(const double* added, const char* out) {
   std::copy(values_.begin(), values_.end(), l_.begin());
   std::copy_n(out, out_.size(), out_.begin());
-  double* l = l_.data();
+  any_out_ = std::any_of(out_.begin(), out_.end(), [](char one) { return one != 0; });
+  const dense::Numbers all = numbers(added, out);
   int dependent = 0;
   for (const Column& column : columns_) {
-    dependent += column.eliminate(
-        {l + column.square, l + column.panel, unscaled_.data(), inverse_.data() + column.first,
-         values_.data() + column.square, added + column.first, out + column.first, column.width,
-         column.height},
-        pivot_tolerance);
-    const double* panel = l + column.panel;
+    dependent += column.eliminate(column, all, pivot_tolerance);
+    const double* panel = all.l + column.panel;
     for (int k = column.updates_begin; k < column.updates_end; ++k) {
-      const Update& update = updates_[k];
-      update.run(panel + update.left, unscaled_.data() + update.above, column.width, update.rows,
-                 update.columns, l + update.target);
+      const Update& one = updates_[k];
+      one.run(column, panel + one.left, all.unscaled + one.above, one.rows, one.columns,
+              all.l + one.target);
     }
   }
   return dependent;
 }
 
-void Ldlt::solve(const double* b, double* to) {
-  std::copy_n(b, x_.size(), x_.begin());
-  double* x = x_.data();
-  const double* l = l_.data();
-  for (const Column& column : columns_)
-    column.forward(l + column.square, l + column.panel, inverse_.data() + column.first,
-                   panel_row_.data() + column.rows, column.width, column.height, x + column.first, x);
+void Ldlt::solve(const double* b, double* x) {
+  const size_t n = diagonal_.size();
+  if (any_out_) std::copy_n(b, n, given_.begin());
+  if (x != b) std::copy_n(b, n, x);
+  const dense::Numbers all = numbers(nullptr, nullptr);
+  for (const Column& column : columns_) column.forward(column, all, x);
   for (auto column = columns_.rbegin(); column != columns_.rend(); ++column)
-    column->backward(l + column->square, l + column->panel, panel_row_.data() + column->rows,
-                     column->width, column->height, x + column->first, x);
-  for (size_t k = 0; k < x_.size(); ++k) to[k] = out_[k] ? b[k] : x[k];
+    column->backward(*column, all, x);
+  if (!any_out_) return;
+  for (size_t k = 0; k < n; ++k)
+    if (out_[k]) x[k] = given_[k];
 }
 
 void Ldlt::multiply(const double* x, double* y) const {
-  std::fill_n(y, x_.size(), 0.0);
+  std::fill_n(y, diagonal_.size(), 0.0);
   for (const Column& column : columns_) {
     const double* square = values_.data() + column.square;
     const double* panel = values_.data() + column.panel;

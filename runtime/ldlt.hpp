@@ -47,24 +47,19 @@ class Ldlt {
   long multiplications() const;
 
  private:
-  // A square on the diagonal and, below it, the panel of all rows that it is coupled with.
-  struct Column {
-    int first, width;   // unknowns
-    int square, panel;  // into values_ and l_
-    int height;         // rows of the panel
-    int rows;           // into panel_row_
+  struct Column : dense::Column {
     int updates_begin, updates_end;
     dense::Eliminate eliminate;
-    dense::Forward forward;
-    dense::Backward backward;
+    dense::Sweep forward, backward;
   };
   // What an eliminated column takes from the rows of one block in the column of another.
   struct Update {
     dense::Update run;
-    int left, above;  // numbers from the panel's start
+    int left, above;  // into the panel and into unscaled_
     int rows, columns;
     int target;  // into l_
   };
+  dense::Numbers numbers(const double* added, const char* out);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(const std::vector<int>& rows, const std::vector<Elimination>& order);
 
@@ -77,7 +72,8 @@ class Ldlt {
   std::vector<double> values_, l_;
   std::vector<double> inverse_;  // D^-1 by unknown
   std::vector<char> out_;
-  std::vector<double> unscaled_, x_;
+  bool any_out_ = false;
+  std::vector<double> unscaled_, given_;
 };
 
 }  // namespace cdot
