@@ -29,10 +29,10 @@ std::vector<std::vector<int>> neighbours_of(int count,
 }  // namespace
 
 void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled) {
-  const auto order =
-      minimum_degree_order(rows, neighbours_of(static_cast<int>(rows.size()), coupled));
-  lay_out(rows, order);
-  list_updates(rows, order);
+  const auto neighbours = neighbours_of(static_cast<int>(rows.size()), coupled);
+  lay_out(rows, minimum_degree_order(rows, neighbours, dense::largest));
+  updates_.clear();
+  for (Column& column : columns_) list_updates(column);
   const size_t n = diagonal_.size();
   l_.assign(values_.size(), 0.0);
   inverse_.assign(n, 0.0);
@@ -42,27 +42,28 @@ void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int
 
 void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order) {
   columns_.clear();
-  panel_row_.clear();
   diagonal_.clear();
-  column_of_unknown_.clear();
-  column_of_.assign(rows.size(), 0);
-  int first = 0, numbers = 0, largest_panel = 0;
+  column_of_.clear();
+  panel_row_.clear();
+  first_.assign(rows.size(), 0);
+  int unknowns = 0, numbers = 0, largest_panel = 0;
   for (const Elimination& one : order) {
-    const int width = rows[one.block], kind = dense::kind(width);
-    column_of_[one.block] = static_cast<int>(columns_.size());
-    Column column{{first, width, numbers, numbers + width * width, 0, 0},
-                  0,
-                  0,
-                  eliminate[kind],
-                  forward[kind],
-                  backward[kind]};
+    Column column{{unknowns, 0, numbers, 0, 0, 0}, 0, 0, nullptr, nullptr, nullptr};
+    for (int block : one.blocks) {
+      first_[block] = unknowns;
+      unknowns += rows[block];
+    }
     for (int neighbour : one.neighbours) column.height += rows[neighbour];
+    const int width = column.width = unknowns - column.first, kind = dense::kind(width);
+    column.panel = numbers + width * width;
+    column.eliminate = eliminate[kind];
+    column.forward = forward[kind];
+    column.backward = backward[kind];
     for (int r = 0; r < width; ++r) {
       diagonal_.push_back(numbers + r * (width + 1));
-      column_of_unknown_.push_back(static_cast<int>(columns_.size()));
+      column_of_.push_back(static_cast<int>(columns_.size()));
     }
     columns_.push_back(column);
-    first += width;
     numbers += width * (width + column.height);
     largest_panel = std::max(largest_panel, width * column.height);
   }
@@ -71,38 +72,38 @@ void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>&
   for (size_t k = 0; k < order.size(); ++k) {
     columns_[k].rows = static_cast<int>(panel_row_.size());
     for (int neighbour : order[k].neighbours)
-      for (int r = 0; r < rows[neighbour]; ++r)
-        panel_row_.push_back(columns_[column_of_[neighbour]].first + r);
+      for (int r = 0; r < rows[neighbour]; ++r) panel_row_.push_back(first_[neighbour] + r);
   }
 }
 
-void Ldlt::list_updates(const std::vector<int>& rows, const std::vector<Elimination>& order) {
-  updates_.clear();
-  for (size_t k = 0; k < order.size(); ++k) {
-    Column& column = columns_[k];
-    const int width = column.width, kind = dense::kind(width);
-    column.updates_begin = static_cast<int>(updates_.size());
-    int above = 0;
-    for (size_t j = 0; j < order[k].neighbours.size(); ++j) {
-      const int of = order[k].neighbours[j], columns = rows[of];
-      int left = above;
-      for (size_t i = j; i < order[k].neighbours.size(); ++i) {
-        const int to = order[k].neighbours[i];
-        const auto& table = i == j ? update_of_square : update;
-        updates_.push_back({table[kind][dense::kind(columns)], left * width, above,
-                            rows[to], columns, place(first(to), first(of)).at});
-        left += rows[to];
-      }
-      above += columns;
-    }
-    column.updates_end = static_cast<int>(updates_.size());
+// Of each pair of runs of the panel's rows: a run's unknowns follow each other within one column.
+void Ldlt::list_updates(Column& column) {
+  const int* row = panel_row_.data() + column.rows;
+  std::vector<std::pair<int, int>> runs;  // from row to row of the panel
+  for (int h = 0; h < column.height; ++h) {
+    if (h > 0 && row[h] == row[h - 1] + 1 && column_of_[row[h]] == column_of_[row[h - 1]])
+      runs.back().second = h + 1;
+    else
+      runs.emplace_back(h, h + 1);
   }
+  column.updates_begin = static_cast<int>(updates_.size());
+  for (size_t j = 0; j < runs.size(); ++j) {
+    for (size_t i = j; i < runs.size(); ++i) {
+      const auto [left, left_end] = runs[i];
+      const auto [above, above_end] = runs[j];
+      const Place target = place(row[left], row[above]);
+      const auto& table = i == j ? update_of_square : update;
+      updates_.push_back({{left, left_end - left, above, above_end - above, target.at, target.stride},
+                          table[dense::kind(column.width)][dense::kind(above_end - above)]});
+    }
+  }
+  column.updates_end = static_cast<int>(updates_.size());
 }
 
 Ldlt::Place Ldlt::place(int row, int column) const {
-  const Column& of = columns_[column_of_unknown_[column]];
+  const Column& of = columns_[column_of_[column]];
   const int within = column - of.first;
-  if (column_of_unknown_[row] == column_of_unknown_[column])
+  if (column_of_[row] == column_of_[column])
     return {of.square + (row - of.first) * of.width + within, of.width};
   const auto begin = panel_row_.begin() + of.rows;
   const auto below = std::lower_bound(begin, begin + of.height, row) - begin;
@@ -122,12 +123,8 @@ int Ldlt::factor(const double* added, const char* out) {
   int dependent = 0;
   for (const Column& column : columns_) {
     dependent += column.eliminate(column, all, pivot_tolerance);
-    const double* panel = all.l + column.panel;
-    for (int k = column.updates_begin; k < column.updates_end; ++k) {
-      const Update& one = updates_[k];
-      one.run(column, panel + one.left, all.unscaled + one.above, one.rows, one.columns,
-              all.l + one.target);
-    }
+    for (int k = column.updates_begin; k < column.updates_end; ++k)
+      updates_[k].run(column, updates_[k], all);
   }
   return dependent;
 }

@@ -23,7 +23,7 @@ class Ldlt {
   void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled);
   int size() const { return static_cast<int>(diagonal_.size()); }
   // Unknowns are numbered in the order of elimination. A block's first one:
-  int first(int block) const { return columns_[column_of_[block]].first; }
+  int first(int block) const { return first_[block]; }
 
   // Where in values() K's numbers from (row, column) on lie, row by row `stride` apart, within the
   // two's blocks. These are coupled, and row >= column; of a block with itself the lower triangle
@@ -52,23 +52,19 @@ class Ldlt {
     dense::Eliminate eliminate;
     dense::Sweep forward, backward;
   };
-  // What an eliminated column takes from the rows of one block in the column of another.
-  struct Update {
+  struct Update : dense::Part {
     dense::Update run;
-    int left, above;  // into the panel and into unscaled_
-    int rows, columns;
-    int target;  // into l_
   };
   dense::Numbers numbers(const double* added, const char* out);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
-  void list_updates(const std::vector<int>& rows, const std::vector<Elimination>& order);
+  void list_updates(Column& column);
 
-  std::vector<int> column_of_;          // by block
-  std::vector<int> column_of_unknown_;
+  std::vector<int> first_;  // by block
+  std::vector<int> diagonal_;   // by unknown, into values_
+  std::vector<int> column_of_;  // by unknown
   std::vector<Column> columns_;
   std::vector<int> panel_row_;  // unknown of each row of a panel
   std::vector<Update> updates_;
-  std::vector<int> diagonal_;  // by unknown, into values_
   std::vector<double> values_, l_;
   std::vector<double> inverse_;  // D^-1 by unknown
   std::vector<char> out_;

@@ -18,6 +18,13 @@ struct Column {
   int rows;           // of the panel, into panel_row
 };
 
+// What an eliminated column takes from another: numbers at `target` in l, row by row `stride` apart.
+struct Part {
+  int left, rows;      // of the panel
+  int above, columns;  // rows of the panel that are the other's columns
+  int target, stride;
+};
+
 struct Numbers {
   double* l;             // K; in its place L
   const double* K;       // as it was before any elimination
@@ -76,6 +83,12 @@ struct Few<0> {
   void store(double*) const {}
 };
 
+template <int n>
+Few<n> few(Known<n>, double* from) {
+  return Few<n>(from);
+}
+inline Few<0> few(int, double* from) { return Few<0>(from); }
+
 // --- factor ---
 
 // K = L D L^T of the square, scalar pivot by scalar pivot. Returns how many were round-off beside
@@ -130,19 +143,23 @@ int eliminate(const Column& column, const Numbers& numbers, double tolerance) {
 // target -= L_left (L D)_above^T for some rows of the panel and B others of it. `lower`: they are
 // the same, and only the lower triangle counts.
 template <int A, int B, bool lower>
-void update(const Column& column, const double* left, const double* above, int rows, int columns,
-            double* __restrict target) {
+void update(const Column& column, const Part& part, const Numbers& numbers) {
   const auto a = size<A>(column.width);
-  const auto b = size<B>(columns);
-  const auto subtract = [&](int r, auto s) {
-    double sum = left[r * a] * above[s];
-    for (int k = 1; k < a; ++k) sum += left[r * a + k] * above[k * column.height + s];
-    target[r * b + s] -= sum;
+  const auto b = size<B>(part.columns);
+  const double* left = numbers.l + column.panel + part.left * a;
+  const double* above = numbers.unscaled + part.above;
+  double* __restrict target = numbers.l + part.target;
+  const auto subtract = [&](int r, auto count) {
+    auto row = few(count, target + r * part.stride);
+    times(a, [&](auto k) {
+      times(count, [&](auto s) { row[s] -= left[r * a + k] * above[k * column.height + s]; });
+    });
+    row.store(target + r * part.stride);
   };
   if constexpr (lower)
-    times(b, [&](auto r) { times(next(r), [&](auto s) { subtract(r, s); }); });
+    times(b, [&](auto r) { subtract(r, next(r)); });
   else
-    for (int r = 0; r < rows; ++r) times(b, [&](auto s) { subtract(r, s); });
+    for (int r = 0; r < part.rows; ++r) subtract(r, b);
 }
 
 // --- solve ---
@@ -189,8 +206,7 @@ constexpr int kind(int rows) { return rows <= largest ? rows : 0; }
 using Sizes = std::make_integer_sequence<int, largest + 1>;
 
 using Eliminate = int (*)(const Column&, const Numbers&, double tolerance);
-using Update = void (*)(const Column&, const double* left, const double* above, int rows,
-                        int columns, double* target);
+using Update = void (*)(const Column&, const Part&, const Numbers&);
 using Sweep = void (*)(const Column&, const Numbers&, double* x);
 
 template <int... A>
