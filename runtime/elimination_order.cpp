@@ -66,14 +66,15 @@ void sort_neighbours(std::vector<Elimination>& order, size_t blocks) {
               [&](int i, int j) { return place[i] < place[j]; });
 }
 
-// A block whose neighbours are the next one's, and that one itself, waits for it.
+// A block whose neighbours are the next one's, and that one itself, waits for it: what they leave
+// to others is one update then instead of two. Where they leave nothing they stay apart.
 std::vector<Elimination> joined(std::vector<Elimination> order, const std::vector<int>& rows,
                                 int widest) {
   std::vector<int> holder = places(order, rows.size());
   std::vector<Elimination> joined;
   for (Elimination& one : order) {
     const int next = one.neighbours.empty() ? -1 : holder[one.neighbours.front()];
-    if (next >= 0 && one.neighbours.size() == order[next].neighbours.size() + 1 &&
+    if (one.neighbours.size() > 1 && one.neighbours.size() == order[next].neighbours.size() + 1 &&
         rows_of(one.blocks, rows) + rows_of(order[next].blocks, rows) <= widest)
       order[next].blocks.insert(order[next].blocks.begin(), one.blocks.begin(), one.blocks.end());
     else

@@ -110,16 +110,19 @@ Ldlt::Place Ldlt::place(int row, int column) const {
   return {of.panel + static_cast<int>(below) * of.width + within, of.width};
 }
 
-dense::Numbers Ldlt::numbers(const double* added, const char* out) {
-  return {l_.data(),       values_.data(),   added,           out,
+dense::Numbers Ldlt::numbers(const double* added) {
+  return {l_.data(),       values_.data(),   added,           out_.data(),
           inverse_.data(), unscaled_.data(), panel_row_.data()};
 }
 
 int Ldlt::factor(const double* added, const char* out) {
   std::copy(values_.begin(), values_.end(), l_.begin());
-  std::copy_n(out, out_.size(), out_.begin());
-  any_out_ = std::any_of(out_.begin(), out_.end(), [](char one) { return one != 0; });
-  const dense::Numbers all = numbers(added, out);
+  any_out_ = out != nullptr;
+  if (out)
+    std::copy_n(out, out_.size(), out_.begin());
+  else
+    std::fill(out_.begin(), out_.end(), 0);
+  const dense::Numbers all = numbers(added);
   int dependent = 0;
   for (const Column& column : columns_) {
     dependent += column.eliminate(column, all, pivot_tolerance);
@@ -133,7 +136,7 @@ void Ldlt::solve(const double* b, double* x) {
   const size_t n = diagonal_.size();
   if (any_out_) std::copy_n(b, n, given_.begin());
   if (x != b) std::copy_n(b, n, x);
-  const dense::Numbers all = numbers(nullptr, nullptr);
+  const dense::Numbers all = numbers(nullptr);
   for (const Column& column : columns_) column.forward(column, all, x);
   for (auto column = columns_.rbegin(); column != columns_.rend(); ++column)
     column->backward(*column, all, x);

@@ -36,7 +36,7 @@ class Ldlt {
   double diagonal(int unknown) const { return values_[diagonal_[unknown]]; }
 
   // Factors values() with `added` on the diagonal and the unknowns marked in `out` taken out (their
-  // rows become those of the identity). Returns how many rows depend on others.
+  // rows become those of the identity); null: none. Returns how many rows depend on others.
   int factor(const double* added, const char* out);
   // x = K^-1 b for the last factor(); may be in place.
   void solve(const double* b, double* x);
@@ -55,7 +55,7 @@ class Ldlt {
   struct Update : dense::Part {
     dense::Update run;
   };
-  dense::Numbers numbers(const double* added, const char* out);
+  dense::Numbers numbers(const double* added);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(Column& column);
 

@@ -32,7 +32,7 @@ int System<S>::factor() {
   char any = 0;
   for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
   any_out_ = any != 0;
-  return ldlt_.factor(softness.data(), out_.data());
+  return ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
 }
 
 template <class S>
