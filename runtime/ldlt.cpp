@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "runtime/ldlt_kernels.hpp"
+
 namespace cdot {
 namespace {
 
@@ -28,7 +30,9 @@ std::vector<std::vector<int>> neighbours_of(int count,
 
 }  // namespace
 
-void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled) {
+void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
+                   double tolerance) {
+  tolerance_ = tolerance;
   const auto neighbours = neighbours_of(static_cast<int>(rows.size()), coupled);
   lay_out(rows, minimum_degree_order(rows, neighbours, dense::largest));
   updates_.clear();
@@ -37,6 +41,8 @@ void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int
   l_.assign(values_.size(), 0.0);
   inverse_.assign(n, 0.0);
   out_.assign(n, 0);
+  dependent_.assign(n, 0);
+  factored_ = false;
   given_.assign(n, 0.0);
 }
 
@@ -111,8 +117,16 @@ Ldlt::Place Ldlt::place(int row, int column) const {
 }
 
 dense::Numbers Ldlt::numbers(const double* added) {
-  return {l_.data(),       values_.data(),   added,           out_.data(),
-          inverse_.data(), unscaled_.data(), panel_row_.data()};
+  return {l_.data(),
+          values_.data(),
+          added,
+          out_.data(),
+          inverse_.data(),
+          unscaled_.data(),
+          panel_row_.data(),
+          dependent_.data(),
+          factored_ ? 1 : dense::lasting_count,
+          tolerance_};
 }
 
 int Ldlt::factor(const double* added, const char* out) {
@@ -125,10 +139,11 @@ int Ldlt::factor(const double* added, const char* out) {
   const dense::Numbers all = numbers(added);
   int dependent = 0;
   for (const Column& column : columns_) {
-    dependent += column.eliminate(column, all, pivot_tolerance);
+    dependent += column.eliminate(column, all);
     for (int k = column.updates_begin; k < column.updates_end; ++k)
       updates_[k].run(column, updates_[k], all);
   }
+  factored_ = true;
   return dependent;
 }
 

@@ -7,20 +7,65 @@
 #include <vector>
 
 #include "runtime/elimination_order.hpp"
-#include "runtime/ldlt_kernels.hpp"
 
 namespace cdot {
 
+// What runtime/ldlt_kernels.hpp works on.
+namespace dense {
+
+// A row that depended on others in so many factorisations on end, or in the first of all, is
+// redundant by design. It stays dropped until its pivot is above this share of its diagonal: where
+// joints are a little open, axes that should be parallel are not, and what says nothing new on the
+// joints' manifold would lock the mechanism beside it.
+inline constexpr double lasting_tolerance = 1e-4;
+inline constexpr int lasting_count = 100;
+
+// A column of L: a square on the diagonal and, below it, the panel of all rows that it is coupled
+// with, both row by row.
+struct Column {
+  int first, width;   // unknowns
+  int square, panel;  // into l
+  int height;         // rows of the panel
+  int rows;           // of the panel, into panel_row
+};
+
+// What an eliminated column takes from another: numbers at `target` in l, row by row `stride` apart.
+struct Part {
+  int left, rows;      // of the panel
+  int above, columns;  // rows of the panel that are the other's columns
+  int target, stride;
+};
+
+struct Numbers {
+  double* l;             // K; in its place L
+  const double* K;       // as it was before any elimination
+  const double* added;   // on K's diagonal, by unknown
+  const char* out;       // unknowns that do not take part
+  double* inverse;       // D^-1 by unknown; 0 where it is out or its row depends on others
+  double* unscaled;      // L D of the panel at hand, column by column
+  const int* panel_row;  // unknown of each row of each panel
+  unsigned char* dependent;  // in how many factorisations on end, by unknown
+  int counts;                // for how many this one counts
+  double tolerance;
+};
+
+using Eliminate = int (*)(const Column&, const Numbers&);
+using Update = void (*)(const Column&, const Part&, const Numbers&);
+using Sweep = void (*)(const Column&, const Numbers&, double* x);
+
+}  // namespace dense
+
 class Ldlt {
  public:
-  // Below this share of its original diagonal a pivot is a dependent row: its unknown is set to 0.
-  // Measured on loops with redundant rows: 1e-14 misses some of them, 1e-9 to 1e-12 finds exactly
-  // all.
-  static constexpr double pivot_tolerance = 1e-10;
+  // Below this share of its original diagonal a pivot is round-off: its row depends on those before
+  // it, and its unknown is 0. Loops with redundant rows leave 1e-14 there; a mechanism 1e-5 rad from
+  // a pose in which it loses a row leaves 1e-10. K from floats is further off.
+  static constexpr double pivot_tolerance = 1e-10, pivot_tolerance_of_floats = 1e-7;
 
   // rows: of each block. coupled: pairs of blocks between which K may be nonzero; repetitions do no
   // harm.
-  void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled);
+  void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
+               double tolerance = pivot_tolerance);
   int size() const { return static_cast<int>(diagonal_.size()); }
   // Unknowns are numbered in the order of elimination. A block's first one:
   int first(int block) const { return first_[block]; }
@@ -68,7 +113,9 @@ class Ldlt {
   std::vector<double> values_, l_;
   std::vector<double> inverse_;  // D^-1 by unknown
   std::vector<char> out_;
-  bool any_out_ = false;
+  std::vector<unsigned char> dependent_;
+  bool any_out_ = false, factored_ = false;
+  double tolerance_ = pivot_tolerance;
   std::vector<double> unscaled_, given_;
 };
 

@@ -3,37 +3,14 @@
 // only.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <type_traits>
 #include <utility>
 
+#include "runtime/ldlt.hpp"
+
 namespace cdot::dense {
-
-// A column of L: a square on the diagonal and, below it, the panel of all rows that it is coupled
-// with, both row by row.
-struct Column {
-  int first, width;   // unknowns
-  int square, panel;  // into l
-  int height;         // rows of the panel
-  int rows;           // of the panel, into panel_row
-};
-
-// What an eliminated column takes from another: numbers at `target` in l, row by row `stride` apart.
-struct Part {
-  int left, rows;      // of the panel
-  int above, columns;  // rows of the panel that are the other's columns
-  int target, stride;
-};
-
-struct Numbers {
-  double* l;             // K; in its place L
-  const double* K;       // as it was before any elimination
-  const double* added;   // on K's diagonal, by unknown
-  const char* out;       // unknowns that do not take part
-  double* inverse;       // D^-1 by unknown; 0 where it is out or its row depends on others
-  double* unscaled;      // L D of the panel at hand, column by column
-  const int* panel_row;  // unknown of each row of each panel
-};
 
 // --- loops, unrolled where their length is known ---
 
@@ -94,7 +71,7 @@ inline Few<0> few(int, double* from) { return Few<0>(from); }
 // K = L D L^T of the square, scalar pivot by scalar pivot. Returns how many were round-off beside
 // what their row began with.
 template <int A>
-int factor_square(const Column& column, const Numbers& numbers, double tolerance) {
+int factor_square(const Column& column, const Numbers& numbers) {
   const auto a = size<A>(column.width);
   double* L = numbers.l + column.square;
   const double* K = numbers.K + column.square;
@@ -102,7 +79,7 @@ int factor_square(const Column& column, const Numbers& numbers, double tolerance
   int dependent = 0;
   times(a, [&](auto i) {
     double* row = L + i * a;
-    const double added = numbers.added[column.first + i], original = K[i * a + i] + added;
+    const double added = numbers.added[column.first + i];
     times(i, [&](auto j) { times(j, [&](auto k) { row[j] -= row[k] * L[j * a + k]; }); });
     double pivot = row[i] + added;
     times(i, [&](auto j) {
@@ -110,10 +87,17 @@ int factor_square(const Column& column, const Numbers& numbers, double tolerance
       row[j] *= inverse[j];
       pivot -= unscaled * row[j];
     });
-    const bool out = numbers.out[column.first + i] != 0;
-    const bool independent = pivot > tolerance * original;
-    inverse[i] = independent && !out ? 1.0 / pivot : 0.0;
-    dependent += !independent && !out;
+    inverse[i] = 0.0;
+    if (numbers.out[column.first + i]) return;
+    unsigned char& before = numbers.dependent[column.first + i];
+    const bool lasting = before >= lasting_count && added == 0;
+    if (pivot > (lasting ? lasting_tolerance : numbers.tolerance) * (K[i * a + i] + added)) {
+      inverse[i] = 1.0 / pivot;
+      before = 0;
+    } else {
+      ++dependent;
+      before = static_cast<unsigned char>(std::min(before + numbers.counts, 255));
+    }
   });
   return dependent;
 }
@@ -134,8 +118,8 @@ void factor_panel(const Column& column, const Numbers& numbers) {
 }
 
 template <int A>
-int eliminate(const Column& column, const Numbers& numbers, double tolerance) {
-  const int dependent = factor_square<A>(column, numbers, tolerance);
+int eliminate(const Column& column, const Numbers& numbers) {
+  const int dependent = factor_square<A>(column, numbers);
   factor_panel<A>(column, numbers);
   return dependent;
 }
@@ -204,10 +188,6 @@ void backward(const Column& column, const Numbers& numbers, double* x) {
 inline constexpr int largest = 6;  // rows of a joint
 constexpr int kind(int rows) { return rows <= largest ? rows : 0; }
 using Sizes = std::make_integer_sequence<int, largest + 1>;
-
-using Eliminate = int (*)(const Column&, const Numbers&, double tolerance);
-using Update = void (*)(const Column&, const Part&, const Numbers&);
-using Sweep = void (*)(const Column&, const Numbers&, double* x);
 
 template <int... A>
 constexpr std::array<Eliminate, sizeof...(A)> all_eliminate(std::integer_sequence<int, A...>) {
