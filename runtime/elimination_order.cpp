@@ -8,14 +8,21 @@
 namespace cdot {
 namespace {
 
-// What a block is chosen by: rows of its neighbours, length of the succession that it waits for,
-// its number.
-using Key = std::tuple<int, int, int>;
+// What a block is chosen by: whether its elimination couples blocks that were not, rows of its
+// neighbours, length of the succession that it waits for, its number.
+using Key = std::tuple<bool, int, int, int>;
 
 int rows_of(const std::vector<int>& blocks, const std::vector<int>& rows) {
   int sum = 0;
   for (int block : blocks) sum += rows[block];
   return sum;
+}
+
+bool fills_in(int block, const std::vector<std::vector<int>>& neighbours) {
+  for (int i : neighbours[block])
+    for (int j : neighbours[block])
+      if (j < i && !std::binary_search(neighbours[i].begin(), neighbours[i].end(), j)) return true;
+  return false;
 }
 
 // Both sorted; without i and k.
@@ -33,18 +40,21 @@ std::vector<Elimination> single_order(const std::vector<int>& rows,
                                       std::vector<std::vector<int>> neighbours) {
   const int count = static_cast<int>(rows.size());
   std::vector<Key> key;
-  for (int i = 0; i < count; ++i) key.emplace_back(rows_of(neighbours[i], rows), 0, i);
+  const auto key_of = [&](int i, int succession) {
+    return Key{fills_in(i, neighbours), rows_of(neighbours[i], rows), succession, i};
+  };
+  for (int i = 0; i < count; ++i) key.push_back(key_of(i, 0));
   std::set<Key> waiting(key.begin(), key.end());
   std::vector<Elimination> order;
   while (!waiting.empty()) {
-    const auto [degree, succession, block] = *waiting.begin();
+    const auto [fills, degree, succession, block] = *waiting.begin();
     waiting.erase(waiting.begin());
     order.push_back({{block}, std::move(neighbours[block])});
     const std::vector<int>& clique = order.back().neighbours;
+    for (int i : clique) neighbours[i] = united_without(neighbours[i], clique, i, block);
     for (int i : clique) {
       waiting.erase(key[i]);
-      neighbours[i] = united_without(neighbours[i], clique, i, block);
-      key[i] = {rows_of(neighbours[i], rows), std::max(std::get<1>(key[i]), succession + 1), i};
+      key[i] = key_of(i, std::max(std::get<2>(key[i]), succession + 1));
       waiting.insert(key[i]);
     }
   }
