@@ -31,8 +31,8 @@ std::vector<std::vector<int>> neighbours_of(int count,
 }  // namespace
 
 void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
-                   double tolerance) {
-  tolerance_ = tolerance;
+                   double share) {
+  share_ = share;
   const auto neighbours = neighbours_of(static_cast<int>(rows.size()), coupled);
   lay_out(rows, minimum_degree_order(rows, neighbours, dense::largest));
   updates_.clear();
@@ -40,6 +40,7 @@ void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int
   const size_t n = diagonal_.size();
   l_.assign(values_.size(), 0.0);
   inverse_.assign(n, 0.0);
+  noise_.assign(n, 0.0);
   out_.assign(n, 0);
   dependent_.assign(n, 0);
   factored_ = false;
@@ -126,7 +127,8 @@ dense::Numbers Ldlt::numbers(const double* added) {
           panel_row_.data(),
           dependent_.data(),
           factored_ ? 1 : dense::lasting_count,
-          tolerance_};
+          share_,
+          noise_.data()};
 }
 
 int Ldlt::factor(const double* added, const char* out) {
@@ -136,6 +138,8 @@ int Ldlt::factor(const double* added, const char* out) {
     std::copy_n(out, out_.size(), out_.begin());
   else
     std::fill(out_.begin(), out_.end(), 0);
+  for (size_t k = 0; k < noise_.size(); ++k)
+    noise_[k] = dense::pivot_noise * values_[diagonal_[k]];
   const dense::Numbers all = numbers(added);
   int dependent = 0;
   for (const Column& column : columns_) {

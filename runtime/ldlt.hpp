@@ -17,8 +17,12 @@ namespace dense {
 // redundant by design. It stays dropped until its pivot is above this share of its diagonal: where
 // joints are a little open, axes that should be parallel are not, and what says nothing new on the
 // joints' manifold would lock the mechanism beside it.
-inline constexpr double lasting_tolerance = 1e-4;
+inline constexpr double lasting_share = 1e-4;
 inline constexpr int lasting_count = 100;
+
+// Round-off of a pivot beside what its row began with; delta(pivot_i) = L_ij^2 delta(pivot_j) says
+// what becomes of it in the rows that follow.
+inline constexpr double pivot_noise = 1e-14;
 
 // A column of L: a square on the diagonal and, below it, the panel of all rows that it is coupled
 // with, both row by row.
@@ -46,7 +50,8 @@ struct Numbers {
   const int* panel_row;  // unknown of each row of each panel
   unsigned char* dependent;  // in how many factorisations on end, by unknown
   int counts;                // for how many this one counts
-  double tolerance;
+  double share;
+  double* noise;  // of each pivot to come
 };
 
 using Eliminate = int (*)(const Column&, const Numbers&);
@@ -57,15 +62,17 @@ using Sweep = void (*)(const Column&, const Numbers&, double* x);
 
 class Ldlt {
  public:
-  // Below this share of its original diagonal a pivot is round-off: its row depends on those before
-  // it, and its unknown is 0. Loops with redundant rows leave 1e-14 there; a mechanism 1e-5 rad from
-  // a pose in which it loses a row leaves 1e-10. K from floats is further off.
-  static constexpr double pivot_tolerance = 1e-10, pivot_tolerance_of_floats = 1e-7;
+  // Below this share of its original diagonal, or below what the pivots before it have magnified
+  // round-off to, a pivot says nothing: its row depends on those before it, and its unknown is 0.
+  // Loops with redundant rows leave 1e-14 there; a mechanism 1e-5 rad from a pose in which it loses
+  // a row leaves 1e-10, and magnifies the round-off in rows after it by as much. K from floats is
+  // further off.
+  static constexpr double pivot_share = 1e-10, pivot_share_of_floats = 1e-7;
 
   // rows: of each block. coupled: pairs of blocks between which K may be nonzero; repetitions do no
   // harm.
   void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
-               double tolerance = pivot_tolerance);
+               double share = pivot_share);
   int size() const { return static_cast<int>(diagonal_.size()); }
   // Unknowns are numbered in the order of elimination. A block's first one:
   int first(int block) const { return first_[block]; }
@@ -111,11 +118,11 @@ class Ldlt {
   std::vector<int> panel_row_;  // unknown of each row of a panel
   std::vector<Update> updates_;
   std::vector<double> values_, l_;
-  std::vector<double> inverse_;  // D^-1 by unknown
+  std::vector<double> inverse_, noise_;  // by unknown
   std::vector<char> out_;
   std::vector<unsigned char> dependent_;
   bool any_out_ = false, factored_ = false;
-  double tolerance_ = pivot_tolerance;
+  double share_ = pivot_share;
   std::vector<double> unscaled_, given_;
 };
 

@@ -68,14 +68,14 @@ inline Few<0> few(int, double* from) { return Few<0>(from); }
 
 // --- factor ---
 
-// K = L D L^T of the square, scalar pivot by scalar pivot. Returns how many were round-off beside
-// what their row began with.
+// K = L D L^T of the square, scalar pivot by scalar pivot. Returns how many were round-off.
 template <int A>
 int factor_square(const Column& column, const Numbers& numbers) {
   const auto a = size<A>(column.width);
   double* L = numbers.l + column.square;
   const double* K = numbers.K + column.square;
   double* inverse = numbers.inverse + column.first;
+  double* noise = numbers.noise + column.first;
   int dependent = 0;
   times(a, [&](auto i) {
     double* row = L + i * a;
@@ -86,12 +86,13 @@ int factor_square(const Column& column, const Numbers& numbers) {
       const double unscaled = row[j];
       row[j] *= inverse[j];
       pivot -= unscaled * row[j];
+      noise[i] += row[j] * row[j] * noise[j];
     });
     inverse[i] = 0.0;
     if (numbers.out[column.first + i]) return;
     unsigned char& before = numbers.dependent[column.first + i];
-    const bool lasting = before >= lasting_count && added == 0;
-    if (pivot > (lasting ? lasting_tolerance : numbers.tolerance) * (K[i * a + i] + added)) {
+    const double share = before >= lasting_count && added == 0 ? lasting_share : numbers.share;
+    if (pivot > std::max(share * (K[i * a + i] + added), noise[i])) {
       inverse[i] = 1.0 / pivot;
       before = 0;
     } else {
@@ -108,12 +109,18 @@ void factor_panel(const Column& column, const Numbers& numbers) {
   const auto a = size<A>(column.width);
   const double* L = numbers.l + column.square;
   const double* inverse = numbers.inverse + column.first;
+  const double* noise = numbers.noise + column.first;
+  const int* unknown = numbers.panel_row + column.rows;
   for (int h = 0; h < column.height; ++h) {
     double* panel = numbers.l + column.panel + h * a;
+    double& blurred = numbers.noise[unknown[h]];
     Few<A> row(panel);
     times(a, [&](auto i) { times(i, [&](auto j) { row[i] -= row[j] * L[i * a + j]; }); });
     times(a, [&](auto i) { numbers.unscaled[i * column.height + h] = row[i]; });
-    times(a, [&](auto i) { panel[i] = row[i] * inverse[i]; });
+    times(a, [&](auto i) {
+      panel[i] = row[i] * inverse[i];
+      blurred += panel[i] * panel[i] * noise[i];
+    });
   }
 }
 

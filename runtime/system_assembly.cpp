@@ -113,7 +113,7 @@ void System<S>::order_rows(const Bodies<S>& bodies) {
       for (int j : groups)
         if (j < i) coupled.emplace_back(i, j);
   ldlt_.analyse(rows, coupled,
-                std::is_same_v<T, double> ? Ldlt::pivot_tolerance : Ldlt::pivot_tolerance_of_floats);
+                std::is_same_v<T, double> ? Ldlt::pivot_share : Ldlt::pivot_share_of_floats);
   for (size_t i = 0; i < blocks.size(); ++i) blocks[i].first = ldlt_.first(group[i]) + within[i];
 }
 
