@@ -8,14 +8,21 @@
 namespace cdot {
 namespace {
 
-// What a block is chosen by: rows of its neighbours, length of the succession that it waits for,
-// its number.
-using Key = std::tuple<int, int, int>;
+// What a block is chosen by: whether its elimination couples blocks that were not, rows of its
+// neighbours, length of the succession that it waits for, its number.
+using Key = std::tuple<bool, int, int, int>;
 
 int rows_of(const std::vector<int>& blocks, const std::vector<int>& rows) {
   int sum = 0;
   for (int block : blocks) sum += rows[block];
   return sum;
+}
+
+bool fills_in(int block, const std::vector<std::vector<int>>& neighbours) {
+  for (int i : neighbours[block])
+    for (int j : neighbours[block])
+      if (j < i && !std::binary_search(neighbours[i].begin(), neighbours[i].end(), j)) return true;
+  return false;
 }
 
 // Both sorted; without i and k.
@@ -28,32 +35,73 @@ std::vector<int> united_without(const std::vector<int>& a, const std::vector<int
   return both;
 }
 
-}  // namespace
-
-std::vector<Elimination> minimum_degree_order(const std::vector<int>& rows,
-                                              std::vector<std::vector<int>> neighbours) {
+// One block at a time.
+std::vector<Elimination> single_order(const std::vector<int>& rows,
+                                      std::vector<std::vector<int>> neighbours) {
   const int count = static_cast<int>(rows.size());
   std::vector<Key> key;
-  for (int i = 0; i < count; ++i) key.emplace_back(rows_of(neighbours[i], rows), 0, i);
+  const auto key_of = [&](int i, int succession) {
+    return Key{fills_in(i, neighbours), rows_of(neighbours[i], rows), succession, i};
+  };
+  for (int i = 0; i < count; ++i) key.push_back(key_of(i, 0));
   std::set<Key> waiting(key.begin(), key.end());
   std::vector<Elimination> order;
-  std::vector<int> place(rows.size());
   while (!waiting.empty()) {
-    const auto [degree, succession, block] = *waiting.begin();
+    const auto [fills, degree, succession, block] = *waiting.begin();
     waiting.erase(waiting.begin());
-    place[block] = static_cast<int>(order.size());
-    order.push_back({block, std::move(neighbours[block])});
+    order.push_back({{block}, std::move(neighbours[block])});
     const std::vector<int>& clique = order.back().neighbours;
+    for (int i : clique) neighbours[i] = united_without(neighbours[i], clique, i, block);
     for (int i : clique) {
       waiting.erase(key[i]);
-      neighbours[i] = united_without(neighbours[i], clique, i, block);
-      key[i] = {rows_of(neighbours[i], rows), std::max(std::get<1>(key[i]), succession + 1), i};
+      key[i] = key_of(i, std::max(std::get<2>(key[i]), succession + 1));
       waiting.insert(key[i]);
     }
   }
+  return order;
+}
+
+std::vector<int> places(const std::vector<Elimination>& order, size_t blocks) {
+  std::vector<int> place(blocks);
+  int next = 0;
+  for (const Elimination& one : order)
+    for (int block : one.blocks) place[block] = next++;
+  return place;
+}
+
+void sort_neighbours(std::vector<Elimination>& order, size_t blocks) {
+  const std::vector<int> place = places(order, blocks);
   for (Elimination& one : order)
     std::sort(one.neighbours.begin(), one.neighbours.end(),
               [&](int i, int j) { return place[i] < place[j]; });
+}
+
+// A block whose neighbours are the next one's, and that one itself, waits for it: what they leave
+// to others is one update then instead of two. Where they leave nothing they stay apart.
+std::vector<Elimination> joined(std::vector<Elimination> order, const std::vector<int>& rows,
+                                int widest) {
+  std::vector<int> holder = places(order, rows.size());
+  std::vector<Elimination> joined;
+  for (Elimination& one : order) {
+    const int next = one.neighbours.empty() ? -1 : holder[one.neighbours.front()];
+    if (one.neighbours.size() > 1 && one.neighbours.size() == order[next].neighbours.size() + 1 &&
+        rows_of(one.blocks, rows) + rows_of(order[next].blocks, rows) <= widest)
+      order[next].blocks.insert(order[next].blocks.begin(), one.blocks.begin(), one.blocks.end());
+    else
+      joined.push_back(std::move(one));
+  }
+  return joined;
+}
+
+}  // namespace
+
+std::vector<Elimination> minimum_degree_order(const std::vector<int>& rows,
+                                              std::vector<std::vector<int>> neighbours,
+                                              int widest) {
+  auto order = single_order(rows, std::move(neighbours));
+  sort_neighbours(order, rows.size());
+  order = joined(std::move(order), rows, widest);
+  sort_neighbours(order, rows.size());
   return order;
 }
 

@@ -2,14 +2,16 @@
 
 #include <algorithm>
 
+#include "runtime/ldlt_kernels.hpp"
+
 namespace cdot {
 namespace {
 
-constexpr auto eliminates = dense::eliminates(dense::Sizes{});
-constexpr auto forwards = dense::forwards(dense::Sizes{});
-constexpr auto backwards = dense::backwards(dense::Sizes{});
-constexpr auto updates = dense::updates<false>(dense::Sizes{});
-constexpr auto updates_of_squares = dense::updates<true>(dense::Sizes{});
+constexpr auto eliminate = dense::all_eliminate(dense::Sizes{});
+constexpr auto forward = dense::all_forward(dense::Sizes{});
+constexpr auto backward = dense::all_backward(dense::Sizes{});
+constexpr auto update = dense::all_update<false>(dense::Sizes{});
+constexpr auto update_of_square = dense::all_update<true>(dense::Sizes{});
 
 std::vector<std::vector<int>> neighbours_of(int count,
                                             const std::vector<std::pair<int, int>>& coupled) {
@@ -28,37 +30,47 @@ std::vector<std::vector<int>> neighbours_of(int count,
 
 }  // namespace
 
-void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled) {
-  const auto order =
-      minimum_degree_order(rows, neighbours_of(static_cast<int>(rows.size()), coupled));
-  lay_out(rows, order);
-  list_updates(rows, order);
+void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
+                   double share) {
+  share_ = share;
+  const auto neighbours = neighbours_of(static_cast<int>(rows.size()), coupled);
+  lay_out(rows, minimum_degree_order(rows, neighbours, dense::largest));
+  updates_.clear();
+  for (Column& column : columns_) list_updates(column);
   const size_t n = diagonal_.size();
   l_.assign(values_.size(), 0.0);
   inverse_.assign(n, 0.0);
+  noise_.assign(n, 0.0);
   out_.assign(n, 0);
-  x_.assign(n, 0.0);
+  dependent_.assign(n, 0);
+  factored_ = false;
+  given_.assign(n, 0.0);
 }
 
 void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order) {
   columns_.clear();
-  panel_row_.clear();
   diagonal_.clear();
-  column_of_unknown_.clear();
-  column_of_.assign(rows.size(), 0);
-  int first = 0, numbers = 0, largest_panel = 0;
+  column_of_.clear();
+  panel_row_.clear();
+  first_.assign(rows.size(), 0);
+  int unknowns = 0, numbers = 0, largest_panel = 0;
   for (const Elimination& one : order) {
-    const int width = rows[one.block], kind = dense::kind(width);
-    column_of_[one.block] = static_cast<int>(columns_.size());
-    Column column{first, width, numbers, numbers + width * width, 0, 0, 0, 0, eliminates[kind],
-                  forwards[kind], backwards[kind]};
+    Column column{{unknowns, 0, numbers, 0, 0, 0}, 0, 0, nullptr, nullptr, nullptr};
+    for (int block : one.blocks) {
+      first_[block] = unknowns;
+      unknowns += rows[block];
+    }
     for (int neighbour : one.neighbours) column.height += rows[neighbour];
+    const int width = column.width = unknowns - column.first, kind = dense::kind(width);
+    column.panel = numbers + width * width;
+    column.eliminate = eliminate[kind];
+    column.forward = forward[kind];
+    column.backward = backward[kind];
     for (int r = 0; r < width; ++r) {
       diagonal_.push_back(numbers + r * (width + 1));
-      column_of_unknown_.push_back(static_cast<int>(columns_.size()));
+      column_of_.push_back(static_cast<int>(columns_.size()));
     }
     columns_.push_back(column);
-    first += width;
     numbers += width * (width + column.height);
     largest_panel = std::max(largest_panel, width * column.height);
   }
@@ -67,80 +79,93 @@ void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>&
   for (size_t k = 0; k < order.size(); ++k) {
     columns_[k].rows = static_cast<int>(panel_row_.size());
     for (int neighbour : order[k].neighbours)
-      for (int r = 0; r < rows[neighbour]; ++r)
-        panel_row_.push_back(columns_[column_of_[neighbour]].first + r);
+      for (int r = 0; r < rows[neighbour]; ++r) panel_row_.push_back(first_[neighbour] + r);
   }
 }
 
-void Ldlt::list_updates(const std::vector<int>& rows, const std::vector<Elimination>& order) {
-  updates_.clear();
-  for (size_t k = 0; k < order.size(); ++k) {
-    Column& column = columns_[k];
-    const int width = column.width, kind = dense::kind(width);
-    column.updates_begin = static_cast<int>(updates_.size());
-    int above = 0;
-    for (size_t j = 0; j < order[k].neighbours.size(); ++j) {
-      const int of = order[k].neighbours[j], columns = rows[of];
-      int left = above;
-      for (size_t i = j; i < order[k].neighbours.size(); ++i) {
-        const int to = order[k].neighbours[i];
-        const auto& table = i == j ? updates_of_squares : updates;
-        updates_.push_back({table[kind][dense::kind(columns)], left * width, above * width,
-                            rows[to], columns, place(first(to), first(of)).at});
-        left += rows[to];
-      }
-      above += columns;
-    }
-    column.updates_end = static_cast<int>(updates_.size());
+// Of each pair of runs of the panel's rows: a run's unknowns follow each other within one column.
+void Ldlt::list_updates(Column& column) {
+  const int* row = panel_row_.data() + column.rows;
+  std::vector<std::pair<int, int>> runs;  // from row to row of the panel
+  for (int h = 0; h < column.height; ++h) {
+    if (h > 0 && row[h] == row[h - 1] + 1 && column_of_[row[h]] == column_of_[row[h - 1]])
+      runs.back().second = h + 1;
+    else
+      runs.emplace_back(h, h + 1);
   }
+  column.updates_begin = static_cast<int>(updates_.size());
+  for (size_t j = 0; j < runs.size(); ++j) {
+    for (size_t i = j; i < runs.size(); ++i) {
+      const auto [left, left_end] = runs[i];
+      const auto [above, above_end] = runs[j];
+      const Place target = place(row[left], row[above]);
+      const auto& table = i == j ? update_of_square : update;
+      updates_.push_back({{left, left_end - left, above, above_end - above, target.at, target.stride},
+                          table[dense::kind(column.width)][dense::kind(above_end - above)]});
+    }
+  }
+  column.updates_end = static_cast<int>(updates_.size());
 }
 
 Ldlt::Place Ldlt::place(int row, int column) const {
-  const Column& of = columns_[column_of_unknown_[column]];
+  const Column& of = columns_[column_of_[column]];
   const int within = column - of.first;
-  if (column_of_unknown_[row] == column_of_unknown_[column])
+  if (column_of_[row] == column_of_[column])
     return {of.square + (row - of.first) * of.width + within, of.width};
   const auto begin = panel_row_.begin() + of.rows;
   const auto below = std::lower_bound(begin, begin + of.height, row) - begin;
   return {of.panel + static_cast<int>(below) * of.width + within, of.width};
 }
 
+dense::Numbers Ldlt::numbers(const double* added) {
+  return {l_.data(),
+          values_.data(),
+          added,
+          out_.data(),
+          inverse_.data(),
+          unscaled_.data(),
+          panel_row_.data(),
+          dependent_.data(),
+          factored_ ? 1 : dense::lasting_count,
+          share_,
+          noise_.data()};
+}
+
 int Ldlt::factor(const double* added, const char* out) {
   std::copy(values_.begin(), values_.end(), l_.begin());
-  std::copy_n(out, out_.size(), out_.begin());
-  double* l = l_.data();
+  any_out_ = out != nullptr;
+  if (out)
+    std::copy_n(out, out_.size(), out_.begin());
+  else
+    std::fill(out_.begin(), out_.end(), 0);
+  for (size_t k = 0; k < noise_.size(); ++k)
+    noise_[k] = dense::pivot_noise * values_[diagonal_[k]];
+  const dense::Numbers all = numbers(added);
   int dependent = 0;
   for (const Column& column : columns_) {
-    dependent += column.eliminate(
-        {l + column.square, l + column.panel, unscaled_.data(), inverse_.data() + column.first,
-         values_.data() + column.square, added + column.first, out + column.first, column.width,
-         column.height},
-        pivot_tolerance);
-    const double* panel = l + column.panel;
-    for (int k = column.updates_begin; k < column.updates_end; ++k) {
-      const Update& update = updates_[k];
-      update.run(panel + update.left, unscaled_.data() + update.above, column.width, update.rows,
-                 update.columns, l + update.target);
-    }
+    dependent += column.eliminate(column, all);
+    for (int k = column.updates_begin; k < column.updates_end; ++k)
+      updates_[k].run(column, updates_[k], all);
   }
+  factored_ = true;
   return dependent;
 }
 
-void Ldlt::solve(const double* b, double* to) {
-  std::copy_n(b, x_.size(), x_.begin());
-  double* x = x_.data();
-  const double* l = l_.data();
-  for (const Column& column : columns_)
-    column.forward(l + column.square, l + column.panel, inverse_.data() + column.first,
-                   panel_row_.data() + column.rows, column.width, column.height, x + column.first, x);
+void Ldlt::solve(const double* b, double* x) {
+  const size_t n = diagonal_.size();
+  if (any_out_) std::copy_n(b, n, given_.begin());
+  if (x != b) std::copy_n(b, n, x);
+  const dense::Numbers all = numbers(nullptr);
+  for (const Column& column : columns_) column.forward(column, all, x);
   for (auto column = columns_.rbegin(); column != columns_.rend(); ++column)
-    column->backward(l + column->square, l + column->panel, panel_row_.data() + column->rows,
-                     column->width, column->height, x + column->first, x);
-  for (size_t k = 0; k < x_.size(); ++k) to[k] = out_[k] ? b[k] : x[k];
+    column->backward(*column, all, x);
+  if (!any_out_) return;
+  for (size_t k = 0; k < n; ++k)
+    if (out_[k]) x[k] = given_[k];
 }
 
 void Ldlt::multiply(const double* x, double* y) const {
-  std::fill_n(y, x_.size(), 0.0);
+  std::fill_n(y, diagonal_.size(), 0.0);
   for (const Column& column : columns_) {
     const double* square = values_.data() + column.square;
     const double* panel = values_.data() + column.panel;

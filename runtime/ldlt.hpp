@@ -7,23 +7,75 @@
 #include <vector>
 
 #include "runtime/elimination_order.hpp"
-#include "runtime/ldlt_kernels.hpp"
 
 namespace cdot {
 
+// What runtime/ldlt_kernels.hpp works on.
+namespace dense {
+
+// A row that depended on others in so many factorisations on end, or in the first of all, is
+// redundant by design. It stays dropped until its pivot is above this share of its diagonal: where
+// joints are a little open, axes that should be parallel are not, and what says nothing new on the
+// joints' manifold would lock the mechanism beside it.
+inline constexpr double lasting_share = 1e-4;
+inline constexpr int lasting_count = 100;
+
+// Round-off of a pivot beside what its row began with; delta(pivot_i) = L_ij^2 delta(pivot_j) says
+// what becomes of it in the rows that follow.
+inline constexpr double pivot_noise = 1e-14;
+
+// A column of L: a square on the diagonal and, below it, the panel of all rows that it is coupled
+// with, both row by row.
+struct Column {
+  int first, width;   // unknowns
+  int square, panel;  // into l
+  int height;         // rows of the panel
+  int rows;           // of the panel, into panel_row
+};
+
+// What an eliminated column takes from another: numbers at `target` in l, row by row `stride` apart.
+struct Part {
+  int left, rows;      // of the panel
+  int above, columns;  // rows of the panel that are the other's columns
+  int target, stride;
+};
+
+struct Numbers {
+  double* l;             // K; in its place L
+  const double* K;       // as it was before any elimination
+  const double* added;   // on K's diagonal, by unknown
+  const char* out;       // unknowns that do not take part
+  double* inverse;       // D^-1 by unknown; 0 where it is out or its row depends on others
+  double* unscaled;      // L D of the panel at hand, column by column
+  const int* panel_row;  // unknown of each row of each panel
+  unsigned char* dependent;  // in how many factorisations on end, by unknown
+  int counts;                // for how many this one counts
+  double share;
+  double* noise;  // of each pivot to come
+};
+
+using Eliminate = int (*)(const Column&, const Numbers&);
+using Update = void (*)(const Column&, const Part&, const Numbers&);
+using Sweep = void (*)(const Column&, const Numbers&, double* x);
+
+}  // namespace dense
+
 class Ldlt {
  public:
-  // Below this share of its original diagonal a pivot is a dependent row: its unknown is set to 0.
-  // Measured on loops with redundant rows: 1e-14 misses some of them, 1e-9 to 1e-12 finds exactly
-  // all.
-  static constexpr double pivot_tolerance = 1e-10;
+  // Below this share of its original diagonal, or below what the pivots before it have magnified
+  // round-off to, a pivot says nothing: its row depends on those before it, and its unknown is 0.
+  // Loops with redundant rows leave 1e-14 there; a mechanism 1e-5 rad from a pose in which it loses
+  // a row leaves 1e-10, and magnifies the round-off in rows after it by as much. K from floats is
+  // further off.
+  static constexpr double pivot_share = 1e-10, pivot_share_of_floats = 1e-7;
 
   // rows: of each block. coupled: pairs of blocks between which K may be nonzero; repetitions do no
   // harm.
-  void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled);
+  void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
+               double share = pivot_share);
   int size() const { return static_cast<int>(diagonal_.size()); }
   // Unknowns are numbered in the order of elimination. A block's first one:
-  int first(int block) const { return columns_[column_of_[block]].first; }
+  int first(int block) const { return first_[block]; }
 
   // Where in values() K's numbers from (row, column) on lie, row by row `stride` apart, within the
   // two's blocks. These are coupled, and row >= column; of a block with itself the lower triangle
@@ -36,7 +88,7 @@ class Ldlt {
   double diagonal(int unknown) const { return values_[diagonal_[unknown]]; }
 
   // Factors values() with `added` on the diagonal and the unknowns marked in `out` taken out (their
-  // rows become those of the identity). Returns how many rows depend on others.
+  // rows become those of the identity); null: none. Returns how many rows depend on others.
   int factor(const double* added, const char* out);
   // x = K^-1 b for the last factor(); may be in place.
   void solve(const double* b, double* x);
@@ -47,37 +99,31 @@ class Ldlt {
   long multiplications() const;
 
  private:
-  // A square on the diagonal and, below it, the panel of all rows that it is coupled with.
-  struct Column {
-    int first, width;   // unknowns
-    int square, panel;  // into values_ and l_
-    int height;         // rows of the panel
-    int rows;           // into panel_row_
+  struct Column : dense::Column {
     int updates_begin, updates_end;
     dense::Eliminate eliminate;
-    dense::Forward forward;
-    dense::Backward backward;
+    dense::Sweep forward, backward;
   };
-  // What an eliminated column takes from the rows of one block in the column of another.
-  struct Update {
+  struct Update : dense::Part {
     dense::Update run;
-    int left, above;  // numbers from the panel's start
-    int rows, columns;
-    int target;  // into l_
   };
+  dense::Numbers numbers(const double* added);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
-  void list_updates(const std::vector<int>& rows, const std::vector<Elimination>& order);
+  void list_updates(Column& column);
 
-  std::vector<int> column_of_;          // by block
-  std::vector<int> column_of_unknown_;
+  std::vector<int> first_;  // by block
+  std::vector<int> diagonal_;   // by unknown, into values_
+  std::vector<int> column_of_;  // by unknown
   std::vector<Column> columns_;
   std::vector<int> panel_row_;  // unknown of each row of a panel
   std::vector<Update> updates_;
-  std::vector<int> diagonal_;  // by unknown, into values_
   std::vector<double> values_, l_;
-  std::vector<double> inverse_;  // D^-1 by unknown
+  std::vector<double> inverse_, noise_;  // by unknown
   std::vector<char> out_;
-  std::vector<double> unscaled_, x_;
+  std::vector<unsigned char> dependent_;
+  bool any_out_ = false, factored_ = false;
+  double share_ = pivot_share;
+  std::vector<double> unscaled_, given_;
 };
 
 }  // namespace cdot

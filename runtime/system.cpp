@@ -29,12 +29,15 @@ void System<S>::load_laws() {
 
 template <class S>
 int System<S>::factor() {
-  for (int r = 0; r < rows_; ++r) out_[r] = fixed[r] | broken[r];
-  return ldlt_.factor(softness.data(), out_.data());
+  char any = 0;
+  for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
+  any_out_ = any != 0;
+  return ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
 }
 
 template <class S>
 void System<S>::solve() {
+  if (!any_out_) return ldlt_.solve(b.data(), lambda.data());
   bool any_fixed = false;
   for (int r = 0; r < rows_; ++r) {
     if (broken[r]) lambda[r] = 0.0;

@@ -106,7 +106,7 @@ class System {
   int find_active_set();
   bool part_contradicting_rows();
 
-  bool built_ = false, lawful_ = false;
+  bool built_ = false, lawful_ = false, any_out_ = false;
   int rows_ = 0;
   Ldlt ldlt_;
   std::vector<Product> products_;

@@ -4,8 +4,10 @@
 #include <array>
 #include <limits>
 #include <map>
+#include <type_traits>
 #include <utility>
 
+#include "runtime/ldlt_kernels.hpp"
 #include "runtime/spaces.hpp"
 #include "runtime/system.hpp"
 
@@ -110,7 +112,8 @@ void System<S>::order_rows(const Bodies<S>& bodies) {
     for (int i : groups)
       for (int j : groups)
         if (j < i) coupled.emplace_back(i, j);
-  ldlt_.analyse(rows, coupled);
+  ldlt_.analyse(rows, coupled,
+                std::is_same_v<T, double> ? Ldlt::pivot_share : Ldlt::pivot_share_of_floats);
   for (size_t i = 0; i < blocks.size(); ++i) blocks[i].first = ldlt_.first(group[i]) + within[i];
 }
 

@@ -1,7 +1,7 @@
 // A small program whose steps cost_test.cpp counts instruction by instruction. Built twice: with
 // CDOT_LINK_EFFECTS the code of the effects is linked in, and used if asked to.
 //
-//   cost_scene direct|iterative PENDULUMS [none|limit|motor|friction|spring|breaking|sleep]
+//   cost_scene direct|iterative PENDULUMS [none|limit|motor|friction|spring|breaking|sleep] [LINKS]
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -15,10 +15,10 @@ namespace {
 
 using cdot::World;
 
-// Two links from the ground; returns its second joint.
-int add_pendulum(World<double>& world, double x, bool hanging) {
+// So many links from the ground; returns its last joint.
+int add_pendulum(World<double>& world, double x, bool hanging, int links) {
   int before = world.ground(), joint = -1;
-  for (int i = 0; i < 2; ++i) {
+  for (int i = 0; i < links; ++i) {
     const int link = world.add_body({.x = hanging ? x : x + 0.5 + i,
                                      .y = hanging ? -0.5 - i : 0.0,
                                      .angle = hanging ? -1.5707963267948966 : 0.0,
@@ -61,8 +61,10 @@ int main(int count, char** arguments) {
   settings.gravity_y = -9.81;
   settings.sleep_after = 0.05;
   World<double> world(settings);
-  const int joint = add_pendulum(world, 0, false);
-  for (int i = 1; i < std::atoi(arguments[2]); ++i) add_pendulum(world, 4.0 * i, effect == "sleep");
+  const int links = count > 4 ? std::atoi(arguments[4]) : 2;
+  const int joint = add_pendulum(world, 0, false, links);
+  for (int i = 1; i < std::atoi(arguments[2]); ++i)
+    add_pendulum(world, 4.0 * i, effect == "sleep", links);
 #ifdef CDOT_LINK_EFFECTS
   add_effect(world, joint, effect);
 #endif

@@ -76,6 +76,20 @@ TEST(Cost, AnEffectAddsToItsOwnJointAlone) {
   }
 }
 
+// A direct solve of a chain: no fill, whatever its length. Rounds of Newton differ a little with the
+// motion.
+TEST(Cost, AChainCostsInProportionToItsLength) {
+  long instructions[3];
+  for (int k = 0; k < 3; ++k) {
+    const int links = 40 << k;
+    instructions[k] = count(without, "direct 1 none " + std::to_string(links)).instructions;
+    std::printf("%d links: %ld instructions in 20 steps\n", links, instructions[k]);
+  }
+  const double first = double(instructions[1] - instructions[0]),
+               second = double(instructions[2] - instructions[1]);
+  EXPECT_NEAR(second / first, 2, 0.2);
+}
+
 TEST(Cost, SleepingIslandsCostNoInstruction) {
   for (const std::string& solver : both) {
     const Counted alone = count(without, solver + "1"),

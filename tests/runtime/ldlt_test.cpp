@@ -152,13 +152,14 @@ TEST(Ldlt, RowsThatAreOutAndAddedDiagonals) {
   }
 }
 
-// More rows than the bodies have freedom, and rows that repeat combinations of others: as many are
-// dropped as the rank lacks, and what is left solves every consistent system.
+// More rows than the bodies have freedom: as many are dropped as the rank lacks, also where small
+// pivots have magnified the round-off, and what is left solves every consistent system.
 TEST(Ldlt, DependentRowsAreCountedAndDropped) {
   std::mt19937 random(3);
-  for (int attempt = 0; attempt < 60; ++attempt) {
+  int inexact = 0;
+  for (int attempt = 0; attempt < 500; ++attempt) {
     const int freedom = attempt % 2 ? 3 : 6;
-    Problem problem = random_problem(tangle(4 + attempt / 2, 5, random), freedom, random);
+    Problem problem = random_problem(tangle(4 + attempt % 30, 5, random), freedom, random);
     const int n = problem.ldlt.size();
     for (int k = 0; k < 3; ++k)  // some row three times another
       problem.J.row(static_cast<int>(random() % n)) *= 3;
@@ -168,29 +169,69 @@ TEST(Ldlt, DependentRowsAreCountedAndDropped) {
     EXPECT_EQ(problem.ldlt.factor(none(problem).data(), free(problem).data()), n - qr.rank());
     const Eigen::VectorXd b = problem.K * Eigen::VectorXd::LinSpaced(n, -1, 2);
     const Eigen::VectorXd x = solved(problem, b);
-    EXPECT_LT((problem.K * x - b).norm(), 1e-7 * b.norm()) << n << " rows, rank " << qr.rank();
+    const double off = (problem.K * x - b).norm() / b.norm();
+    inexact += off > 1e-7;
+    EXPECT_LT(off, 1e-4) << n << " rows, rank " << qr.rank();
     EXPECT_GE((x.array() == 0).count(), n - qr.rank());
   }
+  EXPECT_LE(inexact, 2);
 }
 
-// A chain, a star and a tree have an order without fill: of each joint K's own blocks and no other.
+// A row that was redundant from the start stays dropped while the joints are a little open, as it
+// would lock what moves; a row that was not is kept down to round-off; and where the neighbour that
+// said the same goes, it is needed.
+TEST(Ldlt, WhatIsRedundantByDesignStaysDropped) {
+  std::mt19937 random(8);
+  Joints joints = chain(4, 3);
+  Problem problem = random_problem(joints, 6, random);
+  const int last = problem.ldlt.size() - 1;
+  const Eigen::RowVectorXd row = problem.J.row(last);
+  const auto dependent = [&](Problem& of, double open, const std::vector<char>& out) {
+    of.J.row(last) = of.J.row(last - 1) + open * row;
+    assemble(of);
+    return of.ldlt.factor(none(of).data(), out.data());
+  };
+  const auto all = free(problem);
+  EXPECT_EQ(dependent(problem, 0, all), 1);
+  EXPECT_EQ(dependent(problem, 1e-3, all), 1);
+  auto without = all;
+  without[last - 1] = 1;
+  EXPECT_EQ(dependent(problem, 1e-3, without), 0);
+  EXPECT_EQ(dependent(problem, 1e-3, all), 0) << "it was needed a moment ago";
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(dependent(problem, 0, all), 1);
+  EXPECT_EQ(dependent(problem, 1e-3, all), 1) << "it has become a habit";
+  EXPECT_EQ(dependent(problem, 1, all), 0);
+
+  Problem passing = random_problem(joints, 6, random);
+  EXPECT_EQ(dependent(passing, 1, all), 0);
+  EXPECT_EQ(dependent(passing, 1e-3, all), 0);
+  EXPECT_EQ(dependent(passing, 0, all), 1) << "at the singular pose";
+  EXPECT_EQ(dependent(passing, 1e-3, all), 0);
+}
+
+// Chains, combs and trees have an order that couples nothing but what K couples.
 TEST(Ldlt, ChainsAndTreesFillNothingIn) {
-  for (int rows : {1, 2, 5}) {
-    const auto numbers = [&](const Joints& joints) {
-      std::mt19937 random(4);
-      return random_problem(joints, 1, random).ldlt.values().size();
-    };
-    EXPECT_EQ(numbers(chain(50, rows)), 50 * rows * rows + 49 * rows * rows);
-    Joints shuffled = chain(50, rows);
-    std::mt19937 random(5);
-    std::shuffle(shuffled.bodies.begin(), shuffled.bodies.end(), random);
-    EXPECT_EQ(numbers(shuffled), 50 * rows * rows + 49 * rows * rows);
-    Joints comb = chain(20, rows);
-    for (int i = 0; i < 20; ++i) {
-      comb.rows.push_back(rows);
-      comb.bodies.emplace_back(i, 20 + i);  // a tooth at every link: a triangle with its neighbours
-    }
-    EXPECT_EQ(numbers(comb), (40 + 19 + 19 + 20) * rows * rows);
+  std::mt19937 random(5);
+  Joints comb = chain(20, 2), tree = chain(1, 3);
+  for (int i = 0; i < 20; ++i) {
+    comb.rows.push_back(3);
+    comb.bodies.emplace_back(i, 20 + i);
+  }
+  for (int i = 1; i < 60; ++i) {
+    tree.rows.push_back(i % 6 + 1);
+    tree.bodies.emplace_back(static_cast<int>(random() % i), i);
+  }
+  for (Joints joints : {chain(50, 2), comb, tree}) {
+    std::shuffle(joints.bodies.begin(), joints.bodies.end(), random);
+    std::vector<std::vector<int>> neighbours(joints.rows.size());
+    size_t before = 0, after = 0;
+    for (size_t i = 0; i < joints.rows.size(); ++i)
+      for (size_t j = 0; j < joints.rows.size(); ++j)
+        if (i != j && coupled(joints.bodies[i], joints.bodies[j]))
+          neighbours[i].push_back(static_cast<int>(j)), ++before;
+    for (const Elimination& one : minimum_degree_order(joints.rows, neighbours, 0))
+      after += one.neighbours.size();
+    EXPECT_EQ(2 * after, before);
   }
 }
 

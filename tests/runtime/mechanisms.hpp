@@ -148,21 +148,38 @@ inline void add_spatial_chain(SpatialWorld<double>& world, int links, const char
   }
 }
 
-// A four-bar of hinges whose axes are parallel: 20 rows, 3 of them redundant.
+// A four-bar of hinges whose axes are parallel, 20 rows, 3 of them redundant; and its planar twin.
+inline constexpr double loop_x[] = {0, 0.2, 1.1, 1.2}, loop_y[] = {0, 0.4, 0.9, 0};
+
 inline void add_hinge_loop(SpatialWorld<double>& world) {
-  const double x[] = {0, 0.2, 1.1, 1.2}, y[] = {0, 0.4, 0.9, 0};
   int before = world.ground();
   const auto hinge = [&](int a, int b, int at) {
     const auto q = world.pose(a);
-    world.add_joint(
-        {"hinge", {a, b}, {{"pa", {x[at] - q.x, y[at] - q.y, -q.z}}, {"fa", {0, 0, 1}}}, {}});
+    world.add_joint({"hinge",
+                     {a, b},
+                     {{"pa", {loop_x[at] - q.x, loop_y[at] - q.y, -q.z}}, {"fa", {0, 0, 1}}},
+                     {}});
   };
   for (int i = 0; i < 3; ++i) {
-    const int bar = world.add_body(block((x[i] + x[i + 1]) / 2, (y[i] + y[i + 1]) / 2, 0.1 * i));
+    const int bar = world.add_body(
+        block((loop_x[i] + loop_x[i + 1]) / 2, (loop_y[i] + loop_y[i + 1]) / 2, 0.1 * i));
     hinge(before, bar, i);
     before = bar;
   }
   hinge(before, world.ground(), 3);
+}
+
+inline void add_planar_hinge_loop(World<double>& world) {
+  int before = world.ground();
+  for (int i = 0; i < 3; ++i) {
+    const int bar = world.add_body({.x = (loop_x[i] + loop_x[i + 1]) / 2,
+                                    .y = (loop_y[i] + loop_y[i + 1]) / 2,
+                                    .mass = 1,
+                                    .inertia = block(0, 0, 0).inertia.zz});
+    pin(world, before, bar, loop_x[i], loop_y[i]);
+    before = bar;
+  }
+  pin(world, before, world.ground(), loop_x[3], loop_y[3]);
 }
 
 }  // namespace cdot::test
