@@ -29,6 +29,7 @@ int operations(const AnyBlock& block, Measured which) {
   if (which == Measured::factor_and_solve) {
     return operations(block, Measured::factor) + operations(block, Measured::solve);
   }
+  if (which >= Measured::impulse_fast) return 0;  // not generated, so not in the ledger
   const std::string key = std::string(block.space()) + ',' + block.joint + ',' + block.block + ',' +
                           std::string(info(which).name);
   const auto found = all.find(key);

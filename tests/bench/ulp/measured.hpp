@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "runtime/kernel_forms.hpp"
 #include "tests/bench/ulp/function.hpp"
 #include "tests/kernels/any_block.hpp"
 
@@ -144,6 +145,8 @@ struct Calls {
       Block::local_jacobian(in.q(), in.J(), matrix);
     } else if constexpr (which == euler_jacobian) {
       Block::euler_jacobian(in.q(), in.J(), as<T[rows][7 * bodies]>(out));
+    } else if constexpr (which == impulse_fast || which == impulse_balanced || which == impulse_robust) {
+      impulse<which>(in, of_rows);
     } else {
       auto& v = as<typename S::Velocity[bodies]>(out);
       std::copy(in.v(), in.v() + bodies, v);
@@ -156,6 +159,30 @@ struct Calls {
   }
 
   template <Measured which>
+  static void impulse(const Inputs& in, T (&lambda)[rows]) {
+    T K[triangle], F[triangle];
+    if constexpr (which == Measured::impulse_robust) {
+      factor_by_rows<Block, columns>(in.J(), in.m(), F);
+      Block::solve(F, in.rhs(), lambda);
+    } else {
+      Block::effective_mass(in.J(), in.m(), K);
+      if constexpr (which == Measured::impulse_fast) {
+        invert(K, F);
+        multiply(F, in.rhs(), lambda);
+      } else {
+        Block::factor(K, F);
+        Block::solve(F, in.rhs(), lambda);
+      }
+    }
+  }
+  // One row has but one form; K is inverted where it has two.
+  static constexpr bool has(Measured which) {
+    if (which == Measured::impulse_fast) return rows == 2;
+    if (which == Measured::impulse_balanced || which == Measured::impulse_robust) return rows > 1;
+    return S::dimension == 3 || !only_in_space(which);
+  }
+
+  template <Measured which>
   static void many(const Arguments<T>* in, std::size_t count, T* out) {
     for (std::size_t i = 0; i < count; ++i) one<which>(Inputs{in[i]}, out + i * outputs(which));
   }
@@ -164,7 +191,7 @@ struct Calls {
   static std::vector<MeasuredFunction<T>> functions(std::index_sequence<index...>) {
     std::vector<MeasuredFunction<T>> all;
     const auto add = [&]<Measured which>(std::integral_constant<Measured, which>) {
-      if constexpr (S::dimension == 3 || !only_in_space(which)) {
+      if constexpr (has(which)) {
         if (outputs(which) > 0) all.push_back({which, outputs(which), many<which>});
       }
     };
