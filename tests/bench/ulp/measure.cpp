@@ -212,8 +212,8 @@ void compare(std::size_t index, std::size_t function, const Arguments<T>& in, st
     ++samples.guarded;
     return;
   }
-  const MeasuredBlock<Exact>& exact_block = measured_blocks<Exact>()[index];
-  const MeasuredBlock<Dual>& slopes = measured_blocks<Dual>()[index];
+  const MeasuredBlock<Exact>& exact_block = measured_blocks<Exact>()[block.shape.general];
+  const MeasuredBlock<Dual>& slopes = measured_blocks<Dual>()[block.shape.general];
   const Measured truth = impulse ? Measured::impulse_balanced : f.which;  // one truth for all forms
   const std::vector<Exact> expected = call(*find(exact_block, truth), converted<Exact>(in));
   const Scale scale(slopes, *find(slopes, truth), converted<Dual>(in));

@@ -23,10 +23,11 @@ struct MeasuredFunction {
 
 template <class T>
 struct MeasuredBlock {
-  AnyBlock shape;  // without its functions
+  AnyBlock shape;  // without its functions; shape.general: the block whose exact values are the truth
   std::size_t fields;
   std::vector<MeasuredFunction<T>> functions;
   void (*set_defaults)(Inputs& in);  // overwrites the parameters that have a default
+  int operations = 0;  // of a form that is not generated, so not in the ledger
 };
 
 template <class Scalar>
@@ -221,6 +222,7 @@ void add_block(std::vector<MeasuredBlock<typename S::T>>& all, std::string name)
   shape.block = std::move(name);
   shape.bodies = Block::bodies, shape.rows = Block::rows;
   shape.immovable = -1;
+  shape.general = all.size();
   shape.row_names = Block::row_names, shape.row_kinds = Block::row_kinds;
   shape.parameters = Joint::parameters;
   block.fields = C::fields;
