@@ -17,6 +17,7 @@ double gap_of_pendulum(Kernels kernels, double inertia) {
   settings.solver = Solver::iterative;
   settings.kernels = kernels;
   settings.drift = Drift::none;
+  settings.gravity_y = -9.81;
   World world(settings);
   BodyDefinition bob;
   bob.x = bob.y = -std::sqrt(0.5);
