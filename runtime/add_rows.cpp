@@ -34,6 +34,7 @@ template <class S>
 void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law,
               std::vector<RowKind> kinds, std::span<const double> constants) {
   using T = typename S::Scalar;
+  ops = ops->with(world.settings.kernels);
   const int index = find_batch(world, ops, law, kinds);
   Batch<S>& batch = *world.batches[index];
   JointRecord& record = world.joints[joint];

@@ -37,7 +37,7 @@ struct BlockOps {
   void (*gamma)(const Batch<S>&, int begin, int end, const Bodies<S>&, T time, T* gamma);
   // K from J, one triangle, into `factor`; and in its place its factorisation.
   void (*effective_mass)(Slots, int begin, int end, const Bodies<S>&);
-  void (*factorize)(Slots, int begin, int end);
+  void (*factorize)(Slots, int begin, int end, const Bodies<S>&);
   // J velocity.
   void (*velocity)(const Batch<S>&, int begin, int end, const Velocity* velocity, T* Jv);
   // velocity += M^-1 J^T lambda, lambda laid out like the batch's.
@@ -60,6 +60,15 @@ struct BlockOps {
   // with its drift correction.
   void (*add_stiffness)(const Batch<S>&, int begin, int end, const Bodies<S>&, T time,
                         typename S::Stiffness* stiffness);
+  // The same block with its rows solved otherwise; null where that is no different.
+  const BlockOps *fast, *robust;
+
+  const BlockOps* with(Kernels kernels) const {
+    const BlockOps* const other = kernels == Kernels::fast     ? fast
+                                  : kernels == Kernels::robust ? robust
+                                                               : nullptr;
+    return other ? other : this;
+  }
 };
 
 // What a row under a law does between two events, for integrators at acceleration level.

@@ -6,13 +6,14 @@
 #include <type_traits>
 
 #include "runtime/block.hpp"
+#include "runtime/kernel_forms.hpp"
 #include "runtime/turns.hpp"
 
 namespace cdot {
 
 // Joint owns the parameters; Block is the joint, one of its coordinates, or either with a body
 // immovable.
-template <class S, class Joint, class Block>
+template <class S, class Joint, class Block, Kernels kernels = Kernels::balanced>
 struct BlockLoops {
   using T = typename S::Scalar;
   using Pose = typename S::Pose;
@@ -120,12 +121,31 @@ struct BlockLoops {
     }
   }
 
-  static void factorize(Batch<S>& batch, int begin, int end) {
+  static void factorize(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {
     for (int slot = begin; slot < end; ++slot) {
       T K[triangle], F[triangle];
       for (int k = 0; k < triangle; ++k) K[k] = batch.factor[slot * triangle + k];
-      Block::factor(K, F);
+      if constexpr (kernels == Kernels::robust) {
+        InverseMass m[bodies];
+        gather(all.effective_mass, bodies_of(batch, slot), m);
+        factor_by_rows<Block, width>(as<Jacobian>(batch.jacobian.data(), slot), m, F);
+      } else if constexpr (kernels == Kernels::fast) {
+        invert(K, F);
+      } else {
+        Block::factor(K, F);
+      }
       for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = F[k];
+    }
+  }
+
+  // lambda = K^-1 b by what factorize() left.
+  static void solve(const Batch<S>& batch, int slot, const T (&b)[rows], T (&lambda)[rows]) {
+    T F[triangle];
+    for (int k = 0; k < triangle; ++k) F[k] = batch.factor[slot * triangle + k];
+    if constexpr (kernels == Kernels::fast) {
+      multiply(F, b, lambda);
+    } else {
+      Block::solve(F, b, lambda);
     }
   }
 
@@ -165,11 +185,10 @@ struct BlockLoops {
     for (int slot = begin; slot < end; ++slot) {
       Velocity v[bodies];
       gather(all.velocity, bodies_of(batch, slot), v);
-      T Jv[rows], b[rows], F[triangle], lambda[rows];
+      T Jv[rows], b[rows], lambda[rows];
       Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
       for (int r = 0; r < rows; ++r) b[r] = -(Jv[r] + batch.bias[slot * rows + r]);
-      for (int k = 0; k < triangle; ++k) F[k] = batch.factor[slot * triangle + k];
-      Block::solve(F, b, lambda);
+      solve(batch, slot, b, lambda);
       for (int r = 0; r < rows; ++r) impulses[slot * rows + r] += lambda[r];
       push(batch, slot, all, lambda, all.velocity.data());
     }
@@ -203,10 +222,9 @@ struct BlockLoops {
   static void correct(Batch<S>& batch, int begin, int end, Bodies<S>& all, T time) {
     for (int slot = begin; slot < end; ++slot) {
       position(batch, slot, slot + 1, all, time);
-      T b[rows], F[triangle], lambda[rows];
+      T b[rows], lambda[rows];
       for (int r = 0; r < rows; ++r) b[r] = -batch.C[slot * rows + r];
-      for (int k = 0; k < triangle; ++k) F[k] = batch.factor[slot * triangle + k];
-      Block::solve(F, b, lambda);
+      solve(batch, slot, b, lambda);
       displace(batch, slot, all, lambda);
     }
   }
@@ -328,7 +346,9 @@ struct BlockLoops {
             correct_bounded,
             dense,
             transposed,
-            add_stiffness};
+            add_stiffness,
+            nullptr,
+            nullptr};
   }
 };
 
@@ -357,12 +377,31 @@ constexpr BlockOps<S> ops_without_rows() {
   return ops;
 }
 
+// Only what solves differs.
+template <class S, class Joint, class Block, Kernels kernels>
+constexpr BlockOps<S> make_other_ops() {
+  using Other = BlockLoops<S, Joint, Block, kernels>;
+  BlockOps<S> ops = BlockLoops<S, Joint, Block>::ops();
+  ops.factorize = Other::factorize;
+  if constexpr (kernels == Kernels::fast) {
+    ops.iterate = Other::iterate;
+    ops.correct = Other::correct;
+  }
+  return ops;
+}
+
+template <class S, class Joint, class Block, Kernels kernels>
+inline constexpr BlockOps<S> other_ops = make_other_ops<S, Joint, Block, kernels>();
+
 template <class S, class Joint, class Block>
 constexpr BlockOps<S> make_block_ops() {
   if constexpr (Block::rows == 0) {
     return ops_without_rows<S, Joint>();
   } else {
-    return BlockLoops<S, Joint, Block>::ops();
+    BlockOps<S> ops = BlockLoops<S, Joint, Block>::ops();
+    if constexpr (Block::rows == 2) ops.fast = &other_ops<S, Joint, Block, Kernels::fast>;
+    if constexpr (Block::rows > 1) ops.robust = &other_ops<S, Joint, Block, Kernels::robust>;
+    return ops;
   }
 }
 

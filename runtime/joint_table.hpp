@@ -28,9 +28,13 @@ struct BlockVariants {
       if (bodies.immovable(body[static_cast<size_t>(index)])) return ops;
     return general;
   }
+  // In whichever form its rows are solved.
   bool has(const BlockOps<S>* ops) const {
-    return ops == general || std::any_of(immovable.begin(), immovable.end(),
-                                         [&](const auto& one) { return one.second == ops; });
+    const auto is = [&](const BlockOps<S>* one) {
+      return ops == one || (ops && (ops == one->fast || ops == one->robust));
+    };
+    return is(general) || std::any_of(immovable.begin(), immovable.end(),
+                                      [&](const auto& one) { return is(one.second); });
   }
 };
 

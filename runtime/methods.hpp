@@ -1,4 +1,4 @@
-// The names of solvers, drift corrections and integrators, as scenes, commands and reports spell them: one table each.
+// The names of solvers, drift corrections, integrators and forms of kernels, as scenes, commands and reports spell them: one table each.
 #pragma once
 
 #include <array>
@@ -32,6 +32,11 @@ inline constexpr std::array<Named<Integrator>, 5> integrators{{
     {"rattle", Integrator::rattle},
     {"rk4", Integrator::rk4},
     {"dop853", Integrator::dop853},
+}};
+inline constexpr std::array<Named<Kernels>, 3> kernel_forms{{
+    {"fast", Kernels::fast},
+    {"balanced", Kernels::balanced},
+    {"robust", Kernels::robust},
 }};
 
 template <class Table>

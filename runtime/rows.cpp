@@ -32,7 +32,7 @@ void factorize_rows(WorldState<S>& world, Island<S>& island) {
     // The direct solver builds its own K; a law looks at K's diagonal whatever the solver.
     if (!batch.law && world.settings.solver == Solver::direct) continue;
     batch.ops->effective_mass(batch, segment.begin, segment.end, world.bodies);
-    if (!batch.law) batch.ops->factorize(batch, segment.begin, segment.end);
+    if (!batch.law) batch.ops->factorize(batch, segment.begin, segment.end, world.bodies);
   }
 }
 

@@ -30,6 +30,8 @@ void read_method(Entry& top, Settings& settings) {
   if (const auto drift = top.choice("drift", names_of(drifts)))
     settings.drift = method_called(drifts, *drift);
   settings.local_error = top.number("local_error", {Sign::positive}).value_or(settings.local_error);
+  if (const auto kernels = top.choice("kernels", names_of(kernel_forms)))
+    settings.kernels = method_called(kernel_forms, *kernels);
   settings.iterations = top.whole("iterations", 1).value_or(settings.iterations);
   settings.substeps = top.whole("substeps", 1).value_or(settings.substeps);
   settings.baumgarte = top.number("baumgarte", {Sign::positive}).value_or(settings.baumgarte);

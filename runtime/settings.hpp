@@ -38,6 +38,14 @@ constexpr bool works_on_accelerations(Integrator integrator) {
   return integrator == Integrator::rk4 || integrator == Integrator::dop853;
 }
 
+// How the iterative solver solves the rows of one joint together, where a joint has several; tests/bench/ulp has what
+// each costs and what it is worth.
+enum class Kernels {
+  fast,      // K^-1 of two rows kept in place of its factors
+  balanced,  // K = L D L^T
+  robust     // the same factors from J, without K: half the digits lost to long arms and heavy loads
+};
+
 struct Settings {
   Solver solver = Solver::direct;
   Integrator integrator = Integrator::euler;
@@ -48,6 +56,7 @@ struct Settings {
   int iterations = 10;     // of the iterative solver, per substep
   int substeps = 1;        // step(h) takes this many steps of h / substeps
   double baumgarte = 0.2;  // share of C removed per step, 0 to 1
+  Kernels kernels = Kernels::balanced;
   bool warm_start = true;  // the iterative solver starts from the impulses of the step before
   double gravity_x = 0;  // [m/s^2]
   double gravity_y = 0;

@@ -143,6 +143,39 @@ TEST(Simplify, subtracts_positions_first) {
   }
 }
 
+TEST(Simplify, has_positions_first_in_every_sum) {
+  // ra + x_a - x_b, taken from the left, would round ra away.
+  for (const char* const name : {"line", "prismatic", "rolling", "pulley"}) {
+    const Joint joint = joint_of(name);
+    const Kernel kernel = kernel_of(joint);
+    for (const KernelFunction& f : kernel.rows.functions) {
+      for (const Operation& op : f.program.ops) {
+        if (op.kind != OpKind::sum) continue;
+        const auto is_position = [&](int arg) {
+          return f.program.ops[static_cast<std::size_t>(arg)].is_position;
+        };
+        EXPECT_TRUE(std::is_partitioned(op.args.begin(), op.args.end(), is_position))
+            << name << ' ' << f.name;
+      }
+    }
+  }
+}
+
+TEST(Simplify, cancels_what_is_taken_away_and_added_again) {
+  Pool pool;
+  const Expr x = pool.symbol("x", Role::given), r = pool.symbol("r", Role::given),
+             c = pool.symbol("c", Role::given), u = x - r;
+  pool.name(u, "u", true);
+  const Program program = simplify(assemble({{"C[0]", c * u}, {"C[1]", c * (u + r)}}));
+  EXPECT_EQ(count(program), (Count{1, 2, 0, 0, 0, 0})) << text(count(program));
+}
+
+TEST(Cost, of_gamma_is_that_of_the_rates_of_J) {
+  // (w_a - w_b) . d(na x nb)/dt, not na and nb differentiated twice (84 operations).
+  const Joint joint = joint_of("n1");
+  EXPECT_LE(cost(kernel_of(joint).rows, "gamma").total(), 78);
+}
+
 TEST(Cost, of_the_point_joint_is_that_of_a_careful_person) {
   const Joint joint = joint_of("revolute");
   const Kernel kernel = kernel_of(joint);

@@ -50,6 +50,7 @@ inline Dual atan2(Dual y, Dual x) {
   return {std::atan2(y.value, x.value),
           square > 0 ? (y.slope * x.value - x.slope * y.value) / square : 0};
 }
+inline Dual asin(Dual a) { return {std::asin(a.value), a.slope / std::sqrt(1 - a.value * a.value)}; }
 inline Dual inverse(Dual a) { return a.value == 0 ? Dual(0) : Dual(1) / a; }
 inline Dual pivot(Dual d, Dual k) { return d.value > 1e-17L * std::fabs(k.value) ? Dual(1) / d : Dual(0); }
 

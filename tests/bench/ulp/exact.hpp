@@ -1,6 +1,7 @@
 // A number of CLN with 60 decimal digits, as a scalar of the kernels: what every other scalar is compared with.
 #pragma once
 
+#include <cln/complex.h>
 #include <cln/float.h>
 #include <cln/lfloat.h>
 #include <cln/real.h>
@@ -54,6 +55,7 @@ inline Exact atan2(const Exact& y, const Exact& x) {
   if (cln::zerop(y.value()) && cln::zerop(x.value())) return Exact(0);
   return of_real(cln::atan(cln::cl_R(x.value()), cln::cl_R(y.value())));
 }
+inline Exact asin(const Exact& a) { return of_real(cln::realpart(cln::asin(a.value()))); }
 inline Exact inverse(const Exact& a) { return cln::zerop(a.value()) ? Exact(0) : Exact(1) / a; }
 // Only what is zero to almost all digits is no pivot here.
 inline Exact pivot(const Exact& d, const Exact& k) {

@@ -22,6 +22,9 @@ const FunctionInfo& info(Measured which) {
       {"inverse_mass_jacobian_isotropic", {fields_of_J, isotropic_masses}},
       {"local_jacobian", {poses, fields_of_J}},
       {"euler_jacobian", {poses, fields_of_J}},
+      {"impulse_fast", {fields_of_J, masses, right_side}},
+      {"impulse_balanced", {fields_of_J, masses, right_side}},
+      {"impulse_robust", {fields_of_J, masses, right_side}},
   }};
   return all[static_cast<std::size_t>(which)];
 }

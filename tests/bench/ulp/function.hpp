@@ -45,11 +45,17 @@ enum class Measured {
   inverse_mass_jacobian_isotropic,
   local_jacobian,
   euler_jacobian,
+  // From J and M^-1 to the impulse of several rows, by the forms of K (Settings::kernels).
+  impulse_fast,
+  impulse_balanced,
+  impulse_robust,
   number
 };
 inline constexpr auto measured_functions = static_cast<std::size_t>(Measured::number);
 
-constexpr bool only_in_space(Measured which) { return which >= Measured::effective_mass_isotropic; }
+constexpr bool only_in_space(Measured which) {
+  return which >= Measured::effective_mass_isotropic && which <= Measured::euler_jacobian;
+}
 
 struct FunctionInfo {
   std::string_view name;  // as in the ledger; factor_and_solve is the sum of two

@@ -7,6 +7,6 @@
 
 namespace cdot::ulp {
 
-int operations(const AnyBlock& block, Measured which);
+int operations(const MeasuredBlock<double>& block, Measured which);
 
 }  // namespace cdot::ulp

@@ -7,6 +7,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "runtime/kernel_forms.hpp"
 #include "tests/bench/ulp/function.hpp"
 #include "tests/kernels/any_block.hpp"
 
@@ -22,10 +23,11 @@ struct MeasuredFunction {
 
 template <class T>
 struct MeasuredBlock {
-  AnyBlock shape;  // without its functions
+  AnyBlock shape;  // without its functions; shape.general: the block whose exact values are the truth
   std::size_t fields;
   std::vector<MeasuredFunction<T>> functions;
   void (*set_defaults)(Inputs& in);  // overwrites the parameters that have a default
+  int operations = 0;  // of a form that is not generated, so not in the ledger
 };
 
 template <class Scalar>
@@ -144,6 +146,8 @@ struct Calls {
       Block::local_jacobian(in.q(), in.J(), matrix);
     } else if constexpr (which == euler_jacobian) {
       Block::euler_jacobian(in.q(), in.J(), as<T[rows][7 * bodies]>(out));
+    } else if constexpr (which == impulse_fast || which == impulse_balanced || which == impulse_robust) {
+      impulse<which>(in, of_rows);
     } else {
       auto& v = as<typename S::Velocity[bodies]>(out);
       std::copy(in.v(), in.v() + bodies, v);
@@ -156,6 +160,30 @@ struct Calls {
   }
 
   template <Measured which>
+  static void impulse(const Inputs& in, T (&lambda)[rows]) {
+    T K[triangle], F[triangle];
+    if constexpr (which == Measured::impulse_robust) {
+      factor_by_rows<Block, columns>(in.J(), in.m(), F);
+      Block::solve(F, in.rhs(), lambda);
+    } else {
+      Block::effective_mass(in.J(), in.m(), K);
+      if constexpr (which == Measured::impulse_fast) {
+        invert(K, F);
+        multiply(F, in.rhs(), lambda);
+      } else {
+        Block::factor(K, F);
+        Block::solve(F, in.rhs(), lambda);
+      }
+    }
+  }
+  // One row has but one form; K is inverted where it has two.
+  static constexpr bool has(Measured which) {
+    if (which == Measured::impulse_fast) return rows == 2;
+    if (which == Measured::impulse_balanced || which == Measured::impulse_robust) return rows > 1;
+    return S::dimension == 3 || !only_in_space(which);
+  }
+
+  template <Measured which>
   static void many(const Arguments<T>* in, std::size_t count, T* out) {
     for (std::size_t i = 0; i < count; ++i) one<which>(Inputs{in[i]}, out + i * outputs(which));
   }
@@ -164,7 +192,7 @@ struct Calls {
   static std::vector<MeasuredFunction<T>> functions(std::index_sequence<index...>) {
     std::vector<MeasuredFunction<T>> all;
     const auto add = [&]<Measured which>(std::integral_constant<Measured, which>) {
-      if constexpr (S::dimension == 3 || !only_in_space(which)) {
+      if constexpr (has(which)) {
         if (outputs(which) > 0) all.push_back({which, outputs(which), many<which>});
       }
     };
@@ -194,6 +222,7 @@ void add_block(std::vector<MeasuredBlock<typename S::T>>& all, std::string name)
   shape.block = std::move(name);
   shape.bodies = Block::bodies, shape.rows = Block::rows;
   shape.immovable = -1;
+  shape.general = all.size();
   shape.row_names = Block::row_names, shape.row_kinds = Block::row_kinds;
   shape.parameters = Joint::parameters;
   block.fields = C::fields;

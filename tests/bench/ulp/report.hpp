@@ -10,6 +10,7 @@ namespace cdot::ulp {
 
 struct Line {
   const AnyBlock* block;
+  const AnyBlock* form_of;  // null: generated
   Measured which;
   int operations;
   Accuracy in_float, in_double;
