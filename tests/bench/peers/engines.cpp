@@ -27,8 +27,17 @@ const std::vector<Engine>& engines() { return registered(); }
 std::vector<double> steps(const Problem& problem) {
   const double interval = problem.duration / double(problem.times.size());
   std::vector<double> all;
-  const double coarsest = std::ceil(interval * 60);
-  for (int halvings = 0; halvings <= 14; ++halvings) all.push_back(interval / std::ldexp(coarsest, halvings));
+  for (int halvings = 0; halvings <= 14; ++halvings)
+    all.push_back(interval / std::ldexp(std::ceil(interval * 60), halvings));
+  return all;
+}
+
+std::vector<double> fine_steps(const Problem& problem) {
+  const double interval = problem.duration / double(problem.times.size());
+  const double coarsest = 2 * std::ceil(interval * 7.5);  // even, so that half as many more is whole too
+  std::vector<double> all{interval / coarsest};
+  for (int halvings = 0; halvings <= 14; ++halvings)
+    for (const double part : {1.5, 2.0}) all.push_back(interval / std::ldexp(part * coarsest, halvings));
   return all;
 }
 

@@ -108,5 +108,7 @@ struct Registration {
 
 // Steps that divide the time between samples, about 1/60 s and halved again and again.
 std::vector<double> steps(const Problem& problem);
+// For methods of higher order: from 1/15 s on, two sizes per halving.
+std::vector<double> fine_steps(const Problem& problem);
 
 }  // namespace cdot::peers

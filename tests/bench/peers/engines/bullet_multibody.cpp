@@ -151,7 +151,7 @@ std::vector<Series> series(const Problem& problem) {
   if (!tree_of(problem).loops.empty()) ways.push_back({"RK4, ERP 0.8", "useRK4Integration, ERP 0.8", true, 0.8});
   std::vector<Series> all;
   for (const Way& way : ways)
-    all.push_back({way.name, way.changed, "h", steps(problem),
+    all.push_back({way.name, way.changed, "h", way.rk4 ? fine_steps(problem) : steps(problem),
                    [&problem, way](double h) { return std::make_unique<MultibodyRun>(problem, way, h); }});
   return all;
 }

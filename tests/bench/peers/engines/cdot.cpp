@@ -1,6 +1,6 @@
 // Cdot itself, in the plane where the problem is planar; and, as an engine of its own, planar problems in space,
 // since the others that know only space have no choice.
-#include <functional>
+#include <cmath>
 #include <string>
 
 #include "runtime/spatial.hpp"
@@ -100,33 +100,80 @@ class CdotRun final : public SteppedRun {
   State state(int body) const override { return state_of(world_.pose(body), world_.velocity(body)); }
 
  private:
-  void step() override { world_.step(h()); }
+  void step() override { world_.step(typename S::Scalar(h())); }
   BasicWorld<S> world_;
 };
 
-// One row per way to use the runtime: what differs from a scene that says nothing.
+// Its steps are chosen by the error that each may have.
+template <class S>
+class AdaptiveRun final : public Run {
+ public:
+  AdaptiveRun(const Problem& problem, Settings settings, double local_error)
+      : world_(build<S>(problem, with(settings, local_error))) {}
+  void advance(double to) override {
+    world_.step(to - now_);
+    now_ = to;
+  }
+  State state(int body) const override { return state_of(world_.pose(body), world_.velocity(body)); }
+
+ private:
+  static Settings with(Settings settings, double local_error) {
+    settings.local_error = local_error;
+    return settings;
+  }
+  BasicWorld<S> world_;
+  double now_ = 0;
+};
+
+// One row per way to use the runtime, with what differs from a scene that says nothing.
 struct Way {
   const char* name;
   const char* changed;
-  std::function<void(Settings&)> set;
+  enum Steps { coarse, fine, adaptive } steps;
+  Settings settings;
 };
 
-std::vector<Way> ways() {
-  return {
-      {"direct, Euler", "", [](Settings&) {}},
-      {"direct, Euler, Baumgarte", "drift = baumgarte", [](Settings& s) { s.drift = Drift::baumgarte; }},
-      {"iterative, 10 iterations", "solver = iterative", [](Settings& s) { s.solver = Solver::iterative; }},
+const std::vector<Way>& ways() {
+  using enum Integrator;
+  static const std::vector<Way> all = {
+      {"dop853, adaptive", "integrator = dop853, local_error", Way::adaptive, {.integrator = dop853}},
+      {"dop853", "integrator = dop853", Way::fine, {.integrator = dop853}},
+      {"rk4, adaptive", "integrator = rk4, local_error", Way::adaptive, {.integrator = rk4}},
+      {"rk4", "integrator = rk4", Way::fine, {.integrator = rk4}},
+      {"rattle", "integrator = rattle", Way::fine, {.integrator = rattle}},
+      {"Euler", "", Way::coarse, {}},
+      {"Euler, Baumgarte", "drift = baumgarte", Way::coarse, {.drift = Drift::baumgarte}},
+      {"implicit", "integrator = implicit", Way::coarse, {.integrator = implicit}},
+      {"Euler, iterative, Baumgarte",
+       "solver = iterative, drift = baumgarte",
+       Way::coarse,
+       {.solver = Solver::iterative, .drift = Drift::baumgarte}},
+      {"Euler, iterative, 3 iterations, Baumgarte",
+       "solver = iterative, iterations = 3, drift = baumgarte",
+       Way::coarse,
+       {.solver = Solver::iterative, .drift = Drift::baumgarte, .iterations = 3}},
   };
+  return all;
+}
+
+std::vector<double> local_errors() {
+  std::vector<double> all;
+  for (int half_digits = 4; half_digits <= 30; ++half_digits) all.push_back(std::pow(10.0, -half_digits / 2.0));
+  return all;
 }
 
 template <class S>
 std::vector<Series> series_in(const Problem& problem) {
   std::vector<Series> all;
   for (const Way& way : ways()) {
-    Settings settings;
-    way.set(settings);
-    all.push_back({way.name, way.changed, "h", steps(problem),
-                   [&problem, settings](double h) { return std::make_unique<CdotRun<S>>(problem, settings, h); }});
+    Series series{way.name, way.changed, "h", way.steps == Way::fine ? fine_steps(problem) : steps(problem),
+                  [&](double h) { return std::make_unique<CdotRun<S>>(problem, way.settings, h); }};
+    if (way.steps == Way::adaptive) {
+      series.knob = "local error";
+      series.knobs = local_errors();
+      series.start = [&](double knob) { return std::make_unique<AdaptiveRun<S>>(problem, way.settings, knob); };
+    }
+    all.push_back(series);
   }
   return all;
 }

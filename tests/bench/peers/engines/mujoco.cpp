@@ -158,7 +158,7 @@ std::vector<Series> series(const Problem& problem) {
   std::vector<Series> all;
   const Model model = model_of(problem);
   for (const Way& way : ways)
-    all.push_back({way.name, way.changed, "h", steps(problem),
+    all.push_back({way.name, way.changed, "h", way.integrator == mjINT_RK4 ? fine_steps(problem) : steps(problem),
                    [&problem, model, way](double h) { return std::make_unique<MujocoRun>(problem, *model, way, h); }});
   return all;
 }
