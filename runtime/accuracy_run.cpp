@@ -45,6 +45,7 @@ Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, c
     const int bodies = static_cast<int>(scene.bodies.size());
     run(world, knob, times, [&](double time, double cpu) {
       trajectory.cpu = cpu;
+      trajectory.counts = world.step_counts();
       const Frame frame = frame_of(world, time, bodies);
       trajectory.finite = finite(frame);
       if (!trajectory.finite) return false;

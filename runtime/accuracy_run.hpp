@@ -15,6 +15,7 @@ struct Trajectory {
   std::vector<Frame> frames;  // at the sample times, until it was stopped or not finite any more
   double C = 0, Cdot = 0;     // the largest at the samples [m, rad], [m/s, rad/s]
   double cpu = 0;             // spent in step() [s]
+  StepCounts counts;          // of rk4 and dop853
   bool finite = true, stopped = false;
 };
 

@@ -55,7 +55,7 @@ TEST_P(Orders, AreThoseOfTheMethod) {
   double before = 0, best = 0;
   for (int halvings = 0; halvings < 5; ++halvings) {
     scene.step = coarsest / (1 << halvings);
-    const double now = distance_to(reference, scene).larger();
+    const double now = distance_to(reference, scene).largest();
     const double slope = halvings > 0 ? std::log2(before / now) : 0;
     fmt::print("  h = {:.4e}  off by {:.3e} m or rad  slope {:.2f}\n", scene.step, now, slope);
     if (now > 20 * reference.accuracy) best = std::max(best, slope);
