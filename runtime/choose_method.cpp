@@ -8,14 +8,12 @@
 namespace cdot {
 namespace {
 
-constexpr int most_tries = 8;           // per integrator
-constexpr double finer = 0.01;          // share of the local error of the run that is compared with
-constexpr double finest = 1e-15;        // local error: beyond it there is only round-off
-constexpr double safety = 0.5;          // of the accuracy asked for
+constexpr int most_tries = 8;     // per integrator
+constexpr double finer = 0.01;    // share of the local error of the run that is compared with
+constexpr double finest = 1e-15;  // local error: beyond it there is only round-off
+constexpr double safety = 0.5;    // of the accuracy asked for
 
-Way way_of(Integrator integrator) {
-  return {integrator, Solver::direct, Drift::projection, 0, false, true};
-}
+Way way_of(Integrator integrator) { return {integrator, Solver::direct, Drift::projection, 0, false, true}; }
 
 double distance_between(const Trajectory& a, const Trajectory& b, Dimension dimension) {
   double worst = a.finite && b.finite ? 0 : std::numeric_limits<double>::infinity();
@@ -27,12 +25,13 @@ double distance_between(const Trajectory& a, const Trajectory& b, Dimension dime
 // The loosest local error found whose run is as near to a finer one as asked.
 Choice try_integrator(const Scene& scene, Integrator integrator) {
   const Way way = way_of(integrator);
-  const std::vector<double> times = equal_times(scene.duration, looks_of(scene));
+  const std::vector<double> times = equal_times(scene.duration, looks_for_accuracy);
   Choice best{integrator, 0, std::numeric_limits<double>::infinity(), false, 0};
   double local_error = scene.accuracy;
   for (int attempt = 0; attempt < most_tries && local_error > finest; ++attempt) {
     const Trajectory run = trajectory_of(scene, way, {1, local_error}, times);
-    const Trajectory better = trajectory_of(scene, way, {1, finer * local_error}, times);
+    // Where both would take one step from look to look, the same error would hide in both: the finer one takes two.
+    const Trajectory better = trajectory_of(scene, way, {2, finer * local_error}, times);
     const double achieved = distance_between(run, better, scene.dimension);
     if (achieved < best.achieved)
       best = {integrator, local_error, achieved, achieved <= safety * scene.accuracy, run.counts.evaluations};
@@ -45,10 +44,6 @@ Choice try_integrator(const Scene& scene, Integrator integrator) {
 
 }  // namespace
 
-int looks_of(const Scene& scene) {
-  return static_cast<int>(std::ceil(scene.duration / scene.step * (1 - 1e-12)));
-}
-
 Choice choose_method(const Scene& scene) {
   const Choice fourth = try_integrator(scene, Integrator::rk4);
   const Choice eighth = try_integrator(scene, Integrator::dop853);
@@ -58,6 +53,8 @@ Choice choose_method(const Scene& scene) {
 }
 
 Scene solved_by(const Choice& choice, Scene scene) {
+  scene.step = scene.duration / looks_for_accuracy;
+  scene.accuracy = 0;
   return solved_by(way_of(choice.integrator), {1, choice.local_error}, std::move(scene));
 }
 

@@ -1,4 +1,5 @@
-// What a scene's `accuracy` is turned into: an integrator and its local error, found by runs whose results are compared.
+// What a scene's `accuracy` is turned into: an integrator and its local error, found by runs whose results are
+// compared.
 #pragma once
 
 #include "runtime/scene.hpp"
@@ -18,10 +19,10 @@ struct Choice {
 // The scene must ask for an accuracy. Runs it a few times.
 Choice choose_method(const Scene& scene);
 
+// A run is looked at so often, at least: those that compare as well as the run itself end a step there.
+inline constexpr int looks_for_accuracy = 64;
+
 // The scene with that method.
 Scene solved_by(const Choice& choice, Scene scene);
-
-// How many looks a run takes: both those that compare and the run itself end their steps there.
-int looks_of(const Scene& scene);
 
 }  // namespace cdot

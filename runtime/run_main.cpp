@@ -19,7 +19,7 @@ enum Status { well = 0, answer_is_no = 1, bad_input = 2, stopped = 130 };
 
 struct Arguments {
   std::string scene, csv, html, svg;
-  double until = 0, step = 0, every = 0, tolerance = 0, local_error = 0, accuracy = 0;
+  double until = 0, step = 0, every = 0, tolerance = 0, local_error = 0, wanted_accuracy = 0;
   std::vector<double> times;
   std::string solver, integrator, drift;
   int iterations = 0, substeps = 0;
@@ -62,7 +62,7 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
                    "let rk4 or dop853 choose its steps: the estimated error of one [m, rad, and per s]")
       ->check(CLI::PositiveNumber);
   simulate
-      ->add_option("--accuracy", arguments.accuracy,
+      ->add_option("--accuracy", arguments.wanted_accuracy,
                    "choose the method such that the trajectory is as exact as that [m, rad]")
       ->check(CLI::PositiveNumber)
       ->excludes("--integrator")
@@ -155,7 +155,7 @@ void override_scene(const Arguments& arguments, cdot::Scene& scene) {
     settings.integrator = cdot::method_called(cdot::integrators, arguments.integrator);
   if (!arguments.drift.empty()) settings.drift = cdot::method_called(cdot::drifts, arguments.drift);
   if (arguments.local_error > 0) settings.local_error = arguments.local_error;
-  if (arguments.accuracy > 0) scene.accuracy = arguments.accuracy;
+  if (arguments.wanted_accuracy > 0) scene.accuracy = arguments.wanted_accuracy;
 }
 
 cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene,

@@ -11,9 +11,8 @@ namespace cdot {
 std::string failure(const Scene& scene, const RunResult& result) {
   if (!result.finite) return fmt::format("unstable: not finite at t = {:.6g} s", result.time);
   if (result.worst_error > scene.tolerance) {
-    return fmt::format(
-        "joint \"{}\" is off by {:.3g} at t = {:.6g} s, more than the tolerance of {:.3g}",
-        result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance);
+    return fmt::format("joint \"{}\" is off by {:.3g} at t = {:.6g} s, more than the tolerance of {:.3g}",
+                       result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance);
   }
   if (result.choice && !result.choice->reached)
     return fmt::format("the accuracy of {:.1e} was not reached: two runs differ by {:.1e}; a shorter run may reach it",
@@ -24,7 +23,8 @@ std::string failure(const Scene& scene, const RunResult& result) {
 namespace {
 
 std::string own_steps_text(const StepCounts& counts) {
-  std::string text = fmt::format("  own steps       {}, from {:.3g} s to {:.3g} s", counts.taken, counts.shortest, counts.longest);
+  std::string text =
+      fmt::format("  own steps       {}, from {:.3g} s to {:.3g} s", counts.taken, counts.shortest, counts.longest);
   if (counts.rejected > 0) text += fmt::format(", {} rejected", counts.rejected);
   if (counts.events > 0) text += fmt::format(", {} event{} located", counts.events, counts.events == 1 ? "" : "s");
   if (counts.rescued > 0) text += fmt::format(", {} left to Euler's for too many events", counts.rescued);
@@ -33,18 +33,16 @@ std::string own_steps_text(const StepCounts& counts) {
 
 std::string choice_text(const Scene& scene, const Choice& choice) {
   return fmt::format(
-      "  accuracy        {:.1e} asked for: {}, local error {:.1e}; {:.1e} achieved, from a run of a hundredth of that{}\n",
+      "  accuracy        {:.1e} asked for: {}, local error {:.1e}; {:.1e} achieved, from a run of a hundredth of "
+      "that{}\n",
       scene.accuracy, name_of(integrators, choice.integrator), choice.local_error, choice.achieved,
       choice.reached ? "" : ": NOT reached");
 }
 
 nlohmann::ordered_json choice_json(const Scene& scene, const Choice& choice) {
-  return {{"asked", scene.accuracy},
-          {"integrator", name_of(integrators, choice.integrator)},
-          {"local_error", choice.local_error},
-          {"achieved", choice.achieved},
-          {"reached", choice.reached},
-          {"evaluations", choice.evaluations}};
+  return {{"asked", scene.accuracy},           {"integrator", name_of(integrators, choice.integrator)},
+          {"local_error", choice.local_error}, {"achieved", choice.achieved},
+          {"reached", choice.reached},         {"evaluations", choice.evaluations}};
 }
 
 }  // namespace
@@ -52,24 +50,22 @@ nlohmann::ordered_json choice_json(const Scene& scene, const Choice& choice) {
 std::string summary_text(const Scene& scene, const RunResult& result) {
   std::string text = fmt::format("{}\n", scene.title.empty() ? scene.file : scene.title);
   text += fmt::format("  bodies, joints  {}, {}\n", scene.bodies.size(), scene.joints.size());
-  text += fmt::format("  time            {:.6g} s in {} steps of {:.6g} s\n", result.time,
-                      result.steps, scene.step);
-  if (result.counts.taken > 0) text += own_steps_text(result.counts);
+  const bool own_steps = result.choice || scene.settings.local_error > 0;
+  text += fmt::format("  time            {:.6g} s", result.time);
+  if (!own_steps) text += fmt::format(" in {} steps of {:.6g} s", result.steps, scene.step);
+  text += "\n";
+  if (own_steps) text += own_steps_text(result.counts);
   if (result.choice) text += choice_text(scene, *result.choice);
-  text +=
-      fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
-                  result.steps > 0 ? 1e6 * result.cpu / static_cast<double>(result.steps) : 0.0);
+  text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
+                      result.steps > 0 ? 1e6 * result.cpu / static_cast<double>(result.steps) : 0.0);
   if (!result.worst_joint.empty()) {
-    text += fmt::format("  worst |C|       {:.3g} (joint \"{}\", t = {:.6g} s)\n",
-                        result.worst_error, result.worst_joint, result.worst_error_time);
+    text += fmt::format("  worst |C|       {:.3g} (joint \"{}\", t = {:.6g} s)\n", result.worst_error,
+                        result.worst_joint, result.worst_error_time);
   }
-  text += fmt::format(
-      "  energy          {:.6g} J at the start, {:.6g} J at the end, at most {:.3g} J apart\n",
-      result.energy_start, result.energy_end, result.energy_drift);
-  if (result.redundant_rows > 0)
-    text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
-  for (const std::string& joint : result.broken_joints)
-    text += fmt::format("  broken          \"{}\"\n", joint);
+  text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, at most {:.3g} J apart\n",
+                      result.energy_start, result.energy_end, result.energy_drift);
+  if (result.redundant_rows > 0) text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
+  for (const std::string& joint : result.broken_joints) text += fmt::format("  broken          \"{}\"\n", joint);
   for (const std::string& note : result.notes) text += fmt::format("  note            {}\n", note);
   const std::string why = failure(scene, result);
   if (!why.empty()) text += fmt::format("  FAILED          {}\n", why);

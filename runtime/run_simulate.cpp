@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 
@@ -65,6 +66,23 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
   result.interrupted = Interrupt::asked();
 }
 
+// A method that chooses its steps ends one wherever a state is asked for, so that none has to be guessed between two.
+// Empty for other methods.
+std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
+  if (!(scene.settings.local_error > 0)) return {};
+  std::vector<double> ends = every(scene.step, scene.duration);
+  ends.push_back(scene.duration);
+  for (const auto* times : {&options.row_times, &options.film_times})
+    for (double time : *times)
+      if (time <= scene.duration) ends.push_back(time);
+  std::sort(ends.begin(), ends.end());
+  // Times that only round-off tells apart are one.
+  const double same = 1e-9 * scene.duration;
+  ends.erase(std::unique(ends.begin(), ends.end(), [&](double a, double b) { return b - a < same; }), ends.end());
+  ends.erase(ends.begin());  // the start
+  return ends;
+}
+
 template <class S>
 RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
@@ -77,7 +95,12 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   const Interrupt interrupt;
 
   const int bodies = static_cast<int>(scene.bodies.size());
-  const auto steps = static_cast<long long>(std::ceil(scene.duration / scene.step * (1 - 1e-12)));
+  const std::vector<double> ends = own_ends(scene, options);
+  const auto steps = ends.empty() ? static_cast<long long>(std::ceil(scene.duration / scene.step * (1 - 1e-12)))
+                                  : static_cast<long long>(ends.size());
+  const auto end_of = [&](long long k) {
+    return ends.empty() ? static_cast<double>(k + 1) * scene.step : ends[static_cast<std::size_t>(k)];
+  };
   Frame before = frame_of(world, 0, bodies), after = before;
   result.energy_start = before.energy;
   for (long long k = 0;; ++k) {
@@ -88,11 +111,11 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     film.step(before, after);
     if (k == steps || Interrupt::asked()) break;
     const double start = cpu_now();
-    world.step(scene.step);
+    world.step(ends.empty() ? scene.step : end_of(k) - (k > 0 ? end_of(k - 1) : 0));
     result.cpu += cpu_now() - start;
     result.steps = k + 1;
     std::swap(before, after);
-    after = frame_of(world, static_cast<double>(k + 1) * scene.step, bodies);
+    after = frame_of(world, end_of(k), bodies);
     progress.at(after.time);
   }
   finish(scene, world, result);
@@ -117,8 +140,7 @@ BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
   if (scene.accuracy > 0) {
     const Choice choice = choose_method(scene);
-    Scene chosen = solved_by(choice, scene);
-    chosen.accuracy = 0;
+    const Scene chosen = solved_by(choice, scene);
     RunResult result = simulate(chosen, options, warnings);
     result.choice = choice;
     return result;

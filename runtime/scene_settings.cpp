@@ -1,20 +1,16 @@
 // The top of a scene file: what is simulated, for how long, and how.
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
-
 #include "runtime/methods.hpp"
 #include "runtime/scene_read.hpp"
 
 namespace cdot {
 namespace {
 
-// Steps that are chosen for accuracy are only looked at in between, sixty times a second.
+// With a local error the step is only how often the run is looked at.
 void read_time(Entry& top, Scene& scene) {
   scene.duration = top.number("duration", {Sign::positive}).value_or(scene.duration);
-  const double looks = std::ceil(std::max(64.0, 60 * scene.duration));
-  const double step = top.has("local_error") || top.has("accuracy") ? scene.duration / looks : scene.step;
+  const double step = top.has("local_error") ? scene.duration / 64 : scene.step;
   scene.step = top.number("step", {Sign::positive}).value_or(step);
   if (scene.step > scene.duration) {
     top.error(top.where("step"), fmt::format("the step of {} s is longer than the duration of {} s",
@@ -48,7 +44,7 @@ void read_method(Entry& top, Settings& settings) {
 void read_accuracy(Entry& top, Scene& scene) {
   scene.accuracy = top.number("accuracy", {Sign::positive}).value_or(0);
   if (!top.has("accuracy")) return;
-  for (const char* key : {"solver", "integrator", "local_error", "drift", "substeps", "iterations"})
+  for (const char* key : {"step", "solver", "integrator", "local_error", "drift", "substeps", "iterations"})
     if (top.has(key))
       top.error(top.where(key), fmt::format("`accuracy` chooses the method: `{}` has no say beside it", key),
                 fmt::format("leave out `{}`, or `accuracy`", key));

@@ -189,7 +189,7 @@ INSTANTIATE_TEST_SUITE_P(Ways, Slopes,
 // What is made without the closed form agrees with it, as well as it claims.
 TEST(AccuracyReference, IsAsGoodAsItSays) {
   const Scene scene = pendulum_scene();
-  const ReferenceRun made = make_reference_run(scene, 4), exact = closed_form();
+  const ReferenceRun made = make_reference_run(scene, 40), exact = closed_form();
   ASSERT_EQ(made.frames.size(), exact.frames.size());
   double worst = 0;
   for (std::size_t k = 0; k < made.frames.size(); ++k)

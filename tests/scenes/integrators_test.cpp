@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "runtime/effects.hpp"
 #include "runtime/methods.hpp"
 #include "tests/scenes/support.hpp"
 
@@ -13,9 +14,9 @@ namespace {
 
 struct Problem {
   const char* scene;
-  double until;   // [s]
-  double step;    // the coarsest [s] of RATTLE
-  double coarse4, coarse8;  // of rk4 and dop853
+  double until;                     // [s]
+  double step = 0;                  // the coarsest of RATTLE [s]
+  double coarse4 = 0, coarse8 = 0;  // of rk4 and dop853
 };
 
 struct Case {
@@ -25,46 +26,119 @@ struct Case {
   double least_slope;
 };
 
+// Slopes are taken between errors this small, where they follow the order.
+constexpr double small_enough = 1e-2;
+
 std::string name_of_case(const testing::TestParamInfo<Case>& info) {
   return fmt::format("{}_{}", info.param.problem.scene, name_of(integrators, info.param.integrator));
 }
 
 std::vector<Case> all_cases() {
   const Problem problems[] = {
-      {"simple_pendulum", 10, 0.01, 0.05, 0.25},  {"compound_pendulum", 10, 0.01, 0.05, 0.25},
-      {"double_pendulum", 2, 0.01, 0.02, 0.125},  {"four_bar", 0.5, 0.01, 0.02, 0.1},
+      {"simple_pendulum", 10, 0.01, 0.05, 0.25}, {"compound_pendulum", 10, 0.01, 0.05, 0.25},
+      {"double_pendulum", 2, 0.01, 0.02, 0.125}, {"four_bar", 0.5, 0.00625, 0.0125},
       {"slider_crank", 0.2, 1e-4, 4e-4, 2e-3},
   };
   std::vector<Case> cases;
   for (const Problem& problem : problems) {
     cases.push_back({problem, Integrator::rattle, problem.step, 1.9});
-    cases.push_back({problem, Integrator::rk4, problem.coarse4, 3.8});
-    cases.push_back({problem, Integrator::dop853, problem.coarse8, 7});
+    cases.push_back({problem, Integrator::rk4, problem.coarse4, 3.5});
+    if (problem.coarse8 > 0) cases.push_back({problem, Integrator::dop853, problem.coarse8, 7});
   }
   return cases;
 }
 
+void PrintTo(const Problem& problem, std::ostream* out) { *out << problem.scene; }
+
 class Orders : public testing::TestWithParam<Case> {};
 
-// The slope is taken where the error is small enough to follow the order and stands well above the reference's own.
+// The slope that counts is that of the finest two steps whose errors stand well above the reference's own.
 TEST_P(Orders, AreThoseOfTheMethod) {
   const auto& [problem, integrator, coarsest, least_slope] = GetParam();
   Scene scene = scene_named(problem.scene);
   scene.settings.integrator = integrator;
   const Reference reference = read_reference(problem.scene, problem.until);
-  double before = 0, best = 0;
+  double before = 0, last = 0;
   for (int halvings = 0; halvings < 5; ++halvings) {
     scene.step = coarsest / (1 << halvings);
     const double now = distance_to(reference, scene).largest();
     const double slope = halvings > 0 ? std::log2(before / now) : 0;
     fmt::print("  h = {:.4e}  off by {:.3e} m or rad  slope {:.2f}\n", scene.step, now, slope);
-    if (now > 20 * reference.accuracy) best = std::max(best, slope);
+    if (now > 20 * reference.accuracy && before < small_enough) last = slope;
     before = now;
   }
-  EXPECT_GT(best, least_slope);
+  EXPECT_GT(last, least_slope);
 }
 
 INSTANTIATE_TEST_SUITE_P(Problems, Orders, testing::ValuesIn(all_cases()), name_of_case);
+
+// `accuracy` of a scene: asked for, chosen, and reached, as the problem's own reference sees it.
+// Up to where its rank drops the four-bar moves so smoothly that a step of a tenth of its run is exact to round-off.
+TEST(Orders, OfTheEighthOrderTheFourBarSeesOnlyRoundOff) {
+  Scene scene = scene_named("four_bar");
+  scene.settings.integrator = Integrator::dop853;
+  scene.step = 0.05;
+  const Reference reference = read_reference("four_bar", 0.5);
+  EXPECT_LT(distance_to(reference, scene).largest(), 10 * reference.accuracy);
+}
+
+class Asked : public testing::TestWithParam<std::tuple<Problem, double>> {};
+
+TEST_P(Asked, IsReached) {
+  const auto& [problem, accuracy] = GetParam();
+  Scene scene = scene_named(problem.scene);
+  scene.accuracy = accuracy;
+  const std::string name = std::filesystem::path(problem.scene).filename();
+  const Reference reference = read_reference(name, problem.until);
+  const Distance distance = distance_to(reference, scene);
+  fmt::print("  asked {:.0e}, off by {:.2e} m, {:.2e} rad\n", accuracy, distance.position, distance.angle);
+  EXPECT_LE(std::max(distance.position, distance.angle), accuracy + reference.accuracy);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Problems, Asked,
+    testing::Combine(testing::Values(Problem{"simple_pendulum", 10}, Problem{"compound_pendulum", 10},
+                                     Problem{"double_pendulum", 2}, Problem{"four_bar", 0.5},
+                                     Problem{"slider_crank", 0.2}, Problem{"pulley_ratio1", 1},
+                                     Problem{"pulley_ratio2", 1}, Problem{"spatial/torque_free_body", 10}),
+                     testing::Values(1e-2, 1e-4, 1e-6, 1e-8, 1e-10)),
+    [](const auto& info) {
+      const std::filesystem::path scene(std::get<0>(info.param).scene);
+      return fmt::format("{}_{:.0f}", scene.filename().string(), -std::log10(std::get<1>(info.param)));
+    });
+
+// A rope of 1 m between a body and the ground above it, slack at first: it goes taut at a known time, and takes all of
+// the fall away. Fixed steps and chosen ones find that time.
+TEST(Events, ARopeGoesTautInTime) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853}) {
+    World<double> world({.integrator = integrator, .gravity_y = -9.81});
+    const int ball = world.add_body({.y = -0.5, .mass = 2, .inertia = 0.1});
+    world.add_joint({"max_distance", {world.ground(), ball}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {1.0}}}, {}});
+    const double taut = std::sqrt(2 * 0.5 / 9.81);
+    world.step(0.75 * taut);
+    EXPECT_NEAR(world.velocity(ball).y, -9.81 * 0.75 * taut, 1e-12);
+    world.step(0.5 * taut);
+    EXPECT_NEAR(world.pose(ball).y, -1, 2e-9);
+    EXPECT_NEAR(world.velocity(ball).y, 0, 1e-9);
+    EXPECT_EQ(world.step_counts().events, 1);
+  }
+}
+
+// A block on a slide, pushed by a motor of bounded force: it speeds up evenly, and from the moment that it has the
+// motor's speed keeps it. Where it then is has a closed form.
+TEST(Events, AMotorReachesItsSpeed) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853}) {
+    World<double> world({.integrator = integrator});
+    const int block = world.add_body({.mass = 2, .inertia = 0.1});
+    const int slide = world.add_joint({"prismatic", {block, world.ground()}, {{"pa", {0, 0}}, {"t", {0, 1}}}, {}});
+    add_motor(world, slide, "slide", {.speed = 1.5, .max_force = 6});
+    for (int k = 0; k < 7; ++k) world.step(0.1);
+    // 3 m/s^2 for 0.5 s, then 0.2 s at 1.5 m/s
+    EXPECT_NEAR(std::abs(world.pose(block).x), 0.5 * 3 * 0.25 + 1.5 * 0.2, 1e-8);
+    EXPECT_NEAR(std::abs(world.velocity(block).x), 1.5, 1e-9);
+    EXPECT_EQ(world.step_counts().events, 1);
+  }
+}
 
 }  // namespace
 }  // namespace cdot::test
