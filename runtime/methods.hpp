@@ -1,4 +1,5 @@
-// The names of solvers, drift corrections, integrators and forms of kernels, as scenes, commands and reports spell them: one table each.
+// The names of solvers, drift corrections, integrators and forms of kernels, as scenes, commands and reports spell them:
+// one table each.
 #pragma once
 
 #include <array>
