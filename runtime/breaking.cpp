@@ -49,7 +49,8 @@ void break_joint(WorldState<S>& world, int joint) {
   for (int body : record.bodies) island = std::max(island, world.island_of[body]);
   for (const Place& place : record.places)
     remove_slot(world, world.islands[island], *world.batches[place.batch], place.slot);
-  world.islands[island].factored = world.islands[island].flow.known = false;
+  world.islands[island].factored = false;
+  world.islands[island].flow.forget();
 }
 
 template <class S>

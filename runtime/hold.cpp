@@ -38,14 +38,15 @@ void factor_rows_with_errors(Island<S>& island) {
   island.system.factor();
 }
 
-// K lambda = what was loaded, with the factor at hand; `moved` += M^-1 J^T lambda.
+// K lambda = what was loaded, with the factor at hand; `moved` += M^-1 J^T lambda. What brings a state of continuous time
+// back onto its joints is the method's error, not an impulse of theirs.
 template <class S>
 void solve_and_apply(WorldState<S>& world, Island<S>& island, typename S::Velocity* moved) {
   using T = typename S::Scalar;
   island.system.solve();
-  island.system.store([](Batch<S>& batch, int i, double lambda) {
+  island.system.store([&](Batch<S>& batch, int i, double lambda) {
     batch.scratch[i] = T(lambda);
-    batch.correction[i] += T(lambda);
+    if (!island.continuous) batch.correction[i] += T(lambda);
   });
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, segment.batch->scratch.data(),

@@ -113,7 +113,8 @@ bool BasicWorld<S>::project(double tolerance) {
     if (!island.system.built()) island.system.build(island.segments, state_->bodies);
     project_poses(*state_, island);
     project_velocities(*state_, island, tolerance);
-    island.evaluated = island.factored = island.flow.known = false;
+    island.evaluated = island.factored = false;
+    island.flow.forget();
   }
   return inconsistencies(tolerance).empty();
 }

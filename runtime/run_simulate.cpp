@@ -66,8 +66,8 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
   result.interrupted = Interrupt::asked();
 }
 
-// A method that chooses its steps ends one wherever a state is asked for, so that none has to be guessed between two.
-// Empty for other methods.
+// A method that chooses its steps gives the state at any time by its own interpolant: none has to be guessed between
+// two. Empty for other methods.
 std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
   if (!(scene.settings.local_error > 0)) return {};
   std::vector<double> ends = every(scene.step, scene.duration);

@@ -11,27 +11,6 @@ namespace cdot {
 namespace {
 
 template <class S>
-constexpr int numbers_per_body = S::pose_numbers + S::freedom;
-
-template <class S>
-void read_numbers(const WorldState<S>& world, const Island<S>& island, typename S::Scalar* to) {
-  for (int i : island.bodies) {
-    S::write(world.bodies.pose[i], to);
-    S::write(world.bodies.velocity[i], to + S::pose_numbers);
-    to += numbers_per_body<S>;
-  }
-}
-
-template <class S>
-void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S::Scalar* from) {
-  for (int i : island.bodies) {
-    world.bodies.pose[i] = S::read(from);
-    world.bodies.velocity[i] = S::read_velocity(from + S::pose_numbers);
-    from += numbers_per_body<S>;
-  }
-}
-
-template <class S>
 void read_rates(const WorldState<S>& world, Island<S>& island, int stage) {
   typename S::Scalar* to = island.flow.rates.data() + static_cast<size_t>(stage) * island.flow.now.size();
   for (int i : island.bodies) {
@@ -58,25 +37,47 @@ void combine(Flow<S>& flow, const double* weights, int count, typename S::Scalar
 }  // namespace
 
 template <class S>
+void read_numbers(const WorldState<S>& world, const Island<S>& island, typename S::Scalar* to) {
+  for (int i : island.bodies) {
+    S::write(world.bodies.pose[i], to);
+    S::write(world.bodies.velocity[i], to + S::pose_numbers);
+    to += numbers_per_body<S>;
+  }
+}
+
+template <class S>
+void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S::Scalar* from) {
+  for (int i : island.bodies) {
+    world.bodies.pose[i] = S::read(from);
+    world.bodies.velocity[i] = S::read_velocity(from + S::pose_numbers);
+    from += numbers_per_body<S>;
+  }
+}
+
+template <class S>
+void take_stage(WorldState<S>& world, Island<S>& island, const RungeKutta& method, int stage, typename S::Scalar time,
+                typename S::Scalar h) {
+  using T = typename S::Scalar;
+  combine(island.flow, method.a[stage], stage, h);
+  set_numbers(world, island, island.flow.now.data());
+  evaluate_anew(world, island, time + T(method.c[stage]) * h);
+  island.factored = false;
+  accelerate(world, island, time + T(method.c[stage]) * h);
+  read_rates(world, island, stage);
+}
+
+template <class S>
 void take_stages(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
                  typename S::Scalar h) {
-  using T = typename S::Scalar;
-  for (int stage = 1; stage < method.stages; ++stage) {
-    combine(island.flow, method.a[stage], stage, h);
-    set_numbers(world, island, island.flow.now.data());
-    evaluate_anew(world, island, time + T(method.c[stage]) * h);
-    island.factored = false;
-    accelerate(world, island, time + T(method.c[stage]) * h);
-    read_rates(world, island, stage);
-  }
+  for (int stage = 1; stage < method.stages; ++stage) take_stage(world, island, method, stage, time, h);
   combine(island.flow, method.a[method.stages], method.stages, h);
   set_numbers(world, island, island.flow.now.data());
 }
 
 template <class S>
-void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time) {
+void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   const bool holds = world.settings.drift == Drift::projection && !island.segments.empty();
-  if (holds) hold_poses(world, island, time, false);
+  if (holds) hold_poses(world, island, time, fresh);
   evaluate_anew(world, island, time);
   island.factored = false;
   if (holds) {
@@ -86,6 +87,11 @@ void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& metho
   }
   note_rates(world, island);
   accelerate(world, island, time);
+}
+
+template <class S>
+void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time) {
+  settle(world, island, time, false);
   measure_margins(island);
   read_rates(world, island, method.stages);
 }
@@ -119,7 +125,13 @@ void prepare_flow(Island<S>& island, const RungeKutta& method) {
   const size_t n = island.bodies.size() * numbers_per_body<S>;
   flow.start.assign(n, 0);
   flow.now.assign(n, 0);
-  flow.rates.assign(n * static_cast<size_t>(method.stages + 1), 0);
+  flow.rates.assign(n * static_cast<size_t>(method.stages + 1 + method.further_stages), 0);
+  flow.end.assign(n, 0);
+  flow.further_terms.assign(n * static_cast<size_t>(method.further_terms), 0);
+  size_t rows = 0;
+  for (const Segment<S>& segment : island.segments)
+    rows += static_cast<size_t>((segment.end - segment.begin) * segment.batch->ops->rows);
+  flow.end_forces.assign(rows, 0);
   count_guarded_rows(island);
 }
 
@@ -135,6 +147,10 @@ void go_back(WorldState<S>& world, Island<S>& island) {
 }
 
 #define CDOT_INSTANTIATE(S)                                                                       \
+  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                 \
+  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                  \
+  template void take_stage(WorldState<S>&, Island<S>&, const RungeKutta&, int, S::Scalar, S::Scalar); \
+  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                              \
   template void prepare_flow(Island<S>&, const RungeKutta&);                                      \
   template void keep_start(const WorldState<S>&, Island<S>&);                                     \
   template void go_back(WorldState<S>&, Island<S>&);                                              \

@@ -19,12 +19,31 @@ void keep_start(const WorldState<S>& world, Island<S>& island);
 template <class S>
 void go_back(WorldState<S>& world, Island<S>& island);
 
+// Numbers of one body among those of a Flow.
+template <class S>
+inline constexpr int numbers_per_body = S::pose_numbers + S::freedom;
+
+// The bodies' poses and velocities, and dv/dt with the poses' rates, from and to arrays of a Flow.
+template <class S>
+void read_numbers(const WorldState<S>& world, const Island<S>& island, typename S::Scalar* to);
+template <class S>
+void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S::Scalar* from);
+
+// The k of a stage at start + h sum_j a_stage,j k_j.
+template <class S>
+void take_stage(WorldState<S>& world, Island<S>& island, const RungeKutta& method, int stage, typename S::Scalar time,
+                typename S::Scalar h);
+
 // The stages of a step of h that starts at `time`; leaves its end in the bodies, not yet projected.
 template <class S>
 void take_stages(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
                  typename S::Scalar h);
 
-// Onto the constraints, with the accelerations there.
+// The present state onto the constraints, with the accelerations there. `fresh`: J is not yet that of the step.
+template <class S>
+void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
+
+// The same for the end of a step, whose k becomes the last.
 template <class S>
 void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time);
 

@@ -49,7 +49,8 @@ void wake(WorldState<S>& world, int body) {
   const int last = island < 0 ? static_cast<int>(world.islands.size()) - 1 : island;
   for (int i = first; i <= last; ++i) {
     wake_island(world, i);
-    world.islands[i].evaluated = world.islands[i].factored = world.islands[i].flow.known = false;
+    world.islands[i].evaluated = world.islands[i].factored = false;
+    world.islands[i].flow.forget();
     world.islands[i].residual = std::numeric_limits<typename S::Scalar>::infinity();
   }
 }

@@ -1,8 +1,9 @@
-// A step of a Runge-Kutta method as the World asks for it: in one piece, or in as many as the error estimate wants, and
-// cut at events.
+// A step of a Runge-Kutta method as the World asks for it: in one piece, or by as many as the error estimate wants, the
+// last of which may end beyond it; cut at events.
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/between.hpp"
 #include "runtime/events.hpp"
 #include "runtime/hold.hpp"
 #include "runtime/runge_kutta.hpp"
@@ -14,6 +15,7 @@ namespace {
 constexpr int most_events = 32;      // in one step(); beyond them its rest is left to Euler's
 constexpr int most_rejections = 60;  // in a row: then the step is taken as it is
 constexpr int most_searches = 60;    // for one event
+constexpr int furthest_reach = 64;   // of a step of its own length, in step()s
 
 // In units of what is not told apart, from where a row stood: an event is behind us, and just behind us.
 constexpr double passed = -1, just_passed = -3;
@@ -71,20 +73,24 @@ typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const Ru
   return high;
 }
 
-// Steps of h / n that fill what is left, so that no sliver remains.
+// Of a step that should be `best` long where `left` remains, and `reach` may be gone. To end where a state is asked for
+// costs less than to look back, if that shortens the step a little only.
 template <class T>
-T even_part(T left, T step) {
-  return step > T(0) && step < left ? left / std::ceil(left / step) : left;
+T length_of_step(T best, T left, T reach) {
+  if (!(best > T(0)) || (best > T(0.95) * left && best < T(1.6) * left)) return left;
+  if (reach > left) return std::min(best, reach);
+  return best < left ? left / std::ceil(left / best) : left;  // equal parts: no sliver remains
 }
 
-// One step of at most `left`, as long as the error allows. Returns its length; Flow::margins are those of its end.
+// One step as long as the error allows, but within `reach`. Returns its length; Flow::margins are those of its end.
 template <class S>
 typename S::Scalar take_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
-                             typename S::Scalar left) {
+                             typename S::Scalar left, typename S::Scalar reach) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
   const bool adaptive = world.settings.local_error > 0;
-  T h = adaptive ? even_part(left, flow.next_step) : left;
+  const T proposed = flow.next_step;
+  T h = adaptive ? length_of_step(proposed, left, reach) : left;
   for (int attempt = 0;; ++attempt) {
     take_stages(world, island, method, time, h);
     double error = adaptive && !method.error_at_end ? error_of_step(world, island, method, h) : 0;
@@ -97,9 +103,15 @@ typename S::Scalar take_step(WorldState<S>& world, Island<S>& island, const Rung
     // 0.9 of the step that would just do; a NaN shrinks like the worst.
     const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
-    if (error <= 1 || hopeless) return h;
+    if (error <= 1 || hopeless) {
+      // One that was cut short tells nothing against the length that was proposed; after one that was too long none
+      // grows.
+      if (attempt == 0 && h < proposed) flow.next_step = std::max(flow.next_step, proposed);
+      if (attempt > 0) flow.next_step = std::min(flow.next_step, h);
+      return h;
+    }
     ++world.counts.rejected;
-    h = even_part(left, flow.next_step);
+    h = length_of_step(flow.next_step, left, reach);
     go_back(world, island);
   }
 }
@@ -130,7 +142,8 @@ template <class S>
 void leave_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   ++world.counts.rescued;
   drop_modes(island);
-  island.continuous = island.evaluated = island.factored = island.flow.known = false;
+  island.continuous = island.evaluated = island.factored = false;
+  island.flow.forget();
   step_euler(world, island, h);
   scale_forces(island, 1 / h);
   island.continuous = true;
@@ -143,6 +156,37 @@ void count_step(StepCounts& counts, typename S::Scalar h) {
   counts.longest = std::max(counts.longest, double(h));
 }
 
+// From `done` on until h is reached, or passed. Returns the end.
+template <class S>
+typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const RungeKutta& method,
+                              typename S::Scalar done, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  // Whoever looks at the loads after every step may change what follows.
+  const bool looked_at = !world.after_substep.empty();
+  for (int events = 0; done < h;) {
+    const T time = T(world.time) + done, left = h - done;
+    if (!flow.known && events > most_events) {
+      leave_to_euler(world, island, left);
+      return h;
+    }
+    begin(world, island, time);
+    keep_start(world, island);
+    flow.margins_at_start = flow.margins;
+    flow.end_kept = false;
+    flow.length = take_step(world, island, method, time, left, looked_at ? left : furthest_reach * h);
+    if (flow.guarded > 0 && furthest(flow.margins_at_start, flow.margins) < passed) {
+      flow.length = go_to_event(world, island, method, time, flow.length);
+      ++world.counts.events;
+      ++events;
+      flow.known = false;
+    }
+    count_step<S>(world.counts, flow.length);
+    done = flow.length == left ? h : done + flow.length;
+  }
+  return done;
+}
+
 }  // namespace
 
 template <class S>
@@ -152,26 +196,11 @@ void step_runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scala
   Flow<S>& flow = island.flow;
   if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
   clear_correction(world, island);
-  int events = 0;
-  for (T done = 0; done < h;) {
-    const T time = T(world.time) + done, left = h - done;
-    begin(world, island, time);
-    keep_start(world, island);
-    flow.margins_at_start = flow.margins;
-    T taken = take_step(world, island, method, time, left);
-    if (flow.guarded > 0 && furthest(flow.margins_at_start, flow.margins) < passed) {
-      taken = go_to_event(world, island, method, time, taken);
-      ++world.counts.events;
-      flow.known = false;
-    }
-    count_step<S>(world.counts, taken);
-    if (taken >= left) break;
-    done += taken;
-    if (!flow.known && ++events > most_events) {
-      leave_to_euler(world, island, h - done);
-      break;
-    }
-  }
+  T end = flow.ahead;
+  if (end > T(0) && end <= h) go_to_end(world, island, method, T(world.time) + end);
+  end = take_steps(world, island, method, end, h);
+  flow.ahead = end - h;
+  if (flow.ahead > T(0)) go_between(world, island, method, T(world.time) + end);
   scale_forces(island, h);
 }
 

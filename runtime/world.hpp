@@ -77,6 +77,8 @@ class BasicWorld {
 
   // --- running: step() never throws and, once prepared, never allocates ---
 
+  // With Settings::local_error the state at its end may lie between the ends of a step that the method chose: by the
+  // method's interpolant, brought back onto the joints. Asking often then costs no steps.
   void step(double h);
 
   // Each of these wakes the body's island.

@@ -51,7 +51,18 @@ struct Flow {
   std::vector<T> margins, margins_at_start;  // [guarded] how far from their next event
   std::vector<T> low, high;                  // the same, on both sides of an event that is looked for
   T next_step = 0;            // [s] that the error control proposes; 0: none yet
-  bool known = false;         // C, J, forces and dv/dt belong to the present state
+  bool known = false;         // C, J, forces and dv/dt belong to the end of the last step
+  // A step of its own length may end beyond the time asked for. The bodies then stand between its ends.
+  T ahead = 0;                      // [s] how far beyond; 0: they stand at its end
+  T length = 0;                     // [s] of that step
+  bool end_kept = false;            // the following belong to it
+  std::vector<T> end, end_forces;   // the end, as `now`, and the joints' forces there, [row]
+  std::vector<T> further_terms;     // of the interpolant, [term][...]
+  // The present state is not one that the last step led to.
+  void forget() {
+    known = end_kept = false;
+    ahead = 0;
+  }
 };
 
 // Bodies that push each other through joints and springs: solved together, and asleep together.
