@@ -38,28 +38,14 @@ void factor_rows_with_errors(Island<S>& island) {
   island.system.factor();
 }
 
-// K lambda = what was loaded, with the factor at hand; `moved` += M^-1 J^T lambda. What brings a state of continuous time
-// back onto its joints is the method's error, not an impulse of theirs.
-template <class S>
-void solve_and_apply(WorldState<S>& world, Island<S>& island, typename S::Velocity* moved) {
-  using T = typename S::Scalar;
-  island.system.solve();
-  island.system.store([&](Batch<S>& batch, int i, double lambda) {
-    batch.scratch[i] = T(lambda);
-    if (!island.continuous) batch.correction[i] += T(lambda);
-  });
-  for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, segment.batch->scratch.data(),
-                              moved);
-}
-
 // K lambda = -C, q += M^-1 J^T lambda.
 template <class S>
 void move_by_newton(WorldState<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   island.system.load([](const Batch<S>& batch, int i) { return -double(batch.scratch[i]); });
-  solve_and_apply(world, island, all.increment.data());
+  island.system.solve();
+  apply_solution(world, island, all.increment.data());
   for (int i : island.bodies) {
     all.pose[i] = S::moved(all.pose[i], all.increment[i]);
     all.displacement[i] = S::sum(all.displacement[i], all.increment[i], T(1));
@@ -174,7 +160,8 @@ void solve_velocities(WorldState<S>& world, Island<S>& island) {
   system.choose([](const Batch<S>& batch, int i) { return !batch.law || batch.mode[i] == Mode::held; });
   system.assemble(world.bodies);
   island.redundant_rows = system.factor();
-  solve_and_apply(world, island, world.bodies.velocity.data());
+  system.solve();
+  apply_solution(world, island, world.bodies.velocity.data());
 }
 
 template <class S>
@@ -226,12 +213,23 @@ typename S::Scalar find_errors(WorldState<S>& world, Island<S>& island, typename
 }
 
 template <class S>
-void solve_errors(WorldState<S>& world, Island<S>& island, typename S::Scalar share,
-                  typename S::Velocity* to) {
-  const auto wanted = [&](const Batch<S>& batch, int i) { return double(share * batch.scratch[i]); };
-  island.system.load(wanted);
+void solve_errors(Island<S>& island, typename S::Scalar share) {
+  island.system.load([&](const Batch<S>& batch, int i) { return double(share * batch.scratch[i]); });
   if (island.system.lawful()) factor_rows_with_errors(island);
-  solve_and_apply(world, island, to);
+  island.system.solve();
+}
+
+// What brings a state of continuous time back onto its joints is the method's error, not an impulse of theirs.
+template <class S>
+void apply_solution(WorldState<S>& world, Island<S>& island, typename S::Velocity* to) {
+  using T = typename S::Scalar;
+  island.system.store([&](Batch<S>& batch, int i, double lambda) {
+    batch.scratch[i] = T(lambda);
+    if (!island.continuous) batch.correction[i] += T(lambda);
+  });
+  for (const Segment<S>& segment : island.segments)
+    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, segment.batch->scratch.data(),
+                              to);
 }
 
 template <class S>
@@ -270,7 +268,8 @@ void hold_velocities(WorldState<S>& world, Island<S>& island) {
 #define CDOT_INSTANTIATE(S)                                              \
   template void clear_correction(WorldState<S>&, Island<S>&);            \
   template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar); \
-  template void solve_errors(WorldState<S>&, Island<S>&, S::Scalar, S::Velocity*); \
+  template void solve_errors(Island<S>&, S::Scalar);                     \
+  template void apply_solution(WorldState<S>&, Island<S>&, S::Velocity*); \
   template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);    \
   template void hold_poses(WorldState<S>&, Island<S>&, S::Scalar, bool); \
   template void hold_velocities(WorldState<S>&, Island<S>&);

@@ -18,10 +18,12 @@ void clear_correction(WorldState<S>& world, Island<S>& island);
 template <class S>
 typename S::Scalar find_errors(WorldState<S>& world, Island<S>& island, typename S::Scalar time);
 
-// K lambda = share * the errors just found, with the factor at hand; `to` += M^-1 J^T lambda.
+// K lambda = share * the errors just found, with the factor at hand: into System::lambda.
 template <class S>
-void solve_errors(WorldState<S>& world, Island<S>& island, typename S::Scalar share,
-                  typename S::Velocity* to);
+void solve_errors(Island<S>& island, typename S::Scalar share);
+// `to` += M^-1 J^T lambda.
+template <class S>
+void apply_solution(WorldState<S>& world, Island<S>& island, typename S::Velocity* to);
 
 // C and J at the present poses, and the inertias there: of an island in continuous time with w as it is, of others with
 // the angular momentum as it is.

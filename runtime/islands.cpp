@@ -143,6 +143,8 @@ void prepare_topology(WorldState<S>& world) {
     if (world.settings.solver == Solver::direct) island.system.build(island.segments, world.bodies);
     island.flow.pose.resize(island.bodies.size());
     island.flow.velocity.resize(island.bodies.size());
+    if (world.settings.integrator == Integrator::rattle)
+      island.flow.search.reserve(static_cast<size_t>(island.system.rows()));
     if (works_on_accelerations(world.settings.integrator))
       prepare_flow(island, runge_kutta(world.settings.integrator));
     world.awake.push_back(i);

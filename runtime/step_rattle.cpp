@@ -11,7 +11,7 @@
 namespace cdot {
 namespace {
 
-constexpr int newton_rounds = 30;
+constexpr int most_in_vain = 4;  // rounds that do not bring the error down
 // As far as Newton goes if it can: what is left of C pushes the velocities by C / h.
 template <class T>
 constexpr T round_off = std::is_same_v<T, double> ? T(1e-15) : T(1e-6);
@@ -87,23 +87,29 @@ void drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
     for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
 }
 
-// Newton with the factor of the start: K lambda = -C / h, velocity += M^-1 J^T lambda, and the drift again. False if
-// the error does not shrink: the step is too long for it.
+// From the factor of the start: K lambda = -C / h, velocity += M^-1 J^T lambda, and the drift again, with what Broyden
+// learns on the way. False if the error does not shrink: the step is too long for it.
 template <class S>
 bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T time = T(world.time) + h;
-  T before = std::numeric_limits<T>::infinity();
-  for (int round = 0; round < newton_rounds; ++round) {
+  System<S>& system = island.system;
+  island.flow.search.begin([&](size_t row) { return system.diagonal(static_cast<int>(row)); });
+  T least = std::numeric_limits<T>::infinity();
+  for (int vain = 0;;) {
     drift(world, island, h);
     island.residual = find_errors(world, island, time);
     if (!(island.residual > round_off<T>)) return true;
-    // Round-off may stop it earlier than that.
-    if (!(island.residual < T(0.7) * before)) return island.residual <= T(100) * converged<T>;
-    before = island.residual;
-    solve_errors(world, island, T(-1) / h, world.bodies.velocity.data());
+    if (island.residual < T(0.7) * least)
+      least = island.residual, vain = 0;
+    else if (island.residual <= converged<T>)  // round-off may stop it earlier than that
+      return true;
+    else if (++vain > most_in_vain)
+      return island.residual <= T(100) * converged<T>;
+    solve_errors(island, T(-1) / h);
+    if (!island.flow.search.next(system.lambda.data())) return false;
+    apply_solution(world, island, world.bodies.velocity.data());
   }
-  return false;
 }
 
 // Motors, limits and friction are solved for with the exact rows. Springs have pushed as forces.

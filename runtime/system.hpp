@@ -75,6 +75,8 @@ class System {
   int factor();
   // lambda of the free rows from b and the lambda of the fixed ones.
   void solve();
+  // The share that a row has of K by itself: J M^-1 J^T of it alone.
+  double diagonal(int row) const { return ldlt_.diagonal(row); }
   // lambda within [lower, upper], by an active set: where a bound holds it back, J v + bias need
   // not vanish. Returns the number of dependent rows of the last factorisation.
   int solve_bounded();

@@ -1,0 +1,61 @@
+// Broyden's method: solves F(x) = 0 with the factor of dF/dx at hand, which it corrects by what it learns from each step.
+// Where the directions of a mechanism's joints turn about within a step, as at a pose in which it loses a row, that
+// factor alone leads astray in one direction; two or three steps tell how far. (C. T. Kelley, "Iterative Methods for
+// Linear and Nonlinear Equations", 1995, 7.3.)
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+namespace cdot {
+
+class Broyden {
+ public:
+  static constexpr int most_steps = 24;
+
+  void reserve(size_t unknowns) {
+    n_ = unknowns;
+    steps_.assign(n_ * (most_steps + 1), 0.0);
+    weights_.assign(n_, 1.0);
+  }
+  // weight(i): of unknown i in the products of steps, such that unknowns of different units compare.
+  template <class F>
+  void begin(F weight) {
+    count_ = 0;
+    for (size_t i = 0; i < n_; ++i) weights_[i] = weight(i);
+  }
+
+  // z = -B^-1 F at the present point, B being that factor; becomes the step from there. False if none is known.
+  //   z += s_j+1 <s_j, z> / <s_j, s_j> for the steps s_j so far, then s = z / (1 - <s_n, z> / <s_n, s_n>)
+  bool next(double* z) {
+    if (count_ > most_steps) return false;
+    double lengthen = 1;
+    for (int j = 0; j < count_; ++j) {
+      const double* step = steps_.data() + static_cast<size_t>(j) * n_;
+      const double size = product(step, step), share = size > 0 ? product(step, z) / size : 0;
+      if (j + 1 < count_)
+        for (size_t i = 0; i < n_; ++i) z[i] += step[n_ + i] * share;
+      else
+        lengthen = 1 / (1 - share);
+    }
+    if (!(std::abs(lengthen) < longest)) return false;
+    double* step = steps_.data() + static_cast<size_t>(count_++) * n_;
+    for (size_t i = 0; i < n_; ++i) step[i] = z[i] *= lengthen;
+    return true;
+  }
+
+ private:
+  static constexpr double longest = 1e6;
+
+  double product(const double* x, const double* y) const {
+    double sum = 0;
+    for (size_t i = 0; i < n_; ++i) sum += weights_[i] * x[i] * y[i];
+    return sum;
+  }
+
+  size_t n_ = 0;
+  int count_ = 0;
+  std::vector<double> steps_, weights_;
+};
+
+}  // namespace cdot
