@@ -88,8 +88,8 @@ void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                                    \
-  template void go_between(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);          \
+#define CDOT_INSTANTIATE(S)                                                           \
+  template void go_between(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar); \
   template void go_to_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

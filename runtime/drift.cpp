@@ -29,19 +29,6 @@ bool bends_the_path(const WorldState<S>& world, const Island<S>& island, double 
   return 4 * moved <= h * h * way;
 }
 
-// Displacements and their impulses become those of velocities.
-template <class S>
-void add_corrections(WorldState<S>& world, Island<S>& island, typename S::Scalar per_time) {
-  Bodies<S>& all = world.bodies;
-  for (int i : island.bodies)
-    all.velocity[i] = S::sum(all.velocity[i], all.displacement[i], per_time);
-  for (const Segment<S>& segment : island.segments) {
-    const int rows = segment.batch->ops->rows;
-    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
-      segment.batch->correction[i] *= per_time;
-  }
-}
-
 }  // namespace
 
 template <class S>

@@ -245,6 +245,21 @@ void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar t
 }
 
 template <class S>
+void scale_corrections(const Island<S>& island, typename S::Scalar by) {
+  for (const Segment<S>& segment : island.segments) {
+    const int rows = segment.batch->ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i) segment.batch->correction[i] *= by;
+  }
+}
+
+template <class S>
+void add_corrections(WorldState<S>& world, Island<S>& island, typename S::Scalar per_time) {
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.displacement[i], per_time);
+  scale_corrections(island, per_time);
+}
+
+template <class S>
 void hold_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   if (world.settings.solver == Solver::direct) return newton(world, island, time, fresh);
   if (fresh) {
@@ -265,13 +280,15 @@ void hold_velocities(WorldState<S>& world, Island<S>& island) {
   if (island.continuous) add_wanted_rates(island, T(1));
 }
 
-#define CDOT_INSTANTIATE(S)                                              \
-  template void clear_correction(WorldState<S>&, Island<S>&);            \
-  template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar); \
-  template void solve_errors(Island<S>&, S::Scalar);                     \
+#define CDOT_INSTANTIATE(S)                                               \
+  template void clear_correction(WorldState<S>&, Island<S>&);             \
+  template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar);  \
+  template void solve_errors(Island<S>&, S::Scalar);                      \
   template void apply_solution(WorldState<S>&, Island<S>&, S::Velocity*); \
-  template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);    \
-  template void hold_poses(WorldState<S>&, Island<S>&, S::Scalar, bool); \
+  template void scale_corrections(const Island<S>&, S::Scalar);           \
+  template void add_corrections(WorldState<S>&, Island<S>&, S::Scalar);   \
+  template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);     \
+  template void hold_poses(WorldState<S>&, Island<S>&, S::Scalar, bool);  \
   template void hold_velocities(WorldState<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

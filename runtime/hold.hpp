@@ -25,6 +25,12 @@ void solve_errors(Island<S>& island, typename S::Scalar share);
 template <class S>
 void apply_solution(WorldState<S>& world, Island<S>& island, typename S::Velocity* to);
 
+template <class S>
+void scale_corrections(const Island<S>& island, typename S::Scalar by);
+// Displacements and their impulses become those of velocities.
+template <class S>
+void add_corrections(WorldState<S>& world, Island<S>& island, typename S::Scalar per_time);
+
 // C and J at the present poses, and the inertias there: of an island in continuous time with w as it is, of others with
 // the angular momentum as it is.
 template <class S>

@@ -146,16 +146,16 @@ void go_back(WorldState<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
 }
 
-#define CDOT_INSTANTIATE(S)                                                                       \
-  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                 \
-  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                  \
-  template void take_stage(WorldState<S>&, Island<S>&, const RungeKutta&, int, S::Scalar, S::Scalar); \
-  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                              \
-  template void prepare_flow(Island<S>&, const RungeKutta&);                                      \
-  template void keep_start(const WorldState<S>&, Island<S>&);                                     \
-  template void go_back(WorldState<S>&, Island<S>&);                                              \
-  template void take_stages(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar, S::Scalar); \
-  template void settle_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);             \
+#define CDOT_INSTANTIATE(S)                                                                            \
+  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                      \
+  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                       \
+  template void take_stage(WorldState<S>&, Island<S>&, const RungeKutta&, int, S::Scalar, S::Scalar);  \
+  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                                   \
+  template void prepare_flow(Island<S>&, const RungeKutta&);                                           \
+  template void keep_start(const WorldState<S>&, Island<S>&);                                          \
+  template void go_back(WorldState<S>&, Island<S>&);                                                   \
+  template void take_stages(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar, S::Scalar);      \
+  template void settle_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);                  \
   template double error_of_step(const WorldState<S>&, const Island<S>&, const RungeKutta&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
