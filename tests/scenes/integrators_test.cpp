@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(OfAMillionSteps, LongRun, testing::Values("crank_rocker
                          [](const auto& info) { return std::string(info.param); });
 
 // A chain of ten links of 1 kg with a load of a thousand or a million times that at its end, kicked aside: the linearly
-// implicit step, which keeps it quiet at 1/60 s (tests/runtime/hard_cases_test.cpp), converges at first order.
+// implicit step, which keeps it quiet at 1/60 s (tests/hard_cases/heavy_load), converges at first order.
 TEST(HeavyLoad, OnALightChainConverges) {
   for (const double load : {1e3, 1e6}) {
     double x[4];

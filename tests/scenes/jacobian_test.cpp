@@ -20,7 +20,7 @@ TEST(Jacobian, SizeRankAndFreedomOfTheMechanisms) {
   };
   for (const Case& c : {Case{"double_pendulum", 4, 6, 4, 2}, Case{"four_bar", 8, 9, 8, 1},
                         Case{"slider_crank", 8, 9, 8, 1}, Case{"catenary_100", 202, 300, 202, 98},
-                        Case{"hard/same_joint_ten_times", 20, 3, 2, 1}}) {
+                        Case{"../../tests/hard_cases/same_joint_ten_times/planar", 20, 3, 2, 1}}) {
     const SystemMatrix system = system_matrix(scene_named(c.scene));
     EXPECT_EQ(system.rows, c.rows) << c.scene;
     EXPECT_EQ(system.columns, c.columns) << c.scene;

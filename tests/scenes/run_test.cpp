@@ -101,7 +101,7 @@ TEST(Run, NotFiniteEndsTheRun) {
 TEST(Run, StaticJointIsNoted) {
   std::string warnings;
   const RunResult result =
-      simulate(read_scene((scenes_dir() / "hard/both_static.toml").string()), {}, warnings);
+      simulate(read_scene((source_dir() / "tests/hard_cases/both_immovable/planar.toml").string()), {}, warnings);
   EXPECT_EQ(result.notes, std::vector<std::string>{
                               "joint \"idle\" connects only immovable bodies and does nothing"});
 }

@@ -78,6 +78,15 @@ Reference read_reference(const std::string& problem, double until) {
   return reference;
 }
 
+std::vector<fs::path> all_scene_files() {
+  std::vector<fs::path> files;
+  for (const fs::path& folder : {scenes_dir(), source_dir() / "tests/hard_cases"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder))
+      if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 Scene scene_named(const std::string& name) {
   return read_scene((scenes_dir() / (name + ".toml")).string());
 }

@@ -20,6 +20,9 @@ Scene scene_named(const std::string& name);
 // Its states every so many seconds.
 std::vector<Frame> run_of(Scene scene, double until, double every_seconds);
 
+// Every scene file of specs/scenes and of tests/hard_cases.
+std::vector<std::filesystem::path> all_scene_files();
+
 // All files with this ending in a folder, by name.
 std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
                                             const std::string& ending);

@@ -110,15 +110,13 @@ TEST(Pictures, NamesCannotBreakOutOfThePage) {
 }
 
 TEST(Pictures, EverySceneCanBeDrawn) {
-  for (const std::filesystem::path& folder : {scenes_dir(), scenes_dir() / "hard"}) {
-    for (const std::filesystem::path& file : files_in(folder, ".toml")) {
-      Scene scene = read_scene(file.string());
-      scene.duration = std::min(scene.duration, 20 * scene.step);
-      const std::string still = svg_still(scene, film_of(scene));
-      EXPECT_EQ(still.find("nan"), std::string::npos) << file;
-      EXPECT_EQ(still.find("inf"), std::string::npos) << file;
-      EXPECT_NE(still.find("class=\"trace"), std::string::npos) << file;
-    }
+  for (const std::filesystem::path& file : all_scene_files()) {
+    Scene scene = read_scene(file.string());
+    scene.duration = std::min(scene.duration, 20 * scene.step);
+    const std::string still = svg_still(scene, film_of(scene));
+    EXPECT_EQ(still.find("nan"), std::string::npos) << file;
+    EXPECT_EQ(still.find("inf"), std::string::npos) << file;
+    EXPECT_NE(still.find("class=\"trace"), std::string::npos) << file;
   }
 }
 

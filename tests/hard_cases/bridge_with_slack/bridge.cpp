@@ -1,0 +1,25 @@
+// 160 light planks closed at both ends under 14 kN.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/hard_cases/trial.hpp"
+
+namespace cdot::hard {
+namespace {
+
+void sag(Trial& t) {
+  t.start();
+  const Watch w = t.run(120);
+  t.at_most("gap [m]", w.gap, 1e-3);
+  double lowest = 0;
+  for (const BodyState& plank : t.frame().bodies)
+    lowest = std::min(lowest, plank.y - 0.5 * std::abs(std::sin(plank.angle)));
+  t.near("sag [m]", -lowest, 10.93409, 1e-2);
+  const double tension = t.ask([](const auto& world) { return double(std::abs(world.reaction(0, 0).force_x)); });
+  t.near("tension, relative", tension / 14086.96, 1, 1e-3);
+}
+
+const Register planar({"bridge_with_slack", "planar", only(direct(), {Integrator::implicit}), sag});
+
+}  // namespace
+}  // namespace cdot::hard

@@ -1,0 +1,49 @@
+// A light chain stiffened by the weight at its end: 1000 kg, then a million, on ten links of 1 kg.
+#include "tests/hard_cases/trial.hpp"
+
+namespace cdot::hard {
+namespace {
+
+void set_load(Trial& t, double mass) {
+  t.scene.bodies.back().definition.mass = t.scene.bodies.back().spatial.mass = mass;
+}
+
+void kick(Trial& t, double mass) {
+  set_load(t, mass);
+  t.start();
+  const Watch w = t.run(10);
+  t.at_most("gap [m]", w.gap, 1e-3);
+  t.at_most("energy gained, of the kick's", w.rise / (0.5 * mass), 1e-3);
+}
+
+void rest(Trial& t, double mass) {
+  set_load(t, mass);
+  t.scene.bodies.back().definition.vx = t.scene.bodies.back().spatial.vx = 0;
+  t.start();
+  t.run(1);
+  t.near("top joint at rest, relative", t.force(0) / ((10 + mass) * g), 1, 1e-5);
+}
+
+template <int mass>
+void plain(Trial& t) {
+  kick(t, mass);
+  rest(t, mass);
+}
+// First order: what the energy swings by is a share of the step.
+template <int mass>
+void finer(Trial& t) {
+  t.scene.settings.substeps = 8;
+  plain<mass>(t);
+}
+
+const Ways exact = only(direct(), {Integrator::dop853}), implicit = only(direct(), {Integrator::implicit});
+
+const Register planar({"heavy_load", "planar", exact, plain<1000>});
+const Register spatial({"heavy_load", "spatial", exact, plain<1000>});
+const Register planar_finer({"heavy_load", "planar", implicit, finer<1000>, "8 substeps"});
+const Register spatial_finer({"heavy_load", "spatial", implicit, finer<1000>, "8 substeps"});
+const Register planar_million({"heavy_load", "planar", implicit, finer<1'000'000>, "a million kg, 8 substeps"});
+const Register spatial_million({"heavy_load", "spatial", implicit, finer<1'000'000>, "a million kg, 8 substeps"});
+
+}  // namespace
+}  // namespace cdot::hard

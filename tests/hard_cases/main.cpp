@@ -1,0 +1,88 @@
+// One test per case, over all ways that claim to hold it. `hard_cases_tests --table` writes the table of README.md,
+// `hard_cases_tests --try [CASE]` tries all ways there are, also those that claim nothing.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <string_view>
+
+#include "tests/hard_cases/trial.hpp"
+
+namespace cdot::hard {
+namespace {
+
+class HardCase : public testing::Test {
+ public:
+  explicit HardCase(Case hard_case) : case_(std::move(hard_case)) {}
+  void TestBody() override {
+    for (const Way& way : case_.ways) {
+      for (const Finding& found : findings_of(case_, way)) {
+        fmt::print("  {:24} {:36} {:.3e}  at most {:.3e}\n", name_of(way), found.what, found.value, found.bound);
+        EXPECT_TRUE(found.held()) << name_of(way) << ": " << found.what << " is " << found.value << ", not at most "
+                                  << found.bound;
+      }
+    }
+  }
+
+ private:
+  Case case_;
+};
+
+// README.md has a row for every case, with the ways that claim to hold it, and no other.
+class Table : public testing::Test {
+ public:
+  void TestBody() override {
+    std::ifstream file(std::string(CDOT_HARD_CASES) + "/README.md");
+    const std::string text(std::istreambuf_iterator<char>(file), {});
+    std::size_t rows = 0;
+    for (std::size_t at = 0; (at = text.find("\n| [", at)) != std::string::npos; ++at) ++rows;
+    const std::vector<Case> cases = all_cases();
+    EXPECT_EQ(rows, cases.size());
+    for (const Case& hard_case : cases)
+      EXPECT_NE(text.find(table_row_start(hard_case)), std::string::npos)
+          << name_of(hard_case) << ": remake README.md with --table";
+  }
+};
+
+// What no way may hide: the ways that hold it, and what the others come to.
+void try_all(std::string_view wanted) {
+  for (const Case& hard_case : all_cases()) {
+    if (!wanted.empty() && hard_case.fault != wanted) continue;
+    Ways held;
+    std::string others;
+    for (const Way& way : all_ways()) {
+      std::string off;
+      for (const Finding& found : findings_of(hard_case, way))
+        if (!found.held()) off += fmt::format("  {:.60} {:.2e}", found.what, found.value);
+      if (off.empty())
+        held.push_back(way);
+      else
+        others += fmt::format("    {:24}{}\n", name_of(way), off);
+    }
+    fmt::print("{}: held by {}\n{}", name_of(hard_case), text_of(held), others);
+  }
+}
+
+}  // namespace
+}  // namespace cdot::hard
+
+int main(int count, char** arguments) {
+  using namespace cdot::hard;
+  const std::string_view first = count > 1 ? arguments[1] : "";
+  if (first == "--table") {
+    fmt::print("{}", table(all_cases()));
+    return 0;
+  }
+  if (first == "--try") {
+    try_all(count > 2 ? arguments[2] : "");
+    return 0;
+  }
+  for (const Case& hard_case : all_cases())
+    testing::RegisterTest("HardCases", name_of(hard_case).c_str(), nullptr, nullptr, __FILE__, __LINE__,
+                          [hard_case]() -> testing::Test* { return new HardCase(hard_case); });
+  testing::RegisterTest("HardCases", "table_is_current", nullptr, nullptr, __FILE__, __LINE__,
+                        []() -> testing::Test* { return new Table; });
+  testing::InitGoogleTest(&count, arguments);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,149 @@
+#include "tests/hard_cases/trial.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace cdot::hard {
+namespace {
+
+std::vector<Case>& registered() {
+  static std::vector<Case> cases;
+  return cases;
+}
+
+template <class S>
+std::unique_ptr<AnyWorld> started(const Scene& scene) {
+  auto world = std::make_unique<AnyWorld>(build_world_in<S>(scene));
+  if (scene.project) std::get<BasicWorld<S>>(*world).project(1e-9);
+  return world;
+}
+
+template <class T>
+double norm(const std::vector<T>& numbers) {
+  double squares = 0;
+  for (const double number : numbers) squares += number * number;
+  return std::sqrt(squares);
+}
+
+double force_norm(const planar::Wrench& w) { return std::hypot(w.force_x, w.force_y); }
+double force_norm(const spatial::Wrench& w) { return std::hypot(w.force_x, w.force_y, w.force_z); }
+
+}  // namespace
+
+bool Finding::held() const { return std::isfinite(value) && value <= bound; }
+
+Trial::Trial(const std::string& scene_file, const Way& the_way)
+    : way(the_way), scene(read_scene(std::string(CDOT_HARD_CASES) + "/" + scene_file + ".toml")) {
+  scene.settings.solver = way.solver;
+  scene.settings.integrator = way.integrator;
+}
+
+void Trial::start() {
+  const bool planar = scene.dimension == Dimension::planar;
+  if (planar)
+    world_ = way.single ? started<Planar<float>>(scene) : started<Planar<double>>(scene);
+  else
+    world_ = way.single ? started<Spatial<float>>(scene) : started<Spatial<double>>(scene);
+}
+
+void Trial::step(double by) {
+  change([&](auto& world) { world.step(by); });
+}
+
+Watch Trial::run(double seconds, double step_of, const std::function<void()>& each) {
+  Watch watch;
+  const double by = step_of > 0 ? step_of : scene.step;
+  const long steps = std::lround(seconds / by);
+  const double start = energy();
+  for (long k = 0; k < steps && watch.finite; ++k) {
+    step(by);
+    const Frame now = frame();
+    watch.finite = cdot::finite(now) && std::isfinite(now.worst.value);
+    watch.gap = std::max(watch.gap, now.worst.joint < 0 ? 0 : norm_of_error(now.worst.joint));
+    watch.rise = std::max(watch.rise, now.energy - start);
+    watch.fall = std::max(watch.fall, start - now.energy);
+    for (const BodyState& b : now.bodies) watch.speed = std::max(watch.speed, std::hypot(b.vx, b.vy, b.vz));
+    if (each) each();
+  }
+  if (!watch.finite) watch.gap = watch.rise = watch.fall = watch.speed = finite_only;
+  return watch;
+}
+
+double Trial::time() const {
+  return ask([](const auto& world) { return world.time(); });
+}
+Frame Trial::frame() const {
+  return ask([&](const auto& world) { return frame_of(world, world.time(), static_cast<int>(scene.bodies.size())); });
+}
+BodyState Trial::body(const std::string& name) const {
+  return frame().bodies[static_cast<std::size_t>(body_named(name))];
+}
+double Trial::energy() const {
+  return ask([](const auto& world) { return double(world.energy()); });
+}
+double Trial::norm_of_error(int joint) const {
+  return ask([&](const auto& world) { return norm(world.position_error(joint)); });
+}
+double Trial::gap() const {
+  const WorstError worst = ask([](const auto& world) { return world.worst_position_error(); });
+  return worst.joint < 0 ? 0 : norm_of_error(worst.joint);
+}
+double Trial::force(int joint) const {
+  return ask([&](const auto& world) { return force_norm(world.reaction(joint, world.joint_bodies(joint).back())); });
+}
+double Trial::coordinate(int joint, const char* name) const {
+  return ask([&](const auto& world) { return double(world.coordinate(joint, name)); });
+}
+bool Trial::finite() const { return cdot::finite(frame()); }
+
+int Trial::body_named(const std::string& name) const {
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k)
+    if (scene.bodies[k].name == name) return static_cast<int>(k);
+  throw Error("no body " + name);
+}
+int Trial::joint_named(const std::string& name) const {
+  for (std::size_t k = 0; k < scene.joints.size(); ++k)
+    if (scene.joints[k].name == name) return static_cast<int>(k);
+  throw Error("no joint " + name);
+}
+
+void Trial::at_most(const std::string& what, double value, double bound) { at_most(what, value, bound, bound); }
+void Trial::at_most(const std::string& what, double value, double bound, double bound_in_float) {
+  findings_.push_back({what, value, way.single ? bound_in_float : bound});
+}
+void Trial::near(const std::string& what, double value, double right, double within) {
+  at_most(what, std::abs(value - right), within);
+}
+void Trial::near(const std::string& what, double value, double right, double within, double within_in_float) {
+  at_most(what, std::abs(value - right), within, within_in_float);
+}
+
+Register::Register(Case hard_case) { registered().push_back(std::move(hard_case)); }
+
+std::string name_of(const Case& hard_case) {
+  std::string name = hard_case.fault + "_" + hard_case.scene;
+  if (!hard_case.variant.empty()) name += "_" + hard_case.variant;
+  std::replace_if(
+      name.begin(), name.end(), [](char c) { return c == ' ' || c == ','; }, '_');
+  return name;
+}
+
+std::vector<Case> all_cases() {
+  std::vector<Case> cases = registered();
+  std::sort(cases.begin(), cases.end(), [](const Case& a, const Case& b) { return name_of(a) < name_of(b); });
+  return cases;
+}
+
+std::vector<Finding> findings_of(const Case& hard_case, const Way& way) {
+  try {
+    Trial trial(hard_case.fault + "/" + hard_case.scene, way);
+    hard_case.run(trial);
+    return trial.findings();
+  } catch (const std::exception& error) {
+    return {{fmt::format("thrown: {}", error.what()), finite_only, 0}};
+  }
+}
+
+}  // namespace cdot::hard
