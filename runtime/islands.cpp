@@ -1,12 +1,14 @@
-// Who is connected with whom: union-find over movable bodies, then the slots of every batch sorted
-// by island.
+// Who is connected with whom: union-find over movable bodies, then the slots of every batch sorted by island, and in
+// each the order of the rows.
 #include <algorithm>
 #include <numeric>
+#include <tuple>
 
 #include "runtime/joints.hpp"
 #include "runtime/runge_kutta.hpp"
 #include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
+#include "runtime/sweep_order.hpp"
 
 namespace cdot {
 namespace {
@@ -83,13 +85,15 @@ int island_of_slot(const WorldState<S>& world, const Batch<S>& batch, int slot) 
   return -1;  // cannot be: blocks between immovable bodies are never added
 }
 
-// Slots by island, broken joints last in theirs; the islands get their segments.
+// Slots by island, broken joints last in theirs, the others in the order of `places`, by joint.
 template <class S>
-void sort_slots(WorldState<S>& world, int index) {
+void sort_slots(WorldState<S>& world, int index, const std::vector<int>& places) {
   Batch<S>& batch = *world.batches[index];
-  std::vector<std::pair<int, bool>> key;
-  for (int slot = 0; slot < batch.count(); ++slot)
-    key.emplace_back(island_of_slot(world, batch, slot), world.joints[batch.joint[slot]].broken);
+  std::vector<std::tuple<int, bool, int>> key;
+  for (int slot = 0; slot < batch.count(); ++slot) {
+    const int joint = batch.joint[slot];
+    key.emplace_back(island_of_slot(world, batch, slot), world.joints[joint].broken, places[joint]);
+  }
   std::vector<int> order(key.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return key[i] < key[j]; });
@@ -100,13 +104,35 @@ void sort_slots(WorldState<S>& world, int index) {
   for (JointRecord& joint : world.joints)
     for (Place& place : joint.places)
       if (place.batch == index) place.slot = now[place.slot];
+}
 
-  for (int begin = 0, end; begin < batch.count(); begin = end) {
-    const auto& first = key[order[begin]];
-    for (end = begin; end < batch.count() && key[order[end]] == first;) ++end;
-    if (first.second) continue;
-    Island<S>& island = world.islands[first.first];
-    island.segments.push_back({&batch, begin, end});
+// Runs of slots of one batch that follow each other in the sweep, rows under a law before all others: what is solved
+// last in a sweep holds best, and that should be the joints.
+template <class S>
+void list_segments(WorldState<S>& world, const std::vector<int>& places) {
+  struct Run {
+    bool joint;  // no law
+    int place, batch, slot;
+    bool operator<(const Run& other) const {
+      return std::tie(joint, place, batch, slot) < std::tie(other.joint, other.place, other.batch, other.slot);
+    }
+  };
+  std::vector<Run> runs;
+  for (size_t i = 0; i < world.batches.size(); ++i) {
+    const Batch<S>& batch = *world.batches[i];
+    for (int slot = 0; slot < batch.count(); ++slot)
+      if (!world.joints[batch.joint[slot]].broken)
+        runs.push_back({batch.law == nullptr, places[batch.joint[slot]], static_cast<int>(i), slot});
+  }
+  std::sort(runs.begin(), runs.end());
+  for (const Run& run : runs) {
+    Batch<S>& batch = *world.batches[run.batch];
+    Island<S>& island = world.islands[island_of_slot(world, batch, run.slot)];
+    auto& segments = island.segments;
+    if (!segments.empty() && segments.back().batch == &batch && segments.back().end == run.slot)
+      ++segments.back().end;
+    else
+      segments.push_back({&batch, run.slot, run.slot + 1});
     island.restless |= batch.ops->explicit_time;
   }
 }
@@ -131,15 +157,15 @@ template <class S>
 void prepare_topology(WorldState<S>& world) {
   if (world.prepared) return;
   number_islands(world);
-  for (int i = 0; i < static_cast<int>(world.batches.size()); ++i) sort_slots(world, i);
+  // The direct solver has its own order: each type of joint in one run, in the order in which they were added.
+  const bool sweeps = world.settings.solver == Solver::iterative;
+  const std::vector<int> places = sweeps ? sweep_places(world) : std::vector<int>(world.joints.size(), 0);
+  for (int i = 0; i < static_cast<int>(world.batches.size()); ++i) sort_slots(world, i, places);
+  list_segments(world, places);
   give_out_forces(world);
   world.awake.clear();
   for (int i = 0; i < static_cast<int>(world.islands.size()); ++i) {
     Island<S>& island = world.islands[i];
-    // Rows under a law first: what is solved last in a sweep holds best, and that should be the
-    // joints.
-    std::stable_partition(island.segments.begin(), island.segments.end(),
-                          [](const Segment<S>& segment) { return segment.batch->law != nullptr; });
     if (world.settings.solver == Solver::direct) island.system.build(island.segments, world.bodies);
     island.flow.pose.resize(island.bodies.size());
     island.flow.velocity.resize(island.bodies.size());
