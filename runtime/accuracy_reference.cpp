@@ -6,70 +6,15 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/accuracy_extrapolate.hpp"
-#include "runtime/methods.hpp"
-#include "runtime/run_process.hpp"
+#include "runtime/accuracy_compose.hpp"
 
 namespace cdot {
 namespace {
 
-// One method, at the finest knob that still changed anything for the better.
-struct Refined {
-  std::string name;
-  Trajectory best;
-  double change = std::numeric_limits<double>::infinity();  // from the knob before [m, rad]
-};
-
-std::vector<double> distances(const std::vector<Frame>& a, const std::vector<Frame>& b, Dimension dimension) {
-  std::vector<double> result;
-  for (std::size_t k = 0; k < a.size(); ++k) result.push_back(apart(a[k], b[k], dimension).larger());
-  return result;
-}
-
-double largest(const std::vector<double>& values) {
-  return values.empty() ? 0 : *std::max_element(values.begin(), values.end());
-}
-
-constexpr double coarsest_tolerance = 1e-7;
-constexpr int most_decades = 9;  // from there
-
-// Ever smaller tolerances, until two trajectories differ by round-off, or refining has stopped to help: then round-off
-// grows. `run` makes the trajectory of one tolerance.
-template <class F>
-Refined refine(std::string name, Dimension dimension, std::size_t samples, double cpu_limit, const Stop& stop, F run) {
-  Refined refined{std::move(name), {}};
-  Trajectory before;
-  const double start = cpu_now();
-  const Stop enough = [&] { return (stop && stop()) || cpu_now() - start > cpu_limit; };
-  for (int decade = 0; decade < most_decades && !enough(); ++decade) {
-    Trajectory now = run(coarsest_tolerance * std::pow(0.1, decade), enough);
-    const bool whole = now.finite && now.frames.size() == samples;
-    if (whole && before.frames.size() == samples) {
-      const double change = largest(distances(now.frames, before.frames, dimension));
-      const bool worse = change > refined.change && refined.change < 1e-9;
-      if (change < refined.change) refined.best = now, refined.change = change;
-      if (worse || change < 0.01 * wanted_agreement) break;
-    }
-    before = whole ? std::move(now) : Trajectory{};
-  }
-  return refined;
-}
-
-Refined by_local_error(const Scene& scene, Integrator integrator, const std::vector<double>& times, double cpu_limit,
-                       const Stop& stop) {
-  const Way way{integrator, Solver::direct, Drift::projection, 0, false, true};
-  return refine(std::string(name_of(integrators, integrator)), scene.dimension, times.size(), cpu_limit, stop,
-                [&](double tolerance, const Stop& enough) {
-                  return trajectory_of(scene, way, {1, tolerance}, times, enough);
-                });
-}
-
-Refined by_extrapolation(const Scene& scene, const Extrapolation& method, const std::vector<double>& times,
-                         double cpu_limit, const Stop& stop) {
-  return refine(fmt::format("extrapolated {}", name_of(integrators, method.way.integrator)), scene.dimension,
-                times.size(), cpu_limit, stop, [&](double tolerance, const Stop& enough) {
-                  return extrapolated(scene, method, tolerance, times, enough);
-                });
+std::string settled_text(const Refined& method) {
+  if (!method.found()) return method.name + " finds no end";
+  return fmt::format("{} {} {:.1e}", method.name, method.at_its_floor ? "settles to" : "still changes by",
+                     method.change());
 }
 
 // What `second` says about `first`: the reference that they make together.
@@ -78,14 +23,54 @@ ReferenceRun pair_of(const Refined& first, const Refined& second, const std::vec
   ReferenceRun reference;
   reference.times = times;
   reference.made_by = first.name + " and " + second.name;
-  reference.settled = fmt::format("refined by ten, {} changes by {:.1e}, {} by {:.1e}", first.name, first.change,
-                                  second.name, second.change);
-  reference.frames = first.change <= second.change ? first.best.frames : second.best.frames;
-  if (first.best.frames.empty() || second.best.frames.empty())
-    reference.disagree.assign(times.size(), std::numeric_limits<double>::infinity());
-  else
-    reference.disagree = distances(first.best.frames, second.best.frames, dimension);
+  reference.settled = settled_text(first) + ", " + settled_text(second);
+  reference.frames = first.change() <= second.change() ? first.best.frames : second.best.frames;
+  reference.disagree.assign(times.size(), std::numeric_limits<double>::infinity());
+  if (!first.found() || !second.found()) return reference;
+  reference.disagree = distances(first.best.frames, second.best.frames, dimension);
+  for (const Refined* method : {&first, &second})
+    for (std::size_t k = 0; method->at_its_floor && k < times.size(); ++k)
+      reference.disagree[k] = std::max(reference.disagree[k], method->changes[k]);
   return reference;
+}
+
+// Of places, angles, speeds and spins, each relative to the largest in the motion.
+Nudge nudge_by(double share, const ReferenceRun& reference, unsigned seed) {
+  Nudge nudge{0, 1, 0, 0, seed};
+  for (const Frame& frame : reference.frames)
+    for (const BodyState& b : frame.bodies) {
+      nudge.position = std::max(nudge.position, std::hypot(b.x, b.y, b.z));
+      nudge.angle = std::max(nudge.angle, std::abs(b.angle));
+      nudge.speed = std::max(nudge.speed, std::hypot(b.vx, b.vy, b.vz));
+      nudge.spin = std::max(nudge.spin, std::hypot(b.w, b.wx, std::hypot(b.wy, b.wz)));
+    }
+  nudge.position *= share, nudge.angle *= share, nudge.speed *= share, nudge.spin *= share;
+  return nudge;
+}
+
+Sensitivity sensitivity_of(const Scene& scene, const ReferenceRun& reference, const Refined& method,
+                           const Stop& stop) {
+  constexpr int starts = 3;  // of each kind
+  const auto growth = [&](double share) {
+    double worst = 0;
+    for (unsigned seed = 0; seed < starts; ++seed) {
+      const Trajectory beside = trajectory_of(scene, way_of_dop853(), method.knob, reference.times, stop,
+                                              nudge_by(share, reference, seed));
+      worst = std::max(worst, largest(distances(beside.frames, method.best.frames, scene.dimension)));
+    }
+    return worst;
+  };
+  return {growth(1e-9) / 1e-9, growth(1e-15)};
+}
+
+// Methods that differ by so much more than round-off in the start makes, at most, are excused by it: they take thousands
+// of steps, and round in each.
+constexpr double excused = 30;
+
+std::string verdict_on(const ReferenceRun& reference, bool finer_would_help) {
+  if (reference.disagreement() <= excused * reference.sensitivity.round_off) return "round-off forbids more";
+  if (finer_would_help) return "the methods are not fine enough yet: --budget";
+  return "no step mends it: round-off is magnified on the way, as where a mechanism may go on in two ways";
 }
 
 }  // namespace
@@ -99,24 +84,29 @@ double ReferenceRun::agreed_until(double bound) const {
   return until;
 }
 
-// Runge-Kutta on accelerations against extrapolated steps on impulses, which share no formula but the kernels': first
-// those that are symmetric, then others that get through where these do not.
-ReferenceRun make_reference_run(const Scene& scene, double cpu_limit, const Stop& stop) {
-  static const Extrapolation routes[] = {
-      {{Integrator::rattle}, 2, 6},
-      {{Integrator::euler, Solver::direct, Drift::none}, 1, 8},
-      {{Integrator::implicit, Solver::direct, Drift::none}, 1, 6},
-  };
+// Runge-Kutta on accelerations against RATTLE on impulses, which share no formula but the kernels'. Where the motion is
+// not reversible, or RATTLE gets lost, a Runge-Kutta method of another order is the judge.
+ReferenceRun make_reference_run(const Scene& scene, const Effort& effort, const Stop& stop) {
   const std::vector<double> times = equal_times(scene.duration, sample_count);
-  const double share = cpu_limit / (1 + std::size(routes));
-  const Refined first = by_local_error(scene, Integrator::dop853, times, share, stop);
+  const Refined first = refined_dop853(scene, times, effort, stop);
   ReferenceRun best;
-  for (const Extrapolation& route : routes) {
-    const ReferenceRun reference =
-        pair_of(first, by_extrapolation(scene, route, times, share, stop), times, scene.dimension);
-    if (best.frames.empty() || reference.disagreement() < best.disagreement()) best = reference;
-    if (best.disagreement() <= wanted_agreement) break;
+  bool finer_would_help = false;
+  for (const auto refined : {refined_rattle, refined_rk4}) {
+    const bool rattle = refined == refined_rattle;
+    if (rattle && !reversible(scene)) continue;
+    // RATTLE takes about as many steps as the first has evaluations, or it does not get there.
+    const Effort own{rattle ? std::min(effort.evaluations, 5 * first.evaluations) : effort.evaluations, effort.cpu};
+    const Refined second = refined(scene, times, own, stop);
+    const ReferenceRun reference = pair_of(first, second, times, scene.dimension);
+    if (best.frames.empty() || reference.disagreement() < best.disagreement()) {
+      best = reference;
+      finer_would_help = !first.at_its_floor || !second.at_its_floor;
+    }
+    if (best.disagreement() <= wanted_agreement) return best;
   }
+  if (!first.found()) return best;
+  best.sensitivity = sensitivity_of(scene, best, first, stop);
+  best.verdict = verdict_on(best, finer_would_help);
   return best;
 }
 

@@ -4,19 +4,30 @@
 #include <string>
 #include <vector>
 
-#include "runtime/accuracy_run.hpp"
+#include "runtime/accuracy_refine.hpp"
 
 namespace cdot {
 
 inline constexpr int sample_count = 16;
 inline constexpr double wanted_agreement = 1e-12;  // [m, rad], of a reference that is made here
 
+// How far a change of the start takes the motion, at its worst sample.
+struct Sensitivity {
+  double condition = 0;  // the growth of a change by 1e-9 of the largest place, speed and spin, and 1e-9 rad
+  double round_off = 0;  // [m, rad] what one by 1e-15 of them comes to, on the way through round-off
+  bool known() const { return condition > 0; }
+};
+
 struct ReferenceRun {
   std::vector<double> times;
   std::vector<Frame> frames;
-  std::string made_by;           // "dop853 and extrapolated rattle", "four_bar.csv"
+  std::string made_by;           // "dop853 and composed rattle", "four_bar.csv"
   std::string settled;           // by how much each of the two still changed
-  std::vector<double> disagree;  // by how much the two methods do, at each time [m, rad]; empty if it was given
+  // At each time, by how much the two methods do, and by how much each changes that no finer step mends [m, rad]; empty
+  // if it was given.
+  std::vector<double> disagree;
+  Sensitivity sensitivity;       // where they disagree by more than is wanted,
+  std::string verdict;           // and what is to blame for it, in words
   // Errors below this are not told apart: ten times what the methods disagree by, 0 if it was given.
   double resolution() const;
   double disagreement() const;  // the largest
@@ -24,8 +35,8 @@ struct ReferenceRun {
   double agreed_until(double bound) const;
 };
 
-// Made by two methods, each refined until it changes no more, or until it has used so much CPU time [s].
-ReferenceRun make_reference_run(const Scene& scene, double cpu_limit, const Stop& stop = {});
+// Made by two methods, each refined until it changes no more or has used up its effort.
+ReferenceRun make_reference_run(const Scene& scene, const Effort& effort = {}, const Stop& stop = {});
 
 // As `cdot-run simulate -o` writes it; its last row ends the comparison. Throws cdot::Error.
 ReferenceRun read_reference_run(const std::string& path, const Scene& scene);

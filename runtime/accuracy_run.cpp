@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "runtime/rotation.hpp"
 #include "runtime/run_process.hpp"
@@ -34,15 +35,46 @@ auto in_space_of(const Scene& scene, const Way& way, F f) {
   return way.single ? f(Spatial<float>{}) : f(Spatial<double>{});
 }
 
+template <class T, class Random>
+void move_body(World<T>& world, int body, const Nudge& by, Random off) {
+  const auto q = world.pose(body);
+  const auto v = world.velocity(body);
+  world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.w + by.spin * off()});
+  world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.angle + by.angle * off()});
+}
+// The velocity first: a body whose tensor turns with it takes its momentum from both.
+template <class T, class Random>
+void move_body(SpatialWorld<T>& world, int body, const Nudge& by, Random off) {
+  const auto q = world.pose(body);
+  const auto v = world.velocity(body);
+  const auto turned = spatial::turned_by(q, {T(by.angle * off()), T(by.angle * off()), T(by.angle * off())});
+  world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.z + by.speed * off(),
+                            v.wx + by.spin * off(), v.wy + by.spin * off(), v.wz + by.spin * off()});
+  world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.z + by.position * off(), turned.e0,
+                        turned.e1, turned.e2, turned.e3});
+}
+
+template <class S>
+void move_start(BasicWorld<S>& world, int bodies, const Nudge& by) {
+  if (by.position == 0 && by.angle == 0 && by.speed == 0 && by.spin == 0) return;
+  std::mt19937 random(by.seed);
+  // -1 to 1, of the generator's own bits: the same with every library.
+  const auto off = [&] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
+  for (int body = 0; body < bodies; ++body)
+    if (!world.is_static(body)) move_body(world, body, by, off);
+  world.project(0);
+}
+
 }  // namespace
 
 Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
-                         const Stop& stop) {
+                         const Stop& stop, const Nudge& nudge) {
   return in_space_of(scene, way, [&]<class S>(S) {
     Trajectory trajectory;
     std::string warnings;  // the caller has seen them: they are the scene's, not the way's
     BasicWorld<S> world = world_at_start<S>(solved_by(way, knob, scene), warnings);
     const int bodies = static_cast<int>(scene.bodies.size());
+    move_start(world, bodies, nudge);
     run(world, knob, times, [&](double time, double cpu) {
       trajectory.cpu = cpu;
       trajectory.counts = world.step_counts();

@@ -15,13 +15,19 @@ struct Trajectory {
   std::vector<Frame> frames;  // at the sample times, until it was stopped or not finite any more
   double C = 0, Cdot = 0;     // the largest at the samples [m, rad], [m/s, rad/s]
   double cpu = 0;             // spent in step() [s]
-  StepCounts counts;          // of rk4 and dop853
+  StepCounts counts;          // of rk4 and dop853; of composed RATTLE its steps as evaluations
   bool finite = true, stopped = false;
+};
+
+// A start beside the scene's: every number of every body off by up to as much, then back onto the joints.
+struct Nudge {
+  double position = 0, angle = 0, speed = 0, spin = 0;  // [m], [rad], [m/s], [rad/s]
+  unsigned seed = 0;
 };
 
 // `times` ascend and are greater than 0.
 Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
-                         const Stop& stop = {});
+                         const Stop& stop = {}, const Nudge& nudge = {});
 
 // CPU time that step() takes for the whole run [s], nothing looked at on the way. Short runs are repeated until
 // their time can be measured.

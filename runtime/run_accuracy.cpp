@@ -18,7 +18,7 @@
 namespace cdot {
 namespace {
 
-constexpr double reference_share = 1.0 / 3;  // of the budget, at most, for making a reference
+constexpr double reference_share = 1.0 / 9;  // of the budget, at most, for each of three methods of a reference
 constexpr double noticeable = 0.05;          // an error smaller by less is no gain
 
 std::string text_of(const std::string& path) {
@@ -35,6 +35,12 @@ Fingerprint fingerprint_of(const Scene& scene, const AccuracyOptions& options) {
 std::string output_of(const Scene& scene, const AccuracyOptions& options) {
   if (!options.output.empty()) return options.output;
   return std::filesystem::path(scene.file).stem().string() + ".accuracy";
+}
+
+Effort effort_of(const AccuracyOptions& options) {
+  Effort effort;
+  effort.cpu = reference_share * options.sweep.budget;
+  return effort;
 }
 
 // What is shown and kept on the way, both at most a few times a second.
@@ -131,7 +137,7 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
   if (state.reference.frames.empty()) {
     companion.say("making the reference");
     state.reference = options.reference.empty()
-                          ? make_reference_run(scene, reference_share * options.sweep.budget, stop)
+                          ? make_reference_run(scene, effort_of(options), stop)
                           : read_reference_run(options.reference, scene);
     if (stop()) state.reference = {};  // half of one is none
   }

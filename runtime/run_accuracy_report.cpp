@@ -84,6 +84,16 @@ nlohmann::ordered_json json_of(const AccuracyReport& report, const Point& point)
   return json;
 }
 
+// Is it the motion itself that forbids to know more?
+std::string sensitivity_text(const ReferenceRun& reference) {
+  const Sensitivity& s = reference.sensitivity;
+  if (!s.known()) return {};
+  return fmt::format(
+      "                  starts that differ by 1e-9 of their numbers end {:.1e} apart, by 1e-15: {:.1e}\n"
+      "                  {}\n",
+      1e-9 * s.condition, s.round_off, reference.verdict);
+}
+
 }  // namespace
 
 std::string knob_text(const AccuracyReport& report, const Point& point) {
@@ -99,6 +109,7 @@ std::string reference_text(const AccuracyReport& report) {
   std::string text = fmt::format("  reference       {} agree to {:.1e} m, rad\n", reference.made_by, apart);
   if (apart <= wanted_agreement) return text;
   text += fmt::format("                  more than {:.0e} apart: {}\n", wanted_agreement, reference.settled);
+  text += sensitivity_text(reference);
   text += fmt::format("                  errors below {:.1e}, ten times as much, are not told apart\n",
                       reference.resolution());
   const double good = reference.agreed_until(useful_agreement);
@@ -138,6 +149,8 @@ std::string accuracy_json(const AccuracyReport& report) {
       {"reference",
        {{"made_by", report.reference.made_by},
         {"disagreement", report.reference.disagreement()},
+        {"condition", report.reference.sensitivity.condition},
+        {"round_off", report.reference.sensitivity.round_off},
         {"resolution", report.reference.resolution()}}},
       {"points", points},
       {"failures", failures},

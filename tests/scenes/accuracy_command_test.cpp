@@ -52,6 +52,15 @@ TEST(AccuracyReport, SaysHowFarItsReferenceCarries) {
                                        "                  until 1.875 s they agree to 1e-09: use --until 1.875\n"),
             std::string::npos)
       << accuracy_text(report);
+  report.reference.sensitivity = {50, 2e-12};
+  report.reference.verdict = "so it is";
+  EXPECT_NE(accuracy_text(report).find("apart: this is why\n"
+                                       "                  starts that differ by 1e-9 of their numbers end 5.0e-08 "
+                                       "apart, by 1e-15: 2.0e-12\n"
+                                       "                  so it is\n"
+                                       "                  errors below 1.0e-02"),
+            std::string::npos)
+      << accuracy_text(report);
 }
 
 TEST(AccuracyReport, CsvHasTheSameColumnsInEveryRow) {

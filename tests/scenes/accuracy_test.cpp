@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "runtime/accuracy_state.hpp"
 #include "runtime/accuracy_sweep.hpp"
 #include "runtime/methods.hpp"
 #include "runtime/run_output.hpp"
+#include "tests/scenes/accuracy_pendulum.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {
@@ -67,37 +67,6 @@ TEST(Frontier, AdviceIsTheCheapestForEachDecade) {
 }
 
 // --- errors, against the closed form of the pendulum ---
-
-// From rest at 90 degrees: sin(angle / 2) = k sn(K + w t, k) with k = sin 45 degrees; sn(u) = sin(phi) with F(phi) = u.
-BodyState bob_at(double t) {
-  const double k = std::sin(std::numbers::pi / 4), u = std::comp_ellint_1(k) + std::sqrt(9.81) * t;
-  double phi = u * std::numbers::pi / 2 / std::comp_ellint_1(k);
-  for (int round = 0; round < 50; ++round)
-    phi -= (std::ellint_1(k, phi) - u) * std::sqrt(1 - k * k * std::sin(phi) * std::sin(phi));
-  const double angle = 2 * std::asin(k * std::sin(phi));
-  BodyState bob{};
-  bob.x = std::sin(angle);
-  bob.y = -std::cos(angle);
-  return bob;
-}
-
-Scene pendulum_scene() {
-  Scene scene = scene_named("simple_pendulum");
-  scene.duration = 2;
-  return scene;
-}
-
-ReferenceRun closed_form() {
-  ReferenceRun reference;
-  reference.times = equal_times(2, sample_count);
-  for (const double time : reference.times) {
-    Frame& frame = reference.frames.emplace_back();
-    frame.time = time;
-    frame.bodies.push_back(bob_at(time));
-    frame.energy = 0;  // let go at rest, where the potential is 0
-  }
-  return reference;
-}
 
 Frame frame_of_one(const BodyState& body, double energy) {
   Frame frame;
@@ -185,63 +154,6 @@ INSTANTIATE_TEST_SUITE_P(Ways, Slopes,
                                          Way{Integrator::implicit}, Way{Integrator::rattle}, Way{Integrator::rk4},
                                          Way{Integrator::dop853}),
                          test_name);
-
-// What is made without the closed form agrees with it, as well as it claims.
-TEST(AccuracyReference, IsAsGoodAsItSays) {
-  const Scene scene = pendulum_scene();
-  const ReferenceRun made = make_reference_run(scene, 4), exact = closed_form();
-  ASSERT_EQ(made.frames.size(), exact.frames.size());
-  double worst = 0;
-  for (std::size_t k = 0; k < made.frames.size(); ++k)
-    worst = std::max(worst, apart(made.frames[k], exact.frames[k], scene.dimension).larger());
-  fmt::print("  the two methods agree to {:.2e}, with the closed form to {:.2e}\n", made.disagreement(), worst);
-  EXPECT_LE(worst, made.resolution() + 1e-14);
-  // Extrapolated RATTLE ends at its own round-off, 1.6e-12 here: dop853 is within 1e-14 of the closed form.
-  EXPECT_LE(made.disagreement(), 2 * wanted_agreement);
-  EXPECT_LE(worst, 1e-13);
-}
-
-// In space, against the closed form of the body that tumbles without torque.
-TEST(AccuracyReference, IsAsGoodAsItSaysInSpace) {
-  Scene scene = scene_named("spatial/torque_free_body");
-  scene.duration = 8;
-  const ReferenceRun made = make_reference_run(scene, 4);
-  const Reference exact = read_reference("torque_free_body", 8);
-  double worst = 0;
-  int compared = 0;
-  for (const Frame& frame : made.frames)
-    for (const ReferenceSample& sample : exact.samples)
-      if (std::abs(sample.time - frame.time) < 1e-9) {
-        worst = std::max(worst,
-                         apart(frame, {sample.time, {sample.bodies.begin()->second}, 0, {}}, scene.dimension).larger());
-        ++compared;
-      }
-  fmt::print("  the two methods agree to {:.2e}, with the closed form to {:.2e}\n", made.disagreement(), worst);
-  EXPECT_EQ(compared, 8);
-  EXPECT_LE(worst, made.resolution() + exact.accuracy);
-  EXPECT_LE(made.disagreement(), 1e-9);
-}
-
-// A rod that a weak motor drives against a limit: its acceleration jumps where it gets there, and where it gets away.
-TEST(AccuracyReference, GetsPastKinks) {
-  const Scene scene = read_scene(
-      "duration = 2\n[[body]]\nname = \"rod\"\nmass = 1\nshape = { rod = 1 }\nposition = [0.5, 0]\n[[joint]]\ntype = "
-      "\"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\nangle.limit = { lower = \"-80 deg\" }\n"
-      "angle.motor = { speed = 1, max = 2 }\n",
-      "kinks.toml");
-  const ReferenceRun made = make_reference_run(scene, 4);
-  fmt::print("  {} agree to {:.2e}; {}\n", made.made_by, made.disagreement(), made.settled);
-  EXPECT_LE(made.disagreement(), 1e-6);
-}
-
-TEST(AccuracyReference, AgreesUntilItDoesNot) {
-  ReferenceRun reference;
-  reference.times = {1, 2, 3, 4};
-  reference.disagree = {1e-13, 1e-10, 1e-4, 1e-11};
-  EXPECT_EQ(reference.agreed_until(1e-9), 2);
-  EXPECT_EQ(reference.agreed_until(1e-14), 0);
-  EXPECT_EQ(reference.disagreement(), 1e-4);
-}
 
 // --- sweeps ---
 
