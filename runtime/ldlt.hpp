@@ -99,6 +99,7 @@ class Ldlt {
   long multiplications() const;
 
  private:
+  friend struct StateList;  // runtime/snapshot_list.hpp
   struct Column : dense::Column {
     int updates_begin, updates_end;
     dense::Eliminate eliminate;

@@ -101,6 +101,7 @@ class System {
   };
 
  private:
+  friend struct StateList;  // runtime/snapshot_list.hpp
   void order_rows(const Bodies<S>& bodies);
   void list_products(const Bodies<S>& bodies);
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;

@@ -19,6 +19,7 @@
 #include "runtime/kernel.hpp"
 #include "runtime/planar.hpp"
 #include "runtime/settings.hpp"
+#include "runtime/snapshot.hpp"
 #include "runtime/spaces.hpp"
 #include "runtime/step_counts.hpp"
 
@@ -85,6 +86,16 @@ class BasicWorld {
   void set_pose(int body, const Place& place);
   void set_velocity(int body, const typename S::Exact::Velocity& velocity);
   void apply_impulse(int body, const typename S::Exact::Velocity& impulse);
+
+  // --- going back ---
+
+  // All that a run depends on: one that goes on from it has the same bits. Prepares the World.
+  Snapshot snapshot() const;
+  // The same into one at hand: without allocation once it has been a snapshot of this World.
+  void snapshot_into(Snapshot& snapshot) const;
+  // Of this World, or of one to which the same was added in the same order. Throws cdot::Error and leaves the World as
+  // it is, if it is of another.
+  void restore(const Snapshot& snapshot);
 
   // --- looking ---
 

@@ -1,0 +1,146 @@
+// What of a World changes while it runs: the one list from which states are saved, restored and compared.
+//
+// Whoever adds a member to one of the structs below gets a compiler error here. Bind its name, and then either hand it
+// to the visitor or, if every step writes it before reading it or if it never changes, leave it at that.
+#pragma once
+
+#include "runtime/gyroscope.hpp"
+#include "runtime/world_state.hpp"
+
+namespace cdot {
+
+// visit.item(name, index) begins an array, index telling those of one name apart; visit(x) hands it a number, a struct
+// of numbers of the space's scalar type, or a vector of such.
+struct StateList {
+  template <class S, class Visitor>
+  static void each(WorldState<S>& world, Visitor& visit) {
+    auto& [settings, time, last_step, bodies, ground, joints, batches, springs, drags, gyroscopes, breaking_loads,
+           after_substep, notes, counts, prepared, islands, island_of, awake] = world;
+    visit.item("time", -1);
+    visit(time), visit(last_step);
+    each_joint(joints, visit);  // must come second: restoring begins with it
+    each_count(counts, visit);
+    each_body(bodies, visit);
+    if constexpr (S::has_gyroscopes)
+      for (size_t k = 0; k < gyroscopes.size(); ++k) each_gyroscope(gyroscopes[k], static_cast<int>(k), visit);
+    for (size_t k = 0; k < batches.size(); ++k) each_slot(*batches[k], static_cast<int>(k), visit);
+    for (size_t k = 0; k < islands.size(); ++k)
+      each_of_island(islands[k], static_cast<int>(k), settings.solver == Solver::direct, visit);
+  }
+
+ private:
+  template <class Visitor>
+  static void each_joint(std::vector<JointRecord>& records, Visitor& visit) {
+    visit.item("joints.broken", -1);
+    for (JointRecord& record : records) visit(record.broken);
+    visit.item("joints.slots", -1);  // those of broken joints have changed places
+    for (JointRecord& record : records) {
+      auto& [type, bodies, parameters, places, broken] = record;
+      for (Place& place : places) visit(place.slot);
+    }
+  }
+
+  template <class Visitor>
+  static void each_count(StepCounts& counts, Visitor& visit) {
+    auto& [evaluations, taken, rejected, events, rescued, shortest, longest] = counts;
+    visit.item("counts", -1);
+    visit(evaluations), visit(taken), visit(rejected), visit(events), visit(rescued);
+    visit.item("counts.steps", -1);
+    visit(shortest), visit(longest);
+  }
+
+  template <class S, class Visitor>
+  static void each_body(Bodies<S>& all, Visitor& visit) {
+    auto& [pose, velocity, inverse_mass, effective_mass, force, acceleration, velocity_rate, displacement, increment,
+           stiffness, start] = all;
+    visit.item("bodies.pose", -1), visit(pose);
+    visit.item("bodies.velocity", -1), visit(velocity);
+    visit.item("bodies.inverse_mass", -1), visit(inverse_mass);  // tensors turn
+    visit.item("bodies.effective_mass", -1), visit(effective_mass);
+    visit.item("bodies.force", -1), visit(force);
+    visit.item("bodies.acceleration", -1), visit(acceleration);
+    visit.item("bodies.velocity_rate", -1), visit(velocity_rate);
+  }
+
+  template <class T, class Visitor>
+  static void each_gyroscope(spatial::Gyroscope<T>& gyroscope, int index, Visitor& visit) {
+    auto& [body, inertia, inverse, world, torque, momentum, spin, lent] = gyroscope;
+    visit.item("gyroscopes", index);
+    visit(world), visit(torque), visit(momentum), visit(spin);
+  }
+
+  template <class S, class Visitor>
+  static void each_slot(Batch<S>& batch, int index, Visitor& visit) {
+    auto& [ops, law, kinds, joint, body, parameters, jacobian, factor, C, bias, lambda, correction, scratch, counters,
+           softness, lower, upper, mode, constants] = batch;
+    visit.item("rows.joint", index), visit(joint);
+    visit.item("rows.body", index), visit(body);
+    visit.item("rows.parameters", index), visit(parameters);
+    visit.item("rows.constants", index), visit(constants);
+    visit.item("rows.jacobian", index), visit(jacobian);
+    visit.item("rows.factor", index), visit(factor);
+    visit.item("rows.C", index), visit(C);
+    visit.item("rows.bias", index), visit(bias);
+    visit.item("rows.lambda", index), visit(lambda);
+    visit.item("rows.correction", index), visit(correction);
+    visit.item("rows.counters", index), visit(counters);
+    visit.item("rows.softness", index), visit(softness);
+    visit.item("rows.lower", index), visit(lower);
+    visit.item("rows.upper", index), visit(upper);
+    visit.item("rows.mode", index), visit(mode);
+  }
+
+  template <class S, class Visitor>
+  static void each_of_island(Island<S>& island, int index, bool direct, Visitor& visit) {
+    auto& [bodies, segments, springs, drags, gyroscopes, system, redundant_rows, restless, residual, evaluated,
+           factored, continuous, flow, asleep, rested] = island;
+    visit.item("island.flags", index);
+    visit(evaluated), visit(factored), visit(continuous), visit(asleep);
+    visit.item("island.rows", index);
+    visit(redundant_rows);
+    for (Segment<S>& segment : segments) visit(segment.end);
+    visit.item("island.residual", index), visit(residual);
+    visit.item("island.rested", index), visit(rested);
+    each_of_flow(flow, index, visit);
+    // The iterative solver needs none; projecting the start makes one nevertheless.
+    if (direct) each_of_system(system, index, visit);
+  }
+
+  template <class S, class Visitor>
+  static void each_of_flow(Flow<S>& flow, int index, Visitor& visit) {
+    auto& [pose, velocity, start, now, rates, guarded, row_rates, margins, margins_at_start, low, high, next_step,
+           known] = flow;
+    visit.item("flow.row_rates", index), visit(row_rates);
+    visit.item("flow.margins", index), visit(margins);
+    visit.item("flow.next_step", index), visit(next_step);
+    visit.item("flow.known", index), visit(known);
+  }
+
+  template <class S, class Visitor>
+  static void each_of_system(System<S>& system, int index, Visitor& visit) {
+    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, built, lawful, any_out, rows, ldlt, products,
+           jacobian, weighted, right_side, product, out, held] = system;
+    visit.item("system.slots", index);
+    for (auto& block : blocks) visit(block.slot);
+    visit.item("system.lambda", index), visit(lambda);
+    visit.item("system.softness", index), visit(softness);
+    visit.item("system.lower", index), visit(lower);
+    visit.item("system.upper", index), visit(upper);
+    visit.item("system.flags", index);
+    visit(fixed), visit(broken), visit(out), visit(held), visit(any_out);
+    each_of_factor(ldlt, index, visit);
+  }
+
+  template <class Visitor>
+  static void each_of_factor(Ldlt& ldlt, int index, Visitor& visit) {
+    auto& [first, diagonal, column_of, columns, panel_row, updates, values, l, inverse, noise, out, dependent, any_out,
+           factored, share, unscaled, given] = ldlt;
+    visit.item("factor.K", index), visit(values);
+    visit.item("factor.L", index), visit(l);
+    visit.item("factor.inverse", index), visit(inverse);
+    visit.item("factor.flags", index);
+    visit(out), visit(dependent), visit(any_out), visit(factored);
+  }
+};
+
+}  // namespace cdot
