@@ -10,6 +10,7 @@
 #include "runtime/run_list.hpp"
 #include "runtime/run_output.hpp"
 #include "runtime/run_simulate.hpp"
+#include "runtime/run_state.hpp"
 #include "runtime/scene.hpp"
 #include "runtime/viewer.hpp"
 
@@ -18,7 +19,8 @@ namespace {
 enum Status { well = 0, answer_is_no = 1, bad_input = 2, stopped = 130 };
 
 struct Arguments {
-  std::string scene, csv, html, svg;
+  std::string scene, csv, html, svg, save_state, from_state;
+  std::optional<double> state_time;
   double until = 0, step = 0, every = 0, tolerance = 0, local_error = 0, wanted_accuracy = 0;
   std::vector<double> times;
   std::string solver, integrator, drift;
@@ -32,6 +34,8 @@ Examples
   cdot-run simulate specs/scenes/four_bar.toml
   cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html then open the page
   cdot-run simulate specs/scenes/four_bar.toml --step 0.0001 --every 0.1 -o four_bar.csv
+  cdot-run simulate specs/scenes/four_bar.toml --until 5 --save-state at_5.state
+  cdot-run simulate specs/scenes/four_bar.toml --from-state at_5.state        goes on as if nothing had been between
   cdot-run jacobian specs/scenes/four_bar.toml --svg four_bar.svg   the system in blocks and numbers
   cdot-run accuracy specs/scenes/double_pendulum.toml               what accuracy costs in time
   cdot-run list                                                     the joints that a scene may name
@@ -97,6 +101,13 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
                        "write a page that plays the mechanism, all in one file");
   simulate->add_option("--svg", arguments.svg,
                        "write a picture of the mechanism at several times, with its traces");
+  auto* save = simulate->add_option("--save-state", arguments.save_state,
+                                    "write the state at the end to a file, for --from-state to go on from");
+  simulate->add_option("--at", arguments.state_time, "save the state at this time [s] instead")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(save);
+  simulate->add_option("--from-state", arguments.from_state,
+                       "go on from a saved state of this scene, with the bits of a run that was never interrupted");
   simulate->add_flag("--json", arguments.json, "the summary as JSON");
   simulate->add_flag("--progress", arguments.progress,
                      "show progress even where stderr is no terminal");
@@ -173,6 +184,10 @@ cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene
   if (!arguments.html.empty() || !arguments.svg.empty())
     options.film_times = cdot::film_times(scene);
   options.progress = arguments.progress || ::isatty(STDERR_FILENO) != 0;
+  if (!arguments.from_state.empty()) options.from = cdot::read_state(arguments.from_state);
+  if (!arguments.save_state.empty()) options.keep_state = arguments.state_time.value_or(scene.duration);
+  if (options.keep_state > scene.duration)
+    throw cdot::Error(fmt::format("--at {}: the run ends at {} s", *options.keep_state, scene.duration));
   return options;
 }
 
@@ -189,6 +204,7 @@ int simulate(const Arguments& arguments) {
   if (result.interrupted) return stopped;
 
   if (csv) csv->commit();
+  if (!result.state.empty()) cdot::write_state(arguments.save_state, result.state);
   if (!arguments.html.empty())
     cdot::write_file(arguments.html, cdot::html_page(scene, result.film));
   if (!arguments.svg.empty()) cdot::write_file(arguments.svg, cdot::svg_still(scene, result.film));

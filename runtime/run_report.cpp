@@ -53,6 +53,7 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
   const bool own_steps = result.choice || scene.settings.local_error > 0;
   text += fmt::format("  time            {:.6g} s", result.time);
   if (!own_steps) text += fmt::format(" in {} steps of {:.6g} s", result.steps, scene.step);
+  if (result.start > 0) text += fmt::format(", from the state at {:.6g} s", result.start);
   text += "\n";
   if (own_steps) text += own_steps_text(result.counts);
   if (result.choice) text += choice_text(scene, *result.choice);
@@ -81,6 +82,7 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
       {"failure", why},
       {"bodies", scene.bodies.size()},
       {"joints", scene.joints.size()},
+      {"start", result.start},
       {"time", result.time},
       {"step", scene.step},
       {"steps", result.steps},

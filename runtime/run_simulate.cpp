@@ -67,9 +67,8 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
 }
 
 // A method that chooses its steps gives the state at any time by its own interpolant: none has to be guessed between
-// two. Empty for other methods.
+// two.
 std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
-  if (!(scene.settings.local_error > 0)) return {};
   std::vector<double> ends = every(scene.step, scene.duration);
   ends.push_back(scene.duration);
   for (const auto* times : {&options.row_times, &options.film_times})
@@ -79,29 +78,76 @@ std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
   // Times that only round-off tells apart are one.
   const double same = 1e-9 * scene.duration;
   ends.erase(std::unique(ends.begin(), ends.end(), [&](double a, double b) { return b - a < same; }), ends.end());
-  ends.erase(ends.begin());  // the start
   return ends;
+}
+
+// The times at which steps end: those of a run that goes on from a state are those of the run that it was taken from.
+class Steps {
+ public:
+  Steps(const Scene& scene, const RunOptions& options) : step_(scene.step), start_(options.from.time()) {
+    if (!(start_ < scene.duration * (1 - 1e-12)))
+      throw Error(fmt::format("the state is that at {:.6g} s and the run ends at {:.6g} s: nothing is left to do", start_,
+                              scene.duration));
+    if (scene.settings.local_error > 0) {
+      ends_ = own_ends(scene, options);
+      const auto later = std::upper_bound(ends_.begin(), ends_.end(), start_ + same_time * scene.duration);
+      first_ = later - ends_.begin() - 1;
+      count_ = static_cast<long long>(ends_.size()) - first_ - 1;
+      if (std::abs(time(0) - start_) > same_time * scene.duration) ends_[static_cast<std::size_t>(first_)] = start_;
+    } else {
+      first_ = std::llround(start_ / step_);
+      if (std::abs(time(0) - start_) > 1e-6 * step_) first_ = 0, offset_ = start_;
+      count_ = static_cast<long long>(std::ceil((scene.duration - time(0)) / step_ * (1 - 1e-12)));
+    }
+  }
+  long long count() const { return count_; }
+  // Of the end of so many steps.
+  double time(long long k) const {
+    return ends_.empty() ? offset_ + static_cast<double>(first_ + k) * step_ : ends_[static_cast<std::size_t>(first_ + k)];
+  }
+  double length(long long k) const { return ends_.empty() ? step_ : time(k) - time(k - 1); }
+
+ private:
+  static constexpr double same_time = 1e-9;  // of the duration
+  double step_, start_, offset_ = 0;
+  std::vector<double> ends_;
+  long long first_ = 0, count_ = 0;
+};
+
+// Those that a run from there on still meets.
+std::vector<double> from_time(std::vector<double> times, double start, double step) {
+  times.erase(times.begin(), std::lower_bound(times.begin(), times.end(), start - 1e-6 * step));
+  return times;
+}
+
+template <class S>
+BasicWorld<S> world_of_run(const Scene& scene, const RunOptions& options, std::string& warnings) {
+  if (options.from.empty()) return world_at_start<S>(scene, warnings);
+  BasicWorld<S> world = build_world_in<S>(scene);
+  try {
+    world.restore(options.from);
+  } catch (const Error& error) {
+    throw Error(fmt::format("the state does not fit {}: {}", scene.file, error.what()));
+  }
+  return world;
 }
 
 template <class S>
 RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
-  BasicWorld<S> world = world_at_start<S>(scene, warnings);
-  Sampler rows(
-      options.row_times, options.row ? options.row : [](const Frame&) {});
-  Sampler film(options.film_times, [&](const Frame& frame) { result.film.push_back(frame); });
+  BasicWorld<S> world = world_of_run<S>(scene, options, warnings);
+  const Steps steps(scene, options);
+  result.start = steps.time(0);
+  Sampler rows(from_time(options.row_times, result.start, scene.step),
+               options.row ? options.row : [](const Frame&) {});
+  Sampler film(from_time(options.film_times, result.start, scene.step),
+               [&](const Frame& frame) { result.film.push_back(frame); });
   const bool every_step = options.row && options.row_times.empty();
   Progress progress(options.progress, scene.duration);
   const Interrupt interrupt;
 
   const int bodies = static_cast<int>(scene.bodies.size());
-  const std::vector<double> ends = own_ends(scene, options);
-  const auto steps = ends.empty() ? static_cast<long long>(std::ceil(scene.duration / scene.step * (1 - 1e-12)))
-                                  : static_cast<long long>(ends.size());
-  const auto end_of = [&](long long k) {
-    return ends.empty() ? static_cast<double>(k + 1) * scene.step : ends[static_cast<std::size_t>(k)];
-  };
-  Frame before = frame_of(world, 0, bodies), after = before;
+  Frame before = frame_of(world, result.start, bodies), after = before;
   result.energy_start = before.energy;
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
@@ -109,13 +155,15 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (every_step) options.row(after);
     rows.step(before, after);
     film.step(before, after);
-    if (k == steps || Interrupt::asked()) break;
+    if (options.keep_state && result.state.empty() && after.time >= *options.keep_state * (1 - 1e-12))
+      result.state = world.snapshot();
+    if (k == steps.count() || Interrupt::asked()) break;
     const double start = cpu_now();
-    world.step(ends.empty() ? scene.step : end_of(k) - (k > 0 ? end_of(k - 1) : 0));
+    world.step(steps.length(k + 1));
     result.cpu += cpu_now() - start;
     result.steps = k + 1;
     std::swap(before, after);
-    after = frame_of(world, end_of(k), bodies);
+    after = frame_of(world, steps.time(k + 1), bodies);
     progress.at(after.time);
   }
   finish(scene, world, result);

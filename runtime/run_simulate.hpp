@@ -8,6 +8,7 @@
 #include "runtime/choose_method.hpp"
 #include "runtime/run_frame.hpp"
 #include "runtime/scene.hpp"
+#include "runtime/snapshot.hpp"
 
 namespace cdot {
 
@@ -16,13 +17,18 @@ struct RunOptions {
   std::vector<double> row_times;          // when; empty: after every step
   std::vector<double> film_times;
   bool progress = false;  // on stderr
+  Snapshot from;          // goes on from there; empty: from the scene's start
+  // When to keep the state in RunResult::state: after the first step that ends then or later.
+  std::optional<double> keep_state;
 };
 
 struct RunResult {
   std::optional<Choice> choice;  // of a scene that asks for an accuracy
   StepCounts counts;             // of rk4 and dop853
   double time = 0;  // reached [s]
+  double start = 0;  // [s]; above 0 if the run went on from a state
   long long steps = 0;
+  Snapshot state;  // the one that was to be kept
   double cpu = 0;  // spent in step() [s]
   double worst_error = 0, worst_error_time = 0;
   std::string worst_joint;

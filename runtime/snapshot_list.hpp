@@ -108,12 +108,20 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_flow(Flow<S>& flow, int index, Visitor& visit) {
-    auto& [pose, velocity, start, now, rates, guarded, row_rates, margins, margins_at_start, low, high, next_step,
-           known] = flow;
+    auto& [pose, velocity, search, start, now, rates, guarded, row_rates, margins, margins_at_start, low, high,
+           next_step, known, ahead, length, end_kept, end, end_forces, further_terms] = flow;
     visit.item("flow.row_rates", index), visit(row_rates);
     visit.item("flow.margins", index), visit(margins);
-    visit.item("flow.next_step", index), visit(next_step);
-    visit.item("flow.known", index), visit(known);
+    visit.item("flow.lengths", index);
+    visit(next_step), visit(ahead), visit(length);
+    visit.item("flow.flags", index);
+    visit(known), visit(end_kept);
+    // The step whose end may lie ahead.
+    visit.item("flow.start", index), visit(start);
+    visit.item("flow.rates", index), visit(rates);
+    visit.item("flow.end", index), visit(end);
+    visit.item("flow.end_forces", index), visit(end_forces);
+    visit.item("flow.further_terms", index), visit(further_terms);
   }
 
   template <class S, class Visitor>

@@ -72,9 +72,9 @@ struct Item {
   double opacity = 0;  // of its inside
 };
 
-class Snapshot {
+class Still {
  public:
-  Snapshot(const SpaceDrawing& drawing, const Frame& frame)
+  Still(const SpaceDrawing& drawing, const Frame& frame)
       : drawing_(drawing), frame_(frame), project_(drawing) {}
 
   std::string svg(bool with_still) {
@@ -153,7 +153,7 @@ std::string space_background(const SpaceDrawing& drawing, const std::vector<Fram
 }
 
 std::string space_snapshot(const SpaceDrawing& drawing, const Frame& frame, bool with_still) {
-  return Snapshot(drawing, frame).svg(with_still);
+  return Still(drawing, frame).svg(with_still);
 }
 
 }  // namespace cdot

@@ -66,7 +66,10 @@ void touch(BasicWorld<S>& world, int step) {
   const int body = world.body_count() - 2;
   typename S::Exact::Velocity impulse{};
   impulse.x = 0.1;
-  if (step % 37 == 36 && !world.is_static(body)) world.apply_impulse(body, impulse);
+  typename S::Wrench force{};
+  force.force_x = 2, force.force_y = 1;
+  if (step % 37 == 36) world.apply_impulse(body, impulse);
+  if (step == 40) world.set_force(0, force);
 }
 
 template <class S>
