@@ -109,16 +109,15 @@ void check_runs(const Settings& settings, const std::string& name, Seen& seen) {
   run_on(one, at, steps);
   const Snapshot end = one.snapshot();
   ASSERT_TRUE(std::isfinite(one.energy())) << name;
-  for (int way = 0; way < 3; ++way) {
-    for (size_t k = 0; k < std::size(stops); ++k) {
-      BasicWorld<S> other = made();
-      if (way == 1) run_on(other, 0, 30);
-      other.restore(way == 2 ? Snapshot::read(states[k].text()) : states[k]);
-      ASSERT_EQ(other.snapshot().differences(states[k]), same) << name << ", at once, way " << way;
-      run_on(other, stops[k], steps);
-      ASSERT_EQ(other.snapshot().differences(end), same) << name << ", from step " << stops[k] << ", way " << way;
-      ASSERT_EQ(other.snapshot(), end);
-    }
+  for (size_t k = 0; k < std::size(stops); ++k) {
+    const size_t way = (k + name.size()) % 3;  // into a fresh World, one with a past, from text
+    BasicWorld<S> other = made();
+    if (way == 1) run_on(other, 0, 30);
+    other.restore(way == 2 ? Snapshot::read(states[k].text()) : states[k]);
+    ASSERT_EQ(other.snapshot().differences(states[k]), same) << name << ", at once, way " << way;
+    run_on(other, stops[k], steps);
+    ASSERT_EQ(other.snapshot().differences(end), same) << name << ", from step " << stops[k] << ", way " << way;
+    ASSERT_EQ(other.snapshot(), end);
   }
   one.restore(states[2]);
   run_on(one, stops[2], steps);
@@ -152,7 +151,7 @@ void check_all_methods() {
     check_runs<S>(s, std::string(name), seen);
   }
   EXPECT_TRUE(seen.broke && seen.slept && seen.dependent) << seen.broke << seen.slept << seen.dependent;
-  std::printf("%d methods: the same bits from 5 snapshots each, in 3 ways\n", combinations);
+  std::printf("%d methods: the same bits from 5 snapshots each\n", combinations);
 }
 
 TEST(Snapshot, ARunGoesOnWithTheSameBitsInThePlane) { check_all_methods<Planar<double>>(); }
