@@ -63,17 +63,16 @@ Sensitivity sensitivity_of(const Scene& scene, const ReferenceRun& reference, co
   return {growth(1e-9) / 1e-9, growth(1e-15)};
 }
 
-// Methods that differ by so much more than round-off in the start makes, at most, are excused by it: they take thousands
-// of steps, and round in each.
-constexpr double excused = 30;
+}  // namespace
 
-std::string verdict_on(const ReferenceRun& reference, bool finer_would_help) {
-  if (reference.disagreement() <= excused * reference.sensitivity.round_off) return "round-off forbids more";
+std::string verdict_on(double disagreement, const Sensitivity& sensitivity, bool finer_would_help) {
+  // Methods that differ by so much more than round-off in the start makes, at most, are excused by it: they take
+  // thousands of steps, and round in each.
+  constexpr double excused = 30;
+  if (disagreement <= excused * sensitivity.round_off) return "round-off forbids more";
   if (finer_would_help) return "the methods are not fine enough yet: --budget";
   return "no step mends it: round-off is magnified on the way, as where a mechanism may go on in two ways";
 }
-
-}  // namespace
 
 double ReferenceRun::disagreement() const { return largest(disagree); }
 double ReferenceRun::resolution() const { return 10 * disagreement(); }
@@ -84,40 +83,49 @@ double ReferenceRun::agreed_until(double bound) const {
   return until;
 }
 
-// Runge-Kutta on accelerations against RATTLE on impulses, which share no formula but the kernels'. Where the motion is
-// not reversible, or RATTLE gets lost, a Runge-Kutta method of another order is the judge.
+// Runge-Kutta on accelerations against RATTLE on impulses, which share no formula but the kernels'. Where these do not
+// agree as wanted, and where the motion is not reversible, a Runge-Kutta method of another order is asked as well; the
+// two that agree best are believed.
 ReferenceRun make_reference_run(const Scene& scene, const Effort& effort, const Stop& stop) {
   const std::vector<double> times = equal_times(scene.duration, sample_count);
-  const Refined first = refined_dop853(scene, times, effort, stop);
+  std::vector<Refined> methods = {refined_dop853(scene, times, effort, stop)};
   ReferenceRun best;
   bool finer_would_help = false;
-  for (const auto refined : {refined_rattle, refined_rk4}) {
-    const bool rattle = refined == refined_rattle;
-    if (rattle && !reversible(scene)) continue;
-    // RATTLE takes about as many steps as the first has evaluations, or it does not get there.
-    const Effort own{rattle ? std::min(effort.evaluations, 5 * first.evaluations) : effort.evaluations, effort.cpu};
-    const Refined second = refined(scene, times, own, stop);
-    const ReferenceRun reference = pair_of(first, second, times, scene.dimension);
-    if (best.frames.empty() || reference.disagreement() < best.disagreement()) {
-      best = reference;
-      finer_would_help = !first.at_its_floor || !second.at_its_floor;
+  const auto compare_with_the_others = [&](Refined method) {
+    for (const Refined& other : methods) {
+      const ReferenceRun pair = pair_of(other, method, times, scene.dimension);
+      if (!best.frames.empty() && pair.disagreement() >= best.disagreement()) continue;
+      best = pair;
+      finer_would_help = !other.at_its_floor || !method.at_its_floor;
     }
-    if (best.disagreement() <= wanted_agreement) return best;
+    methods.push_back(std::move(method));
+    return best.disagreement() <= wanted_agreement;
+  };
+  if (reversible(scene)) {
+    // RATTLE takes about as many steps as the first has evaluations, or it does not get there.
+    const Effort own{std::min(effort.evaluations, 5 * methods[0].evaluations), effort.cpu};
+    if (compare_with_the_others(refined_rattle(scene, times, own, stop))) return best;
   }
-  if (!first.found()) return best;
-  best.sensitivity = sensitivity_of(scene, best, first, stop);
-  best.verdict = verdict_on(best, finer_would_help);
+  if (compare_with_the_others(refined_rk4(scene, times, effort, stop)) || !methods[0].found()) return best;
+  best.sensitivity = sensitivity_of(scene, best, methods[0], stop);
+  best.verdict = verdict_on(best.disagreement(), best.sensitivity, finer_would_help);
   return best;
 }
 
-Errors errors_of(const Trajectory& trajectory, const ReferenceRun& reference, Dimension dimension) {
+Errors errors_of(const Trajectory& trajectory, const ReferenceRun& reference, const Scene& scene) {
   Errors errors;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
   for (std::size_t k = 0; k < trajectory.frames.size(); ++k) {
-    const Apart here = apart(trajectory.frames[k], reference.frames[k], dimension);
+    const Apart here = apart(trajectory.frames[k], reference.frames[k], scene.dimension);
+    const double energy = reference.frames[k].energy;
     errors.position = std::max(errors.position, here.position);
     errors.angle = std::max(errors.angle, here.angle);
-    errors.energy = std::max(errors.energy, std::abs(trajectory.frames[k].energy - reference.frames[k].energy));
+    errors.energy = std::max(errors.energy, std::abs(trajectory.frames[k].energy - energy));
+    least = std::min(least, energy), most = std::max(most, energy);
   }
+  // Between its samples the reference has no energy, unless it is the same at all of them.
+  const double swing = std::max(trajectory.most_energy - least, most - trajectory.least_energy);
+  if (reversible(scene) && most - least <= 1e-3 * swing) errors.energy = std::max(errors.energy, swing);
   errors.C = trajectory.C;
   errors.Cdot = trajectory.Cdot;
   return errors;

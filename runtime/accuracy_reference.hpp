@@ -18,6 +18,9 @@ struct Sensitivity {
   bool known() const { return condition > 0; }
 };
 
+// What is to blame for it that methods disagree by so much.
+std::string verdict_on(double disagreement, const Sensitivity& sensitivity, bool finer_would_help);
+
 struct ReferenceRun {
   std::vector<double> times;
   std::vector<Frame> frames;
@@ -43,12 +46,12 @@ ReferenceRun read_reference_run(const std::string& path, const Scene& scene);
 
 struct Errors {
   double position = 0, angle = 0;  // from the reference [m], [rad]
-  double C = 0, Cdot = 0;          // the largest of any joint at the samples
-  double energy = 0;               // from the reference [J]
+  double C = 0, Cdot = 0;          // the largest of any joint, as far as the trajectory was watched
+  double energy = 0;               // from the reference [J]; where that keeps its energy, whenever it was watched
   double trajectory() const { return position > angle ? position : angle; }
   bool operator==(const Errors&) const = default;
 };
-Errors errors_of(const Trajectory& trajectory, const ReferenceRun& reference, Dimension dimension);
+Errors errors_of(const Trajectory& trajectory, const ReferenceRun& reference, const Scene& scene);
 
 // How large the motion is [m]: an error beyond it says nothing any more. At least 1.
 double size_of(const ReferenceRun& reference);

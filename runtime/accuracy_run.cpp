@@ -14,14 +14,18 @@ namespace {
 constexpr double least_measured = 2e-3;  // [s]: a shorter run is repeated,
 constexpr int most_repeats = 16;         // but no more often: every run builds a World, which may cost more than it
 
-// Calls at_sample(time, cpu so far) at every one of the times, until it returns false.
-template <class S, class F>
-void run(BasicWorld<S>& world, const Knob& knob, const std::vector<double>& times, F at_sample) {
+// Calls after_step() after every step(h), and at_sample(time, cpu so far) at every one of the times, until that returns
+// false.
+template <class S, class F, class G>
+void run(BasicWorld<S>& world, const Knob& knob, const std::vector<double>& times, F after_step, G at_sample) {
   double from = 0, cpu = 0;
   for (const double to : times) {
     const double h = (to - from) / knob.steps;
     const double start = cpu_now();
-    for (int k = 0; k < knob.steps; ++k) world.step(h);
+    for (int k = 0; k < knob.steps; ++k) {
+      world.step(h);
+      after_step();
+    }
     cpu += cpu_now() - start;
     if (!at_sample(to, cpu)) return;
     from = to;
@@ -65,24 +69,49 @@ void move_start(BasicWorld<S>& world, int bodies, const Nudge& by) {
   world.project(0);
 }
 
+// What joints and energy are off by, at worst.
+template <class S>
+class Onlooker {
+ public:
+  Onlooker(const BasicWorld<S>& world, Trajectory& trajectory) : world_(world), trajectory_(trajectory) {}
+  void look() {
+    const double start = cpu_now();
+    trajectory_.C = std::max(trajectory_.C, world_.worst_position_error().value);
+    trajectory_.Cdot = std::max(trajectory_.Cdot, world_.worst_velocity_error().value);
+    const double energy = world_.energy();
+    trajectory_.least_energy = first_ ? energy : std::min(trajectory_.least_energy, energy);
+    trajectory_.most_energy = first_ ? energy : std::max(trajectory_.most_energy, energy);
+    first_ = false;
+    trajectory_.looking += cpu_now() - start;
+  }
+
+ private:
+  const BasicWorld<S>& world_;
+  Trajectory& trajectory_;
+  bool first_ = true;
+};
+
 }  // namespace
 
 Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
-                         const Stop& stop, const Nudge& nudge) {
+                         const Stop& stop, const Nudge& nudge, bool watched) {
   return in_space_of(scene, way, [&]<class S>(S) {
     Trajectory trajectory;
     std::string warnings;  // the caller has seen them: they are the scene's, not the way's
     BasicWorld<S> world = world_at_start<S>(solved_by(way, knob, scene), warnings);
     const int bodies = static_cast<int>(scene.bodies.size());
     move_start(world, bodies, nudge);
-    run(world, knob, times, [&](double time, double cpu) {
-      trajectory.cpu = cpu;
+    Onlooker<S> onlooker(world, trajectory);
+    const auto after_step = [&] {
+      if (watched) onlooker.look();
+    };
+    run(world, knob, times, after_step, [&](double time, double cpu) {
+      trajectory.cpu = watched ? cpu - trajectory.looking : cpu;
+      if (!watched) onlooker.look();
       trajectory.counts = world.step_counts();
       const Frame frame = frame_of(world, time, bodies);
       trajectory.finite = finite(frame);
       if (!trajectory.finite) return false;
-      trajectory.C = std::max(trajectory.C, frame.worst.value);
-      trajectory.Cdot = std::max(trajectory.Cdot, world.worst_velocity_error().value);
       trajectory.frames.push_back(frame);
       trajectory.stopped = stop && stop();
       return !trajectory.stopped;
@@ -101,7 +130,8 @@ double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::v
     for (bool stopped = false; !stopped && total < least_measured && runs < most_repeats; ++runs) {
       BasicWorld<S> world = world_at_start<S>(own, warnings);
       double whole = 0;
-      run(world, knob, times, [&](double, double cpu) {
+      const auto nothing = [] {};
+      run(world, knob, times, nothing, [&](double, double cpu) {
         whole = cpu;
         stopped = stop && stop();
         return !stopped;

@@ -39,12 +39,17 @@ Json json_of(const Errors& e) { return {e.position, e.angle, e.C, e.Cdot, e.ener
 Errors errors_of(const Json& json) { return {json.at(0), json.at(1), json.at(2), json.at(3), json.at(4)}; }
 
 Json json_of(const Point& p) {
-  return {{"way", json_of(p.way)},       {"level", p.level},       {"failure", p.failure},
-          {"errors", json_of(p.errors)}, {"explored", p.explored}, {"rounds", p.rounds}};
+  return {{"way", json_of(p.way)},       {"level", p.level},     {"failure", p.failure}, {"errors", json_of(p.errors)},
+          {"explored", p.explored}, {"looking", p.looking}, {"rounds", p.rounds}};
 }
 Point point_of(const Json& json) {
-  return {way_of(json.at("way")),       json.at("level"),    json.at("failure"),
-          errors_of(json.at("errors")), json.at("explored"), json.at("rounds").get<std::vector<double>>()};
+  return {way_of(json.at("way")),
+          json.at("level"),
+          json.at("failure"),
+          errors_of(json.at("errors")),
+          json.at("explored"),
+          json.at("looking"),
+          json.at("rounds").get<std::vector<double>>()};
 }
 
 Json json_of(const ReferenceRun& reference) {

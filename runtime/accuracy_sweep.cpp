@@ -24,7 +24,8 @@ double timed(const Point& point, int rounds) {
 // What is known of one way.
 struct Progress {
   int next_level = 0;
-  double predicted = 0;  // CPU time of the next level [s]
+  double predicted = 0;  // CPU time of the next level [s],
+  double looking = 0;    // and to find its errors
   bool open = true;
 };
 
@@ -39,6 +40,7 @@ Progress progress_of(const Way& way, const SweepState& state, const SweepOptions
         way.adaptive ? adaptive_growth
                      : static_cast<double>(knob_at(way, point.level + 1).steps) / knob_at(way, point.level).steps;
     result.predicted = growth * point.explored;
+    result.looking = growth * point.looking;
     if (!point.failure.empty()) continue;
     const double error = point.errors.trajectory();
     idle = error < progress * best ? 0 : idle + 1;
@@ -51,16 +53,17 @@ Progress progress_of(const Way& way, const SweepState& state, const SweepOptions
 
 Point explored(const Scene& scene, const Way& way, int level, const ReferenceRun& reference, double limit,
                const Stop& stop, bool& stopped) {
-  Point point{way, level, {}, {}, 0, {}};
+  Point point{way, level, {}, {}, 0, 0, {}};
   const double start = cpu_now();
   const Stop too_long = [&] {
     stopped = stop && stop();
     return stopped || cpu_now() - start > limit;
   };
-  const Trajectory trajectory = trajectory_of(scene, way, knob_at(way, level), reference.times, too_long);
+  const Trajectory trajectory = trajectory_of(scene, way, knob_at(way, level), reference.times, too_long, {}, true);
   point.explored = trajectory.cpu;
+  point.looking = trajectory.looking;
   const bool whole = trajectory.frames.size() == reference.times.size();
-  point.errors = errors_of(trajectory, reference, scene.dimension);
+  point.errors = errors_of(trajectory, reference, scene);
   if (!trajectory.finite)
     point.failure = "not finite";
   else if (!whole)
@@ -74,7 +77,7 @@ Point explored(const Scene& scene, const Way& way, int level, const ReferenceRun
 
 double spent(const SweepState& state, const SweepOptions& options) {
   double sum = 0;
-  for (const Point& point : state.points) sum += point.explored + timed(point, options.rounds);
+  for (const Point& point : state.points) sum += point.explored + point.looking + timed(point, options.rounds);
   return sum;
 }
 
@@ -90,7 +93,9 @@ std::optional<Next> next_of(const SweepState& state, const SweepOptions& options
     const Progress progress = progress_of(way, state, options);
     if (progress.open && (!next || progress.predicted < next->progress.predicted)) next = {way, progress};
   }
-  if (next && spent(state, options) + (1 + options.rounds) * next->progress.predicted > options.budget) return {};
+  if (!next) return {};
+  const double dearer = (1 + options.rounds) * next->progress.predicted + next->progress.looking;
+  if (spent(state, options) + dearer > options.budget) return {};
   return next;
 }
 
@@ -109,7 +114,7 @@ bool explore(const Scene& scene, const SweepOptions& options, SweepState& state,
 bool time_in_turns(const Scene& scene, const SweepOptions& options, SweepState& state, const SweepHooks& hooks) {
   double exploring = 0, timing = 0, done = 0;
   for (const Point& point : state.points) {
-    exploring += point.explored;
+    exploring += point.explored + point.looking;
     timing += timed(point, options.rounds);
     done += timed(point, static_cast<int>(point.rounds.size()));
   }

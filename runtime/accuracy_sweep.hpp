@@ -16,7 +16,8 @@ struct Point {
   int level = 0;
   std::string failure;  // why it is no answer: "not finite"; then nothing below says anything
   Errors errors;
-  double explored = 0;         // CPU time of the run that found the errors [s]
+  double explored = 0;         // CPU time of the run that found the errors, in step() [s]
+  double looking = 0;          // and to find them [s]
   std::vector<double> rounds;  // CPU seconds per simulated second, one per round of timing
 
   double cost() const;    // the median round

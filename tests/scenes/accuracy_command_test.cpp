@@ -22,10 +22,10 @@ AccuracyReport report_by_hand() {
   state.reference.times = equal_times(2, sample_count);
   state.reference.made_by = "this test";
   const auto point = [&](std::size_t way, int level, double error, double microseconds) {
-    return Point{options.ways[way], level, {}, {error, error / 2, 1e-9, 1e-8, 1e-3}, 0, {microseconds / 1e6}};
+    return Point{options.ways[way], level, {}, {error, error / 2, 1e-9, 1e-8, 1e-3}, 0, 0, {microseconds / 1e6}};
   };
   state.points = {point(0, 3, 0.04, 10), point(0, 6, 5e-3, 80), point(1, 3, 0.05, 8)};
-  state.points.push_back({options.ways[2], 0, "not finite", {}, 0, {}});
+  state.points.push_back({options.ways[2], 0, "not finite", {}, 0, 0, {}});
   return report_of(scene_named("simple_pendulum"), options, state);
 }
 

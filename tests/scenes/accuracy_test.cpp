@@ -99,9 +99,37 @@ TEST(Distances, ErrorsAreTheLargestOfAllSamples) {
     trajectory.frames.push_back(frame_of_one({k == 1 ? 0.1 : 0.01, 0, k == 2 ? -0.3 : 0, 0, 0, 0}, k == 0 ? 4 : 5.5));
   }
   trajectory.C = 7, trajectory.Cdot = 8;
-  const Errors errors = errors_of(trajectory, reference, Dimension::planar);
+  trajectory.least_energy = 4, trajectory.most_energy = 5.5;
+  const Errors errors = errors_of(trajectory, reference, Scene());
   EXPECT_EQ(errors, (Errors{0.1, 0.3, 7, 8, 1}));
   EXPECT_EQ(errors.trajectory(), 0.3);
+  // Between the samples it was further off.
+  trajectory.least_energy = 3;
+  EXPECT_EQ(errors_of(trajectory, reference, Scene()).energy, 2);
+  // Where the reference's own energy comes and goes, nobody knows what it is there.
+  reference.frames[0].energy = 4;
+  EXPECT_EQ(errors_of(trajectory, reference, Scene()).energy, 0.5);
+  reference.frames[0].energy = 5;
+  Scene damped;
+  damped.bodies.emplace_back().definition.linear_damping = 1;
+  EXPECT_EQ(errors_of(trajectory, reference, damped).energy, 1);
+}
+
+// Euler's C and energy swing: what is seen at 16 samples is less than what is there.
+TEST(Distances, AreSeenAfterEveryStep) {
+  const Scene scene = pendulum_scene();
+  const std::vector<double> times = equal_times(2, sample_count), fine = equal_times(2, 64 * sample_count);
+  const Way way{Integrator::euler, Solver::direct, Drift::baumgarte};
+  const Trajectory sampled = trajectory_of(scene, way, {64, 0}, times);
+  const Trajectory watched = trajectory_of(scene, way, {64, 0}, times, {}, {}, true);
+  const Trajectory every = trajectory_of(scene, way, {1, 0}, fine);
+  fmt::print("  |C| {:.4e} at the samples, {:.4e} after every step\n", sampled.C, watched.C);
+  EXPECT_LT(sampled.C, watched.C);
+  EXPECT_EQ(watched.C, every.C);
+  EXPECT_EQ(watched.Cdot, every.Cdot);
+  EXPECT_EQ(watched.least_energy, every.least_energy);
+  EXPECT_EQ(watched.most_energy, every.most_energy);
+  EXPECT_EQ(watched.frames.size(), times.size());
 }
 
 class Slopes : public testing::TestWithParam<Way> {};
@@ -130,7 +158,7 @@ TEST_P(Slopes, AreTheOrder) {
   int seen = 0;
   for (int steps = 1; steps <= 2048; steps *= 2) {
     const Trajectory trajectory = trajectory_of(scene, way, {steps, 0}, reference.times);
-    const Errors errors = errors_of(trajectory, reference, scene.dimension);
+    const Errors errors = errors_of(trajectory, reference, scene);
     const double now = errors.trajectory();
     fmt::print("  {} steps: {:.3e}", steps, now);
     if (before > 0 && before < 1e-2 && now > 1e-11) {
