@@ -90,6 +90,8 @@ class Ldlt {
   // Factors values() with `added` on the diagonal and the unknowns marked in `out` taken out (their
   // rows become those of the identity); null: none. Returns how many rows depend on others.
   int factor(const double* added, const char* out);
+  // The last factor() found the row to depend on others.
+  bool dependent(int unknown) const { return inverse_[unknown] == 0 && !out_[unknown]; }
   // x = K^-1 b for the last factor(); may be in place.
   void solve(const double* b, double* x);
   // y = K x, with values() alone.

@@ -126,16 +126,18 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_system(System<S>& system, int index, Visitor& visit) {
-    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, built, lawful, any_out, rows, ldlt, products,
-           jacobian, weighted, right_side, product, out, held] = system;
+    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, built, lawful, any_out, contradicted, rows,
+           dependent, ldlt, products, jacobian, weighted, right_side, product, shared, unmet, out, held] = system;
     visit.item("system.slots", index);
     for (auto& block : blocks) visit(block.slot);
     visit.item("system.lambda", index), visit(lambda);
     visit.item("system.softness", index), visit(softness);
     visit.item("system.lower", index), visit(lower);
     visit.item("system.upper", index), visit(upper);
+    visit.item("system.unmet", index), visit(unmet);
+    visit.item("system.dependent", index), visit(dependent);
     visit.item("system.flags", index);
-    visit(fixed), visit(broken), visit(out), visit(held), visit(any_out);
+    visit(fixed), visit(broken), visit(out), visit(held), visit(any_out), visit(contradicted);
     each_of_factor(ldlt, index, visit);
   }
 

@@ -32,11 +32,17 @@ int System<S>::factor() {
   char any = 0;
   for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
   any_out_ = any != 0;
-  return ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
+  return dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
 }
 
 template <class S>
 void System<S>::solve() {
+  solve_kept_rows();
+  share_contradictions();
+}
+
+template <class S>
+void System<S>::solve_kept_rows() {
   if (!any_out_) return ldlt_.solve(b.data(), lambda.data());
   bool any_fixed = false;
   for (int r = 0; r < rows_; ++r) {
@@ -112,7 +118,7 @@ int System<S>::find_active_set() {
   int dependent = 0;
   for (int round = 0; round < fast + slow; ++round) {
     dependent = factor();
-    solve();
+    solve_kept_rows();
     if (revise_active_set(round >= fast)) break;
   }
   return dependent;
@@ -127,6 +133,7 @@ int System<S>::solve_bounded() {
   }
   int dependent = find_active_set();
   if (dependent > 0 && part_contradicting_rows()) dependent = find_active_set();
+  share_contradictions();
   held_ = fixed;
   for (int r = 0; r < rows_; ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
   return dependent;

@@ -2,6 +2,7 @@
 // solved exactly.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "runtime/block.hpp"
@@ -73,8 +74,11 @@ class System {
   // Factors with the rows marked in `fixed` or `broken` taken out. Returns the number of dependent
   // rows.
   int factor();
-  // lambda of the free rows from b and the lambda of the fixed ones.
+  // lambda of the free rows from b and the lambda of the fixed ones. Rows that depend on others and contradict them are
+  // met in the sense of least squares.
   void solve();
+  // By how much the last solve() had to leave b unmet in a row; 0 where rows do not contradict each other.
+  double unmet(int row) const { return contradicted_ ? unmet_[static_cast<size_t>(row)] : 0.0; }
   // The share that a row has of K by itself: J M^-1 J^T of it alone.
   double diagonal(int row) const { return ldlt_.diagonal(row); }
   // lambda within [lower, upper], by an active set: where a bound holds it back, J v + bias need
@@ -108,13 +112,21 @@ class System {
   bool revise_active_set(bool one_by_one);
   int find_active_set();
   bool part_contradicting_rows();
+  void solve_kept_rows();
+  bool misses_rows(std::vector<double>& missed);
+  void share_contradictions();
+  bool kept(int row) const { return !out_[static_cast<size_t>(row)] && !ldlt_.dependent(row); }
+  void contract(std::vector<double>& w);
+  void expand(const std::vector<double>& y, std::vector<double>& to);
 
-  bool built_ = false, lawful_ = false, any_out_ = false;
-  int rows_ = 0;
+  bool built_ = false, lawful_ = false, any_out_ = false, contradicted_ = false;
+  int rows_ = 0, dependent_ = 0;
   Ldlt ldlt_;
   std::vector<Product> products_;
   std::vector<double> jacobian_, weighted_;
   std::vector<double> right_side_, product_;
+  std::array<std::vector<double>, 4> shared_;  // by row, while contradictions are shared out
+  std::vector<double> unmet_;                  // by row
   std::vector<char> out_, held_;  // held_: the active set of the last solve_bounded()
 };
 

@@ -1,0 +1,102 @@
+// Joints that cannot all hold: the bodies rest where the sum of the squares of what is left of C is least, whichever row
+// elimination meets last, and nothing else about their motion is disturbed.
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "tests/runtime/mechanisms.hpp"
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+constexpr Integrator all_integrators[] = {Integrator::euler, Integrator::implicit, Integrator::rattle,
+                                          Integrator::rk4, Integrator::dop853};
+
+// Three rods of 1, 1 and 2.02 m in a line.
+void add_triangle(World<double>& world) {
+  const auto rod_of = [&](double x, double length) {
+    return world.add_body({.x = x, .mass = length, .inertia = length * length * length / 12});
+  };
+  const int a = rod_of(0.5, 1), b = rod_of(1.5, 1), c = rod_of(1, 2.02);
+  revolute(world, a, b, 0.5, 0, -0.5, 0);
+  revolute(world, b, c, 0.5, 0, 1.01, 0);
+  revolute(world, c, a, -1.01, 0, -0.5, 0);
+}
+
+template <class S>
+double sum_of_squares(const BasicWorld<S>& world) {
+  double sum = 0;
+  for (int joint = 0; joint < world.joint_count(); ++joint)
+    for (double error : world.position_error(joint)) sum += error * error;
+  return sum;
+}
+
+TEST(Contradiction, IsSharedByTheJointsOfATriangle) {
+  for (const Integrator integrator : all_integrators) {
+    Settings s = settings(Solver::direct);
+    s.integrator = integrator;
+    World<double> world(s);
+    add_triangle(world);
+    for (int k = 0; k < 60; ++k) world.step(1.0 / 60);
+    for (int joint = 0; joint < 3; ++joint) {
+      const auto error = world.position_error(joint);
+      EXPECT_NEAR(std::hypot(error[0], error[1]), 0.02 / 3, 1e-9) << joint;
+    }
+    EXPECT_LT(world.energy(), 1e-12);
+  }
+}
+
+// Falling, it falls like a stone: the contradiction is an inner matter.
+TEST(Contradiction, MovesNoCentreOfMass) {
+  for (const Integrator integrator : all_integrators) {
+    Settings s = settings(Solver::direct, Drift::projection, -9.81);
+    s.integrator = integrator;
+    World<double> world(s);
+    add_triangle(world);
+    for (int k = 0; k < 60; ++k) world.step(1.0 / 60);
+    double momentum = 0, mass = 0;
+    for (int body = 0; body < 3; ++body) {
+      const double m = 1 / world.inverse_mass(body).m;
+      momentum += m * world.velocity(body).y;
+      mass += m;
+    }
+    EXPECT_NEAR(momentum / mass, -9.81, 1e-9);
+  }
+}
+
+// A door whose four hinges do not line up: no small displacement or turn of the door leaves smaller squares.
+TEST(Contradiction, OfADoorOnCrookedHingesIsLeast) {
+  for (const Integrator integrator : all_integrators) {
+    Settings s = settings(Solver::direct, Drift::projection, -9.81);
+    s.integrator = integrator;
+    SpatialWorld<double> world(s);
+    const int door = world.add_body({.x = 0.5, .z = 1, .mass = 20, .inertia = {.xx = 6.7, .yy = 8.3, .zz = 1.7}});
+    const double off[4][2] = {{1e-3, 0}, {-2e-3, 1e-3}, {0, -1e-3}, {2e-3, 3e-3}};
+    for (int k = 0; k < 4; ++k)
+      world.add_joint({"spherical",
+                       {world.ground(), door},
+                       {{"pa", {off[k][0], off[k][1], 0.2 + 0.5 * k}}, {"pb", {-0.5, 0, -0.8 + 0.5 * k}}},
+                       {}});
+    for (int k = 0; k < 30; ++k) world.step(1.0 / 60);
+    const auto rest = world.pose(door);
+    const double least = sum_of_squares(world);
+    EXPECT_GT(least, 1e-6);
+    for (int i = 0; i < 6; ++i) {
+      for (const double by : {1e-4, -1e-4}) {
+        double d[6] = {};
+        d[i] = by;
+        world.set_pose(door, {rest.x + d[0], rest.y + d[1], rest.z + d[2],
+                              rest.e0 - (d[3] * rest.e1 + d[4] * rest.e2 + d[5] * rest.e3) / 2,
+                              rest.e1 + (d[3] * rest.e0 + d[4] * rest.e3 - d[5] * rest.e2) / 2,
+                              rest.e2 + (d[4] * rest.e0 + d[5] * rest.e1 - d[3] * rest.e3) / 2,
+                              rest.e3 + (d[5] * rest.e0 + d[3] * rest.e2 - d[4] * rest.e1) / 2});
+        EXPECT_GE(sum_of_squares(world), least) << "direction " << i << " by " << by;
+      }
+    }
+    fmt::print("  sum of squares {:.6e} m^2\n", least);
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test
