@@ -78,6 +78,7 @@ Scene solved_by(const Way& way, const Knob& knob, Scene scene) {
   settings.drift = way.drift;
   if (way.solver == iterative) settings.iterations = way.iterations;
   settings.substeps = 1;
+  scene.single = way.single;
   settings.sleep_after = 0;  // sleep is an error of its own, and none of a solver or an integrator
   return scene;
 }

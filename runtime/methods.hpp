@@ -1,4 +1,4 @@
-// The names of solvers, drift corrections, integrators and forms of kernels, as scenes, commands and reports spell them:
+// The names of solvers, drift corrections, integrators, forms of kernels and precisions, as scenes, commands and reports spell them:
 // one table each.
 #pragma once
 
@@ -38,6 +38,12 @@ inline constexpr std::array<Named<Kernels>, 3> kernel_forms{{
     {"fast", Kernels::fast},
     {"balanced", Kernels::balanced},
     {"robust", Kernels::robust},
+}};
+
+// Is it float?
+inline constexpr std::array<Named<bool>, 2> precisions{{
+    {"double", false},
+    {"float", true},
 }};
 
 template <class Table>

@@ -23,7 +23,7 @@ struct Arguments {
   std::optional<double> state_time;
   double until = 0, step = 0, every = 0, tolerance = 0, local_error = 0, wanted_accuracy = 0;
   std::vector<double> times;
-  std::string solver, integrator, drift;
+  std::string solver, integrator, drift, kernels, precision;
   int iterations = 0, substeps = 0;
   bool project = false, json = false, progress = false;
   cdot::AccuracyOptions accuracy;
@@ -66,12 +66,20 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
                    "let rk4 or dop853 choose its steps: the estimated error of one [m, rad, and per s]")
       ->check(CLI::PositiveNumber);
   simulate
+      ->add_option("--kernels", arguments.kernels,
+                   "how the iterative solver solves the rows of one joint together: fast, balanced or robust")
+      ->check(CLI::IsMember(cdot::names_of(cdot::kernel_forms)));
+  simulate->add_option("--precision", arguments.precision, "compute in double or float")
+      ->check(CLI::IsMember(cdot::names_of(cdot::precisions)));
+  simulate
       ->add_option("--accuracy", arguments.wanted_accuracy,
                    "choose the method such that the trajectory is as exact as that [m, rad]")
       ->check(CLI::PositiveNumber)
       ->excludes("--integrator")
       ->excludes("--local-error")
-      ->excludes("--solver");
+      ->excludes("--solver")
+      ->excludes("--kernels")
+      ->excludes("--precision");
   simulate
       ->add_option("--drift", arguments.drift,
                    "what keeps joints together: projection, baumgarte or none")
@@ -165,6 +173,8 @@ void override_scene(const Arguments& arguments, cdot::Scene& scene) {
   if (!arguments.integrator.empty())
     settings.integrator = cdot::method_called(cdot::integrators, arguments.integrator);
   if (!arguments.drift.empty()) settings.drift = cdot::method_called(cdot::drifts, arguments.drift);
+  if (!arguments.kernels.empty()) settings.kernels = cdot::method_called(cdot::kernel_forms, arguments.kernels);
+  if (!arguments.precision.empty()) scene.single = cdot::method_called(cdot::precisions, arguments.precision);
   if (arguments.local_error > 0) settings.local_error = arguments.local_error;
   if (arguments.wanted_accuracy > 0) scene.accuracy = arguments.wanted_accuracy;
 }

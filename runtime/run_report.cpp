@@ -55,6 +55,7 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
   if (!own_steps) text += fmt::format(" in {} steps of {:.6g} s", result.steps, scene.step);
   if (result.start > 0) text += fmt::format(", from the state at {:.6g} s", result.start);
   text += "\n";
+  if (scene.single) text += "  precision       float\n";
   if (own_steps) text += own_steps_text(result.counts);
   if (result.choice) text += choice_text(scene, *result.choice);
   text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
@@ -84,6 +85,7 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
       {"joints", scene.joints.size()},
       {"start", result.start},
       {"time", result.time},
+      {"precision", name_of(precisions, scene.single)},
       {"step", scene.step},
       {"steps", result.steps},
       {"cpu", result.cpu},

@@ -11,8 +11,11 @@
 namespace cdot {
 namespace {
 
-constexpr double start_tolerance =
-    1e-6;  // [m], [rad], and per second: what a start may be off unreported
+// [m], [rad], and per second: what a start may be off unreported, and how well it is projected.
+template <class T>
+constexpr double start_tolerance = std::is_same_v<T, double> ? 1e-6 : 1e-4;
+template <class T>
+constexpr double start_projected = std::is_same_v<T, double> ? 1e-12 : 1e-5;
 
 // A line on stderr that is written over, at most a few times a second.
 class Progress {
@@ -175,12 +178,12 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
 template <class S>
 BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
   BasicWorld<S> world = build_world_in<S>(scene);
-  if (scene.project && !world.project(start_tolerance * start_tolerance)) {
+  if (scene.project && !world.project(start_projected<typename S::Scalar>)) {
     warnings +=
         fmt::format("{}: warning: the start could not be projected: joints contradict each other\n",
                     scene.file);
   }
-  warnings += inconsistency_report(scene, world, start_tolerance);
+  warnings += inconsistency_report(scene, world, start_tolerance<typename S::Scalar>);
   world.prepare();
   return world;
 }
@@ -193,9 +196,11 @@ RunResult simulate(const Scene& scene, const RunOptions& options, std::string& w
     result.choice = choice;
     return result;
   }
-  return scene.dimension == Dimension::planar
-             ? simulate_in<Planar<double>>(scene, options, warnings)
-             : simulate_in<Spatial<double>>(scene, options, warnings);
+  if (scene.dimension == Dimension::planar)
+    return scene.single ? simulate_in<Planar<float>>(scene, options, warnings)
+                        : simulate_in<Planar<double>>(scene, options, warnings);
+  return scene.single ? simulate_in<Spatial<float>>(scene, options, warnings)
+                      : simulate_in<Spatial<double>>(scene, options, warnings);
 }
 
 #define CDOT_INSTANTIATE(S) template BasicWorld<S> world_at_start(const Scene&, std::string&);

@@ -65,6 +65,7 @@ struct Scene {
   std::string file, title;
   Dimension dimension = Dimension::planar;
   Settings settings;
+  bool single = false;      // computed in float
   double duration = 10;     // [s]
   double step = 0.001;      // [s]
   double accuracy = 0;      // [m], [rad] that the trajectory shall have, by a method of the runtime's choice; 0: as set

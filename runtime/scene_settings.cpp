@@ -44,7 +44,8 @@ void read_method(Entry& top, Settings& settings) {
 void read_accuracy(Entry& top, Scene& scene) {
   scene.accuracy = top.number("accuracy", {Sign::positive}).value_or(0);
   if (!top.has("accuracy")) return;
-  for (const char* key : {"step", "solver", "integrator", "local_error", "drift", "substeps", "iterations"})
+  for (const char* key :
+       {"step", "solver", "integrator", "local_error", "drift", "substeps", "iterations", "kernels", "precision"})
     if (top.has(key))
       top.error(top.where(key), fmt::format("`accuracy` chooses the method: `{}` has no say beside it", key),
                 fmt::format("leave out `{}`, or `accuracy`", key));
@@ -66,6 +67,8 @@ void read_settings(Entry& top, Scene& scene) {
   scene.settings.gravity_z = gravity[2];
   read_time(top, scene);
   read_method(top, scene.settings);
+  if (const auto precision = top.choice("precision", names_of(precisions)))
+    scene.single = method_called(precisions, *precision);
   read_accuracy(top, scene);
   scene.settings.sleep_after = top.number("sleep_after", {Sign::not_negative}).value_or(0);
   scene.settings.sleep_speed =

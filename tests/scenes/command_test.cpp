@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "runtime/run_output.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {
@@ -161,6 +162,69 @@ TEST(Command, NoHalfWrittenFiles) {
   EXPECT_NE(result.status, 0);
   EXPECT_EQ(read_text(path), "old\n");
   EXPECT_EQ(folder.contents(), std::vector<std::string>{"run.csv"});
+}
+
+// Numbers of all rows but the head.
+std::vector<double> numbers_of(const std::filesystem::path& path) {
+  std::vector<double> numbers;
+  const auto rows = csv(path);
+  for (std::size_t k = 1; k < rows.size(); ++k)
+    for (const std::string& cell : rows[k]) numbers.push_back(std::stod(cell));
+  return numbers;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double worst = 0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) worst = std::max(worst, std::abs(a[k] - b[k]));
+  return worst;
+}
+
+// In float every number is one of float's, and the motion that of double, but for float's round-off.
+TEST(Command, PrecisionIsFloatIfAsked) {
+  const TemporaryFolder folder;
+  for (const char* name : {"double_pendulum", "spatial/double_pendulum"}) {
+    const auto run = [&](const std::string& precision) {
+      const std::string path = folder / (precision + ".csv");
+      const CommandResult result = cdot_run(fmt::format(
+          "simulate {} --integrator rk4 --until 1 --step 0.0078125 -o '{}' --precision {}", scene(name), path, precision));
+      EXPECT_EQ(result.status, 0) << result.err;
+      EXPECT_EQ(result.err, "");
+      EXPECT_EQ(result.out.find("precision       float") != std::string::npos, precision == "float") << result.out;
+      return numbers_of(path);
+    };
+    const std::vector<double> single = run("float"), exact = run("double");
+    ASSERT_FALSE(single.empty());
+    for (const double number : single) EXPECT_EQ(number, double(float(number)));
+    const double apart = largest_difference(single, exact);
+    fmt::print("  {}: float is {:.1e} off\n", name, apart);
+    EXPECT_GT(apart, 1e-7);
+    EXPECT_LT(apart, 1e-3);
+  }
+  // The scene's own key, and JSON.
+  const std::string path = folder / "single.toml";
+  write_file(path, "precision = \"float\"\nduration = 0.1\n[[body]]\nname = \"ball\"\nmass = 1\ninertia = 1\n");
+  EXPECT_EQ(nlohmann::json::parse(cdot_run("simulate '" + path + "' --json").out)["precision"], "float");
+  EXPECT_EQ(cdot_run("simulate '" + path + "' --precision half").status, 2);
+  EXPECT_EQ(cdot_run("simulate '" + path + "' --accuracy 1e-4 --precision float").status, 2);
+}
+
+TEST(Command, KernelsAreThoseAskedFor) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& kernels) {
+    const std::string path = folder / (kernels + ".csv");
+    EXPECT_EQ(cdot_run(fmt::format("simulate {} --solver iterative --until 0.5 -o '{}' --kernels {}",
+                                   scene("spatial/double_pendulum"), path, kernels))
+                  .status,
+              0);
+    return numbers_of(path);
+  };
+  const std::vector<double> balanced = run("balanced"), robust = run("robust");
+  const double apart = largest_difference(balanced, robust);
+  fmt::print("  robust is {:.1e} from balanced\n", apart);
+  EXPECT_GT(apart, 0);
+  EXPECT_LT(apart, 1e-9);
+  EXPECT_EQ(cdot_run("simulate " + scene("spatial/double_pendulum") + " --kernels best").status, 2);
 }
 
 }  // namespace
