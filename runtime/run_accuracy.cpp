@@ -19,7 +19,6 @@ namespace cdot {
 namespace {
 
 constexpr double reference_share = 1.0 / 9;  // of the budget, at most, for each of three methods of a reference
-constexpr double noticeable = 0.05;          // an error smaller by less is no gain
 
 std::string text_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

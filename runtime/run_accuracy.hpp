@@ -15,6 +15,8 @@ struct AccuracyOptions {
   bool resume = false, json = false, progress = false;
 };
 
+inline constexpr double noticeable = 0.05;  // an error smaller by less is no gain
+
 // All that was found, ready to be shown.
 struct AccuracyReport {
   Scene scene;

@@ -7,6 +7,7 @@
 
 #include "runtime/run_accuracy.hpp"
 #include "runtime/run_output.hpp"
+#include "runtime/work_precision.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {
@@ -98,10 +99,53 @@ TEST(AccuracyReport, PictureIsWellFormed) {
   write_file(path, accuracy_svg(report_by_hand()));
   const CommandResult result =
       run_command(fmt::format("python3 -c \"import sys, xml.dom.minidom as d; "
-                              "print(len([c for c in d.parse(sys.argv[1]).getElementsByTagName('circle')]))\" '{}'",
+                              "print(len([c for c in d.parse(sys.argv[1]).getElementsByTagName('circle') if "
+                              "c.getAttribute('class') == 'ring']))\" '{}'",
                               path));
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, "4\n");  // three points of the frontier and the one of the legend
+}
+
+// --- the picture ---
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(WorkPrecision, PlacesPointsByDecades) {
+  Diagram diagram;
+  diagram.title = "a < b";
+  diagram.error_label = "error [m]";
+  diagram.series = {{"one & only", "#123456", 0, false, {{1e-1, 1e-5}, {1e-3, 1e-3}}, {"the < first", "the last"}},
+                    {"beaten", "#654321", 1, true, {{1e-2, 9e-4}, {1e-1, 5e-4}}, {}}};
+  const std::string svg = work_precision_svg(diagram);
+  EXPECT_TRUE(has(svg, ">a &lt; b<")) << svg;
+  EXPECT_TRUE(has(svg, ">one &amp; only<") && has(svg, "<title>the &lt; first</title>"));
+  // From 10 to 1000 us and from 1e-1 to 1e-3, corner to corner; the frontier is its line.
+  EXPECT_TRUE(has(svg, "<path class=\"frontier\" d=\"M84.0 542.0L644.0 72.0\"/>"));
+  EXPECT_TRUE(has(svg, "<path class=\"curve\" d=\"M84.0 542.0L644.0 72.0\" stroke=\"#123456\"/>"));
+  // In the middle by error: beaten, but the line of its own series; log10(900 / 10) of 2 decades up.
+  EXPECT_TRUE(has(svg, "translate(364.0 82.8)\" stroke=\"#654321\" fill=\"var(--paper)\""));
+  EXPECT_FALSE(has(svg, "tells no more"));
+  diagram.resolution = 1e-2;
+  EXPECT_TRUE(has(work_precision_svg(diagram), "<path class=\"limit\" d=\"M364.0 72v470\"/>"));
+  EXPECT_TRUE(has(work_precision_svg(diagram), "<path class=\"frontier\" d=\"M84.0 542.0"));
+}
+
+// Names as high as their lines end, and none over another.
+TEST(WorkPrecision, NamesDoNotOverlap) {
+  Diagram diagram;
+  for (int k = 0; k < 22; ++k)
+    diagram.series.push_back({fmt::format("series {}", k), "red", k, false, {{1e-2 / (k + 1), 1e-3 + 1e-9 * k}}, {}});
+  const std::string svg = work_precision_svg(diagram);
+  double before = 0;
+  int seen = 0;
+  for (std::size_t at = svg.find(">series "); at != std::string::npos; at = svg.find(">series ", at + 1), ++seen) {
+    const double y = std::stod(svg.substr(svg.rfind("y=\"", at) + 3));
+    if (seen > 0) {
+      EXPECT_GE(y - before, 20) << seen;
+    }
+    before = y;
+  }
+  EXPECT_EQ(seen, 22);
 }
 
 // --- the command ---

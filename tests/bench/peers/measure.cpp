@@ -150,15 +150,15 @@ std::vector<double>& metronome() {
 }
 
 std::vector<std::size_t> frontier(const std::vector<Point>& points, const std::string& engine) {
-  std::vector<std::size_t> order;
-  for (std::size_t k = 0; k < points.size(); ++k)
-    if (points[k].engine->name == engine && points[k].error < never) order.push_back(k);
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair{cost(points[a]), points[a].error} < std::pair{cost(points[b]), points[b].error};
-  });
+  std::vector<std::size_t> own;
+  std::vector<CostedError> costs;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (points[k].engine->name != engine || !(points[k].error < never)) continue;
+    own.push_back(k);
+    costs.push_back({points[k].error, cost(points[k])});
+  }
   std::vector<std::size_t> best;
-  for (const std::size_t k : order)
-    if (best.empty() || points[k].error < 0.98 * points[best.back()].error) best.push_back(k);
+  for (const std::size_t k : frontier_of(costs, 0, noticeable)) best.push_back(own[k]);
   return best;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/accuracy_frontier.hpp"
 #include "tests/bench/peers/peer.hpp"
 
 namespace cdot::peers {
@@ -52,6 +53,8 @@ void time(const Problem& problem, const Options& options, std::vector<Point>& po
 
 // How long the same fixed arithmetic took, once between any two points: the machine's own noise.
 std::vector<double>& metronome();
+
+inline constexpr double noticeable = 0.02;  // an error smaller by less is no gain
 
 // The indices of an engine's points by rising cost and falling error: none is as cheap and as accurate (to 2 %).
 std::vector<std::size_t> frontier(const std::vector<Point>& points, const std::string& engine);
