@@ -30,7 +30,7 @@ Choice try_integrator(const Scene& scene, Integrator integrator) {
   double local_error = scene.accuracy;
   for (int attempt = 0; attempt < most_tries && local_error > finest; ++attempt) {
     const Trajectory run = trajectory_of(scene, way, {1, local_error}, times);
-    // Where both would take one step from look to look, the same error would hide in both: the finer one takes two.
+    // The finer one begins with half the step: the same steps would hide the same error in both.
     const Trajectory better = trajectory_of(scene, way, {2, finer * local_error}, times);
     const double achieved = distance_between(run, better, scene.dimension);
     if (achieved < best.achieved)
