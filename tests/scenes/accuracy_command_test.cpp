@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -188,6 +190,56 @@ TEST(AccuracyCommand, MeasuresAgainstATrajectory) {
     before = point["error"];
   }
   EXPECT_LT(before, 1e9);
+}
+
+// Times, places and angles of the last row.
+std::vector<double> last_row(const std::string& path) {
+  std::ifstream file(path);
+  std::string line, last;
+  while (std::getline(file, line)) last = line;
+  std::vector<double> numbers;
+  std::stringstream cells(last);
+  for (std::string cell; std::getline(cells, cell, ',');) numbers.push_back(std::stod(cell));
+  return numbers;
+}
+
+// What the advice names, float among it, a scene can ask for, and is then as exact as it says.
+TEST(AccuracyCommand, ItsAdviceCanBeTaken) {
+  const TemporaryFolder folder;
+  const std::string prefix = folder / "p", exact = folder / "exact.csv", path = folder / "advised.csv";
+  const std::string pendulum = scene_path("double_pendulum");
+  const CommandResult result = cdot_run(fmt::format(
+      "accuracy {} --until 1 --only 'rk4, direct, float' --levels 5 --rounds 1 -o '{}' --json", pendulum, prefix));
+  ASSERT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  ASSERT_EQ(cdot_run(fmt::format("simulate {} --until 1 --integrator dop853 --local-error 1e-13 --times 1 -o '{}'",
+                                 pendulum, exact))
+                .status,
+            0);
+  ASSERT_FALSE(json["advice"].empty());
+  for (const auto& advice : json["advice"]) {
+    const auto& point = json["points"][advice["point"].get<std::size_t>()];
+    const auto text = [&](const char* key) { return point[key].get<std::string>(); };
+    ASSERT_EQ(cdot_run(fmt::format("simulate {} --until 1 --times 1 --integrator {} --solver {} --drift {} "
+                                   "--precision {} --step {} -o '{}'",
+                                   pendulum, text("integrator"), text("solver"), text("drift"), text("precision"),
+                                   point["step"].get<double>(), path))
+                  .status,
+              0);
+    const std::vector<double> taken = last_row(path), wanted = last_row(exact);
+    ASSERT_EQ(taken.size(), 13u);
+    double off = 0;
+    for (const std::size_t body : {1, 7}) {
+      off = std::max(off, std::hypot(taken[body] - wanted[body], taken[body + 1] - wanted[body + 1]));
+      off = std::max(off, std::abs(taken[body + 2] - wanted[body + 2]));
+    }
+    fmt::print("  {}, step {}: {:.2e} at the end, {:.2e} at worst\n", text("method"), point["step"].get<double>(), off,
+               point["error"].get<double>());
+    EXPECT_EQ(text("precision"), "float");
+    EXPECT_GT(off, 0.01 * point["error"].get<double>());
+    EXPECT_LE(off, 1.001 * point["error"].get<double>());
+    EXPECT_LE(point["error"], advice["error"]);
+  }
 }
 
 TEST(AccuracyCommand, MistakesAreTwoAndSaySo) {
