@@ -14,21 +14,6 @@ namespace {
 template <class T>
 constexpr T foreign = std::is_same_v<T, double> ? T(1e-8) : T(1e-4);
 
-// What bends a path back onto its curve is a small part of the way: 2 |displacement| <= |h v| in
-// the metric of the masses. More than that (a passage through a singular pose, a step far too
-// large) would be thrown in as energy.
-template <class S>
-bool bends_the_path(const WorldState<S>& world, const Island<S>& island, double h) {
-  const Bodies<S>& all = world.bodies;
-  double moved = 0, way = 0;
-  for (int i : island.bodies) {
-    const auto& m = all.inverse_mass[i];
-    moved += S::dot(S::force(m, all.displacement[i]), all.displacement[i]);
-    way += S::dot(S::force(m, all.velocity[i]), all.velocity[i]);
-  }
-  return 4 * moved <= h * h * way;
-}
-
 }  // namespace
 
 template <class S>
@@ -52,6 +37,7 @@ void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   const T foreign_error = island.residual, error = find_errors(world, island, time);
   const bool from_motion = foreign_error <= T(0.1) * error;
   hold_poses(world, island, time, false);
+  // Otherwise it would be thrown in as energy.
   const bool keep = from_motion && bends_the_path(world, island, double(h));
   add_corrections(world, island, keep ? T(1) / h : T(0));
   evaluate_anew(world, island, time);

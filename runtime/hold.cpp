@@ -270,6 +270,18 @@ void hold_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time
 }
 
 template <class S>
+bool bends_the_path(const WorldState<S>& world, const Island<S>& island, double h) {
+  const Bodies<S>& all = world.bodies;
+  double moved = 0, way = 0;
+  for (int i : island.bodies) {
+    const auto& m = all.inverse_mass[i];
+    moved += S::dot(S::force(m, all.displacement[i]), all.displacement[i]);
+    way += S::dot(S::force(m, all.velocity[i]), all.velocity[i]);
+  }
+  return 4 * moved <= h * h * way;
+}
+
+template <class S>
 void hold_velocities(WorldState<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   if (island.continuous) add_wanted_rates(island, T(-1));
@@ -280,15 +292,16 @@ void hold_velocities(WorldState<S>& world, Island<S>& island) {
   if (island.continuous) add_wanted_rates(island, T(1));
 }
 
-#define CDOT_INSTANTIATE(S)                                               \
-  template void clear_correction(WorldState<S>&, Island<S>&);             \
-  template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar);  \
-  template void solve_errors(Island<S>&, S::Scalar);                      \
-  template void apply_solution(WorldState<S>&, Island<S>&, S::Velocity*); \
-  template void scale_corrections(const Island<S>&, S::Scalar);           \
-  template void add_corrections(WorldState<S>&, Island<S>&, S::Scalar);   \
-  template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);     \
-  template void hold_poses(WorldState<S>&, Island<S>&, S::Scalar, bool);  \
+#define CDOT_INSTANTIATE(S)                                                     \
+  template void clear_correction(WorldState<S>&, Island<S>&);                   \
+  template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar);        \
+  template void solve_errors(Island<S>&, S::Scalar);                            \
+  template void apply_solution(WorldState<S>&, Island<S>&, S::Velocity*);       \
+  template void scale_corrections(const Island<S>&, S::Scalar);                 \
+  template void add_corrections(WorldState<S>&, Island<S>&, S::Scalar);         \
+  template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);           \
+  template void hold_poses(WorldState<S>&, Island<S>&, S::Scalar, bool);        \
+  template bool bends_the_path(const WorldState<S>&, const Island<S>&, double); \
   template void hold_velocities(WorldState<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

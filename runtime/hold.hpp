@@ -41,6 +41,11 @@ void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar t
 template <class S>
 void hold_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
 
+// What bends a path back onto its curve is a small part of the way: 2 |displacement| <= |h v| in the metric of the
+// masses. More than that comes of a passage through a singular pose, or of a step far too large.
+template <class S>
+bool bends_the_path(const WorldState<S>& world, const Island<S>& island, double h);
+
 // Velocities onto J v = -dC/dt, where C and J were just evaluated: exact rows and those that are held. The direct
 // solver then has their factor.
 template <class S>

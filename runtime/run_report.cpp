@@ -27,7 +27,6 @@ std::string own_steps_text(const StepCounts& counts) {
       fmt::format("  own steps       {}, from {:.3g} s to {:.3g} s", counts.taken, counts.shortest, counts.longest);
   if (counts.rejected > 0) text += fmt::format(", {} rejected", counts.rejected);
   if (counts.events > 0) text += fmt::format(", {} event{} located", counts.events, counts.events == 1 ? "" : "s");
-  if (counts.rescued > 0) text += fmt::format(", {} left to Euler's for too many events", counts.rescued);
   return text + "\n";
 }
 
@@ -57,6 +56,9 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
   text += "\n";
   if (scene.single) text += "  precision       float\n";
   if (own_steps) text += own_steps_text(result.counts);
+  if (result.counts.rescued > 0)
+    text += fmt::format("  left to Euler   {} times a step that passed events without end, or whose error was absurd\n",
+                        result.counts.rescued);
   if (result.choice) text += choice_text(scene, *result.choice);
   text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
                       result.steps > 0 ? 1e6 * result.cpu / static_cast<double>(result.steps) : 0.0);

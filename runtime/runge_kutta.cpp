@@ -77,6 +77,7 @@ void take_stages(WorldState<S>& world, Island<S>& island, const RungeKutta& meth
 template <class S>
 void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   const bool holds = world.settings.drift == Drift::projection && !island.segments.empty();
+  for (int i : island.bodies) world.bodies.displacement[i] = {};
   if (holds) hold_poses(world, island, time, fresh);
   evaluate_anew(world, island, time);
   island.factored = false;
@@ -96,10 +97,9 @@ void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& metho
   read_rates(world, island, method.stages);
 }
 
-// The estimated error of the step in units of the one allowed. Velocities: relative where they exceed 1.
+// The estimated error of the step. Velocities: relative where they exceed 1.
 template <class S>
-double error_of_step(const WorldState<S>& world, const Island<S>& island, const RungeKutta& method,
-                     typename S::Scalar h) {
+double error_of_step(const Island<S>& island, const RungeKutta& method, typename S::Scalar h) {
   const Flow<S>& flow = island.flow;
   const size_t n = flow.now.size();
   double worst[2] = {0, 0};
@@ -111,7 +111,7 @@ double error_of_step(const WorldState<S>& world, const Island<S>& island, const 
       for (int j = 0; j <= method.stages; ++j)
         if (method.error[estimate][j] != 0)
           sum += method.error[estimate][j] * double(flow.rates[static_cast<size_t>(j) * n + k]);
-      const double error = std::abs(double(h) * sum) / (size * world.settings.local_error);
+      const double error = std::abs(double(h) * sum) / size;
       if (!(error <= worst[estimate])) worst[estimate] = error;
     }
   }
@@ -156,7 +156,7 @@ void go_back(WorldState<S>& world, Island<S>& island) {
   template void go_back(WorldState<S>&, Island<S>&);                                                   \
   template void take_stages(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar, S::Scalar);      \
   template void settle_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);                  \
-  template double error_of_step(const WorldState<S>&, const Island<S>&, const RungeKutta&, S::Scalar);
+  template double error_of_step(const Island<S>&, const RungeKutta&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

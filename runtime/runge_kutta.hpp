@@ -47,9 +47,8 @@ void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bo
 template <class S>
 void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time);
 
-// The estimated error of the step in units of Settings::local_error; of velocities relative where they exceed 1.
+// The estimated error of the step [m], [rad], [m/s], [rad/s]; of velocities relative where they exceed 1.
 template <class S>
-double error_of_step(const WorldState<S>& world, const Island<S>& island, const RungeKutta& method,
-                     typename S::Scalar h);
+double error_of_step(const Island<S>& island, const RungeKutta& method, typename S::Scalar h);
 
 }  // namespace cdot

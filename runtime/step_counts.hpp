@@ -9,7 +9,9 @@ struct StepCounts {
   long long evaluations = 0;          // of an island's accelerations
   long long taken = 0, rejected = 0;  // the error estimate was too large
   long long events = 0;               // located: something touched, let go, slipped or stuck
-  long long rescued = 0;              // ends of steps left to Euler's, for too many events in one
+  // Ends of steps left to the linearly implicit Euler's: events without end, no step short enough, or, of fixed steps,
+  // one whose error was estimated to be larger than the motion.
+  long long rescued = 0;
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // [s]
 };
 

@@ -2,6 +2,8 @@
 // last of which may end beyond it; cut at events.
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "runtime/between.hpp"
 #include "runtime/events.hpp"
@@ -12,8 +14,15 @@
 namespace cdot {
 namespace {
 
-constexpr int most_events = 32;      // in one step(); beyond them its rest is left to Euler's
-constexpr int most_rejections = 60;  // in a row: then the step is taken as it is
+// In one step(), and in a row; beyond them its rest is left to Euler's: something chatters, or jams.
+constexpr int most_events = 32, most_slivers = 1000;
+constexpr double sliver = 1e-4;  // of the longest step so far
+constexpr int most_rejections = 30;  // in a row
+// [m], [rad], of velocities relative: a step whose error is estimated above this has nothing to do with the motion, as
+// where a distance passes through 0, or tension makes a chain stiffer than the step can follow.
+constexpr double absurd = 0.3;
+template <class S>
+constexpr auto slight_displacement = typename S::Scalar(1e-6);  // [m], [rad]
 constexpr int most_searches = 60;    // for one event
 constexpr int furthest_reach = 64;   // of a step of its own length, in step()s
 
@@ -82,7 +91,17 @@ T length_of_step(T best, T left, T reach) {
   return best < left ? left / std::ceil(left / best) : left;  // equal parts: no sliver remains
 }
 
-// One step as long as the error allows, but within `reach`. Returns its length; Flow::margins are those of its end.
+// The step ended so far from the joints that to bring it back onto them undid its motion: it passed a pose where the
+// directions of a joint turn round, as those of a rope do where its length passes through 0.
+template <class S>
+bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S::Scalar h) {
+  const auto slight = [&](int i) { return S::slower(world.bodies.displacement[i], slight_displacement<S>); };
+  if (std::all_of(island.bodies.begin(), island.bodies.end(), slight)) return false;
+  return !bends_the_path(world, island, double(h));
+}
+
+// One step as long as the error allows, but within `reach`. Returns its length; Flow::margins are those of its end. 0 if
+// none is short enough: the state then is none.
 template <class S>
 typename S::Scalar take_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
                              typename S::Scalar left, typename S::Scalar reach) {
@@ -90,20 +109,21 @@ typename S::Scalar take_step(WorldState<S>& world, Island<S>& island, const Rung
   Flow<S>& flow = island.flow;
   const bool adaptive = world.settings.local_error > 0;
   const T proposed = flow.next_step;
+  const double allowed = adaptive ? world.settings.local_error : absurd;
   T h = adaptive ? length_of_step(proposed, left, reach) : left;
-  for (int attempt = 0;; ++attempt) {
+  for (int attempt = 0; attempt <= most_rejections; ++attempt) {
     take_stages(world, island, method, time, h);
-    double error = adaptive && !method.error_at_end ? error_of_step(world, island, method, h) : 0;
-    const bool hopeless = attempt == most_rejections;
-    if (error <= 1 || hopeless) {
+    double error = method.error_at_end ? 0 : error_of_step(island, method, h) / allowed;
+    if (error <= 1) {
       settle_end(world, island, method, time + h);
-      if (adaptive && method.error_at_end) error = error_of_step(world, island, method, h);
+      if (method.error_at_end) error = error_of_step(island, method, h) / allowed;
+      if (went_astray(world, island, h)) error = std::numeric_limits<double>::infinity();
     }
-    if (!adaptive) return h;
+    if (!adaptive) return error <= 1 ? h : T(0);
     // 0.9 of the step that would just do; a NaN shrinks like the worst.
     const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
-    if (error <= 1 || hopeless) {
+    if (error <= 1) {
       // One that was cut short tells nothing against the length that was proposed; after one that was too long none
       // grows.
       if (attempt == 0 && h < proposed) flow.next_step = std::max(flow.next_step, proposed);
@@ -114,6 +134,7 @@ typename S::Scalar take_step(WorldState<S>& world, Island<S>& island, const Rung
     h = length_of_step(flow.next_step, left, reach);
     go_back(world, island);
   }
+  return T(0);
 }
 
 // The state as it was found, on its constraints, with the accelerations.
@@ -129,6 +150,15 @@ void begin(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
   island.flow.known = true;
 }
 
+template <class S>
+void fill_forces(const Island<S>& island, typename S::Scalar value) {
+  for (const Segment<S>& segment : island.segments) {
+    const int rows = segment.batch->ops->rows;
+    auto& lambda = segment.batch->lambda;
+    std::fill(lambda.begin() + segment.begin * rows, lambda.begin() + segment.end * rows, value);
+  }
+}
+
 // The forces of the joints as impulses over h, and back.
 template <class S>
 void scale_forces(const Island<S>& island, typename S::Scalar by) {
@@ -138,14 +168,26 @@ void scale_forces(const Island<S>& island, typename S::Scalar by) {
   }
 }
 
+// What is left of a step, by the sturdiest of the other methods: linearly implicit, as it starts from `time`. It wants
+// the impulses of a step before.
 template <class S>
-void leave_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void leave_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   ++world.counts.rescued;
+  fill_forces(island, typename S::Scalar(0));
+  evaluate_anew(world, island, time);
+  island.factored = false;
+  accelerate(world, island, time);
+  scale_forces(island, h);
   drop_modes(island);
   island.continuous = island.evaluated = island.factored = false;
   island.flow.forget();
+  island.flow.slivers = 0;
+  const Integrator own = std::exchange(world.settings.integrator, Integrator::implicit);
   step_euler(world, island, h);
+  world.settings.integrator = own;
+  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
   scale_forces(island, 1 / h);
+  island.evaluated = island.factored = false;
   island.continuous = true;
 }
 
@@ -166,8 +208,8 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
   const bool looked_at = !world.after_substep.empty();
   for (int events = 0; done < h;) {
     const T time = T(world.time) + done, left = h - done;
-    if (!flow.known && events > most_events) {
-      leave_to_euler(world, island, left);
+    if (events > most_events || flow.slivers > most_slivers) {
+      leave_to_euler(world, island, time, left);
       return h;
     }
     begin(world, island, time);
@@ -175,6 +217,13 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
     flow.margins_at_start = flow.margins;
     flow.end_kept = false;
     flow.length = take_step(world, island, method, time, left, looked_at ? left : furthest_reach * h);
+    if (!(flow.length > T(0))) {
+      go_back(world, island);
+      leave_to_euler(world, island, time, left);
+      return h;
+    }
+    flow.longest = std::max(flow.longest, flow.length);
+    flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
     if (flow.guarded > 0 && furthest(flow.margins_at_start, flow.margins) < passed) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts.events;

@@ -53,6 +53,8 @@ struct Flow {
   std::vector<T> margins, margins_at_start;  // [guarded] how far from their next event
   std::vector<T> low, high;                  // the same, on both sides of an event that is looked for
   T next_step = 0;            // [s] that the error control proposes; 0: none yet
+  T longest = 0;              // [s] of the steps so far
+  int slivers = 0;            // steps in a row that were far shorter
   bool known = false;         // C, J, forces and dv/dt belong to the end of the last step
   // A step of its own length may end beyond the time asked for. The bodies then stand between its ends.
   T ahead = 0;                      // [s] how far beyond; 0: they stand at its end

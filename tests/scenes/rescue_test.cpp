@@ -1,0 +1,75 @@
+// Where a Runge-Kutta step has nothing to do with the motion, the linearly implicit step takes its place, and that is
+// counted: nothing explodes, nothing hangs.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "runtime/world.hpp"
+
+namespace cdot::test {
+namespace {
+
+class Rescue : public testing::TestWithParam<std::tuple<Integrator, double>> {};
+
+// A chain of light links under a load of a million times a link's mass is far stiffer across than a step of 1/60 s
+// follows.
+TEST_P(Rescue, AHeavyLoadDoesNotExplode) {
+  const auto& [integrator, local_error] = GetParam();
+  World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
+  int above = world.ground();
+  for (int link = 0; link < 10; ++link) {
+    const int rod = world.add_body({.y = -0.5 - link, .angle = -std::numbers::pi / 2, .mass = 1, .inertia = 1.0 / 12});
+    world.add_joint({"revolute", {above, rod}, {{"pa", {link ? 0.5 : 0.0, 0}}, {"pb", {-0.5, 0}}}, {}});
+    above = rod;
+  }
+  const int load = world.add_body({.y = -10, .vx = 1, .mass = 1e6});
+  world.add_joint({"revolute", {above, load}, {{"pa", {0.5, 0}}, {"pb", {0, 0}}}, {}});
+  const double start = world.energy(), kick = 0.5e6;
+  double gained = 0, gap = 0;
+  for (int k = 0; k < 60; ++k) {
+    world.step(1.0 / 60);
+    gained = std::max(gained, world.energy() - start);
+    gap = std::max(gap, world.worst_position_error().value);
+  }
+  const StepCounts& counts = world.step_counts();
+  fmt::print("  gained {:.1e} of the kick's energy, gap {:.1e} m, {} steps left to Euler\n", gained / kick, gap,
+             counts.rescued);
+  EXPECT_LT(gained, 0.01 * kick);
+  EXPECT_LT(gap, 1e-3);
+  EXPECT_EQ(counts.rescued > 0, local_error == 0);
+}
+
+// A weight is pulled up to the wheel of its pulley, and through: there the rope has no direction, and then jams.
+TEST_P(Rescue, ARopeJamsInItsPulley) {
+  const auto& [integrator, local_error] = GetParam();
+  World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
+  const int heavy = world.add_body({.x = -1, .y = 5, .mass = 2, .inertia = 0.4});
+  const int light = world.add_body({.x = 1, .y = 9.8, .mass = 1, .inertia = 0.2});
+  world.add_joint(
+      {"pulley", {heavy, light}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"ga", {-1, 10}}, {"gb", {1, 10}}}, {}});
+  const double start = world.energy();
+  double gained = 0;
+  for (int k = 0; k < 60; ++k) {
+    world.step(1.0 / 60);
+    gained = std::max(gained, world.energy() - start);
+  }
+  const StepCounts& counts = world.step_counts();
+  fmt::print("  gained {:.1e} J, {} steps left to Euler, {} taken\n", gained, counts.rescued, counts.taken);
+  EXPECT_LT(gained, 1e-3 * 2 * 9.81);
+  EXPECT_GT(counts.rescued, 0);
+  EXPECT_LT(counts.taken, 100'000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Rescue,
+                         testing::Combine(testing::Values(Integrator::rk4, Integrator::dop853),
+                                          testing::Values(0.0, 1e-6)),
+                         [](const auto& info) {
+                           const bool fixed = std::get<1>(info.param) == 0;
+                           return std::string(std::get<0>(info.param) == Integrator::rk4 ? "rk4" : "dop853") +
+                                  (fixed ? "_fixed" : "_adaptive");
+                         });
+
+}  // namespace
+}  // namespace cdot::test
