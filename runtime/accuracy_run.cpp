@@ -41,7 +41,7 @@ auto in_space_of(const Scene& scene, const Way& way, F f) {
 
 template <class T, class Random>
 void move_body(World<T>& world, int body, const Nudge& by, Random off) {
-  const auto q = world.pose(body);
+  const auto q = world.place(body);
   const auto v = world.velocity(body);
   world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.w + by.spin * off()});
   world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.angle + by.angle * off()});
@@ -49,9 +49,9 @@ void move_body(World<T>& world, int body, const Nudge& by, Random off) {
 // The velocity first: a body whose tensor turns with it takes its momentum from both.
 template <class T, class Random>
 void move_body(SpatialWorld<T>& world, int body, const Nudge& by, Random off) {
-  const auto q = world.pose(body);
+  const auto q = world.place(body);
   const auto v = world.velocity(body);
-  const auto turned = spatial::turned_by(q, {T(by.angle * off()), T(by.angle * off()), T(by.angle * off())});
+  const auto turned = spatial::turned_by(world.pose(body), {T(by.angle * off()), T(by.angle * off()), T(by.angle * off())});
   world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.z + by.speed * off(),
                             v.wx + by.spin * off(), v.wy + by.spin * off(), v.wz + by.spin * off()});
   world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.z + by.position * off(), turned.e0,

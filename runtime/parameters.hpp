@@ -1,6 +1,7 @@
 // A joint's parameters as a scene names them, turned into the numbers that its kernel reads.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "runtime/joints.hpp"
@@ -13,5 +14,18 @@ namespace cdot {
 template <class S>
 std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given,
                                       const typename S::Pose* poses, double time);
+
+// Moves the points that such a joint has in the world: those that its spec has on the world, and those on bodies for
+// which fixed_in_world(body) holds.
+template <class Fixed>
+void move_world_points(const JointType& type, const std::vector<int>& bodies, Fixed fixed_in_world,
+                       const std::array<double, 3>& by, double sign, std::vector<double>& numbers) {
+  for (const ParameterInfo& info : type.parameters) {
+    if (info.kind != ParameterKind::point) continue;
+    if (info.body >= 0 && !fixed_in_world(bodies[static_cast<size_t>(info.body)])) continue;
+    double* const point = numbers.data() + info.offset;
+    for (int k = 0; k < info.size; ++k) point[k] += sign * by[static_cast<size_t>(k)];
+  }
+}
 
 }  // namespace cdot

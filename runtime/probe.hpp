@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/joint_table.hpp"
 #include "runtime/world_state.hpp"
@@ -65,9 +66,13 @@ class Probe {
     ops_->velocity(batch_, 0, 1, step.data(), batch_.scratch.data());
     const T promised = batch_.scratch[row];
     if (!(promised > T(0))) return false;
-    const T wanted = T(1e-3);
-    const T forth = C_after(wanted / promised, row), back = C_after(-wanted / promised, row);
-    return std::abs(forth - back) < T(0.01) * T(2) * wanted;
+    // A joint that is small itself has its kink near, and one that is large does not see small steps: it is a kink only
+    // if it is one at every scale.
+    for (const T wanted : {T(1e-3), T(1e-6), T(1e-9), T(1e3) * resolution()}) {
+      const T forth = C_after(wanted / promised, row), back = C_after(-wanted / promised, row);
+      if (!(std::abs(forth - back) < T(0.01) * T(2) * wanted)) return false;
+    }
+    return true;
   }
 
   // J and (M^-1 J^T)^T, [rows][freedom * bodies].
@@ -94,6 +99,16 @@ class Probe {
       const auto from = kept.counters.begin() + place.slot * kept.ops->counters;
       std::copy_n(from, kept.ops->counters, batch_.counters.begin());
     }
+  }
+
+  // What two places are told apart by, where the bodies are.
+  T resolution() const {
+    T far = 0;
+    for (const auto& pose : bodies_.pose) {
+      far = std::max({far, std::abs(pose.x), std::abs(pose.y)});
+      if constexpr (requires { pose.z; }) far = std::max(far, std::abs(pose.z));
+    }
+    return far * std::numeric_limits<T>::epsilon();
   }
 
   T C_after(T scale, int row) {

@@ -18,12 +18,12 @@ double cubic(double p, double u, double q, double v, double h, double s) {
 double linear(double p, double q, double s) { return (1 - s) * p + s * q; }
 
 template <class T>
-BodyState state_of(const planar::Pose<T>& q, const planar::Velocity<T>& v) {
+BodyState state_of(const planar::Place& q, const planar::Velocity<T>& v) {
   return {q.x, q.y, q.angle, v.x, v.y, v.w};
 }
 
 template <class T>
-BodyState state_of(const spatial::Pose<T>& q, const spatial::Velocity<T>& v) {
+BodyState state_of(const spatial::Place& q, const spatial::Velocity<T>& v) {
   return {q.x, q.y, 0, v.x, v.y, 0, q.z, v.z, q.e0, q.e1, q.e2, q.e3, v.wx, v.wy, v.wz};
 }
 
@@ -58,7 +58,7 @@ Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
   frame.time = time;
   frame.bodies.reserve(static_cast<std::size_t>(bodies));
   for (int k = 0; k < bodies; ++k)
-    frame.bodies.push_back(state_of(world.pose(k), world.velocity(k)));
+    frame.bodies.push_back(state_of(world.place(k), world.velocity(k)));
   frame.energy = world.energy();
   frame.worst = world.worst_position_error();
   return frame;

@@ -2,6 +2,10 @@
 // the scene.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include "runtime/scene.hpp"
 
 namespace cdot {
@@ -50,11 +54,39 @@ std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::si
   return list;
 }
 
+// A scene whose bodies are all far away, against how far they are apart, is counted from among them.
+constexpr double far_away = 1000;
+
+Vec3 position_of(const SceneBody& body, Dimension dimension) {
+  if (dimension == Dimension::planar) return {body.definition.x, body.definition.y, 0};
+  return {body.spatial.x, body.spatial.y, body.spatial.z};
+}
+
+template <class S>
+void choose_origin(const Scene& scene, BasicWorld<S>& world) {
+  if (scene.bodies.empty()) return;
+  Vec3 centre;
+  double apart = 1, distance = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const SceneBody& body : scene.bodies) {
+      const double x = position_of(body, S::dimension)[axis];
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    centre[axis] = double(float(std::round(0.5 * (low + high))));  // exact in either precision
+    apart = std::max(apart, high - low);
+    distance = std::max(distance, std::abs(centre[axis]));
+  }
+  if (distance > far_away * apart) world.set_origin(centre[0], centre[1], centre[2]);
+}
+
 }  // namespace
 
 template <class S>
 BasicWorld<S> build_world_in(const Scene& scene) {
   BasicWorld<S> world(scene.settings);
+  choose_origin(scene, world);
   for (const SceneBody& body : scene.bodies) {
     if constexpr (S::dimension == Dimension::planar)
       world.add_body(body.definition);

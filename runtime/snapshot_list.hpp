@@ -14,7 +14,7 @@ namespace cdot {
 struct StateList {
   template <class S, class Visitor>
   static void each(WorldState<S>& world, Visitor& visit) {
-    auto& [settings, time, last_step, bodies, ground, joints, batches, springs, drags, gyroscopes, breaking_loads,
+    auto& [settings, time, last_step, origin, bodies, ground, joints, batches, springs, drags, gyroscopes, breaking_loads,
            after_substep, notes, counts, prepared, islands, island_of, awake] = world;
     visit.item("time", -1);
     visit(time), visit(last_step);

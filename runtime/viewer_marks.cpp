@@ -141,7 +141,7 @@ void Painter::link(const JointPoint& p, const JointPoint& q, const char* svg) {
 // The direction in the picture, in degrees, in which a coordinate [m] grows when `body` is moved:
 // by differences.
 double Painter::slide_direction(int joint, const CoordinateInfo& coordinate, int body) {
-  const planar::Pose<double> pose = world_.pose(body);
+  const planar::Place pose = world_.place(body);
   const double step = 1e-3 / drawing_.view.scale,
                before = world_.coordinate(joint, coordinate.name);
   world_.set_pose(body, {pose.x + step, pose.y, pose.angle});

@@ -140,12 +140,19 @@ template <class S>
 BasicWorld<S>& BasicWorld<S>::operator=(BasicWorld&&) noexcept = default;
 
 template <class S>
+void BasicWorld<S>::set_origin(double x, double y, double z) {
+  require(state_->bodies.count() == 0, "the origin must be set before there are bodies");
+  require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z), "the origin must be finite");
+  state_->origin = {x, y, z};
+}
+
+template <class S>
 int BasicWorld<S>::add_body(const BodyDefinition& d) {
   check(d);
   Bodies<S>& all = state_->bodies;
   const int body = all.count();
   const auto m = S::inverse_mass_of(d);
-  all.pose.push_back(S::placed(S::place_of(d)));
+  all.pose.push_back(S::placed(moved_by(S::place_of(d), state_->origin, -1)));
   all.velocity.push_back(S::velocity_of(d));
   all.inverse_mass.push_back(m);
   all.effective_mass.push_back(m);
@@ -164,7 +171,10 @@ int BasicWorld<S>::add_body(const BodyDefinition& d) {
 
 template <class S>
 int BasicWorld<S>::ground() {
-  if (state_->ground < 0) state_->ground = add_body({.is_static = true});
+  if (state_->ground >= 0) return state_->ground;
+  BodyDefinition d = moved_by(BodyDefinition{}, state_->origin, 1);
+  d.is_static = true;
+  state_->ground = add_body(d);
   return state_->ground;
 }
 
@@ -177,10 +187,11 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
       static_cast<int>(type - joint_types(S::dimension).data()), definition.bodies, {}, {}, false};
   using Exact = typename S::Exact;
   std::vector<typename Exact::Pose> poses;
-  for (int body : record.bodies)
-    poses.push_back(Exact::placed(S::place_of(state_->bodies.pose[body])));
+  for (int body : record.bodies) poses.push_back(Exact::placed(place_in_world(*state_, body)));
   record.parameters =
       parameter_numbers<Exact>(record.type, definition.parameters, poses.data(), state_->time);
+  move_world_points(
+      *type, record.bodies, [&](int body) { return body == state_->ground; }, state_->origin, -1, record.parameters);
   double spring[spring_constants_count] = {};
   if (definition.soft) spring_constants(*definition.soft, spring);
 
@@ -212,7 +223,11 @@ int BasicWorld<S>::add_spring(const SpringDefinition& d) {
     require(std::isfinite(number), "every number of a spring must be finite");
   require(d.stiffness >= 0 && d.damping >= 0, "stiffness and damping must not be negative");
   require(d.rest_length >= 0, "a rest length must not be negative");
-  state_->springs.push_back(S::point_spring(d));
+  SpringDefinition spring = d;
+  const auto& from = state_->origin;
+  if (d.body_a == state_->ground) spring.ax -= from[0], spring.ay -= from[1], spring.az -= from[2];
+  if (d.body_b == state_->ground) spring.bx -= from[0], spring.by -= from[1], spring.bz -= from[2];
+  state_->springs.push_back(S::point_spring(spring));
   state_->prepared = false;
   return static_cast<int>(state_->springs.size()) - 1;
 }
@@ -229,7 +244,7 @@ template <class S>
 void BasicWorld<S>::set_pose(int body, const Place& place) {
   check_body(*state_, body);
   Bodies<S>& all = state_->bodies;
-  all.pose[body] = S::placed(place);
+  all.pose[body] = S::placed(body == state_->ground ? place : moved_by(place, state_->origin, -1));
   if constexpr (S::has_gyroscopes)
     for (auto& gyroscope : state_->gyroscopes)
       if (gyroscope.body == body) {

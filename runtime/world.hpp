@@ -60,6 +60,9 @@ class BasicWorld {
 
   // --- setting up: throws cdot::Error, may allocate ---
 
+  // Poses are counted from here inside: a World of floats far from 0 keeps its resolution. What is handed in and
+  // place() stay in the world's coordinates, pose() does not. Only before there are bodies.
+  void set_origin(double x, double y, double z = 0);
   int add_body(const BodyDefinition& definition);  // returns its index: 0, 1, ...
   int ground();  // the index of one static body at the origin, made when first asked for
   int add_joint(const JointDefinition& definition);
@@ -103,7 +106,8 @@ class BasicWorld {
   const Settings& settings() const;
 
   int body_count() const;
-  typename S::Pose pose(int body) const;
+  typename S::Pose pose(int body) const;  // counted from the origin that was set, if one was
+  Place place(int body) const;            // the same in doubles, in the world
   typename S::Velocity velocity(int body) const;
   typename S::InverseMass inverse_mass(int body) const;
   bool is_static(int body) const;

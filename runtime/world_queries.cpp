@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "runtime/add_rows.hpp"
+#include "runtime/parameters.hpp"
 #include "runtime/probe.hpp"
 #include "runtime/world.hpp"
 
@@ -87,6 +88,11 @@ typename S::Pose BasicWorld<S>::pose(int body) const {
   return state_->bodies.pose.at(body);
 }
 template <class S>
+typename S::Place BasicWorld<S>::place(int body) const {
+  return place_in_world(*state_, body);
+}
+
+template <class S>
 typename S::Velocity BasicWorld<S>::velocity(int body) const {
   return state_->bodies.velocity.at(body);
 }
@@ -118,7 +124,11 @@ std::vector<int> BasicWorld<S>::joint_bodies(int joint) const {
 }
 template <class S>
 std::vector<double> BasicWorld<S>::joint_parameters(int joint) const {
-  return state_->joints.at(joint).parameters;
+  const JointRecord& record = state_->joints.at(joint);
+  std::vector<double> numbers = record.parameters;
+  move_world_points(joint_types(S::dimension)[record.type], record.bodies,
+                    [&](int body) { return body == state_->ground; }, state_->origin, 1, numbers);
+  return numbers;
 }
 template <class S>
 bool BasicWorld<S>::broken(int joint) const {

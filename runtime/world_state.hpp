@@ -2,6 +2,7 @@
 // runtime/ includes this.
 #pragma once
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -103,6 +104,7 @@ struct WorldState {
   double time = 0;
   double last_step =
       0;  // [s], the substep before: impulses kept for warm starting are scaled by h / last_step
+  std::array<double, 3> origin{};  // [m] where the poses are counted from
   Bodies<S> bodies;
   int ground = -1;
   std::vector<JointRecord> joints;
@@ -121,5 +123,21 @@ struct WorldState {
   std::vector<int> island_of;  // by body; -1: immovable
   std::vector<int> awake;      // islands, in order
 };
+
+// `place` counted from the origin (sign -1), or back in the world (1).
+template <class Place>
+Place moved_by(Place place, const std::array<double, 3>& origin, double sign) {
+  place.x += sign * origin[0];
+  place.y += sign * origin[1];
+  if constexpr (requires { place.z; }) place.z += sign * origin[2];
+  return place;
+}
+
+// The ground stands at the origin, whatever that is: its points are counted from there as well.
+template <class S>
+typename S::Place place_in_world(const WorldState<S>& world, int body) {
+  const auto place = S::place_of(world.bodies.pose.at(static_cast<size_t>(body)));
+  return body == world.ground ? place : moved_by(place, world.origin, 1);
+}
 
 }  // namespace cdot

@@ -76,6 +76,109 @@
 //                · fb_x)^2 + (fa_x · fb_y)^2)) fb_y) × fa_x)' inv_I_a ((((fa_x · fb_y)/((fa_x ·
 //                fb_x)^2 + (fa_x · fb_y)^2)) fb_x - ((fa_x · fb_x)/((fa_x · fb_x)^2 + (fa_x ·
 //                fb_y)^2)) fb_y) × fa_x)
+//
+// coordinate twist_x = atan2(fa_z · fb_y - ryz, fa_y · fb_y + rzz)
+// J_twist_x = [ 0
+//             | (-((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fb_y -
+//                 ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fb_z) ×
+//                 fa_z) - ((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
+//                 fb_z - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
+//                 fb_y) × fa_y))'
+//             | 0
+//             | (-((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y -
+//                 ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z) ×
+//                 fb_z) - ((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
+//                 fa_z - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
+//                 fa_y) × fb_y))' ]
+//               (columns v_a | w_a | v_b | w_b)
+// K_twist_x = (-((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y -
+//     ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z) × fb_z) -
+//     ((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z - ((fa_z · fb_y
+//     - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y) × fb_y))' inv_I_b (-((-((fa_y
+//     · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y - ((fa_z · fb_y -
+//     ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z) × fb_z) - ((((fa_y · fb_y +
+//     rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_z - ((fa_z · fb_y - ryz)/((fa_y ·
+//     fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fa_y) × fb_y))
+//             + (-((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fb_y -
+//                 ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2)) fb_z) ×
+//                 fa_z) - ((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
+//                 fb_z - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z · fb_y - ryz)^2))
+//                 fb_y) × fa_y))' inv_I_a (-((((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 + (fa_z
+//                 · fb_y - ryz)^2)) fb_y - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 + (fa_z ·
+//                 fb_y - ryz)^2)) fb_z) × fa_z) - ((-((fa_y · fb_y + rzz)/((fa_y · fb_y + rzz)^2 +
+//                 (fa_z · fb_y - ryz)^2)) fb_z - ((fa_z · fb_y - ryz)/((fa_y · fb_y + rzz)^2 +
+//                 (fa_z · fb_y - ryz)^2)) fb_y) × fa_y))
+//
+// coordinate twist_y = atan2(rxz - fa_z · fb_x, fa_x · fb_x + rzz)
+// J_twist_y = [ 0
+//             | (-((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fb_x -
+//                 ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fb_z) ×
+//                 fa_z) - ((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
+//                 fb_z - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
+//                 fb_x) × fa_x))'
+//             | 0
+//             | (-((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x -
+//                 ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z) ×
+//                 fb_z) - ((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
+//                 fa_z - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
+//                 fa_x) × fb_x))' ]
+//               (columns v_a | w_a | v_b | w_b)
+// K_twist_y = (-((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x -
+//     ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z) × fb_z) -
+//     ((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z - ((rxz - fa_z
+//     · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x) × fb_x))' inv_I_b (-((((fa_x
+//     · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x - ((rxz - fa_z ·
+//     fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z) × fb_z) - ((-((fa_x · fb_x +
+//     rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_z - ((rxz - fa_z · fb_x)/((fa_x ·
+//     fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fa_x) × fb_x))
+//             + (-((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fb_x -
+//                 ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2)) fb_z) ×
+//                 fa_z) - ((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
+//                 fb_z - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz - fa_z · fb_x)^2))
+//                 fb_x) × fa_x))' inv_I_a (-((-((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 + (rxz
+//                 - fa_z · fb_x)^2)) fb_x - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 + (rxz -
+//                 fa_z · fb_x)^2)) fb_z) × fa_z) - ((((fa_x · fb_x + rzz)/((fa_x · fb_x + rzz)^2 +
+//                 (rxz - fa_z · fb_x)^2)) fb_z - ((rxz - fa_z · fb_x)/((fa_x · fb_x + rzz)^2 +
+//                 (rxz - fa_z · fb_x)^2)) fb_x) × fa_x))
+//
+// coordinate twist_z = atan2(fa_y · fb_x - fa_x · fb_y, fa_x · fb_x + fa_y · fb_y)
+// J_twist_z = [ 0
+//             | (-((((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
+//                 fa_x · fb_y)^2)) fb_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y ·
+//                 fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_y) × fa_y) - ((-((fa_x · fb_x +
+//                 fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2))
+//                 fb_y - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y ·
+//                 fb_x - fa_x · fb_y)^2)) fb_x) × fa_x))'
+//             | 0
+//             | (-((-((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
+//                 fa_x · fb_y)^2)) fa_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y ·
+//                 fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_y) × fb_y) - ((((fa_x · fb_x + fa_y
+//                 · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_y -
+//                 ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
+//                 fa_x · fb_y)^2)) fa_x) × fb_x))' ]
+//               (columns v_a | w_a | v_b | w_b)
+// K_twist_z = (-((-((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
+//     fa_x · fb_y)^2)) fa_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y
+//     · fb_x - fa_x · fb_y)^2)) fa_y) × fb_y) - ((((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x +
+//     fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_y - ((fa_y · fb_x - fa_x · fb_y)/((fa_x
+//     · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_x) × fb_x))' inv_I_b
+//     (-((-((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x ·
+//     fb_y)^2)) fa_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x
+//     - fa_x · fb_y)^2)) fa_y) × fb_y) - ((((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y ·
+//     fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_y - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x
+//     + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fa_x) × fb_x))
+//             + (-((((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
+//                 fa_x · fb_y)^2)) fb_x - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y ·
+//                 fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_y) × fa_y) - ((-((fa_x · fb_x +
+//                 fa_y · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2))
+//                 fb_y - ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y ·
+//                 fb_x - fa_x · fb_y)^2)) fb_x) × fa_x))' inv_I_a (-((((fa_x · fb_x + fa_y ·
+//                 fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_x -
+//                 ((fa_y · fb_x - fa_x · fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x -
+//                 fa_x · fb_y)^2)) fb_y) × fa_y) - ((-((fa_x · fb_x + fa_y · fb_y)/((fa_x · fb_x +
+//                 fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_y - ((fa_y · fb_x - fa_x ·
+//                 fb_y)/((fa_x · fb_x + fa_y · fb_y)^2 + (fa_y · fb_x - fa_x · fb_y)^2)) fb_x) ×
+//                 fa_x))
 #pragma once
 
 #include "runtime/kernel.hpp"
@@ -2936,7 +3039,1591 @@ struct six_dof {
     using Immovable = std::tuple<a_immovable, b_immovable>;
   };
 
-  using Coordinates = std::tuple<slide_x, slide_y, slide_z, turn_x, turn_y, turn_z>;
+  // The coordinate twist_x [rad] = atan2(dot(fa.z, fb.y) - ryz, dot(fa.y, fb.y) + rzz), left free:
+  //     what effects act on.
+  struct twist_x {
+    static constexpr std::string_view name = "twist_x";
+    static constexpr std::string_view unit = "rad";
+
+    static constexpr int bodies = 2, rows = 1;
+    static constexpr bool explicit_time = false;
+    static constexpr std::array<std::string_view, 1> row_names = {"twist_x"};
+    static constexpr std::array<RowKind, 1> row_kinds = {RowKind::equality};
+
+    template <class T>
+    struct Jacobian {
+      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+    };
+
+    // C: 34 +, 48 *, 1 call
+    template <class T>
+    static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
+      using std::atan2;
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      C[0] = atan2(dot_fa_z_fb_y - ryz, dot_fa_y_fb_y + rzz);
+    }
+
+    // C and J: 65 +, 100 *, 1 /, 1 <, 1 call
+    template <class T>
+    static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+        Jacobian<T>& J) {
+      using std::atan2;
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+      const T C1_1 = dot_fa_z_fb_y - ryz;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T C1_2 = dot_fa_y_fb_y + rzz;
+      const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+      const T wa_x_2 = C1_2 * wa_x_1;
+      const T wa_x_3 = C1_1 * wa_x_1;
+      const T wa_x_4 = wa_x_2 * fb_z_z + wa_x_3 * fb_y_z;
+      const T wa_x_5 = wa_x_2 * fb_y_z - wa_x_3 * fb_z_z;
+      const T wa_x_6 = wa_x_2 * fb_z_y + wa_x_3 * fb_y_y;
+      const T wa_x_7 = wa_x_2 * fb_y_y - wa_x_3 * fb_z_y;
+      const T wa_y_1 = wa_x_2 * fb_z_x + wa_x_3 * fb_y_x;
+      const T wa_y_2 = wa_x_2 * fb_y_x - wa_x_3 * fb_z_x;
+      const T wb_x_1 = wa_x_2 * fa_z_z - wa_x_3 * fa_y_z;
+      const T wb_x_2 = wa_x_2 * fa_y_z + wa_x_3 * fa_z_z;
+      const T wb_x_3 = wa_x_2 * fa_z_y - wa_x_3 * fa_y_y;
+      const T wb_x_4 = wa_x_2 * fa_y_y + wa_x_3 * fa_z_y;
+      const T wb_y_1 = wa_x_2 * fa_z_x - wa_x_3 * fa_y_x;
+      const T wb_y_2 = wa_x_2 * fa_y_x + wa_x_3 * fa_z_x;
+      C[0] = atan2(C1_1, C1_2);
+      J.wa_x = fa_z_y * wa_x_5 - fa_y_y * wa_x_4 + fa_y_z * wa_x_6 - fa_z_z * wa_x_7;
+      J.wa_y = fa_y_x * wa_x_4 - fa_z_x * wa_x_5 - fa_y_z * wa_y_1 + fa_z_z * wa_y_2;
+      J.wa_z = fa_z_x * wa_x_7 - fa_y_x * wa_x_6 + fa_y_y * wa_y_1 - fa_z_y * wa_y_2;
+      J.wb_x = fb_y_y * wb_x_1 - fb_z_y * wb_x_2 - fb_y_z * wb_x_3 + fb_z_z * wb_x_4;
+      J.wb_y = fb_z_x * wb_x_2 - fb_y_x * wb_x_1 + fb_y_z * wb_y_1 - fb_z_z * wb_y_2;
+      J.wb_z = fb_y_x * wb_x_3 - fb_z_x * wb_x_4 - fb_y_y * wb_y_1 + fb_z_y * wb_y_2;
+    }
+
+    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    template <class T>
+    static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+      const InverseMass<T>& ma = m[0];
+      const InverseMass<T>& mb = m[1];
+      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
+          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
+          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
+          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
+          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    }
+
+    // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
+    template <class T>
+    static void factor(const T (&K)[1], T (&F)[1]) {
+      F[0] = pivot(K[0], K[0]);
+    }
+
+    // lambda = K^-1 rhs: 1 *
+    template <class T>
+    static void solve(const T (&F)[1], const T (&rhs)[1], T (&lambda)[1]) {
+      lambda[0] = F[0] * rhs[0];
+    }
+
+    // J v: 5 +, 6 *
+    template <class T>
+    static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+      const Velocity<T>& va = v[0];
+      const Velocity<T>& vb = v[1];
+      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
+          J.wb_z * vb.wz;
+    }
+
+    // v += M^-1 J^T lambda: 18 +, 24 *
+    template <class T>
+    static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+        Velocity<T> (&v)[2]) {
+      const Velocity<T> va = v[0];
+      const InverseMass<T>& ma = m[0];
+      const Velocity<T> vb = v[1];
+      const InverseMass<T>& mb = m[1];
+      const T v1_1 = J.wa_x * lambda[0];
+      const T v1_2 = lambda[0] * J.wa_y;
+      const T v1_3 = lambda[0] * J.wa_z;
+      const T v2_1 = lambda[0] * J.wb_x;
+      const T v2_2 = lambda[0] * J.wb_y;
+      const T v2_3 = lambda[0] * J.wb_z;
+      v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
+      v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
+      v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
+      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
+      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+    }
+
+    // J with its zeros: v, w of each body: nothing
+    template <class T>
+    static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      D[0][3] = J.wa_x;
+      D[0][4] = J.wa_y;
+      D[0][5] = J.wa_z;
+      D[0][9] = J.wb_x;
+      D[0][10] = J.wb_y;
+      D[0][11] = J.wb_z;
+    }
+
+    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    template <class T>
+    static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+        T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const InverseMass<T>& ma = m[0];
+      const InverseMass<T>& mb = m[1];
+      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
+      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
+      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
+      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
+      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+    }
+
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    template <class T>
+    static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        T (&K)[1]) {
+      const IsotropicInverseMass<T>& ma = m[0];
+      const IsotropicInverseMass<T>& mb = m[1];
+      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
+          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    }
+
+    // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
+    template <class T>
+    static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        const T (&lambda)[1], Velocity<T> (&v)[2]) {
+      const Velocity<T> va = v[0];
+      const IsotropicInverseMass<T>& ma = m[0];
+      const Velocity<T> vb = v[1];
+      const IsotropicInverseMass<T>& mb = m[1];
+      const T v1_1 = ma.I * lambda[0];
+      const T v2_1 = lambda[0] * mb.I;
+      v[0].wx = va.wx + v1_1 * J.wa_x;
+      v[0].wy = va.wy + v1_1 * J.wa_y;
+      v[0].wz = va.wz + v1_1 * J.wa_z;
+      v[1].wx = vb.wx + v2_1 * J.wb_x;
+      v[1].wy = vb.wy + v2_1 * J.wb_y;
+      v[1].wz = vb.wz + v2_1 * J.wb_z;
+    }
+
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    template <class T>
+    static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const IsotropicInverseMass<T>& ma = m[0];
+      const IsotropicInverseMass<T>& mb = m[1];
+      D[0][3] = ma.I * J.wa_x;
+      D[0][4] = ma.I * J.wa_y;
+      D[0][5] = ma.I * J.wa_z;
+      D[0][9] = mb.I * J.wb_x;
+      D[0][10] = mb.I * J.wb_y;
+      D[0][11] = mb.I * J.wb_z;
+    }
+
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    template <class T>
+    static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
+      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
+      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
+      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
+      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+    }
+
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    template <class T>
+    static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
+      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
+      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
+      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
+      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+    }
+
+    // -Jdot v - d/dt(dC/dt): 121 +, 170 *, 1 /, 1 <
+    template <class T>
+    static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
+        T (&g)[1]) {
+      const Pose<T>& a = q[0];
+      const Velocity<T>& va = v[0];
+      const Pose<T>& b = q[1];
+      const Velocity<T>& vb = v[1];
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T g1_1 = dot_fa_y_fb_y + rzz;
+      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+      const T g1_2 = dot_fa_z_fb_y - ryz;
+      const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
+      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
+      const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
+      const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
+      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
+      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
+      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
+      const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y *
+          w_b_x_w_b_x_fb_z_y + fa_y_z * w_b_x_w_b_x_fb_z_z;
+      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
+      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
+      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
+      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
+          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
+      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_w_b_x_fb_z;
+      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
+      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
+      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
+      const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
+          w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
+      const T ryz_dot_dot_2 = dot_w_a_x_w_a_x_fa_y_fb_z + dot_w_a_x_fa_y_w_b_x_fb_z;
+      const T ryz_dot_dot_3 = ryz_dot_dot + ryz_dot_dot_2;
+      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
+      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
+      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
+      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
+      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
+      const T dot_w_b_x_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_w_b_x_fb_y_x + fa_z_y *
+          w_b_x_w_b_x_fb_y_y + fa_z_z * w_b_x_w_b_x_fb_y_z;
+      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
+      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
+      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
+      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
+      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
+      const T dot_w_a_x_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_w_a_x_fa_z_x + fb_y_y *
+          w_a_x_w_a_x_fa_z_y + fb_y_z * w_a_x_w_a_x_fa_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_y = w_a_x_fa_z_z * w_b_x_fb_y_z + w_a_x_fa_z_y *
+          w_b_x_fb_y_y + w_a_x_fa_z_x * w_b_x_fb_y_x;
+      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
+          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
+          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
+      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_w_b_x_fb_z;
+      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
+          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
+      const T rzz_dot_dot_2 = dot_w_a_x_w_a_x_fa_z_fb_z + dot_w_a_x_fa_z_w_b_x_fb_z;
+      const T rzz_dot_dot_3 = rzz_dot_dot + rzz_dot_dot_2;
+      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
+          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
+      const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
+          w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
+      const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
+          w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
+      const T dot_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_fb_z_x + fa_y_y * w_b_x_fb_z_y + fa_y_z *
+          w_b_x_fb_z_z;
+      const T dot_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_y_y + fb_z_z *
+          w_a_x_fa_y_z;
+      const T ryz_dot = dot_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_fb_z;
+      const T dot_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_fb_y_x + fa_z_y * w_b_x_fb_y_y + fa_z_z *
+          w_b_x_fb_y_z;
+      const T dot_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_fa_z_x + fb_y_y * w_a_x_fa_z_y + fb_y_z *
+          w_a_x_fa_z_z;
+      const T g1_4 = dot_w_b_x_fb_y_fa_z - ryz_dot + dot_w_a_x_fa_z_fb_y;
+      const T dot_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_fb_z_x + fa_z_y * w_b_x_fb_z_y + fa_z_z *
+          w_b_x_fb_z_z;
+      const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
+          w_a_x_fa_z_z;
+      const T rzz_dot = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
+      const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
+          w_b_x_fb_y_z;
+      const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
+          w_a_x_fa_y_z;
+      const T g1_5 = rzz_dot + dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
+      g[0] = g1_3 * ((rzz_dot_dot_3 + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y +
+          T(2) * dot_w_a_x_fa_y_w_b_x_fb_y) * g1_2 -
+          (dot_w_b_x_w_b_x_fb_y_fa_z - ryz_dot_dot_3 + dot_w_a_x_w_a_x_fa_z_fb_y + T(2) *
+          dot_w_a_x_fa_z_w_b_x_fb_y) * g1_1 + T(2) * (g1_4 * g1_1 - g1_5 * g1_2) *
+          (g1_4 * g1_2 + g1_5 * g1_1) * g1_3);
+    }
+
+    // dC/dt at fixed q: nothing
+    template <class T>
+    static void time_derivative(const Pose<T> (&)[2], const Parameters<T>&, T, T (&C_t)[1]) {
+      C_t[0] = T(0);
+    }
+
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 302 *, 1 /, 1 <
+    template <class T>
+    static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
+        T (&H)[12][12]) {
+      for (auto& row : H) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T H4_1 = dot_fa_y_fb_y + rzz;
+      const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+      const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+      const T H4_2 = dot_fa_z_fb_y - ryz;
+      const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
+      const T H4_4 = lambda[0] * H4_3 * (H4_1 * fb_z_y + H4_2 * fb_y_y);
+      const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
+      const T fa_y_x_fb_z_y = fa_y_z * fb_z_x - fa_y_x * fb_z_z;
+      const T H4_5 = lambda[0] * (fa_y_x_fb_z_x - fa_z_y * fb_y_z + fa_z_z * fb_y_y);
+      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
+      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
+      const T H4_6 = lambda[0] * (fa_y_y * fb_y_z - fa_y_z * fb_y_y + fa_z_x_fb_z_x);
+      const T H4_7 = H4_3 * H4_3 * (H4_1 * H4_5 + H4_2 * H4_6);
+      const T H4_8 = T(2) * H4_1 * H4_7 - H4_5 * H4_3;
+      const T H4_9 = H4_6 * H4_3 - T(2) * H4_2 * H4_7;
+      const T H4_10 = H4_4 + fb_y_z * H4_8 + fb_z_z * H4_9;
+      const T H4_11 = lambda[0] * H4_3 * (H4_2 * fb_z_y - H4_1 * fb_y_y);
+      const T H4_12 = H4_11 - fb_y_z * H4_9 + fb_z_z * H4_8;
+      const T H4_13 = lambda[0] * H4_3 * (H4_1 * fb_z_z + H4_2 * fb_y_z);
+      const T H4_14 = H4_13 - fb_y_y * H4_8 - fb_z_y * H4_9;
+      const T H4_15 = lambda[0] * H4_3 * (H4_1 * fb_y_z - H4_2 * fb_z_z);
+      const T H4_16 = H4_15 - fb_y_y * H4_9 + fb_z_y * H4_8;
+      const T H4_17 = fa_y_y * H4_10 + fa_z_y * H4_12 + fa_y_z * H4_14 - fa_z_z * H4_16;
+      const T H4_1_2 = fb_y_x * H4_8 + fb_z_x * H4_9;
+      const T H4_2_2 = fb_z_x * H4_8 - fb_y_x * H4_9;
+      const T H4_3_2 = fa_y_z * H4_1_2 + fa_z_z * H4_2_2 - fa_y_x * H4_10 - fa_z_x * H4_12;
+      const T H4_1_3 = fa_z_x * H4_16 - fa_y_y * H4_1_2 - fa_z_y * H4_2_2 - fa_y_x * H4_14;
+      const T H4_1_4 = lambda[0] * H4_3 * (H4_1 * fa_z_y - H4_2 * fa_y_y);
+      const T H4_2_3 = fa_y_z * H4_8 - fa_z_z * H4_9 + H4_1_4;
+      const T H4_3_3 = lambda[0] * H4_3 * (H4_1 * fa_y_y + H4_2 * fa_z_y);
+      const T H4_4_2 = fa_y_z * H4_9 + fa_z_z * H4_8 - H4_3_3;
+      const T H4_5_2 = lambda[0] * H4_3 * (H4_1 * fa_z_z - H4_2 * fa_y_z);
+      const T H4_6_2 = fa_y_y * H4_8 - fa_z_y * H4_9 - H4_5_2;
+      const T H4_7_2 = lambda[0] * H4_3 * (H4_1 * fa_y_z + H4_2 * fa_z_z);
+      const T H4_8_2 = fa_y_y * H4_9 + fa_z_y * H4_8 + H4_7_2;
+      const T H4_9_2 = fb_y_y * H4_2_3 + fb_z_y * H4_4_2 - fb_y_z * H4_6_2 - fb_z_z * H4_8_2;
+      const T H4_1_5 = fa_y_x * H4_8 - fa_z_x * H4_9;
+      const T H4_2_4 = fa_y_x * H4_9 + fa_z_x * H4_8;
+      const T H4_3_4 = fb_y_z * H4_1_5 + fb_z_z * H4_2_4 - fb_y_x * H4_2_3 - fb_z_x * H4_4_2;
+      const T H4_1_6 = fb_y_x * H4_6_2 - fb_y_y * H4_1_5 - fb_z_y * H4_2_4 + fb_z_x * H4_8_2;
+      const T H5_1 = lambda[0] * (fa_y_x_fb_z_y + fa_z_x * fb_y_z - fa_z_z * fb_y_x);
+      const T H5_2 = lambda[0] * (fa_y_z * fb_y_x - fa_y_x * fb_y_z + fa_z_x_fb_z_y);
+      const T H5_3 = H4_3 * H4_3 * (H4_1 * H5_1 + H4_2 * H5_2);
+      const T H5_4 = T(2) * H4_1 * H5_3 - H5_1 * H4_3;
+      const T H5_5 = H5_2 * H4_3 - T(2) * H4_2 * H5_3;
+      const T H5_6 = fb_y_y * H5_4 + fb_z_y * H5_5;
+      const T H5_7 = fb_z_y * H5_4 - fb_y_y * H5_5;
+      const T H5_8 = lambda[0] * H4_3 * (H4_1 * fb_z_x + H4_2 * fb_y_x);
+      const T H5_9 = H5_8 - fb_y_z * H5_4 - fb_z_z * H5_5;
+      const T H5_10 = lambda[0] * H4_3 * (H4_1 * fb_y_x - H4_2 * fb_z_x);
+      const T H5_11 = H5_10 - fb_y_z * H5_5 + fb_z_z * H5_4;
+      const T H5_12 = fa_z_y * H5_11 - fa_y_z * H5_6 - fa_z_z * H5_7 - fa_y_y * H5_9;
+      const T H5_1_2 = fb_y_x * H5_4 + fb_z_x * H5_5 + H4_13;
+      const T H5_2_2 = fb_z_x * H5_4 - fb_y_x * H5_5 - H4_15;
+      const T H5_3_2 = fa_y_x * H5_9 - fa_z_x * H5_11 + fa_y_z * H5_1_2 + fa_z_z * H5_2_2;
+      const T H5_1_3 = fa_y_x * H5_6 + fa_z_x * H5_7 - fa_y_y * H5_1_2 - fa_z_y * H5_2_2;
+      const T H5_1_4 = fa_y_y * H5_4 - fa_z_y * H5_5;
+      const T H5_2_3 = fa_y_y * H5_5 + fa_z_y * H5_4;
+      const T H5_3_3 = lambda[0] * H4_3 * (H4_1 * fa_z_x - H4_2 * fa_y_x);
+      const T H5_4_2 = fa_y_z * H5_4 - fa_z_z * H5_5 - H5_3_3;
+      const T H5_5_2 = lambda[0] * H4_3 * (H4_1 * fa_y_x + H4_2 * fa_z_x);
+      const T H5_6_2 = fa_y_z * H5_5 + fa_z_z * H5_4 + H5_5_2;
+      const T H5_7_2 = fb_y_y * H5_4_2 - fb_y_z * H5_1_4 - fb_z_z * H5_2_3 + fb_z_y * H5_6_2;
+      const T H5_1_5 = fa_y_x * H5_4 - fa_z_x * H5_5 + H4_5_2;
+      const T H5_2_4 = fa_y_x * H5_5 + fa_z_x * H5_4 - H4_7_2;
+      const T H5_3_4 = fb_y_z * H5_1_5 - fb_y_x * H5_4_2 - fb_z_x * H5_6_2 + fb_z_z * H5_2_4;
+      const T H5_1_6 = fb_y_x * H5_1_4 + fb_z_x * H5_2_3 - fb_y_y * H5_1_5 - fb_z_y * H5_2_4;
+      const T fa_y_x_fb_z_z = fa_y_x * fb_z_y - fa_y_y * fb_z_x;
+      const T H6_1 = lambda[0] * (fa_y_x_fb_z_z - fa_z_x * fb_y_y + fa_z_y * fb_y_x);
+      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
+      const T H6_2 = lambda[0] * (fa_y_x * fb_y_y - fa_y_y * fb_y_x + fa_z_x_fb_z_z);
+      const T H6_3 = H4_3 * H4_3 * (H4_1 * H6_1 + H4_2 * H6_2);
+      const T H6_4 = T(2) * H4_1 * H6_3 - H6_1 * H4_3;
+      const T H6_5 = H6_2 * H4_3 - T(2) * H4_2 * H6_3;
+      const T H6_6 = fb_y_z * H6_4 + fb_z_z * H6_5;
+      const T H6_7 = fb_z_z * H6_4 - fb_y_z * H6_5;
+      const T H6_8 = fb_y_y * H6_4 + fb_z_y * H6_5 + H5_8;
+      const T H6_9 = fb_z_y * H6_4 - fb_y_y * H6_5 - H5_10;
+      const T H6_10 = fa_y_y * H6_6 + fa_z_y * H6_7 - fa_y_z * H6_8 - fa_z_z * H6_9;
+      const T H6_1_2 = fb_y_x * H6_4 + fb_z_x * H6_5 - H4_4;
+      const T H6_2_2 = fb_z_x * H6_4 - fb_y_x * H6_5 - H4_11;
+      const T H6_3_2 = fa_y_z * H6_1_2 - fa_y_x * H6_6 - fa_z_x * H6_7 + fa_z_z * H6_2_2;
+      const T H6_1_3 = fa_y_x * H6_8 + fa_z_x * H6_9 - fa_y_y * H6_1_2 - fa_z_y * H6_2_2;
+      const T H6_1_4 = fa_y_z * H6_4 - fa_z_z * H6_5;
+      const T H6_2_3 = fa_y_z * H6_5 + fa_z_z * H6_4;
+      const T H6_3_3 = fa_y_y * H6_4 - fa_z_y * H6_5 + H5_3_3;
+      const T H6_4_2 = fa_y_y * H6_5 + fa_z_y * H6_4 - H5_5_2;
+      const T H6_5_2 = fb_y_y * H6_1_4 + fb_z_y * H6_2_3 - fb_y_z * H6_3_3 - fb_z_z * H6_4_2;
+      const T H6_1_5 = fa_y_x * H6_4 - fa_z_x * H6_5 - H4_1_4;
+      const T H6_2_4 = fa_y_x * H6_5 + fa_z_x * H6_4 + H4_3_3;
+      const T H6_3_4 = fb_y_z * H6_1_5 - fb_y_x * H6_1_4 - fb_z_x * H6_2_3 + fb_z_z * H6_2_4;
+      const T H6_1_6 = fb_y_x * H6_3_3 + fb_z_x * H6_4_2 - fb_y_y * H6_1_5 - fb_z_y * H6_2_4;
+      H[3][3] = H4_17;
+      H[3][4] = H4_3_2;
+      H[3][5] = H4_1_3;
+      H[3][9] = H4_9_2;
+      H[3][10] = H4_3_4;
+      H[3][11] = H4_1_6;
+      H[4][3] = H5_12;
+      H[4][4] = H5_3_2;
+      H[4][5] = H5_1_3;
+      H[4][9] = H5_7_2;
+      H[4][10] = H5_3_4;
+      H[4][11] = H5_1_6;
+      H[5][3] = H6_10;
+      H[5][4] = H6_3_2;
+      H[5][5] = H6_1_3;
+      H[5][9] = H6_5_2;
+      H[5][10] = H6_3_4;
+      H[5][11] = H6_1_6;
+      H[9][3] = -H4_17;
+      H[9][4] = -H4_3_2;
+      H[9][5] = -H4_1_3;
+      H[9][9] = -H4_9_2;
+      H[9][10] = -H4_3_4;
+      H[9][11] = -H4_1_6;
+      H[10][3] = -H5_12;
+      H[10][4] = -H5_3_2;
+      H[10][5] = -H5_1_3;
+      H[10][9] = -H5_7_2;
+      H[10][10] = -H5_3_4;
+      H[10][11] = -H5_1_6;
+      H[11][3] = -H6_10;
+      H[11][4] = -H6_3_2;
+      H[11][5] = -H6_1_3;
+      H[11][9] = -H6_5_2;
+      H[11][10] = -H6_3_4;
+      H[11][11] = -H6_1_6;
+    }
+
+    struct a_immovable;
+    struct b_immovable;
+    using Immovable = std::tuple<a_immovable, b_immovable>;
+  };
+
+  // The coordinate twist_y [rad] = atan2(rxz - dot(fa.z, fb.x), rzz + dot(fa.x, fb.x)), left free:
+  //     what effects act on.
+  struct twist_y {
+    static constexpr std::string_view name = "twist_y";
+    static constexpr std::string_view unit = "rad";
+
+    static constexpr int bodies = 2, rows = 1;
+    static constexpr bool explicit_time = false;
+    static constexpr std::array<std::string_view, 1> row_names = {"twist_y"};
+    static constexpr std::array<RowKind, 1> row_kinds = {RowKind::equality};
+
+    template <class T>
+    struct Jacobian {
+      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+    };
+
+    // C: 34 +, 48 *, 1 call
+    template <class T>
+    static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
+      using std::atan2;
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      C[0] = atan2(rxz - dot_fa_z_fb_x, dot_fa_x_fb_x + rzz);
+    }
+
+    // C and J: 65 +, 100 *, 1 /, 1 <, 1 call
+    template <class T>
+    static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+        Jacobian<T>& J) {
+      using std::atan2;
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
+      const T C1_1 = rxz - dot_fa_z_fb_x;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T C1_2 = dot_fa_x_fb_x + rzz;
+      const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+      const T wa_x_2 = C1_2 * wa_x_1;
+      const T wa_x_3 = C1_1 * wa_x_1;
+      const T wa_x_4 = wa_x_2 * fb_z_z - wa_x_3 * fb_x_z;
+      const T wa_x_5 = wa_x_2 * fb_x_z + wa_x_3 * fb_z_z;
+      const T wa_x_6 = wa_x_2 * fb_z_y - wa_x_3 * fb_x_y;
+      const T wa_x_7 = wa_x_2 * fb_x_y + wa_x_3 * fb_z_y;
+      const T wa_y_1 = wa_x_2 * fb_z_x - wa_x_3 * fb_x_x;
+      const T wa_y_2 = wa_x_2 * fb_x_x + wa_x_3 * fb_z_x;
+      const T wb_x_1 = wa_x_2 * fa_z_z + wa_x_3 * fa_x_z;
+      const T wb_x_2 = wa_x_2 * fa_x_z - wa_x_3 * fa_z_z;
+      const T wb_x_3 = wa_x_2 * fa_z_y + wa_x_3 * fa_x_y;
+      const T wb_x_4 = wa_x_2 * fa_x_y - wa_x_3 * fa_z_y;
+      const T wb_y_1 = wa_x_2 * fa_z_x + wa_x_3 * fa_x_x;
+      const T wb_y_2 = wa_x_2 * fa_x_x - wa_x_3 * fa_z_x;
+      C[0] = atan2(C1_1, C1_2);
+      J.wa_x = fa_x_y * wa_x_4 - fa_z_y * wa_x_5 - fa_x_z * wa_x_6 + fa_z_z * wa_x_7;
+      J.wa_y = fa_z_x * wa_x_5 - fa_x_x * wa_x_4 + fa_x_z * wa_y_1 - fa_z_z * wa_y_2;
+      J.wa_z = fa_x_x * wa_x_6 - fa_z_x * wa_x_7 - fa_x_y * wa_y_1 + fa_z_y * wa_y_2;
+      J.wb_x = fb_z_y * wb_x_2 - fb_x_y * wb_x_1 + fb_x_z * wb_x_3 - fb_z_z * wb_x_4;
+      J.wb_y = fb_x_x * wb_x_1 - fb_z_x * wb_x_2 - fb_x_z * wb_y_1 + fb_z_z * wb_y_2;
+      J.wb_z = fb_z_x * wb_x_4 - fb_x_x * wb_x_3 + fb_x_y * wb_y_1 - fb_z_y * wb_y_2;
+    }
+
+    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    template <class T>
+    static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+      const InverseMass<T>& ma = m[0];
+      const InverseMass<T>& mb = m[1];
+      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
+          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
+          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
+          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
+          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    }
+
+    // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
+    template <class T>
+    static void factor(const T (&K)[1], T (&F)[1]) {
+      F[0] = pivot(K[0], K[0]);
+    }
+
+    // lambda = K^-1 rhs: 1 *
+    template <class T>
+    static void solve(const T (&F)[1], const T (&rhs)[1], T (&lambda)[1]) {
+      lambda[0] = F[0] * rhs[0];
+    }
+
+    // J v: 5 +, 6 *
+    template <class T>
+    static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+      const Velocity<T>& va = v[0];
+      const Velocity<T>& vb = v[1];
+      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
+          J.wb_z * vb.wz;
+    }
+
+    // v += M^-1 J^T lambda: 18 +, 24 *
+    template <class T>
+    static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+        Velocity<T> (&v)[2]) {
+      const Velocity<T> va = v[0];
+      const InverseMass<T>& ma = m[0];
+      const Velocity<T> vb = v[1];
+      const InverseMass<T>& mb = m[1];
+      const T v1_1 = J.wa_x * lambda[0];
+      const T v1_2 = lambda[0] * J.wa_y;
+      const T v1_3 = lambda[0] * J.wa_z;
+      const T v2_1 = lambda[0] * J.wb_x;
+      const T v2_2 = lambda[0] * J.wb_y;
+      const T v2_3 = lambda[0] * J.wb_z;
+      v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
+      v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
+      v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
+      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
+      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+    }
+
+    // J with its zeros: v, w of each body: nothing
+    template <class T>
+    static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      D[0][3] = J.wa_x;
+      D[0][4] = J.wa_y;
+      D[0][5] = J.wa_z;
+      D[0][9] = J.wb_x;
+      D[0][10] = J.wb_y;
+      D[0][11] = J.wb_z;
+    }
+
+    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    template <class T>
+    static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+        T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const InverseMass<T>& ma = m[0];
+      const InverseMass<T>& mb = m[1];
+      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
+      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
+      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
+      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
+      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+    }
+
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    template <class T>
+    static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        T (&K)[1]) {
+      const IsotropicInverseMass<T>& ma = m[0];
+      const IsotropicInverseMass<T>& mb = m[1];
+      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
+          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    }
+
+    // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
+    template <class T>
+    static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        const T (&lambda)[1], Velocity<T> (&v)[2]) {
+      const Velocity<T> va = v[0];
+      const IsotropicInverseMass<T>& ma = m[0];
+      const Velocity<T> vb = v[1];
+      const IsotropicInverseMass<T>& mb = m[1];
+      const T v1_1 = ma.I * lambda[0];
+      const T v2_1 = lambda[0] * mb.I;
+      v[0].wx = va.wx + v1_1 * J.wa_x;
+      v[0].wy = va.wy + v1_1 * J.wa_y;
+      v[0].wz = va.wz + v1_1 * J.wa_z;
+      v[1].wx = vb.wx + v2_1 * J.wb_x;
+      v[1].wy = vb.wy + v2_1 * J.wb_y;
+      v[1].wz = vb.wz + v2_1 * J.wb_z;
+    }
+
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    template <class T>
+    static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const IsotropicInverseMass<T>& ma = m[0];
+      const IsotropicInverseMass<T>& mb = m[1];
+      D[0][3] = ma.I * J.wa_x;
+      D[0][4] = ma.I * J.wa_y;
+      D[0][5] = ma.I * J.wa_z;
+      D[0][9] = mb.I * J.wb_x;
+      D[0][10] = mb.I * J.wb_y;
+      D[0][11] = mb.I * J.wb_z;
+    }
+
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    template <class T>
+    static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
+      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
+      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
+      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
+      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+    }
+
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    template <class T>
+    static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
+      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
+      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
+      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
+      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+    }
+
+    // -Jdot v - d/dt(dC/dt): 121 +, 170 *, 1 /, 1 <
+    template <class T>
+    static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
+        T (&g)[1]) {
+      const Pose<T>& a = q[0];
+      const Velocity<T>& va = v[0];
+      const Pose<T>& b = q[1];
+      const Velocity<T>& vb = v[1];
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T g1_1 = dot_fa_x_fb_x + rzz;
+      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
+      const T g1_2 = rxz - dot_fa_z_fb_x;
+      const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
+      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
+      const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
+      const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
+      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
+      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
+      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
+      const T dot_w_b_x_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_w_b_x_fb_z_x + fa_x_y *
+          w_b_x_w_b_x_fb_z_y + fa_x_z * w_b_x_w_b_x_fb_z_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
+          w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
+      const T rxz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_w_b_x_fb_z;
+      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
+      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
+      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
+      const T dot_w_a_x_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_w_a_x_fa_x_x + fb_z_y *
+          w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
+      const T rxz_dot_dot_2 = dot_w_a_x_w_a_x_fa_x_fb_z + dot_w_a_x_fa_x_w_b_x_fb_z;
+      const T rxz_dot_dot_3 = rxz_dot_dot + rxz_dot_dot_2;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
+      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
+      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
+      const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y *
+          w_b_x_w_b_x_fb_x_y + fa_z_z * w_b_x_w_b_x_fb_x_z;
+      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
+      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
+      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
+      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
+      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
+      const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y *
+          w_a_x_w_a_x_fa_z_y + fb_x_z * w_a_x_w_a_x_fa_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y *
+          w_b_x_fb_x_y + w_a_x_fa_z_x * w_b_x_fb_x_x;
+      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
+          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
+          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
+      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_w_b_x_fb_z;
+      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
+          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
+      const T rzz_dot_dot_2 = dot_w_a_x_w_a_x_fa_z_fb_z + dot_w_a_x_fa_z_w_b_x_fb_z;
+      const T rzz_dot_dot_3 = rzz_dot_dot + rzz_dot_dot_2;
+      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
+          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
+      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
+          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
+      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
+          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
+      const T dot_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_fb_z_x + fa_x_y * w_b_x_fb_z_y + fa_x_z *
+          w_b_x_fb_z_z;
+      const T dot_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_fa_x_x + fb_z_y * w_a_x_fa_x_y + fb_z_z *
+          w_a_x_fa_x_z;
+      const T rxz_dot = dot_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_fb_z;
+      const T dot_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_fb_x_x + fa_z_y * w_b_x_fb_x_y + fa_z_z *
+          w_b_x_fb_x_z;
+      const T dot_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_fa_z_x + fb_x_y * w_a_x_fa_z_y + fb_x_z *
+          w_a_x_fa_z_z;
+      const T g1_4 = rxz_dot - dot_w_b_x_fb_x_fa_z - dot_w_a_x_fa_z_fb_x;
+      const T dot_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_fb_z_x + fa_z_y * w_b_x_fb_z_y + fa_z_z *
+          w_b_x_fb_z_z;
+      const T dot_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_fa_z_x + fb_z_y * w_a_x_fa_z_y + fb_z_z *
+          w_a_x_fa_z_z;
+      const T rzz_dot = dot_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_fb_z;
+      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
+          w_b_x_fb_x_z;
+      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
+          w_a_x_fa_x_z;
+      const T g1_5 = rzz_dot + dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
+      g[0] = g1_3 * ((rzz_dot_dot_3 + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x +
+          T(2) * dot_w_a_x_fa_x_w_b_x_fb_x) * g1_2 -
+          (rxz_dot_dot_3 - dot_w_b_x_w_b_x_fb_x_fa_z - dot_w_a_x_w_a_x_fa_z_fb_x - T(2) *
+          dot_w_a_x_fa_z_w_b_x_fb_x) * g1_1 + T(2) * (g1_4 * g1_1 - g1_5 * g1_2) *
+          (g1_4 * g1_2 + g1_5 * g1_1) * g1_3);
+    }
+
+    // dC/dt at fixed q: nothing
+    template <class T>
+    static void time_derivative(const Pose<T> (&)[2], const Parameters<T>&, T, T (&C_t)[1]) {
+      C_t[0] = T(0);
+    }
+
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 302 *, 1 /, 1 <
+    template <class T>
+    static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
+        T (&H)[12][12]) {
+      for (auto& row : H) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+      const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+      const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+      const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+      const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+      const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+      const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+      const T H4_1 = dot_fa_x_fb_x + rzz;
+      const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+      const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
+      const T H4_2 = rxz - dot_fa_z_fb_x;
+      const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
+      const T H4_4 = lambda[0] * H4_3 * (H4_2 * fb_x_y - H4_1 * fb_z_y);
+      const T fa_x_x_fb_z_x = fa_x_y * fb_z_z - fa_x_z * fb_z_y;
+      const T fa_x_x_fb_z_y = fa_x_z * fb_z_x - fa_x_x * fb_z_z;
+      const T H4_5 = lambda[0] * (fa_z_y * fb_x_z - fa_x_x_fb_z_x - fa_z_z * fb_x_y);
+      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
+      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
+      const T fa_z_x_fb_z_x = fa_z_y * fb_z_z - fa_z_z * fb_z_y;
+      const T fa_z_x_fb_z_y = fa_z_z * fb_z_x - fa_z_x * fb_z_z;
+      const T H4_6 = lambda[0] * (fa_x_x_fb_x_x + fa_z_x_fb_z_x);
+      const T H4_7 = H4_3 * H4_3 * (H4_1 * H4_5 + H4_2 * H4_6);
+      const T H4_8 = T(2) * H4_1 * H4_7 - H4_5 * H4_3;
+      const T H4_9 = T(2) * H4_2 * H4_7 - H4_6 * H4_3;
+      const T H4_10 = H4_4 + fb_x_z * H4_8 + fb_z_z * H4_9;
+      const T H4_11 = lambda[0] * H4_3 * (H4_1 * fb_x_y + H4_2 * fb_z_y);
+      const T H4_12 = H4_11 - fb_x_z * H4_9 + fb_z_z * H4_8;
+      const T H4_13 = lambda[0] * H4_3 * (H4_1 * fb_z_z - H4_2 * fb_x_z);
+      const T H4_14 = H4_13 + fb_x_y * H4_8 + fb_z_y * H4_9;
+      const T H4_15 = lambda[0] * H4_3 * (H4_1 * fb_x_z + H4_2 * fb_z_z);
+      const T H4_16 = H4_15 + fb_x_y * H4_9 - fb_z_y * H4_8;
+      const T H4_17 = fa_x_y * H4_10 + fa_z_y * H4_12 - fa_x_z * H4_14 + fa_z_z * H4_16;
+      const T H4_1_2 = fb_x_x * H4_8 + fb_z_x * H4_9;
+      const T H4_2_2 = fb_z_x * H4_8 - fb_x_x * H4_9;
+      const T H4_3_2 = fa_x_z * H4_1_2 + fa_z_z * H4_2_2 - fa_x_x * H4_10 - fa_z_x * H4_12;
+      const T H4_1_3 = fa_x_x * H4_14 - fa_x_y * H4_1_2 - fa_z_y * H4_2_2 - fa_z_x * H4_16;
+      const T H4_1_4 = lambda[0] * H4_3 * (H4_1 * fa_z_y + H4_2 * fa_x_y);
+      const T H4_2_3 = fa_x_z * H4_8 - fa_z_z * H4_9 - H4_1_4;
+      const T H4_3_3 = lambda[0] * H4_3 * (H4_1 * fa_x_y - H4_2 * fa_z_y);
+      const T H4_4_2 = fa_x_z * H4_9 + fa_z_z * H4_8 + H4_3_3;
+      const T H4_5_2 = lambda[0] * H4_3 * (H4_1 * fa_z_z + H4_2 * fa_x_z);
+      const T H4_6_2 = fa_x_y * H4_8 - fa_z_y * H4_9 + H4_5_2;
+      const T H4_7_2 = lambda[0] * H4_3 * (H4_1 * fa_x_z - H4_2 * fa_z_z);
+      const T H4_8_2 = fa_x_y * H4_9 + fa_z_y * H4_8 - H4_7_2;
+      const T H4_9_2 = fb_x_y * H4_2_3 + fb_z_y * H4_4_2 - fb_x_z * H4_6_2 - fb_z_z * H4_8_2;
+      const T H4_1_5 = fa_x_x * H4_8 - fa_z_x * H4_9;
+      const T H4_2_4 = fa_x_x * H4_9 + fa_z_x * H4_8;
+      const T H4_3_4 = fb_x_z * H4_1_5 + fb_z_z * H4_2_4 - fb_x_x * H4_2_3 - fb_z_x * H4_4_2;
+      const T H4_1_6 = fb_x_x * H4_6_2 - fb_x_y * H4_1_5 - fb_z_y * H4_2_4 + fb_z_x * H4_8_2;
+      const T H5_1 = lambda[0] * (fa_z_z * fb_x_x - fa_x_x_fb_z_y - fa_z_x * fb_x_z);
+      const T H5_2 = lambda[0] * (fa_x_x_fb_x_y + fa_z_x_fb_z_y);
+      const T H5_3 = H4_3 * H4_3 * (H4_1 * H5_1 + H4_2 * H5_2);
+      const T H5_4 = T(2) * H4_1 * H5_3 - H5_1 * H4_3;
+      const T H5_5 = T(2) * H4_2 * H5_3 - H5_2 * H4_3;
+      const T H5_6 = fb_x_y * H5_4 + fb_z_y * H5_5;
+      const T H5_7 = fb_z_y * H5_4 - fb_x_y * H5_5;
+      const T H5_8 = lambda[0] * H4_3 * (H4_1 * fb_z_x - H4_2 * fb_x_x);
+      const T H5_9 = H5_8 + fb_x_z * H5_4 + fb_z_z * H5_5;
+      const T H5_10 = lambda[0] * H4_3 * (H4_1 * fb_x_x + H4_2 * fb_z_x);
+      const T H5_11 = H5_10 + fb_x_z * H5_5 - fb_z_z * H5_4;
+      const T H5_12 = fa_x_y * H5_9 - fa_x_z * H5_6 - fa_z_z * H5_7 - fa_z_y * H5_11;
+      const T H5_1_2 = fb_x_x * H5_4 + fb_z_x * H5_5 - H4_13;
+      const T H5_2_2 = fb_z_x * H5_4 - fb_x_x * H5_5 + H4_15;
+      const T H5_3_2 = fa_z_x * H5_11 - fa_x_x * H5_9 + fa_x_z * H5_1_2 + fa_z_z * H5_2_2;
+      const T H5_1_3 = fa_x_x * H5_6 + fa_z_x * H5_7 - fa_x_y * H5_1_2 - fa_z_y * H5_2_2;
+      const T H5_1_4 = fa_x_y * H5_4 - fa_z_y * H5_5;
+      const T H5_2_3 = fa_x_y * H5_5 + fa_z_y * H5_4;
+      const T H5_3_3 = lambda[0] * H4_3 * (H4_1 * fa_z_x + H4_2 * fa_x_x);
+      const T H5_4_2 = fa_x_z * H5_4 - fa_z_z * H5_5 + H5_3_3;
+      const T H5_5_2 = lambda[0] * H4_3 * (H4_1 * fa_x_x - H4_2 * fa_z_x);
+      const T H5_6_2 = fa_x_z * H5_5 + fa_z_z * H5_4 - H5_5_2;
+      const T H5_7_2 = fb_x_y * H5_4_2 - fb_x_z * H5_1_4 - fb_z_z * H5_2_3 + fb_z_y * H5_6_2;
+      const T H5_1_5 = fa_x_x * H5_4 - fa_z_x * H5_5 - H4_5_2;
+      const T H5_2_4 = fa_x_x * H5_5 + fa_z_x * H5_4 + H4_7_2;
+      const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_4_2 - fb_z_x * H5_6_2 + fb_z_z * H5_2_4;
+      const T H5_1_6 = fb_x_x * H5_1_4 + fb_z_x * H5_2_3 - fb_x_y * H5_1_5 - fb_z_y * H5_2_4;
+      const T fa_x_x_fb_z_z = fa_x_x * fb_z_y - fa_x_y * fb_z_x;
+      const T H6_1 = lambda[0] * (fa_z_x * fb_x_y - fa_x_x_fb_z_z - fa_z_y * fb_x_x);
+      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
+      const T fa_z_x_fb_z_z = fa_z_x * fb_z_y - fa_z_y * fb_z_x;
+      const T H6_2 = lambda[0] * (fa_x_x_fb_x_z + fa_z_x_fb_z_z);
+      const T H6_3 = H4_3 * H4_3 * (H4_1 * H6_1 + H4_2 * H6_2);
+      const T H6_4 = T(2) * H4_1 * H6_3 - H6_1 * H4_3;
+      const T H6_5 = T(2) * H4_2 * H6_3 - H6_2 * H4_3;
+      const T H6_6 = fb_x_z * H6_4 + fb_z_z * H6_5;
+      const T H6_7 = fb_z_z * H6_4 - fb_x_z * H6_5;
+      const T H6_8 = fb_x_y * H6_4 + fb_z_y * H6_5 - H5_8;
+      const T H6_9 = fb_z_y * H6_4 - fb_x_y * H6_5 + H5_10;
+      const T H6_10 = fa_x_y * H6_6 + fa_z_y * H6_7 - fa_x_z * H6_8 - fa_z_z * H6_9;
+      const T H6_1_2 = fb_x_x * H6_4 + fb_z_x * H6_5 - H4_4;
+      const T H6_2_2 = fb_z_x * H6_4 - fb_x_x * H6_5 - H4_11;
+      const T H6_3_2 = fa_x_z * H6_1_2 - fa_x_x * H6_6 - fa_z_x * H6_7 + fa_z_z * H6_2_2;
+      const T H6_1_3 = fa_x_x * H6_8 + fa_z_x * H6_9 - fa_x_y * H6_1_2 - fa_z_y * H6_2_2;
+      const T H6_1_4 = fa_x_z * H6_4 - fa_z_z * H6_5;
+      const T H6_2_3 = fa_x_z * H6_5 + fa_z_z * H6_4;
+      const T H6_3_3 = fa_x_y * H6_4 - fa_z_y * H6_5 - H5_3_3;
+      const T H6_4_2 = fa_x_y * H6_5 + fa_z_y * H6_4 + H5_5_2;
+      const T H6_5_2 = fb_x_y * H6_1_4 + fb_z_y * H6_2_3 - fb_x_z * H6_3_3 - fb_z_z * H6_4_2;
+      const T H6_1_5 = fa_x_x * H6_4 - fa_z_x * H6_5 + H4_1_4;
+      const T H6_2_4 = fa_x_x * H6_5 + fa_z_x * H6_4 - H4_3_3;
+      const T H6_3_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4 - fb_z_x * H6_2_3 + fb_z_z * H6_2_4;
+      const T H6_1_6 = fb_x_x * H6_3_3 + fb_z_x * H6_4_2 - fb_x_y * H6_1_5 - fb_z_y * H6_2_4;
+      H[3][3] = H4_17;
+      H[3][4] = H4_3_2;
+      H[3][5] = H4_1_3;
+      H[3][9] = H4_9_2;
+      H[3][10] = H4_3_4;
+      H[3][11] = H4_1_6;
+      H[4][3] = H5_12;
+      H[4][4] = H5_3_2;
+      H[4][5] = H5_1_3;
+      H[4][9] = H5_7_2;
+      H[4][10] = H5_3_4;
+      H[4][11] = H5_1_6;
+      H[5][3] = H6_10;
+      H[5][4] = H6_3_2;
+      H[5][5] = H6_1_3;
+      H[5][9] = H6_5_2;
+      H[5][10] = H6_3_4;
+      H[5][11] = H6_1_6;
+      H[9][3] = -H4_17;
+      H[9][4] = -H4_3_2;
+      H[9][5] = -H4_1_3;
+      H[9][9] = -H4_9_2;
+      H[9][10] = -H4_3_4;
+      H[9][11] = -H4_1_6;
+      H[10][3] = -H5_12;
+      H[10][4] = -H5_3_2;
+      H[10][5] = -H5_1_3;
+      H[10][9] = -H5_7_2;
+      H[10][10] = -H5_3_4;
+      H[10][11] = -H5_1_6;
+      H[11][3] = -H6_10;
+      H[11][4] = -H6_3_2;
+      H[11][5] = -H6_1_3;
+      H[11][9] = -H6_5_2;
+      H[11][10] = -H6_3_4;
+      H[11][11] = -H6_1_6;
+    }
+
+    struct a_immovable;
+    struct b_immovable;
+    using Immovable = std::tuple<a_immovable, b_immovable>;
+  };
+
+  // The coordinate twist_z [rad] = atan2(dot(fa.y, fb.x) - dot(fa.x, fb.y), dot(fa.x, fb.x) +
+  //     dot(fa.y, fb.y)), left free: what effects act on.
+  struct twist_z {
+    static constexpr std::string_view name = "twist_z";
+    static constexpr std::string_view unit = "rad";
+
+    static constexpr int bodies = 2, rows = 1;
+    static constexpr bool explicit_time = false;
+    static constexpr std::array<std::string_view, 1> row_names = {"twist_z"};
+    static constexpr std::array<RowKind, 1> row_kinds = {RowKind::equality};
+
+    template <class T>
+    struct Jacobian {
+      T wa_x, wa_y, wa_z, wb_x, wb_y, wb_z;
+    };
+
+    // C: 34 +, 48 *, 1 call
+    template <class T>
+    static void position(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1]) {
+      using std::atan2;
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      C[0] = atan2(dot_fa_y_fb_x - dot_fa_x_fb_y, dot_fa_x_fb_x + dot_fa_y_fb_y);
+    }
+
+    // C and J: 65 +, 100 *, 1 /, 1 <, 1 call
+    template <class T>
+    static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+        Jacobian<T>& J) {
+      using std::atan2;
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T C1_1 = dot_fa_y_fb_x - dot_fa_x_fb_y;
+      const T C1_2 = dot_fa_x_fb_x + dot_fa_y_fb_y;
+      const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+      const T wa_x_2 = C1_2 * wa_x_1;
+      const T wa_x_3 = C1_1 * wa_x_1;
+      const T wa_x_4 = wa_x_2 * fb_y_z + wa_x_3 * fb_x_z;
+      const T wa_x_5 = wa_x_2 * fb_x_z - wa_x_3 * fb_y_z;
+      const T wa_x_6 = wa_x_2 * fb_y_y + wa_x_3 * fb_x_y;
+      const T wa_x_7 = wa_x_2 * fb_x_y - wa_x_3 * fb_y_y;
+      const T wa_y_1 = wa_x_2 * fb_y_x + wa_x_3 * fb_x_x;
+      const T wa_y_2 = wa_x_2 * fb_x_x - wa_x_3 * fb_y_x;
+      const T wb_x_1 = wa_x_2 * fa_y_z - wa_x_3 * fa_x_z;
+      const T wb_x_2 = wa_x_2 * fa_x_z + wa_x_3 * fa_y_z;
+      const T wb_x_3 = wa_x_2 * fa_y_y - wa_x_3 * fa_x_y;
+      const T wb_x_4 = wa_x_2 * fa_x_y + wa_x_3 * fa_y_y;
+      const T wb_y_1 = wa_x_2 * fa_y_x - wa_x_3 * fa_x_x;
+      const T wb_y_2 = wa_x_2 * fa_x_x + wa_x_3 * fa_y_x;
+      C[0] = atan2(C1_1, C1_2);
+      J.wa_x = fa_y_y * wa_x_5 - fa_x_y * wa_x_4 + fa_x_z * wa_x_6 - fa_y_z * wa_x_7;
+      J.wa_y = fa_x_x * wa_x_4 - fa_y_x * wa_x_5 - fa_x_z * wa_y_1 + fa_y_z * wa_y_2;
+      J.wa_z = fa_y_x * wa_x_7 - fa_x_x * wa_x_6 + fa_x_y * wa_y_1 - fa_y_y * wa_y_2;
+      J.wb_x = fb_x_y * wb_x_1 - fb_y_y * wb_x_2 - fb_x_z * wb_x_3 + fb_y_z * wb_x_4;
+      J.wb_y = fb_y_x * wb_x_2 - fb_x_x * wb_x_1 + fb_x_z * wb_y_1 - fb_y_z * wb_y_2;
+      J.wb_z = fb_x_x * wb_x_3 - fb_y_x * wb_x_4 - fb_x_y * wb_y_1 + fb_y_y * wb_y_2;
+    }
+
+    // K = J M^-1 J^T, lower triangle, from J: 17 +, 24 *
+    template <class T>
+    static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+      const InverseMass<T>& ma = m[0];
+      const InverseMass<T>& mb = m[1];
+      K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
+          (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
+          (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z) + J.wb_x *
+          (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
+          (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
+          (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+    }
+
+    // K = L D L^T; F holds L and, on the diagonal, D^-1: 1 *, 1 /, 1 <
+    template <class T>
+    static void factor(const T (&K)[1], T (&F)[1]) {
+      F[0] = pivot(K[0], K[0]);
+    }
+
+    // lambda = K^-1 rhs: 1 *
+    template <class T>
+    static void solve(const T (&F)[1], const T (&rhs)[1], T (&lambda)[1]) {
+      lambda[0] = F[0] * rhs[0];
+    }
+
+    // J v: 5 +, 6 *
+    template <class T>
+    static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+      const Velocity<T>& va = v[0];
+      const Velocity<T>& vb = v[1];
+      Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz + J.wb_x * vb.wx + J.wb_y * vb.wy +
+          J.wb_z * vb.wz;
+    }
+
+    // v += M^-1 J^T lambda: 18 +, 24 *
+    template <class T>
+    static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+        Velocity<T> (&v)[2]) {
+      const Velocity<T> va = v[0];
+      const InverseMass<T>& ma = m[0];
+      const Velocity<T> vb = v[1];
+      const InverseMass<T>& mb = m[1];
+      const T v1_1 = J.wa_x * lambda[0];
+      const T v1_2 = lambda[0] * J.wa_y;
+      const T v1_3 = lambda[0] * J.wa_z;
+      const T v2_1 = lambda[0] * J.wb_x;
+      const T v2_2 = lambda[0] * J.wb_y;
+      const T v2_3 = lambda[0] * J.wb_z;
+      v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
+      v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
+      v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+      v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
+      v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
+      v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+    }
+
+    // J with its zeros: v, w of each body: nothing
+    template <class T>
+    static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      D[0][3] = J.wa_x;
+      D[0][4] = J.wa_y;
+      D[0][5] = J.wa_z;
+      D[0][9] = J.wb_x;
+      D[0][10] = J.wb_y;
+      D[0][11] = J.wb_z;
+    }
+
+    // (M^-1 J^T)^T, laid out like dense: 12 +, 18 *
+    template <class T>
+    static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+        T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const InverseMass<T>& ma = m[0];
+      const InverseMass<T>& mb = m[1];
+      D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
+      D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
+      D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+      D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
+      D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
+      D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+    }
+
+    // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 5 +, 8 *
+    template <class T>
+    static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        T (&K)[1]) {
+      const IsotropicInverseMass<T>& ma = m[0];
+      const IsotropicInverseMass<T>& mb = m[1];
+      K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z) + mb.I *
+          (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+    }
+
+    // v += M^-1 J^T lambda, for sphere-like bodies: 6 +, 8 *
+    template <class T>
+    static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        const T (&lambda)[1], Velocity<T> (&v)[2]) {
+      const Velocity<T> va = v[0];
+      const IsotropicInverseMass<T>& ma = m[0];
+      const Velocity<T> vb = v[1];
+      const IsotropicInverseMass<T>& mb = m[1];
+      const T v1_1 = ma.I * lambda[0];
+      const T v2_1 = lambda[0] * mb.I;
+      v[0].wx = va.wx + v1_1 * J.wa_x;
+      v[0].wy = va.wy + v1_1 * J.wa_y;
+      v[0].wz = va.wz + v1_1 * J.wa_z;
+      v[1].wx = vb.wx + v2_1 * J.wb_x;
+      v[1].wy = vb.wy + v2_1 * J.wb_y;
+      v[1].wz = vb.wz + v2_1 * J.wb_z;
+    }
+
+    // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 6 *
+    template <class T>
+    static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+        T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const IsotropicInverseMass<T>& ma = m[0];
+      const IsotropicInverseMass<T>& mb = m[1];
+      D[0][3] = ma.I * J.wa_x;
+      D[0][4] = ma.I * J.wa_y;
+      D[0][5] = ma.I * J.wa_z;
+      D[0][9] = mb.I * J.wb_x;
+      D[0][10] = mb.I * J.wb_y;
+      D[0][11] = mb.I * J.wb_z;
+    }
+
+    // form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A): 12 +, 18 *
+    template <class T>
+    static void local_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][12]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      D[0][3] = J.wa_x * a.xx + J.wa_y * a.yx + J.wa_z * a.zx;
+      D[0][4] = J.wa_x * a.xy + J.wa_y * a.yy + J.wa_z * a.zy;
+      D[0][5] = J.wa_x * a.xz + J.wa_y * a.yz + J.wa_z * a.zz;
+      D[0][9] = J.wb_x * b.xx + J.wb_y * b.yx + J.wb_z * b.zx;
+      D[0][10] = J.wb_x * b.xy + J.wb_y * b.yy + J.wb_z * b.zy;
+      D[0][11] = J.wb_x * b.xz + J.wb_y * b.yz + J.wb_z * b.zz;
+    }
+
+    // form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G): 16 +, 32 *
+    template <class T>
+    static void euler_jacobian(const Pose<T> (&q)[2], const Jacobian<T>& J, T (&D)[1][14]) {
+      for (auto& row : D) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      D[0][3] = T(-2) * (J.wa_x * a.e1 + J.wa_y * a.e2 + J.wa_z * a.e3);
+      D[0][4] = T(2) * (J.wa_x * a.e0 + J.wa_y * a.e3 - J.wa_z * a.e2);
+      D[0][5] = T(2) * (J.wa_y * a.e0 - J.wa_x * a.e3 + J.wa_z * a.e1);
+      D[0][6] = T(2) * (J.wa_x * a.e2 - J.wa_y * a.e1 + J.wa_z * a.e0);
+      D[0][10] = T(-2) * (J.wb_x * b.e1 + J.wb_y * b.e2 + J.wb_z * b.e3);
+      D[0][11] = T(2) * (J.wb_x * b.e0 + J.wb_y * b.e3 - J.wb_z * b.e2);
+      D[0][12] = T(2) * (J.wb_y * b.e0 - J.wb_x * b.e3 + J.wb_z * b.e1);
+      D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
+    }
+
+    // -Jdot v - d/dt(dC/dt): 119 +, 172 *, 1 /, 1 <
+    template <class T>
+    static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
+        T (&g)[1]) {
+      const Pose<T>& a = q[0];
+      const Velocity<T>& va = v[0];
+      const Pose<T>& b = q[1];
+      const Velocity<T>& vb = v[1];
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T g1_1 = dot_fa_x_fb_x + dot_fa_y_fb_y;
+      const T g1_2 = dot_fa_y_fb_x - dot_fa_x_fb_y;
+      const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
+      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
+      const T dot_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_fb_x_x + fa_x_y * w_b_x_fb_x_y + fa_x_z *
+          w_b_x_fb_x_z;
+      const T dot_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_fb_x_x + fa_y_y * w_b_x_fb_x_y + fa_y_z *
+          w_b_x_fb_x_z;
+      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
+      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
+      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
+      const T dot_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_fb_y_x + fa_x_y * w_b_x_fb_y_y + fa_x_z *
+          w_b_x_fb_y_z;
+      const T dot_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_fb_y_x + fa_y_y * w_b_x_fb_y_y + fa_y_z *
+          w_b_x_fb_y_z;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
+      const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
+          w_a_x_fa_x_z;
+      const T dot_w_a_x_fa_x_fb_y = fb_y_x * w_a_x_fa_x_x + fb_y_y * w_a_x_fa_x_y + fb_y_z *
+          w_a_x_fa_x_z;
+      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
+      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
+      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
+      const T dot_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_fa_y_x + fb_x_y * w_a_x_fa_y_y + fb_x_z *
+          w_a_x_fa_y_z;
+      const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
+          w_a_x_fa_y_z;
+      const T g1_4 = dot_w_b_x_fb_x_fa_x + dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_x_fb_x +
+          dot_w_a_x_fa_y_fb_y;
+      const T g1_5 = dot_w_b_x_fb_x_fa_y - dot_w_b_x_fb_y_fa_x + dot_w_a_x_fa_y_fb_x -
+          dot_w_a_x_fa_x_fb_y;
+      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
+      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
+      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
+      const T dot_w_b_x_w_b_x_fb_y_fa_x = fa_x_x * w_b_x_w_b_x_fb_y_x + fa_x_y *
+          w_b_x_w_b_x_fb_y_y + fa_x_z * w_b_x_w_b_x_fb_y_z;
+      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
+          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
+      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
+      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
+      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
+      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
+          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
+      const T dot_w_b_x_w_b_x_fb_x_fa_y = fa_y_x * w_b_x_w_b_x_fb_x_x + fa_y_y *
+          w_b_x_w_b_x_fb_x_y + fa_y_z * w_b_x_w_b_x_fb_x_z;
+      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
+      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
+      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
+      const T dot_w_a_x_w_a_x_fa_y_fb_x = fb_x_x * w_a_x_w_a_x_fa_y_x + fb_x_y *
+          w_a_x_w_a_x_fa_y_y + fb_x_z * w_a_x_w_a_x_fa_y_z;
+      const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
+          w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
+      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
+      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
+      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
+      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
+          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
+      const T dot_w_a_x_w_a_x_fa_x_fb_y = fb_y_x * w_a_x_w_a_x_fa_x_x + fb_y_y *
+          w_a_x_w_a_x_fa_x_y + fb_y_z * w_a_x_w_a_x_fa_x_z;
+      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
+          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
+      const T dot_w_a_x_fa_x_w_b_x_fb_y = w_a_x_fa_x_z * w_b_x_fb_y_z + w_a_x_fa_x_y *
+          w_b_x_fb_y_y + w_a_x_fa_x_x * w_b_x_fb_y_x;
+      const T dot_w_a_x_fa_y_w_b_x_fb_x = w_a_x_fa_y_z * w_b_x_fb_x_z + w_a_x_fa_y_y *
+          w_b_x_fb_x_y + w_a_x_fa_y_x * w_b_x_fb_x_x;
+      const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
+          w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
+      g[0] = g1_3 * (T(2) * (g1_1 * g1_4 + g1_2 * g1_5) * (g1_1 * g1_5 - g1_2 * g1_4) * g1_3 -
+          g1_1 * (dot_w_b_x_w_b_x_fb_x_fa_y - dot_w_b_x_w_b_x_fb_y_fa_x +
+          dot_w_a_x_w_a_x_fa_y_fb_x - dot_w_a_x_w_a_x_fa_x_fb_y - T(2) *
+          dot_w_a_x_fa_x_w_b_x_fb_y + T(2) * dot_w_a_x_fa_y_w_b_x_fb_x) + g1_2 *
+          (dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_x_fb_x +
+          dot_w_a_x_w_a_x_fa_y_fb_y + T(2) * dot_w_a_x_fa_x_w_b_x_fb_x + T(2) *
+          dot_w_a_x_fa_y_w_b_x_fb_y));
+    }
+
+    // dC/dt at fixed q: nothing
+    template <class T>
+    static void time_derivative(const Pose<T> (&)[2], const Parameters<T>&, T, T (&C_t)[1]) {
+      C_t[0] = T(0);
+    }
+
+    // d(J^T lambda)/dq: x, y, z and small turns of each body: 206 +, 302 *, 1 /, 1 <
+    template <class T>
+    static void stiffness(const Pose<T> (&q)[2], const Parameters<T>& p, T, const T (&lambda)[1],
+        T (&H)[12][12]) {
+      for (auto& row : H) {
+        for (T& entry : row) entry = T(0);
+      }
+      const Pose<T>& a = q[0];
+      const Pose<T>& b = q[1];
+      const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+      const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+      const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+      const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+      const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+      const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+      const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+      const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+      const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+      const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+      const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
+      const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+      const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+      const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+      const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+      const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+      const T H4_1 = dot_fa_x_fb_x + dot_fa_y_fb_y;
+      const T H4_2 = dot_fa_y_fb_x - dot_fa_x_fb_y;
+      const T H4_3 = inverse(H4_1 * H4_1 + H4_2 * H4_2);
+      const T H4_4 = lambda[0] * H4_3 * (H4_1 * fb_y_y + H4_2 * fb_x_y);
+      const T fa_x_x_fb_y_x = fa_x_y * fb_y_z - fa_x_z * fb_y_y;
+      const T fa_x_x_fb_y_y = fa_x_z * fb_y_x - fa_x_x * fb_y_z;
+      const T H4_5 = lambda[0] * (fa_x_x_fb_y_x - fa_y_y * fb_x_z + fa_y_z * fb_x_y);
+      const T fa_x_x_fb_x_x = fa_x_y * fb_x_z - fa_x_z * fb_x_y;
+      const T fa_x_x_fb_x_y = fa_x_z * fb_x_x - fa_x_x * fb_x_z;
+      const T H4_6 = lambda[0] * (fa_x_x_fb_x_x + fa_y_y * fb_y_z - fa_y_z * fb_y_y);
+      const T H4_7 = H4_3 * H4_3 * (H4_1 * H4_5 + H4_2 * H4_6);
+      const T H4_8 = T(2) * H4_1 * H4_7 - H4_5 * H4_3;
+      const T H4_9 = H4_6 * H4_3 - T(2) * H4_2 * H4_7;
+      const T H4_10 = H4_4 + fb_x_z * H4_8 + fb_y_z * H4_9;
+      const T H4_11 = lambda[0] * H4_3 * (H4_2 * fb_y_y - H4_1 * fb_x_y);
+      const T H4_12 = H4_11 - fb_x_z * H4_9 + fb_y_z * H4_8;
+      const T H4_13 = lambda[0] * H4_3 * (H4_1 * fb_y_z + H4_2 * fb_x_z);
+      const T H4_14 = H4_13 - fb_x_y * H4_8 - fb_y_y * H4_9;
+      const T H4_15 = lambda[0] * H4_3 * (H4_1 * fb_x_z - H4_2 * fb_y_z);
+      const T H4_16 = H4_15 - fb_x_y * H4_9 + fb_y_y * H4_8;
+      const T H4_17 = fa_x_y * H4_10 + fa_y_y * H4_12 + fa_x_z * H4_14 - fa_y_z * H4_16;
+      const T H4_1_2 = fb_x_x * H4_8 + fb_y_x * H4_9;
+      const T H4_2_2 = fb_y_x * H4_8 - fb_x_x * H4_9;
+      const T H4_3_2 = fa_x_z * H4_1_2 + fa_y_z * H4_2_2 - fa_x_x * H4_10 - fa_y_x * H4_12;
+      const T H4_1_3 = fa_y_x * H4_16 - fa_x_y * H4_1_2 - fa_y_y * H4_2_2 - fa_x_x * H4_14;
+      const T H4_1_4 = lambda[0] * H4_3 * (H4_1 * fa_y_y - H4_2 * fa_x_y);
+      const T H4_2_3 = fa_x_z * H4_8 - fa_y_z * H4_9 + H4_1_4;
+      const T H4_3_3 = lambda[0] * H4_3 * (H4_1 * fa_x_y + H4_2 * fa_y_y);
+      const T H4_4_2 = fa_x_z * H4_9 + fa_y_z * H4_8 - H4_3_3;
+      const T H4_5_2 = lambda[0] * H4_3 * (H4_1 * fa_y_z - H4_2 * fa_x_z);
+      const T H4_6_2 = fa_x_y * H4_8 - fa_y_y * H4_9 - H4_5_2;
+      const T H4_7_2 = lambda[0] * H4_3 * (H4_1 * fa_x_z + H4_2 * fa_y_z);
+      const T H4_8_2 = fa_x_y * H4_9 + fa_y_y * H4_8 + H4_7_2;
+      const T H4_9_2 = fb_x_y * H4_2_3 + fb_y_y * H4_4_2 - fb_x_z * H4_6_2 - fb_y_z * H4_8_2;
+      const T H4_1_5 = fa_x_x * H4_8 - fa_y_x * H4_9;
+      const T H4_2_4 = fa_x_x * H4_9 + fa_y_x * H4_8;
+      const T H4_3_4 = fb_x_z * H4_1_5 + fb_y_z * H4_2_4 - fb_x_x * H4_2_3 - fb_y_x * H4_4_2;
+      const T H4_1_6 = fb_x_x * H4_6_2 - fb_x_y * H4_1_5 - fb_y_y * H4_2_4 + fb_y_x * H4_8_2;
+      const T H5_1 = lambda[0] * (fa_x_x_fb_y_y + fa_y_x * fb_x_z - fa_y_z * fb_x_x);
+      const T H5_2 = lambda[0] * (fa_x_x_fb_x_y - fa_y_x * fb_y_z + fa_y_z * fb_y_x);
+      const T H5_3 = H4_3 * H4_3 * (H4_1 * H5_1 + H4_2 * H5_2);
+      const T H5_4 = T(2) * H4_1 * H5_3 - H5_1 * H4_3;
+      const T H5_5 = H5_2 * H4_3 - T(2) * H4_2 * H5_3;
+      const T H5_6 = fb_x_y * H5_4 + fb_y_y * H5_5;
+      const T H5_7 = fb_y_y * H5_4 - fb_x_y * H5_5;
+      const T H5_8 = lambda[0] * H4_3 * (H4_1 * fb_y_x + H4_2 * fb_x_x);
+      const T H5_9 = H5_8 - fb_x_z * H5_4 - fb_y_z * H5_5;
+      const T H5_10 = lambda[0] * H4_3 * (H4_1 * fb_x_x - H4_2 * fb_y_x);
+      const T H5_11 = H5_10 - fb_x_z * H5_5 + fb_y_z * H5_4;
+      const T H5_12 = fa_y_y * H5_11 - fa_x_z * H5_6 - fa_y_z * H5_7 - fa_x_y * H5_9;
+      const T H5_1_2 = fb_x_x * H5_4 + fb_y_x * H5_5 + H4_13;
+      const T H5_2_2 = fb_y_x * H5_4 - fb_x_x * H5_5 - H4_15;
+      const T H5_3_2 = fa_x_x * H5_9 - fa_y_x * H5_11 + fa_x_z * H5_1_2 + fa_y_z * H5_2_2;
+      const T H5_1_3 = fa_x_x * H5_6 + fa_y_x * H5_7 - fa_x_y * H5_1_2 - fa_y_y * H5_2_2;
+      const T H5_1_4 = fa_x_y * H5_4 - fa_y_y * H5_5;
+      const T H5_2_3 = fa_x_y * H5_5 + fa_y_y * H5_4;
+      const T H5_3_3 = lambda[0] * H4_3 * (H4_1 * fa_y_x - H4_2 * fa_x_x);
+      const T H5_4_2 = fa_x_z * H5_4 - fa_y_z * H5_5 - H5_3_3;
+      const T H5_5_2 = lambda[0] * H4_3 * (H4_1 * fa_x_x + H4_2 * fa_y_x);
+      const T H5_6_2 = fa_x_z * H5_5 + fa_y_z * H5_4 + H5_5_2;
+      const T H5_7_2 = fb_x_y * H5_4_2 - fb_x_z * H5_1_4 - fb_y_z * H5_2_3 + fb_y_y * H5_6_2;
+      const T H5_1_5 = fa_x_x * H5_4 - fa_y_x * H5_5 + H4_5_2;
+      const T H5_2_4 = fa_x_x * H5_5 + fa_y_x * H5_4 - H4_7_2;
+      const T H5_3_4 = fb_x_z * H5_1_5 - fb_x_x * H5_4_2 - fb_y_x * H5_6_2 + fb_y_z * H5_2_4;
+      const T H5_1_6 = fb_x_x * H5_1_4 + fb_y_x * H5_2_3 - fb_x_y * H5_1_5 - fb_y_y * H5_2_4;
+      const T fa_x_x_fb_y_z = fa_x_x * fb_y_y - fa_x_y * fb_y_x;
+      const T H6_1 = lambda[0] * (fa_x_x_fb_y_z - fa_y_x * fb_x_y + fa_y_y * fb_x_x);
+      const T fa_x_x_fb_x_z = fa_x_x * fb_x_y - fa_x_y * fb_x_x;
+      const T H6_2 = lambda[0] * (fa_x_x_fb_x_z + fa_y_x * fb_y_y - fa_y_y * fb_y_x);
+      const T H6_3 = H4_3 * H4_3 * (H4_1 * H6_1 + H4_2 * H6_2);
+      const T H6_4 = T(2) * H4_1 * H6_3 - H6_1 * H4_3;
+      const T H6_5 = H6_2 * H4_3 - T(2) * H4_2 * H6_3;
+      const T H6_6 = fb_x_z * H6_4 + fb_y_z * H6_5;
+      const T H6_7 = fb_y_z * H6_4 - fb_x_z * H6_5;
+      const T H6_8 = fb_x_y * H6_4 + fb_y_y * H6_5 + H5_8;
+      const T H6_9 = fb_y_y * H6_4 - fb_x_y * H6_5 - H5_10;
+      const T H6_10 = fa_x_y * H6_6 + fa_y_y * H6_7 - fa_x_z * H6_8 - fa_y_z * H6_9;
+      const T H6_1_2 = fb_x_x * H6_4 + fb_y_x * H6_5 - H4_4;
+      const T H6_2_2 = fb_y_x * H6_4 - fb_x_x * H6_5 - H4_11;
+      const T H6_3_2 = fa_x_z * H6_1_2 - fa_x_x * H6_6 - fa_y_x * H6_7 + fa_y_z * H6_2_2;
+      const T H6_1_3 = fa_x_x * H6_8 + fa_y_x * H6_9 - fa_x_y * H6_1_2 - fa_y_y * H6_2_2;
+      const T H6_1_4 = fa_x_z * H6_4 - fa_y_z * H6_5;
+      const T H6_2_3 = fa_x_z * H6_5 + fa_y_z * H6_4;
+      const T H6_3_3 = fa_x_y * H6_4 - fa_y_y * H6_5 + H5_3_3;
+      const T H6_4_2 = fa_x_y * H6_5 + fa_y_y * H6_4 - H5_5_2;
+      const T H6_5_2 = fb_x_y * H6_1_4 + fb_y_y * H6_2_3 - fb_x_z * H6_3_3 - fb_y_z * H6_4_2;
+      const T H6_1_5 = fa_x_x * H6_4 - fa_y_x * H6_5 - H4_1_4;
+      const T H6_2_4 = fa_x_x * H6_5 + fa_y_x * H6_4 + H4_3_3;
+      const T H6_3_4 = fb_x_z * H6_1_5 - fb_x_x * H6_1_4 - fb_y_x * H6_2_3 + fb_y_z * H6_2_4;
+      const T H6_1_6 = fb_x_x * H6_3_3 + fb_y_x * H6_4_2 - fb_x_y * H6_1_5 - fb_y_y * H6_2_4;
+      H[3][3] = H4_17;
+      H[3][4] = H4_3_2;
+      H[3][5] = H4_1_3;
+      H[3][9] = H4_9_2;
+      H[3][10] = H4_3_4;
+      H[3][11] = H4_1_6;
+      H[4][3] = H5_12;
+      H[4][4] = H5_3_2;
+      H[4][5] = H5_1_3;
+      H[4][9] = H5_7_2;
+      H[4][10] = H5_3_4;
+      H[4][11] = H5_1_6;
+      H[5][3] = H6_10;
+      H[5][4] = H6_3_2;
+      H[5][5] = H6_1_3;
+      H[5][9] = H6_5_2;
+      H[5][10] = H6_3_4;
+      H[5][11] = H6_1_6;
+      H[9][3] = -H4_17;
+      H[9][4] = -H4_3_2;
+      H[9][5] = -H4_1_3;
+      H[9][9] = -H4_9_2;
+      H[9][10] = -H4_3_4;
+      H[9][11] = -H4_1_6;
+      H[10][3] = -H5_12;
+      H[10][4] = -H5_3_2;
+      H[10][5] = -H5_1_3;
+      H[10][9] = -H5_7_2;
+      H[10][10] = -H5_3_4;
+      H[10][11] = -H5_1_6;
+      H[11][3] = -H6_10;
+      H[11][4] = -H6_3_2;
+      H[11][5] = -H6_1_3;
+      H[11][9] = -H6_5_2;
+      H[11][10] = -H6_3_4;
+      H[11][11] = -H6_1_6;
+    }
+
+    struct a_immovable;
+    struct b_immovable;
+    using Immovable = std::tuple<a_immovable, b_immovable>;
+  };
+
+  using Coordinates = std::tuple<slide_x, slide_y, slide_z, turn_x, turn_y, turn_z, twist_x,
+      twist_y, twist_z>;
 
   using Immovable = std::tuple<>;
 };
@@ -4523,6 +6210,828 @@ struct six_dof::turn_z::b_immovable : six_dof::turn_z {
     J.wa_x = fa_x_y * wa_x_4 - fa_x_z * wa_x_5;
     J.wa_y = fa_x_z * wa_y_1 - fa_x_x * wa_x_4;
     J.wa_z = fa_x_x * wa_x_5 - fa_x_y * wa_y_1;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+    const InverseMass<T>& ma = m[0];
+    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
+        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
+        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+  }
+
+  // J v: 2 +, 3 *
+  template <class T>
+  static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+    const Velocity<T>& va = v[0];
+    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+  }
+
+  // v += M^-1 J^T lambda: 9 +, 12 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+      Velocity<T> (&v)[2]) {
+    const Velocity<T> va = v[0];
+    const InverseMass<T>& ma = m[0];
+    const T v1_1 = J.wa_x * lambda[0];
+    const T v1_2 = lambda[0] * J.wa_y;
+    const T v1_3 = lambda[0] * J.wa_z;
+    v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
+    v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
+    v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+  }
+
+  // J with its zeros: v, w of each body: nothing
+  template <class T>
+  static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    D[0][3] = J.wa_x;
+    D[0][4] = J.wa_y;
+    D[0][5] = J.wa_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const InverseMass<T>& ma = m[0];
+    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
+    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
+    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&K)[1]) {
+    const IsotropicInverseMass<T>& ma = m[0];
+    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+  }
+
+  // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      const T (&lambda)[1], Velocity<T> (&v)[2]) {
+    const Velocity<T> va = v[0];
+    const IsotropicInverseMass<T>& ma = m[0];
+    const T v1_1 = ma.I * lambda[0];
+    v[0].wx = va.wx + v1_1 * J.wa_x;
+    v[0].wy = va.wy + v1_1 * J.wa_y;
+    v[0].wz = va.wz + v1_1 * J.wa_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const IsotropicInverseMass<T>& ma = m[0];
+    D[0][3] = ma.I * J.wa_x;
+    D[0][4] = ma.I * J.wa_y;
+    D[0][5] = ma.I * J.wa_z;
+  }
+};
+
+// six_dof::twist_x with a immovable: its velocity and inverse mass are zero and gone.
+struct six_dof::twist_x::a_immovable : six_dof::twist_x {
+  static constexpr int immovable_body = 0;
+
+  template <class T>
+  struct Jacobian {
+    T wb_x, wb_y, wb_z;
+  };
+
+  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  template <class T>
+  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+      Jacobian<T>& J) {
+    using std::atan2;
+    const Pose<T>& a = q[0];
+    const Pose<T>& b = q[1];
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+    const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+    const T C1_1 = dot_fa_z_fb_y - ryz;
+    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+    const T C1_2 = dot_fa_y_fb_y + rzz;
+    const T wb_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+    const T wb_x_2 = C1_2 * wb_x_1;
+    const T wb_x_3 = C1_1 * wb_x_1;
+    const T wb_x_4 = wb_x_2 * fa_z_z - wb_x_3 * fa_y_z;
+    const T wb_x_5 = wb_x_2 * fa_y_z + wb_x_3 * fa_z_z;
+    const T wb_x_6 = wb_x_2 * fa_z_y - wb_x_3 * fa_y_y;
+    const T wb_x_7 = wb_x_2 * fa_y_y + wb_x_3 * fa_z_y;
+    const T wb_y_1 = wb_x_2 * fa_z_x - wb_x_3 * fa_y_x;
+    const T wb_y_2 = wb_x_2 * fa_y_x + wb_x_3 * fa_z_x;
+    C[0] = atan2(C1_1, C1_2);
+    J.wb_x = fb_y_y * wb_x_4 - fb_z_y * wb_x_5 - fb_y_z * wb_x_6 + fb_z_z * wb_x_7;
+    J.wb_y = fb_z_x * wb_x_5 - fb_y_x * wb_x_4 + fb_y_z * wb_y_1 - fb_z_z * wb_y_2;
+    J.wb_z = fb_y_x * wb_x_6 - fb_z_x * wb_x_7 - fb_y_y * wb_y_1 + fb_z_y * wb_y_2;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+    const InverseMass<T>& mb = m[1];
+    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
+        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
+        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+  }
+
+  // J v: 2 +, 3 *
+  template <class T>
+  static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+    const Velocity<T>& vb = v[1];
+    Jv[0] = J.wb_x * vb.wx + J.wb_y * vb.wy + J.wb_z * vb.wz;
+  }
+
+  // v += M^-1 J^T lambda: 9 +, 12 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+      Velocity<T> (&v)[2]) {
+    const Velocity<T> vb = v[1];
+    const InverseMass<T>& mb = m[1];
+    const T v2_1 = J.wb_x * lambda[0];
+    const T v2_2 = lambda[0] * J.wb_y;
+    const T v2_3 = lambda[0] * J.wb_z;
+    v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
+    v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
+    v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+  }
+
+  // J with its zeros: v, w of each body: nothing
+  template <class T>
+  static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    D[0][9] = J.wb_x;
+    D[0][10] = J.wb_y;
+    D[0][11] = J.wb_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const InverseMass<T>& mb = m[1];
+    D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
+    D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
+    D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&K)[1]) {
+    const IsotropicInverseMass<T>& mb = m[1];
+    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+  }
+
+  // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      const T (&lambda)[1], Velocity<T> (&v)[2]) {
+    const Velocity<T> vb = v[1];
+    const IsotropicInverseMass<T>& mb = m[1];
+    const T v2_1 = mb.I * lambda[0];
+    v[1].wx = vb.wx + v2_1 * J.wb_x;
+    v[1].wy = vb.wy + v2_1 * J.wb_y;
+    v[1].wz = vb.wz + v2_1 * J.wb_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const IsotropicInverseMass<T>& mb = m[1];
+    D[0][9] = mb.I * J.wb_x;
+    D[0][10] = mb.I * J.wb_y;
+    D[0][11] = mb.I * J.wb_z;
+  }
+};
+
+// six_dof::twist_x with b immovable: its velocity and inverse mass are zero and gone.
+struct six_dof::twist_x::b_immovable : six_dof::twist_x {
+  static constexpr int immovable_body = 1;
+
+  template <class T>
+  struct Jacobian {
+    T wa_x, wa_y, wa_z;
+  };
+
+  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  template <class T>
+  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+      Jacobian<T>& J) {
+    using std::atan2;
+    const Pose<T>& a = q[0];
+    const Pose<T>& b = q[1];
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+    const T ryz = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
+    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
+    const T C1_1 = dot_fa_z_fb_y - ryz;
+    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+    const T C1_2 = dot_fa_y_fb_y + rzz;
+    const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+    const T wa_x_2 = C1_2 * wa_x_1;
+    const T wa_x_3 = C1_1 * wa_x_1;
+    const T wa_x_4 = wa_x_2 * fb_z_z + wa_x_3 * fb_y_z;
+    const T wa_x_5 = wa_x_2 * fb_y_z - wa_x_3 * fb_z_z;
+    const T wa_x_6 = wa_x_2 * fb_z_y + wa_x_3 * fb_y_y;
+    const T wa_x_7 = wa_x_2 * fb_y_y - wa_x_3 * fb_z_y;
+    const T wa_y_1 = wa_x_2 * fb_z_x + wa_x_3 * fb_y_x;
+    const T wa_y_2 = wa_x_2 * fb_y_x - wa_x_3 * fb_z_x;
+    C[0] = atan2(C1_1, C1_2);
+    J.wa_x = fa_z_y * wa_x_5 - fa_y_y * wa_x_4 + fa_y_z * wa_x_6 - fa_z_z * wa_x_7;
+    J.wa_y = fa_y_x * wa_x_4 - fa_z_x * wa_x_5 - fa_y_z * wa_y_1 + fa_z_z * wa_y_2;
+    J.wa_z = fa_z_x * wa_x_7 - fa_y_x * wa_x_6 + fa_y_y * wa_y_1 - fa_z_y * wa_y_2;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+    const InverseMass<T>& ma = m[0];
+    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
+        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
+        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+  }
+
+  // J v: 2 +, 3 *
+  template <class T>
+  static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+    const Velocity<T>& va = v[0];
+    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+  }
+
+  // v += M^-1 J^T lambda: 9 +, 12 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+      Velocity<T> (&v)[2]) {
+    const Velocity<T> va = v[0];
+    const InverseMass<T>& ma = m[0];
+    const T v1_1 = J.wa_x * lambda[0];
+    const T v1_2 = lambda[0] * J.wa_y;
+    const T v1_3 = lambda[0] * J.wa_z;
+    v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
+    v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
+    v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+  }
+
+  // J with its zeros: v, w of each body: nothing
+  template <class T>
+  static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    D[0][3] = J.wa_x;
+    D[0][4] = J.wa_y;
+    D[0][5] = J.wa_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const InverseMass<T>& ma = m[0];
+    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
+    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
+    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&K)[1]) {
+    const IsotropicInverseMass<T>& ma = m[0];
+    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+  }
+
+  // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      const T (&lambda)[1], Velocity<T> (&v)[2]) {
+    const Velocity<T> va = v[0];
+    const IsotropicInverseMass<T>& ma = m[0];
+    const T v1_1 = ma.I * lambda[0];
+    v[0].wx = va.wx + v1_1 * J.wa_x;
+    v[0].wy = va.wy + v1_1 * J.wa_y;
+    v[0].wz = va.wz + v1_1 * J.wa_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const IsotropicInverseMass<T>& ma = m[0];
+    D[0][3] = ma.I * J.wa_x;
+    D[0][4] = ma.I * J.wa_y;
+    D[0][5] = ma.I * J.wa_z;
+  }
+};
+
+// six_dof::twist_y with a immovable: its velocity and inverse mass are zero and gone.
+struct six_dof::twist_y::a_immovable : six_dof::twist_y {
+  static constexpr int immovable_body = 0;
+
+  template <class T>
+  struct Jacobian {
+    T wb_x, wb_y, wb_z;
+  };
+
+  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  template <class T>
+  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+      Jacobian<T>& J) {
+    using std::atan2;
+    const Pose<T>& a = q[0];
+    const Pose<T>& b = q[1];
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+    const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
+    const T C1_1 = rxz - dot_fa_z_fb_x;
+    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+    const T C1_2 = dot_fa_x_fb_x + rzz;
+    const T wb_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+    const T wb_x_2 = C1_2 * wb_x_1;
+    const T wb_x_3 = C1_1 * wb_x_1;
+    const T wb_x_4 = wb_x_2 * fa_z_z + wb_x_3 * fa_x_z;
+    const T wb_x_5 = wb_x_2 * fa_x_z - wb_x_3 * fa_z_z;
+    const T wb_x_6 = wb_x_2 * fa_z_y + wb_x_3 * fa_x_y;
+    const T wb_x_7 = wb_x_2 * fa_x_y - wb_x_3 * fa_z_y;
+    const T wb_y_1 = wb_x_2 * fa_z_x + wb_x_3 * fa_x_x;
+    const T wb_y_2 = wb_x_2 * fa_x_x - wb_x_3 * fa_z_x;
+    C[0] = atan2(C1_1, C1_2);
+    J.wb_x = fb_z_y * wb_x_5 - fb_x_y * wb_x_4 + fb_x_z * wb_x_6 - fb_z_z * wb_x_7;
+    J.wb_y = fb_x_x * wb_x_4 - fb_z_x * wb_x_5 - fb_x_z * wb_y_1 + fb_z_z * wb_y_2;
+    J.wb_z = fb_z_x * wb_x_7 - fb_x_x * wb_x_6 + fb_x_y * wb_y_1 - fb_z_y * wb_y_2;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+    const InverseMass<T>& mb = m[1];
+    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
+        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
+        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+  }
+
+  // J v: 2 +, 3 *
+  template <class T>
+  static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+    const Velocity<T>& vb = v[1];
+    Jv[0] = J.wb_x * vb.wx + J.wb_y * vb.wy + J.wb_z * vb.wz;
+  }
+
+  // v += M^-1 J^T lambda: 9 +, 12 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+      Velocity<T> (&v)[2]) {
+    const Velocity<T> vb = v[1];
+    const InverseMass<T>& mb = m[1];
+    const T v2_1 = J.wb_x * lambda[0];
+    const T v2_2 = lambda[0] * J.wb_y;
+    const T v2_3 = lambda[0] * J.wb_z;
+    v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
+    v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
+    v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+  }
+
+  // J with its zeros: v, w of each body: nothing
+  template <class T>
+  static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    D[0][9] = J.wb_x;
+    D[0][10] = J.wb_y;
+    D[0][11] = J.wb_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const InverseMass<T>& mb = m[1];
+    D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
+    D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
+    D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&K)[1]) {
+    const IsotropicInverseMass<T>& mb = m[1];
+    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+  }
+
+  // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      const T (&lambda)[1], Velocity<T> (&v)[2]) {
+    const Velocity<T> vb = v[1];
+    const IsotropicInverseMass<T>& mb = m[1];
+    const T v2_1 = mb.I * lambda[0];
+    v[1].wx = vb.wx + v2_1 * J.wb_x;
+    v[1].wy = vb.wy + v2_1 * J.wb_y;
+    v[1].wz = vb.wz + v2_1 * J.wb_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const IsotropicInverseMass<T>& mb = m[1];
+    D[0][9] = mb.I * J.wb_x;
+    D[0][10] = mb.I * J.wb_y;
+    D[0][11] = mb.I * J.wb_z;
+  }
+};
+
+// six_dof::twist_y with b immovable: its velocity and inverse mass are zero and gone.
+struct six_dof::twist_y::b_immovable : six_dof::twist_y {
+  static constexpr int immovable_body = 1;
+
+  template <class T>
+  struct Jacobian {
+    T wa_x, wa_y, wa_z;
+  };
+
+  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  template <class T>
+  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+      Jacobian<T>& J) {
+    using std::atan2;
+    const Pose<T>& a = q[0];
+    const Pose<T>& b = q[1];
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fb_z_x = b.xx * p.fb_z_x + b.xy * p.fb_z_y + b.xz * p.fb_z_z;
+    const T fb_z_y = b.yx * p.fb_z_x + b.yy * p.fb_z_y + b.yz * p.fb_z_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fb_z_z = b.zx * p.fb_z_x + b.zy * p.fb_z_y + b.zz * p.fb_z_z;
+    const T rxz = fa_x_x * fb_z_x + fa_x_y * fb_z_y + fa_x_z * fb_z_z;
+    const T fa_z_x = a.xx * p.fa_z_x + a.xy * p.fa_z_y + a.xz * p.fa_z_z;
+    const T fa_z_y = a.yx * p.fa_z_x + a.yy * p.fa_z_y + a.yz * p.fa_z_z;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+    const T fa_z_z = a.zx * p.fa_z_x + a.zy * p.fa_z_y + a.zz * p.fa_z_z;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
+    const T C1_1 = rxz - dot_fa_z_fb_x;
+    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+    const T rzz = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
+    const T C1_2 = dot_fa_x_fb_x + rzz;
+    const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+    const T wa_x_2 = C1_2 * wa_x_1;
+    const T wa_x_3 = C1_1 * wa_x_1;
+    const T wa_x_4 = wa_x_2 * fb_z_z - wa_x_3 * fb_x_z;
+    const T wa_x_5 = wa_x_2 * fb_x_z + wa_x_3 * fb_z_z;
+    const T wa_x_6 = wa_x_2 * fb_z_y - wa_x_3 * fb_x_y;
+    const T wa_x_7 = wa_x_2 * fb_x_y + wa_x_3 * fb_z_y;
+    const T wa_y_1 = wa_x_2 * fb_z_x - wa_x_3 * fb_x_x;
+    const T wa_y_2 = wa_x_2 * fb_x_x + wa_x_3 * fb_z_x;
+    C[0] = atan2(C1_1, C1_2);
+    J.wa_x = fa_x_y * wa_x_4 - fa_z_y * wa_x_5 - fa_x_z * wa_x_6 + fa_z_z * wa_x_7;
+    J.wa_y = fa_z_x * wa_x_5 - fa_x_x * wa_x_4 + fa_x_z * wa_y_1 - fa_z_z * wa_y_2;
+    J.wa_z = fa_x_x * wa_x_6 - fa_z_x * wa_x_7 - fa_x_y * wa_y_1 + fa_z_y * wa_y_2;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+    const InverseMass<T>& ma = m[0];
+    K[0] = J.wa_x * (ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z) + J.wa_y *
+        (ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z) + J.wa_z *
+        (ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z);
+  }
+
+  // J v: 2 +, 3 *
+  template <class T>
+  static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+    const Velocity<T>& va = v[0];
+    Jv[0] = J.wa_x * va.wx + J.wa_y * va.wy + J.wa_z * va.wz;
+  }
+
+  // v += M^-1 J^T lambda: 9 +, 12 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+      Velocity<T> (&v)[2]) {
+    const Velocity<T> va = v[0];
+    const InverseMass<T>& ma = m[0];
+    const T v1_1 = J.wa_x * lambda[0];
+    const T v1_2 = lambda[0] * J.wa_y;
+    const T v1_3 = lambda[0] * J.wa_z;
+    v[0].wx = va.wx + v1_1 * ma.Ixx + v1_2 * ma.Ixy + v1_3 * ma.Ixz;
+    v[0].wy = va.wy + v1_1 * ma.Ixy + v1_2 * ma.Iyy + v1_3 * ma.Iyz;
+    v[0].wz = va.wz + v1_1 * ma.Ixz + v1_2 * ma.Iyz + v1_3 * ma.Izz;
+  }
+
+  // J with its zeros: v, w of each body: nothing
+  template <class T>
+  static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    D[0][3] = J.wa_x;
+    D[0][4] = J.wa_y;
+    D[0][5] = J.wa_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const InverseMass<T>& ma = m[0];
+    D[0][3] = ma.Ixx * J.wa_x + ma.Ixy * J.wa_y + ma.Ixz * J.wa_z;
+    D[0][4] = ma.Ixy * J.wa_x + ma.Iyy * J.wa_y + ma.Iyz * J.wa_z;
+    D[0][5] = ma.Ixz * J.wa_x + ma.Iyz * J.wa_y + ma.Izz * J.wa_z;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&K)[1]) {
+    const IsotropicInverseMass<T>& ma = m[0];
+    K[0] = ma.I * (J.wa_x * J.wa_x + J.wa_y * J.wa_y + J.wa_z * J.wa_z);
+  }
+
+  // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      const T (&lambda)[1], Velocity<T> (&v)[2]) {
+    const Velocity<T> va = v[0];
+    const IsotropicInverseMass<T>& ma = m[0];
+    const T v1_1 = ma.I * lambda[0];
+    v[0].wx = va.wx + v1_1 * J.wa_x;
+    v[0].wy = va.wy + v1_1 * J.wa_y;
+    v[0].wz = va.wz + v1_1 * J.wa_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const IsotropicInverseMass<T>& ma = m[0];
+    D[0][3] = ma.I * J.wa_x;
+    D[0][4] = ma.I * J.wa_y;
+    D[0][5] = ma.I * J.wa_z;
+  }
+};
+
+// six_dof::twist_z with a immovable: its velocity and inverse mass are zero and gone.
+struct six_dof::twist_z::a_immovable : six_dof::twist_z {
+  static constexpr int immovable_body = 0;
+
+  template <class T>
+  struct Jacobian {
+    T wb_x, wb_y, wb_z;
+  };
+
+  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  template <class T>
+  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+      Jacobian<T>& J) {
+    using std::atan2;
+    const Pose<T>& a = q[0];
+    const Pose<T>& b = q[1];
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+    const T C1_1 = dot_fa_y_fb_x - dot_fa_x_fb_y;
+    const T C1_2 = dot_fa_x_fb_x + dot_fa_y_fb_y;
+    const T wb_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+    const T wb_x_2 = C1_2 * wb_x_1;
+    const T wb_x_3 = C1_1 * wb_x_1;
+    const T wb_x_4 = wb_x_2 * fa_y_z - wb_x_3 * fa_x_z;
+    const T wb_x_5 = wb_x_2 * fa_x_z + wb_x_3 * fa_y_z;
+    const T wb_x_6 = wb_x_2 * fa_y_y - wb_x_3 * fa_x_y;
+    const T wb_x_7 = wb_x_2 * fa_x_y + wb_x_3 * fa_y_y;
+    const T wb_y_1 = wb_x_2 * fa_y_x - wb_x_3 * fa_x_x;
+    const T wb_y_2 = wb_x_2 * fa_x_x + wb_x_3 * fa_y_x;
+    C[0] = atan2(C1_1, C1_2);
+    J.wb_x = fb_x_y * wb_x_4 - fb_y_y * wb_x_5 - fb_x_z * wb_x_6 + fb_y_z * wb_x_7;
+    J.wb_y = fb_y_x * wb_x_5 - fb_x_x * wb_x_4 + fb_x_z * wb_y_1 - fb_y_z * wb_y_2;
+    J.wb_z = fb_x_x * wb_x_6 - fb_y_x * wb_x_7 - fb_x_y * wb_y_1 + fb_y_y * wb_y_2;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[1]) {
+    const InverseMass<T>& mb = m[1];
+    K[0] = J.wb_x * (mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z) + J.wb_y *
+        (mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z) + J.wb_z *
+        (mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z);
+  }
+
+  // J v: 2 +, 3 *
+  template <class T>
+  static void velocity(const Jacobian<T>& J, const Velocity<T> (&v)[2], T (&Jv)[1]) {
+    const Velocity<T>& vb = v[1];
+    Jv[0] = J.wb_x * vb.wx + J.wb_y * vb.wy + J.wb_z * vb.wz;
+  }
+
+  // v += M^-1 J^T lambda: 9 +, 12 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const InverseMass<T> (&m)[2], const T (&lambda)[1],
+      Velocity<T> (&v)[2]) {
+    const Velocity<T> vb = v[1];
+    const InverseMass<T>& mb = m[1];
+    const T v2_1 = J.wb_x * lambda[0];
+    const T v2_2 = lambda[0] * J.wb_y;
+    const T v2_3 = lambda[0] * J.wb_z;
+    v[1].wx = vb.wx + v2_1 * mb.Ixx + v2_2 * mb.Ixy + v2_3 * mb.Ixz;
+    v[1].wy = vb.wy + v2_1 * mb.Ixy + v2_2 * mb.Iyy + v2_3 * mb.Iyz;
+    v[1].wz = vb.wz + v2_1 * mb.Ixz + v2_2 * mb.Iyz + v2_3 * mb.Izz;
+  }
+
+  // J with its zeros: v, w of each body: nothing
+  template <class T>
+  static void dense(const Jacobian<T>& J, T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    D[0][9] = J.wb_x;
+    D[0][10] = J.wb_y;
+    D[0][11] = J.wb_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense: 6 +, 9 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const InverseMass<T>& mb = m[1];
+    D[0][9] = mb.Ixx * J.wb_x + mb.Ixy * J.wb_y + mb.Ixz * J.wb_z;
+    D[0][10] = mb.Ixy * J.wb_x + mb.Iyy * J.wb_y + mb.Iyz * J.wb_z;
+    D[0][11] = mb.Ixz * J.wb_x + mb.Iyz * J.wb_y + mb.Izz * J.wb_z;
+  }
+
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 2 +, 4 *
+  template <class T>
+  static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&K)[1]) {
+    const IsotropicInverseMass<T>& mb = m[1];
+    K[0] = mb.I * (J.wb_x * J.wb_x + J.wb_y * J.wb_y + J.wb_z * J.wb_z);
+  }
+
+  // v += M^-1 J^T lambda, for sphere-like bodies: 3 +, 4 *
+  template <class T>
+  static void apply(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      const T (&lambda)[1], Velocity<T> (&v)[2]) {
+    const Velocity<T> vb = v[1];
+    const IsotropicInverseMass<T>& mb = m[1];
+    const T v2_1 = mb.I * lambda[0];
+    v[1].wx = vb.wx + v2_1 * J.wb_x;
+    v[1].wy = vb.wy + v2_1 * J.wb_y;
+    v[1].wz = vb.wz + v2_1 * J.wb_z;
+  }
+
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 3 *
+  template <class T>
+  static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
+      T (&D)[1][12]) {
+    for (auto& row : D) {
+      for (T& entry : row) entry = T(0);
+    }
+    const IsotropicInverseMass<T>& mb = m[1];
+    D[0][9] = mb.I * J.wb_x;
+    D[0][10] = mb.I * J.wb_y;
+    D[0][11] = mb.I * J.wb_z;
+  }
+};
+
+// six_dof::twist_z with b immovable: its velocity and inverse mass are zero and gone.
+struct six_dof::twist_z::b_immovable : six_dof::twist_z {
+  static constexpr int immovable_body = 1;
+
+  template <class T>
+  struct Jacobian {
+    T wa_x, wa_y, wa_z;
+  };
+
+  // C and J: 50 +, 76 *, 1 /, 1 <, 1 call
+  template <class T>
+  static void jacobian(const Pose<T> (&q)[2], const Parameters<T>& p, T, T (&C)[1],
+      Jacobian<T>& J) {
+    using std::atan2;
+    const Pose<T>& a = q[0];
+    const Pose<T>& b = q[1];
+    const T fa_x_x = a.xx * p.fa_x_x + a.xy * p.fa_x_y + a.xz * p.fa_x_z;
+    const T fa_x_y = a.yx * p.fa_x_x + a.yy * p.fa_x_y + a.yz * p.fa_x_z;
+    const T fb_x_x = b.xx * p.fb_x_x + b.xy * p.fb_x_y + b.xz * p.fb_x_z;
+    const T fb_x_y = b.yx * p.fb_x_x + b.yy * p.fb_x_y + b.yz * p.fb_x_z;
+    const T fa_x_z = a.zx * p.fa_x_x + a.zy * p.fa_x_y + a.zz * p.fa_x_z;
+    const T fb_x_z = b.zx * p.fb_x_x + b.zy * p.fb_x_y + b.zz * p.fb_x_z;
+    const T dot_fa_x_fb_x = fa_x_x * fb_x_x + fa_x_y * fb_x_y + fa_x_z * fb_x_z;
+    const T fb_y_x = b.xx * p.fb_y_x + b.xy * p.fb_y_y + b.xz * p.fb_y_z;
+    const T fb_y_y = b.yx * p.fb_y_x + b.yy * p.fb_y_y + b.yz * p.fb_y_z;
+    const T fb_y_z = b.zx * p.fb_y_x + b.zy * p.fb_y_y + b.zz * p.fb_y_z;
+    const T dot_fa_x_fb_y = fa_x_x * fb_y_x + fa_x_y * fb_y_y + fa_x_z * fb_y_z;
+    const T fa_y_x = a.xx * p.fa_y_x + a.xy * p.fa_y_y + a.xz * p.fa_y_z;
+    const T fa_y_y = a.yx * p.fa_y_x + a.yy * p.fa_y_y + a.yz * p.fa_y_z;
+    const T fa_y_z = a.zx * p.fa_y_x + a.zy * p.fa_y_y + a.zz * p.fa_y_z;
+    const T dot_fa_y_fb_x = fa_y_x * fb_x_x + fa_y_y * fb_x_y + fa_y_z * fb_x_z;
+    const T dot_fa_y_fb_y = fa_y_x * fb_y_x + fa_y_y * fb_y_y + fa_y_z * fb_y_z;
+    const T C1_1 = dot_fa_y_fb_x - dot_fa_x_fb_y;
+    const T C1_2 = dot_fa_x_fb_x + dot_fa_y_fb_y;
+    const T wa_x_1 = inverse(C1_2 * C1_2 + C1_1 * C1_1);
+    const T wa_x_2 = C1_2 * wa_x_1;
+    const T wa_x_3 = C1_1 * wa_x_1;
+    const T wa_x_4 = wa_x_2 * fb_y_z + wa_x_3 * fb_x_z;
+    const T wa_x_5 = wa_x_2 * fb_x_z - wa_x_3 * fb_y_z;
+    const T wa_x_6 = wa_x_2 * fb_y_y + wa_x_3 * fb_x_y;
+    const T wa_x_7 = wa_x_2 * fb_x_y - wa_x_3 * fb_y_y;
+    const T wa_y_1 = wa_x_2 * fb_y_x + wa_x_3 * fb_x_x;
+    const T wa_y_2 = wa_x_2 * fb_x_x - wa_x_3 * fb_y_x;
+    C[0] = atan2(C1_1, C1_2);
+    J.wa_x = fa_y_y * wa_x_5 - fa_x_y * wa_x_4 + fa_x_z * wa_x_6 - fa_y_z * wa_x_7;
+    J.wa_y = fa_x_x * wa_x_4 - fa_y_x * wa_x_5 - fa_x_z * wa_y_1 + fa_y_z * wa_y_2;
+    J.wa_z = fa_y_x * wa_x_7 - fa_x_x * wa_x_6 + fa_x_y * wa_y_1 - fa_y_y * wa_y_2;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 8 +, 12 *

@@ -35,7 +35,7 @@ double force_norm(const spatial::Wrench& w) { return std::hypot(w.force_x, w.for
 bool Finding::held() const { return std::isfinite(value) && value <= bound; }
 
 Trial::Trial(const std::string& scene_file, const Way& the_way)
-    : way(the_way), scene(read_scene(std::string(CDOT_HARD_CASES) + "/" + scene_file + ".toml")) {
+    : file(scene_file), way(the_way), scene(read_scene(std::string(CDOT_HARD_CASES) + "/" + scene_file + ".toml")) {
   scene.settings.solver = way.solver;
   scene.settings.integrator = way.integrator;
 }
@@ -61,7 +61,7 @@ Watch Trial::run(double seconds, double step_of, const std::function<void()>& ea
     step(by);
     const Frame now = frame();
     watch.finite = cdot::finite(now) && std::isfinite(now.worst.value);
-    watch.gap = std::max(watch.gap, now.worst.joint < 0 ? 0 : norm_of_error(now.worst.joint));
+    watch.gap = std::max(watch.gap, gap());
     watch.rise = std::max(watch.rise, now.energy - start);
     watch.fall = std::max(watch.fall, start - now.energy);
     for (const BodyState& b : now.bodies) watch.speed = std::max(watch.speed, std::hypot(b.vx, b.vy, b.vz));
@@ -88,7 +88,10 @@ double Trial::norm_of_error(int joint) const {
 }
 double Trial::gap() const {
   const WorstError worst = ask([](const auto& world) { return world.worst_position_error(); });
-  return worst.joint < 0 ? 0 : norm_of_error(worst.joint);
+  if (worst.joint < 0) return 0;
+  const auto kinds = ask([&](const auto& world) { return world.joint_type(worst.joint).row_kinds; });
+  const bool one_sided = std::count(kinds.begin(), kinds.end(), RowKind::inequality) > 0;
+  return one_sided ? worst.value : norm_of_error(worst.joint);  // C > 0 is slack
 }
 double Trial::force(int joint) const {
   return ask([&](const auto& world) { return force_norm(world.reaction(joint, world.joint_bodies(joint).back())); });

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "runtime/effects.hpp"
 #include "runtime/run_frame.hpp"
 #include "runtime/scene.hpp"
 #include "tests/hard_cases/ways.hpp"
@@ -42,6 +43,7 @@ class Trial {
  public:
   Trial(const std::string& scene_file, const Way& way);
 
+  const std::string file;  // below this folder, without .toml
   const Way way;
   Scene scene;  // may be changed until start()
 

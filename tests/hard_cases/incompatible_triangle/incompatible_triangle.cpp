@@ -14,7 +14,10 @@ void settle(Trial& t) {
   t.at_most("energy after 1 s [J]", energy, 1e-6);
   t.at_most("its growth after that [J]", w.rise, 1e-12);
   t.at_most("gap moves by [m]", std::abs(t.gap() - gap), 1e-6);
-  t.at_most("gap [m]", w.gap, 0.0201);
+  if (t.way.solver == Solver::direct)  // shared by all three joints: that is the least sum of squares
+    t.near("gap off 0.02 / 3 [m]", w.gap, 0.02 / 3, 1e-9, 1e-6);
+  else
+    t.at_most("gap [m]", w.gap, 0.02);
 }
 
 const Register planar({"incompatible_triangle", "planar", all_ways(), settle});

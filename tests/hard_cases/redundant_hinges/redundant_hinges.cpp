@@ -38,7 +38,7 @@ void swing(Trial& four) {
   four.at_most("gap [m]", four.gap(), 1e-6, 1e-5);
 }
 
-const Register spatial({"redundant_hinges", "spatial", all_ways(), swing});
+const Register spatial({"redundant_hinges", "spatial", direct() + without(iterative(), {Integrator::implicit}), swing});
 
 }  // namespace
 }  // namespace cdot::hard

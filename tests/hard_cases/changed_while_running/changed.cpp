@@ -1,0 +1,58 @@
+// Rows, patterns and islands change between two steps.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/hard_cases/trial.hpp"
+
+namespace cdot::hard {
+namespace {
+
+// A joint that welds two rods as they just stand takes their relative spin away, and nothing is thrown about: the
+// energy falls by what the least impulse takes, and later by nothing.
+void add(Trial& t) {
+  t.start();
+  t.run(0.5);
+  t.change([](auto& world) {
+    const bool planar = std::is_same_v<std::decay_t<decltype(world)>, World<double>> ||
+                        std::is_same_v<std::decay_t<decltype(world)>, World<float>>;
+    if (planar)
+      world.add_joint({"angle", {1, 2}, {}, {}});
+    else
+      world.add_joint({"relative_orientation", {1, 2}, {{"fa", {1, 0, 0}}}, {}});
+  });
+  const Watch w = t.run(2);
+  t.at_most("gap [m, rad]", w.gap, 1e-3);
+  t.at_most("energy gained, of the fall's", w.rise / (4 * g * 2), 5e-3);
+}
+
+// A pin that breaks: the rods below fall freely, the centre of their mass by g t^2 / 2.
+void remove(Trial& t) {
+  const int pin = t.joint_named("pin2");
+  t.start();
+  t.run(0.5);
+  t.change([&](auto& world) { set_breaking_load(world, pin, 1e-3); });
+  t.step(1.0 / 240);
+  t.at_most("not broken", t.ask([&](const auto& world) { return world.broken(pin) ? 0.0 : 1.0; }), 0);
+  const bool planar = t.scene.dimension == Dimension::planar;
+  const auto height = [&] {
+    const BodyState a = t.body("rod3"), b = t.body("rod4");
+    return planar ? 0.5 * (a.y + b.y) : 0.5 * (a.z + b.z);
+  };
+  const auto speed = [&] {
+    const BodyState a = t.body("rod3"), b = t.body("rod4");
+    return planar ? 0.5 * (a.vy + b.vy) : 0.5 * (a.vz + b.vz);
+  };
+  const double y = height(), v = speed();
+  const Watch w = t.run(1);
+  // A method of first order takes the gravity of a step at its start or its end: half a step's speed.
+  t.near("free fall after 1 s [m]", height() - y, v - 0.5 * g, g / 480 + 1e-9, g / 480 + 1e-3);
+  t.at_most("gap [m]", w.gap, 1e-4);
+}
+
+const Register planar({"changed_while_running", "planar", all_ways(), add, "a joint added"});
+const Register spatial({"changed_while_running", "spatial", all_ways(), add, "a joint added"});
+const Register planar_remove({"changed_while_running", "planar", all_ways(), remove, "a joint broken"});
+const Register spatial_remove({"changed_while_running", "spatial", all_ways(), remove, "a joint broken"});
+
+}  // namespace
+}  // namespace cdot::hard

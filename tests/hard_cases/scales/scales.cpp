@@ -1,0 +1,68 @@
+// Equations of motion have no scale: neither may thresholds.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/hard_cases/trial.hpp"
+
+namespace cdot::hard {
+namespace {
+
+void scale(Scene& scene, double length, double mass) {
+  for (SceneBody& body : scene.bodies) {
+    BodyDefinition& b = body.definition;
+    SpatialBodyDefinition& s = body.spatial;
+    for (double* x : {&b.x, &b.y, &s.x, &s.y, &s.z}) *x *= length;
+    for (double* m : {&b.mass, &s.mass}) *m *= mass;
+    for (double* I : {&b.inertia, &s.inertia.xx, &s.inertia.yy, &s.inertia.zz}) *I *= mass * length * length;
+  }
+  for (SceneJoint& joint : scene.joints)
+    for (NamedValue& value : joint.definition.parameters)
+      if (value.name == "pa" || value.name == "pb")
+        for (double& number : value.numbers) number *= length;
+  scene.settings.gravity_y *= length;
+  scene.settings.gravity_z *= length;
+}
+
+// Against the same mechanism of metres and kilograms.
+void swing(Trial& t, double length, double mass) {
+  Trial usual(t.file, t.way);
+  usual.start();
+  scale(t.scene, length, mass);
+  t.start();
+  double apart = 0, gap = 0;
+  for (int k = 0; k < 480; ++k) {
+    usual.step(1.0 / 240);
+    t.step(1.0 / 240);
+    gap = std::max(gap, t.gap() / length);
+    const Frame a = usual.frame(), b = t.frame();
+    for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+      const BodyState &p = a.bodies[i], &q = b.bodies[i];
+      apart = std::max(apart, std::hypot(p.x - q.x / length, p.y - q.y / length, p.z - q.z / length));
+    }
+  }
+  t.at_most("gap, of a rod's length", gap, 1e-9, 1e-4);
+  t.at_most("apart from the usual size, of a rod's length", apart, 1e-6, 1e-2);
+}
+
+struct Scale {
+  const char* name;
+  double length, mass;
+  Ways ways;
+};
+
+struct RegisterAll {
+  RegisterAll() {
+    const Ways all = in_double(direct()), exact = in_double(only(direct(), {Integrator::dop853}));
+    const Ways float_too = all + only(direct(), {Integrator::rk4, Integrator::dop853});
+    const Scale scales[] = {{"1e-6 m, 1e-9 kg", 1e-6, 1e-9, exact},     {"1e-6 m, 1e9 kg", 1e-6, 1e9, exact},
+                            {"1e-3 m, 1e-6 kg", 1e-3, 1e-6, float_too}, {"1e3 m, 1e6 kg", 1e3, 1e6, float_too},
+                            {"1e6 m, 1e-9 kg", 1e6, 1e-9, float_too},   {"1e6 m, 1e9 kg", 1e6, 1e9, float_too}};
+    for (const char* space : {"planar", "spatial"})
+      for (const Scale& s : scales)
+        Register({"scales", space, s.ways, [length = s.length, mass = s.mass](Trial& t) { swing(t, length, mass); },
+                  s.name});
+  }
+} const all;
+
+}  // namespace
+}  // namespace cdot::hard
