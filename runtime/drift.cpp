@@ -20,7 +20,7 @@ template <class S>
 void settle_poses(WorldState<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
-  if (!(island.residual > foreign<T>)) return;
+  if (!(island.residual > foreign<T> * island.scale)) return;
   clear_correction(world, island);
   hold_poses(world, island, T(world.time), true);
   island.evaluated = island.factored = false;

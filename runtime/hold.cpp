@@ -65,7 +65,7 @@ void newton(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bo
   for (int round = 0; round < newton_rounds; ++round) {
     T worst = find_errors(world, island, time);
     island.residual = worst;
-    if (!(worst > converged<T>)) return;
+    if (!(worst > converged<T> * island.scale)) return;
     const bool slow = worst > T(0.5) * before;
     if (slow && renewed) return;
     if (slow || (fresh && round == 0)) {

@@ -6,7 +6,7 @@
 
 namespace cdot {
 
-// C this small is left alone, in metres and radians: mechanisms are of the order of 1 m.
+// C this small is left alone, in metres and radians, times Island::scale.
 template <class T>
 inline constexpr T converged = std::is_same_v<T, double> ? T(1e-13) : T(1e-6);
 

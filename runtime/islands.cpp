@@ -166,6 +166,7 @@ void prepare_topology(WorldState<S>& world) {
   world.awake.clear();
   for (int i = 0; i < static_cast<int>(world.islands.size()); ++i) {
     Island<S>& island = world.islands[i];
+    measure_size(world, island);
     if (world.settings.solver == Solver::direct) island.system.build(island.segments, world.bodies);
     island.flow.pose.resize(island.bodies.size());
     island.flow.velocity.resize(island.bodies.size());

@@ -66,6 +66,7 @@ struct Planar {
 
   // A pose as plain numbers, for integrators that combine them: {x, y, angle}, and their rates of change.
   static constexpr int pose_numbers = 3;
+  static constexpr int lengths = 2;  // the first of these, and of a Velocity
   static void write(const Pose& q, T* to) { to[0] = q.x, to[1] = q.y, to[2] = q.angle; }
   static Pose read(const T* from) { return pose(from[0], from[1], from[2]); }
   static void write(const Velocity& v, T* to) { to[0] = v.x, to[1] = v.y, to[2] = v.w; }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/events.hpp"
 #include "runtime/hold.hpp"
@@ -32,6 +33,25 @@ void combine(Flow<S>& flow, const double* weights, int count, typename S::Scalar
     for (size_t k = 0; k < n; ++k) flow.now[k] += weight * rates[k];
   }
   for (size_t k = 0; k < n; ++k) flow.now[k] = flow.start[k] + h * flow.now[k];
+}
+
+// The largest of the embedded estimates, number by number in units of unit(k).
+template <class S, class F>
+double estimated_error(const Flow<S>& flow, const RungeKutta& method, typename S::Scalar h, F unit) {
+  const size_t n = flow.now.size();
+  double worst[2] = {0, 0};
+  for (size_t k = 0; k < n; ++k) {
+    for (int estimate = 0; estimate < 2; ++estimate) {
+      double sum = 0;
+      for (int j = 0; j <= method.stages; ++j)
+        if (method.error[estimate][j] != 0)
+          sum += method.error[estimate][j] * double(flow.rates[static_cast<size_t>(j) * n + k]);
+      const double error = std::abs(double(h) * sum) / unit(k);
+      if (!(error <= worst[estimate])) worst[estimate] = error;
+    }
+  }
+  if (worst[1] == 0) return worst[0];
+  return worst[0] * worst[0] / std::sqrt(worst[0] * worst[0] + 0.01 * worst[1] * worst[1]);
 }
 
 }  // namespace
@@ -97,26 +117,21 @@ void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& metho
   read_rates(world, island, method.stages);
 }
 
-// The estimated error of the step. Velocities: relative where they exceed 1.
 template <class S>
 double error_of_step(const Island<S>& island, const RungeKutta& method, typename S::Scalar h) {
-  const Flow<S>& flow = island.flow;
-  const size_t n = flow.now.size();
-  double worst[2] = {0, 0};
-  for (size_t k = 0; k < n; ++k) {
+  return estimated_error(island.flow, method, h, [&](size_t k) {
     const bool velocity = k % numbers_per_body<S> >= S::pose_numbers;
-    const double size = velocity ? 1 + std::abs(double(flow.start[k])) : 1;
-    for (int estimate = 0; estimate < 2; ++estimate) {
-      double sum = 0;
-      for (int j = 0; j <= method.stages; ++j)
-        if (method.error[estimate][j] != 0)
-          sum += method.error[estimate][j] * double(flow.rates[static_cast<size_t>(j) * n + k]);
-      const double error = std::abs(double(h) * sum) / size;
-      if (!(error <= worst[estimate])) worst[estimate] = error;
-    }
-  }
-  if (worst[1] == 0) return worst[0];
-  return worst[0] * worst[0] / std::sqrt(worst[0] * worst[0] + 0.01 * worst[1] * worst[1]);
+    return velocity ? 1 + std::abs(double(island.flow.start[k])) : 1.0;
+  });
+}
+
+template <class S>
+double share_of_size(const Island<S>& island, const RungeKutta& method, typename S::Scalar h) {
+  return estimated_error(island.flow, method, h, [&](size_t k) {
+    const auto number = k % numbers_per_body<S>;
+    if (number >= S::pose_numbers) return std::numeric_limits<double>::infinity();
+    return number < S::lengths ? double(island.size) : 1.0;
+  });
 }
 
 template <class S>
@@ -146,17 +161,18 @@ void go_back(WorldState<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
 }
 
-#define CDOT_INSTANTIATE(S)                                                                            \
-  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                      \
-  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                       \
-  template void take_stage(WorldState<S>&, Island<S>&, const RungeKutta&, int, S::Scalar, S::Scalar);  \
-  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                                   \
-  template void prepare_flow(Island<S>&, const RungeKutta&);                                           \
-  template void keep_start(const WorldState<S>&, Island<S>&);                                          \
-  template void go_back(WorldState<S>&, Island<S>&);                                                   \
-  template void take_stages(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar, S::Scalar);      \
-  template void settle_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);                  \
-  template double error_of_step(const Island<S>&, const RungeKutta&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                                                           \
+  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                     \
+  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                      \
+  template void take_stage(WorldState<S>&, Island<S>&, const RungeKutta&, int, S::Scalar, S::Scalar); \
+  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                                  \
+  template void prepare_flow(Island<S>&, const RungeKutta&);                                          \
+  template void keep_start(const WorldState<S>&, Island<S>&);                                         \
+  template void go_back(WorldState<S>&, Island<S>&);                                                  \
+  template void take_stages(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar, S::Scalar);     \
+  template void settle_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);                 \
+  template double error_of_step(const Island<S>&, const RungeKutta&, S::Scalar);                      \
+  template double share_of_size(const Island<S>&, const RungeKutta&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -92,14 +92,14 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool direct, Visitor& visit) {
-    auto& [bodies, segments, springs, drags, gyroscopes, system, redundant_rows, restless, residual, evaluated,
+    auto& [bodies, segments, springs, drags, gyroscopes, system, redundant_rows, size, scale, restless, residual, evaluated,
            factored, continuous, flow, asleep, rested] = island;
     visit.item("island.flags", index);
     visit(evaluated), visit(factored), visit(continuous), visit(asleep);
     visit.item("island.rows", index);
     visit(redundant_rows);
     for (Segment<S>& segment : segments) visit(segment.end);
-    visit.item("island.residual", index), visit(residual);
+    visit.item("island.residual", index), visit(residual), visit(size), visit(scale);
     visit.item("island.rested", index), visit(rested);
     each_of_flow(flow, index, visit);
     // The iterative solver needs none; projecting the start makes one nevertheless.

@@ -152,6 +152,7 @@ struct Spatial {
   // Off the unit sphere, where stages of a step lie, e stands for e / |e|: along the sphere the field is the same, so
   // that a method keeps its order.
   static constexpr int pose_numbers = 7;
+  static constexpr int lengths = 3;  // the first of these, and of a Velocity
   static void write(const Pose& q, T* to) {
     to[0] = q.x, to[1] = q.y, to[2] = q.z;
     to[3] = q.e0, to[4] = q.e1, to[5] = q.e2, to[6] = q.e3;

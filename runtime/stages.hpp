@@ -10,6 +10,10 @@ namespace cdot {
 template <class S>
 void prepare_topology(WorldState<S>& world);
 
+// Island::size and ::scale, from the present poses.
+template <class S>
+void measure_size(WorldState<S>& world, Island<S>& island);
+
 // velocity += h M^-1 f: constant forces, gravity, springs between points, drag.
 template <class S>
 void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h);

@@ -99,13 +99,13 @@ bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scal
   for (int vain = 0;;) {
     drift(world, island, h);
     island.residual = find_errors(world, island, time);
-    if (!(island.residual > round_off<T>)) return true;
+    if (!(island.residual > round_off<T> * island.scale)) return true;
     if (island.residual < T(0.7) * least)
       least = island.residual, vain = 0;
-    else if (island.residual <= converged<T>)  // round-off may stop it earlier than that
+    else if (island.residual <= converged<T> * island.scale)  // round-off may stop it earlier than that
       return true;
     else if (++vain > most_in_vain)
-      return island.residual <= T(10) * converged<T>;
+      return island.residual <= T(10) * converged<T> * island.scale;
     solve_errors(island, T(-1) / h);
     if (!island.flow.search.next(system.lambda.data())) return false;
     apply_solution(world, island, world.bodies.velocity.data());

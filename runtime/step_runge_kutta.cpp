@@ -18,11 +18,11 @@ namespace {
 constexpr int most_events = 32, most_slivers = 1000;
 constexpr double sliver = 1e-4;  // of the longest step so far
 constexpr int most_rejections = 30;  // in a row
-// [m], [rad], of velocities relative: a step whose error is estimated above this has nothing to do with the motion, as
-// where a distance passes through 0, or tension makes a chain stiffer than the step can follow.
+// In units of the mechanism's size, and [rad]: a step whose error is estimated above this has nothing to do with the
+// motion, as where tension makes a chain stiffer than the step can follow.
 constexpr double absurd = 0.3;
 template <class S>
-constexpr auto slight_displacement = typename S::Scalar(1e-6);  // [m], [rad]
+constexpr auto slight_displacement = typename S::Scalar(1e-6);  // of its size, and [rad]
 constexpr int most_searches = 60;    // for one event
 constexpr int furthest_reach = 64;   // of a step of its own length, in step()s
 
@@ -95,7 +95,9 @@ T length_of_step(T best, T left, T reach) {
 // directions of a joint turn round, as those of a rope do where its length passes through 0.
 template <class S>
 bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S::Scalar h) {
-  const auto slight = [&](int i) { return S::slower(world.bodies.displacement[i], slight_displacement<S>); };
+  const auto slight = [&](int i) {
+    return S::slower(world.bodies.displacement[i], slight_displacement<S> * island.size);
+  };
   if (std::all_of(island.bodies.begin(), island.bodies.end(), slight)) return false;
   return !bends_the_path(world, island, double(h));
 }
@@ -109,14 +111,17 @@ typename S::Scalar take_step(WorldState<S>& world, Island<S>& island, const Rung
   Flow<S>& flow = island.flow;
   const bool adaptive = world.settings.local_error > 0;
   const T proposed = flow.next_step;
-  const double allowed = adaptive ? world.settings.local_error : absurd;
   T h = adaptive ? length_of_step(proposed, left, reach) : left;
+  const auto error_now = [&] {
+    return adaptive ? error_of_step(island, method, h) / world.settings.local_error
+                    : share_of_size(island, method, h) / absurd;
+  };
   for (int attempt = 0; attempt <= most_rejections; ++attempt) {
     take_stages(world, island, method, time, h);
-    double error = method.error_at_end ? 0 : error_of_step(island, method, h) / allowed;
+    double error = method.error_at_end ? 0 : error_now();
     if (error <= 1) {
       settle_end(world, island, method, time + h);
-      if (method.error_at_end) error = error_of_step(island, method, h) / allowed;
+      if (method.error_at_end) error = error_now();
       if (went_astray(world, island, h)) error = std::numeric_limits<double>::infinity();
     }
     if (!adaptive) return error <= 1 ? h : T(0);

@@ -81,6 +81,8 @@ struct Island {
   std::vector<int> gyroscopes;                      // into WorldState::gyroscopes
   System<S> system;                                 // of the direct solver and of projections
   int redundant_rows = 0;                           // of the last factorisation
+  T size = 1;   // its longest arm or distance between joined bodies [m]
+  T scale = 1;  // ten times that, but at most 1: by how much less than for others C must be to be small
   bool restless = false;                            // driven by time: never sleeps
   T residual = std::numeric_limits<T>::infinity();  // largest C left by the last correction
   bool evaluated = false;                           // C and J belong to the present poses
