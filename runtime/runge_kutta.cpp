@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "runtime/events.hpp"
 #include "runtime/hold.hpp"
@@ -128,9 +127,10 @@ double error_of_step(const Island<S>& island, const RungeKutta& method, typename
 template <class S>
 double share_of_size(const Island<S>& island, const RungeKutta& method, typename S::Scalar h) {
   return estimated_error(island.flow, method, h, [&](size_t k) {
-    const auto number = k % numbers_per_body<S>;
-    if (number >= S::pose_numbers) return std::numeric_limits<double>::infinity();
-    return number < S::lengths ? double(island.size) : 1.0;
+    const int number = static_cast<int>(k % numbers_per_body<S>), of_velocity = number - S::pose_numbers;
+    const bool velocity = of_velocity >= 0;
+    const double size = (velocity ? of_velocity : number) < S::lengths ? double(island.size) : 1.0;
+    return velocity ? size + std::abs(double(island.flow.start[k])) : size;
   });
 }
 

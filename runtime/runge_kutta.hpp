@@ -50,7 +50,7 @@ void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& metho
 // The estimated error of the step [m], [rad], [m/s], [rad/s]; of velocities relative where they exceed 1.
 template <class S>
 double error_of_step(const Island<S>& island, const RungeKutta& method, typename S::Scalar h);
-// The same of poses alone, in units of Island::size and of a radian.
+// The same in units of Island::size and of a radian, of velocities relative where they exceed that per second.
 template <class S>
 double share_of_size(const Island<S>& island, const RungeKutta& method, typename S::Scalar h);
 
