@@ -87,8 +87,24 @@ void drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
     for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
 }
 
+// The half step turned the bodies' velocities round: 2 |change| > |v| in the metric of the masses.
+template <class S>
+bool turned_round(const WorldState<S>& world, const Island<S>& island) {
+  double change = 0, before = 0;
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    const int i = island.bodies[k];
+    const auto& m = world.bodies.inverse_mass[i];
+    const auto& start = island.flow.velocity[k];
+    const auto d = S::sum(world.bodies.velocity[i], start, typename S::Scalar(-1));
+    change += S::dot(S::force(m, d), d);
+    before += S::dot(S::force(m, start), start);
+  }
+  return 4 * change > before;
+}
+
 // From the factor of the start: K lambda = -C / h, velocity += M^-1 J^T lambda, and the drift again, with what Broyden
-// learns on the way. False if the error does not shrink: the step is too long for it.
+// learns on the way. False if the error does not shrink, the step being too long for it; or if it did so by throwing the
+// bodies back, where a joint's directions turn round as those of a rope do whose length passes through 0.
 template <class S>
 bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -96,16 +112,18 @@ bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scal
   System<S>& system = island.system;
   island.flow.search.begin([&](size_t row) { return system.diagonal(static_cast<int>(row)); });
   T least = std::numeric_limits<T>::infinity();
+  bool astray = false;
   for (int vain = 0;;) {
     drift(world, island, h);
     island.residual = find_errors(world, island, time);
-    if (!(island.residual > round_off<T> * island.scale)) return true;
+    if (!(island.residual > round_off<T> * island.scale)) return !astray || !turned_round(world, island);
     if (island.residual < T(0.7) * least)
       least = island.residual, vain = 0;
     else if (island.residual <= converged<T> * island.scale)  // round-off may stop it earlier than that
-      return true;
+      return !astray || !turned_round(world, island);
     else if (++vain > most_in_vain)
       return island.residual <= T(10) * converged<T> * island.scale;
+    astray |= vain > 0;
     solve_errors(island, T(-1) / h);
     if (!island.flow.search.next(system.lambda.data())) return false;
     apply_solution(world, island, world.bodies.velocity.data());
@@ -162,14 +180,16 @@ void start_half(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 }
 
 // Where the drift of RATTLE does not find the joints, and by sweeps: poses go there with J renewed on the way. The
-// displacement over h belongs to the velocities, and what caused it to the impulses.
+// displacement over h belongs to the velocities, and what caused it to the impulses; unless it undoes the
+// motion. (Sweeps leave something of it to the next step, and need all that they found.)
 template <class S>
 void drift_with_renewed_directions(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   drift(world, island, h);
   scale_corrections(island, h);
   hold_poses(world, island, T(world.time) + h, false);
-  add_corrections(world, island, T(1) / h);
+  const bool keep = world.settings.solver == Solver::iterative || bends_the_path(world, island, double(h));
+  add_corrections(world, island, keep ? T(1) / h : T(0));
 }
 
 }  // namespace

@@ -28,13 +28,9 @@ void pull(Trial& t) {
 }
 
 const Register planar({"pulley_at_zero_rope", "planar",
-                       without(direct(), {Integrator::rattle}) +
-                           only(iterative(), {Integrator::euler, Integrator::implicit}),
-                       pull});
+                       direct() + only(iterative(), {Integrator::euler, Integrator::implicit}), pull});
 const Register spatial({"pulley_at_zero_rope", "spatial",
-                        without(direct(), {Integrator::rattle}) +
-                            only(iterative(), {Integrator::euler, Integrator::implicit}),
-                        pull});
+                        direct() + only(iterative(), {Integrator::euler, Integrator::implicit}), pull});
 
 }  // namespace
 }  // namespace cdot::hard

@@ -52,11 +52,12 @@ struct Scale {
 
 struct RegisterAll {
   RegisterAll() {
-    const Ways all = in_double(direct()), exact = in_double(only(direct(), {Integrator::dop853}));
-    const Ways float_too = all + only(direct(), {Integrator::rk4, Integrator::dop853});
-    const Scale scales[] = {{"1e-6 m, 1e-9 kg", 1e-6, 1e-9, exact},     {"1e-6 m, 1e9 kg", 1e-6, 1e9, exact},
-                            {"1e-3 m, 1e-6 kg", 1e-3, 1e-6, float_too}, {"1e3 m, 1e6 kg", 1e3, 1e6, float_too},
-                            {"1e6 m, 1e-9 kg", 1e6, 1e-9, float_too},   {"1e6 m, 1e9 kg", 1e6, 1e9, float_too}};
+    // In float the first-order steps do not hold everywhere: `--try scales` has where.
+    const Ways small = in_double(direct()) + only(direct(), {Integrator::rattle, Integrator::rk4, Integrator::dop853});
+    const Ways large = small + only(direct(), {Integrator::euler});
+    const Scale scales[] = {{"1e-6 m, 1e-9 kg", 1e-6, 1e-9, small}, {"1e-6 m, 1e9 kg", 1e-6, 1e9, small},
+                            {"1e-3 m, 1e-6 kg", 1e-3, 1e-6, small}, {"1e3 m, 1e6 kg", 1e3, 1e6, large},
+                            {"1e6 m, 1e-9 kg", 1e6, 1e-9, large},   {"1e6 m, 1e9 kg", 1e6, 1e9, large}};
     for (const char* space : {"planar", "spatial"})
       for (const Scale& s : scales)
         Register({"scales", space, s.ways, [length = s.length, mass = s.mass](Trial& t) { swing(t, length, mass); },
