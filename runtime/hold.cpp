@@ -245,6 +245,15 @@ void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar t
 }
 
 template <class S>
+void fill_lambda(const Island<S>& island, typename S::Scalar value) {
+  for (const Segment<S>& segment : island.segments) {
+    const int rows = segment.batch->ops->rows;
+    auto& lambda = segment.batch->lambda;
+    std::fill(lambda.begin() + segment.begin * rows, lambda.begin() + segment.end * rows, value);
+  }
+}
+
+template <class S>
 void scale_corrections(const Island<S>& island, typename S::Scalar by) {
   for (const Segment<S>& segment : island.segments) {
     const int rows = segment.batch->ops->rows;
@@ -297,6 +306,7 @@ void hold_velocities(WorldState<S>& world, Island<S>& island) {
   template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar);        \
   template void solve_errors(Island<S>&, S::Scalar);                            \
   template void apply_solution(WorldState<S>&, Island<S>&, S::Velocity*);       \
+  template void fill_lambda(const Island<S>&, S::Scalar);                       \
   template void scale_corrections(const Island<S>&, S::Scalar);                 \
   template void add_corrections(WorldState<S>&, Island<S>&, S::Scalar);         \
   template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);           \

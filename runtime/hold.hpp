@@ -25,6 +25,9 @@ void solve_errors(Island<S>& island, typename S::Scalar share);
 template <class S>
 void apply_solution(WorldState<S>& world, Island<S>& island, typename S::Velocity* to);
 
+// Every row's impulse becomes `value`.
+template <class S>
+void fill_lambda(const Island<S>& island, typename S::Scalar value);
 template <class S>
 void scale_corrections(const Island<S>& island, typename S::Scalar by);
 // Displacements and their impulses become those of velocities.

@@ -16,15 +16,6 @@ constexpr int most_in_vain = 4;  // rounds that do not bring the error down
 template <class T>
 constexpr T round_off = std::is_same_v<T, double> ? T(1e-15) : T(1e-7);
 
-template <class S>
-void fill_lambda(const Island<S>& island, typename S::Scalar value) {
-  for (const Segment<S>& segment : island.segments) {
-    const int rows = segment.batch->ops->rows;
-    auto& lambda = segment.batch->lambda;
-    std::fill(lambda.begin() + segment.begin * rows, lambda.begin() + segment.end * rows, value);
-  }
-}
-
 // A state that is not the end of a step: on its joints, with the factor of its exact rows.
 template <class S>
 void begin(WorldState<S>& world, Island<S>& island) {

@@ -155,15 +155,6 @@ void begin(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
   island.flow.known = true;
 }
 
-template <class S>
-void fill_forces(const Island<S>& island, typename S::Scalar value) {
-  for (const Segment<S>& segment : island.segments) {
-    const int rows = segment.batch->ops->rows;
-    auto& lambda = segment.batch->lambda;
-    std::fill(lambda.begin() + segment.begin * rows, lambda.begin() + segment.end * rows, value);
-  }
-}
-
 // The forces of the joints as impulses over h, and back.
 template <class S>
 void scale_forces(const Island<S>& island, typename S::Scalar by) {
@@ -178,7 +169,7 @@ void scale_forces(const Island<S>& island, typename S::Scalar by) {
 template <class S>
 void leave_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   ++world.counts.rescued;
-  fill_forces(island, typename S::Scalar(0));
+  fill_lambda(island, typename S::Scalar(0));
   evaluate_anew(world, island, time);
   island.factored = false;
   accelerate(world, island, time);
