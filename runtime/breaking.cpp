@@ -42,15 +42,51 @@ void remove_slot(WorldState<S>& world, Island<S>& island, Batch<S>& batch, int s
 }
 
 template <class S>
+int island_of(const WorldState<S>& world, const JointRecord& record) {
+  int island = -1;
+  for (int body : record.bodies) island = std::max(island, world.island_of[body]);
+  return island;
+}
+
+template <class S>
 void break_joint(WorldState<S>& world, int joint) {
   JointRecord& record = world.joints[joint];
   record.broken = true;
-  int island = -1;
-  for (int body : record.bodies) island = std::max(island, world.island_of[body]);
-  for (const Place& place : record.places)
+  const int island = island_of(world, record);
+  for (Place& place : record.places) {
+    place.before_breaking = place.slot;
     remove_slot(world, world.islands[island], *world.batches[place.batch], place.slot);
+  }
+  world.broken_in_step.push_back(joint);  // there is room for all
   world.islands[island].factored = false;
   world.islands[island].flow.forget();
+}
+
+// The reverse of remove_slot(), of what it was done to last.
+template <class S>
+void put_slot_back(WorldState<S>& world, Island<S>& island, Batch<S>& batch, int slot, int last) {
+  for (Segment<S>& segment : island.segments) {
+    if (segment.batch != &batch || slot < segment.begin || segment.end != last) continue;
+    ++segment.end;
+    if (last != slot) {
+      batch.for_each_array([&, count = batch.count()](auto& array) { swap_slots(array, count, slot, last); });
+      move_place(world, batch, last, slot);
+      move_place(world, batch, slot, last);
+    }
+    island.system.put_back(&batch, slot, last);
+  }
+}
+
+template <class S>
+void mend_joints(WorldState<S>& world) {
+  for (auto joint = world.broken_in_step.rbegin(); joint != world.broken_in_step.rend(); ++joint) {
+    JointRecord& record = world.joints[*joint];
+    record.broken = false;
+    Island<S>& island = world.islands[island_of(world, record)];
+    for (auto place = record.places.rbegin(); place != record.places.rend(); ++place)
+      put_slot_back(world, island, *world.batches[place->batch], place->before_breaking, place->slot);
+  }
+  world.broken_in_step.clear();
 }
 
 template <class S>
@@ -83,8 +119,9 @@ void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
     throw Error(fmt::format("there is no joint number {}", joint));
   if (!(load > 0)) throw Error("a breaking load must be > 0");
   if (state.joints[joint].places.empty()) return;
-  if (state.breaking_loads.empty()) state.after_substep.push_back({break_overloaded<S>});
+  if (state.breaking_loads.empty()) state.after_substep.push_back({break_overloaded<S>, mend_joints<S>});
   state.breaking_loads.emplace_back(joint, load);
+  state.broken_in_step.reserve(state.breaking_loads.size());
 }
 
 #define CDOT_INSTANTIATE(S) template void set_breaking_load(BasicWorld<S>&, int, double);

@@ -39,6 +39,7 @@ void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   hold_poses(world, island, time, false);
   // Otherwise it would be thrown in as energy.
   const bool keep = from_motion && bends_the_path(world, island, double(h));
+  if (!keep && island.residual > T(2) * error && island.residual > foreign<T>) island.trouble = StepProblem::joints_apart;
   add_corrections(world, island, keep ? T(1) / h : T(0));
   evaluate_anew(world, island, time);
   hold_velocities(world, island);

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "runtime/joints.hpp"
+#include "runtime/keep.hpp"
 #include "runtime/runge_kutta.hpp"
 #include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
@@ -167,13 +168,15 @@ void prepare_topology(WorldState<S>& world) {
   for (int i = 0; i < static_cast<int>(world.islands.size()); ++i) {
     Island<S>& island = world.islands[i];
     measure_size(world, island);
-    if (world.settings.solver == Solver::direct) island.system.build(island.segments, world.bodies);
+    if (world.settings.solver == Solver::direct || world.on_failure == OnFailure::retry)
+      island.system.build(island.segments, world.bodies);
     island.flow.pose.resize(island.bodies.size());
     island.flow.velocity.resize(island.bodies.size());
     if (world.settings.integrator == Integrator::rattle)
       island.flow.search.reserve(static_cast<size_t>(island.system.rows()));
     if (works_on_accelerations(world.settings.integrator))
       prepare_flow(island, runge_kutta(world.settings.integrator));
+    prepare_to_keep(world, island);
     world.awake.push_back(i);
   }
   world.prepared = true;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "runtime/settings.hpp"
+#include "runtime/step_result.hpp"
 
 namespace cdot {
 
@@ -44,6 +45,11 @@ inline constexpr std::array<Named<Kernels>, 3> kernel_forms{{
 inline constexpr std::array<Named<bool>, 2> precisions{{
     {"double", false},
     {"float", true},
+}};
+
+inline constexpr std::array<Named<OnFailure>, 2> failure_answers{{
+    {"stop", OnFailure::stop},
+    {"retry", OnFailure::retry},
 }};
 
 template <class Table>

@@ -8,7 +8,36 @@
 
 namespace cdot {
 
+namespace {
+
+// The name of a body or a joint; empty if there is none.
+template <class List>
+std::string name_in(const List& list, int index) {
+  const bool known = index >= 0 && static_cast<std::size_t>(index) < list.size();
+  return known ? list[static_cast<std::size_t>(index)].name : std::string();
+}
+
+std::string failed_step_text(const Scene& scene, const StepResult& step) {
+  return fmt::format("{}. Likely fix: {}",
+                     in_words(step, fmt::format("body \"{}\"", name_in(scene.bodies, step.body)),
+                              fmt::format("joint \"{}\"", name_in(scene.joints, step.joint))),
+                     likely_fix(step.problem));
+}
+
+nlohmann::ordered_json failed_step_json(const Scene& scene, const StepResult& step) {
+  return {{"problem", name_of(step.problem)},
+          {"time", step.time},
+          {"length", step.length},
+          {"island", step.island},
+          {"body", name_in(scene.bodies, step.body)},
+          {"joint", name_in(scene.joints, step.joint)},
+          {"row", step.row + 1}};
+}
+
+}  // namespace
+
 std::string failure(const Scene& scene, const RunResult& result) {
+  if (result.failed_step) return failed_step_text(scene, *result.failed_step);
   if (!result.finite) return fmt::format("unstable: not finite at t = {:.6g} s", result.time);
   if (result.worst_error > scene.tolerance) {
     return fmt::format("joint \"{}\" is off by {:.3g} at t = {:.6g} s, more than the tolerance of {:.3g}",
@@ -69,6 +98,9 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
   text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, at most {:.3g} J apart\n",
                       result.energy_start, result.energy_end, result.energy_drift);
   if (result.redundant_rows > 0) text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
+  if (result.counts.retried > 0)
+    text += fmt::format("  retried         {} step{} failed and went well in parts, {} of them by the direct solver\n",
+                        result.counts.retried, result.counts.retried == 1 ? "" : "s", result.counts.direct);
   for (const std::string& joint : result.broken_joints) text += fmt::format("  broken          \"{}\"\n", joint);
   for (const std::string& note : result.notes) text += fmt::format("  note            {}\n", note);
   const std::string why = failure(scene, result);
@@ -98,6 +130,7 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
       {"energy_end", result.energy_end},
       {"energy_drift", result.energy_drift},
       {"redundant_rows", result.redundant_rows},
+      {"retried", {{"steps", result.counts.retried}, {"direct", result.counts.direct}}},
       {"broken_joints", result.broken_joints},
       {"notes", result.notes},
   };
@@ -106,6 +139,7 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
                          {"rejected", result.counts.rejected},
                          {"events", result.counts.events},
                          {"rescued", result.counts.rescued}};
+  if (result.failed_step) json["failed_step"] = failed_step_json(scene, *result.failed_step);
   if (result.choice) json["accuracy"] = choice_json(scene, *result.choice);
   return json.dump(2) + "\n";
 }

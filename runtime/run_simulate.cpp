@@ -162,8 +162,13 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
       result.state = world.snapshot();
     if (k == steps.count() || Interrupt::asked()) break;
     const double start = cpu_now();
-    world.step(steps.length(k + 1));
+    const StepResult step = world.step(steps.length(k + 1));
     result.cpu += cpu_now() - start;
+    if (!step) {
+      result.failed_step = step;
+      if (options.keep_state && result.state.empty()) result.state = world.snapshot();
+      break;
+    }
     result.steps = k + 1;
     std::swap(before, after);
     after = frame_of(world, steps.time(k + 1), bodies);

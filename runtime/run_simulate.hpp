@@ -37,6 +37,7 @@ struct RunResult {
   int redundant_rows = 0;
   std::vector<std::string> broken_joints, notes;
   bool finite = true, interrupted = false;
+  std::optional<StepResult> failed_step;  // the run ends before it
   std::vector<Frame> film;
 };
 

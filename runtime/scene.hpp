@@ -70,6 +70,7 @@ struct Scene {
   double step = 0.001;      // [s]
   double accuracy = 0;      // [m], [rad] that the trajectory shall have, by a method of the runtime's choice; 0: as set
   double tolerance = 0.01;  // [m], [rad]: the joint error from which a run has failed
+  OnFailure on_failure = OnFailure::stop;  // of a step
   bool project = false;     // move an inconsistent start onto the joints
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;

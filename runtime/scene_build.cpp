@@ -87,6 +87,7 @@ template <class S>
 BasicWorld<S> build_world_in(const Scene& scene) {
   BasicWorld<S> world(scene.settings);
   choose_origin(scene, world);
+  world.on_failure(scene.on_failure);
   for (const SceneBody& body : scene.bodies) {
     if constexpr (S::dimension == Dimension::planar)
       world.add_body(body.definition);

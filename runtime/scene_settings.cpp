@@ -75,6 +75,8 @@ void read_settings(Entry& top, Scene& scene) {
       top.number("sleep_speed", {Sign::positive}).value_or(scene.settings.sleep_speed);
   scene.tolerance = top.number("tolerance", {Sign::positive}).value_or(scene.tolerance);
   scene.project = top.flag("project").value_or(false);
+  if (const auto answer = top.choice("on_failure", names_of(failure_answers)))
+    scene.on_failure = method_called(failure_answers, *answer);
 }
 
 }  // namespace cdot

@@ -4,7 +4,6 @@
 // to the visitor or, if every step writes it before reading it or if it never changes, leave it at that.
 #pragma once
 
-#include "runtime/gyroscope.hpp"
 #include "runtime/world_state.hpp"
 
 namespace cdot {
@@ -15,7 +14,8 @@ struct StateList {
   template <class S, class Visitor>
   static void each(WorldState<S>& world, Visitor& visit) {
     auto& [settings, time, last_step, origin, bodies, ground, joints, batches, springs, drags, gyroscopes, breaking_loads,
-           after_substep, notes, counts, prepared, islands, island_of, awake] = world;
+           after_substep, notes, counts, on_failure, kept_time, kept_last_step, kept_counts, broken_in_step, prepared,
+           islands, island_of, awake] = world;
     visit.item("time", -1);
     visit(time), visit(last_step);
     each_joint(joints, visit);  // must come second: restoring begins with it
@@ -25,7 +25,13 @@ struct StateList {
       for (size_t k = 0; k < gyroscopes.size(); ++k) each_gyroscope(gyroscopes[k], static_cast<int>(k), visit);
     for (size_t k = 0; k < batches.size(); ++k) each_slot(*batches[k], static_cast<int>(k), visit);
     for (size_t k = 0; k < islands.size(); ++k)
-      each_of_island(islands[k], static_cast<int>(k), settings.solver == Solver::direct, visit);
+      each_of_island(islands[k], static_cast<int>(k),
+                     settings.solver == Solver::direct || on_failure == OnFailure::retry, visit);
+  }
+
+  template <class S>
+  static std::vector<unsigned char>& dependent(System<S>& system) {
+    return system.ldlt_.dependent_;
   }
 
  private:
@@ -42,9 +48,9 @@ struct StateList {
 
   template <class Visitor>
   static void each_count(StepCounts& counts, Visitor& visit) {
-    auto& [evaluations, taken, rejected, events, rescued, shortest, longest] = counts;
+    auto& [evaluations, taken, rejected, events, rescued, retried, direct, shortest, longest] = counts;
     visit.item("counts", -1);
-    visit(evaluations), visit(taken), visit(rejected), visit(events), visit(rescued);
+    visit(evaluations), visit(taken), visit(rejected), visit(events), visit(rescued), visit(retried), visit(direct);
     visit.item("counts.steps", -1);
     visit(shortest), visit(longest);
   }
@@ -93,7 +99,7 @@ struct StateList {
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool direct, Visitor& visit) {
     auto& [bodies, segments, springs, drags, gyroscopes, system, redundant_rows, size, scale, restless, residual, evaluated,
-           factored, continuous, flow, asleep, rested] = island;
+           factored, continuous, flow, asleep, rested, kept, trouble] = island;
     visit.item("island.flags", index);
     visit(evaluated), visit(factored), visit(continuous), visit(asleep);
     visit.item("island.rows", index);
@@ -102,7 +108,7 @@ struct StateList {
     visit.item("island.residual", index), visit(residual), visit(size), visit(scale);
     visit.item("island.rested", index), visit(rested);
     each_of_flow(flow, index, visit);
-    // The iterative solver needs none; projecting the start makes one nevertheless.
+    // The iterative solver alone needs none; projecting the start makes one nevertheless.
     if (direct) each_of_system(system, index, visit);
   }
 

@@ -1,4 +1,4 @@
-// What the steps of the integrators that choose their own came to, over all islands.
+// What the steps came to, over all islands; but for `retried` of the integrators that choose their own.
 #pragma once
 
 #include <limits>
@@ -12,6 +12,8 @@ struct StepCounts {
   // Ends of steps left to the linearly implicit Euler's: events without end, no step short enough, or, of fixed steps,
   // one whose error was estimated to be larger than the motion.
   long long rescued = 0;
+  long long retried = 0;  // steps that failed and succeeded in parts,
+  long long direct = 0;   // and those of them for which the iterative solver had to step back
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // [s]
 };
 

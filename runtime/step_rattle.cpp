@@ -129,12 +129,15 @@ void solve_bounded_rows(WorldState<S>& world, Island<S>& island, typename S::Sca
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (!batch.law) continue;
+    const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
+    if (batch.law->force) {  // what it would add to the bias is no rate, and the next kick asks for rates
+      for (int i = begin; i < end; ++i) batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
+      continue;
+    }
     batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
-    const int rows = batch.ops->rows;
-    for (int i = segment.begin * rows; i < segment.end * rows; ++i) {
+    for (int i = begin; i < end; ++i) {
       batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
       batch.upper[i] *= T(0.5);
-      if (batch.law->force) batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
     }
   }
   island.factored = false;

@@ -18,6 +18,16 @@ void System<S>::remove(const Batch<S>* batch, int slot, int last) {
 }
 
 template <class S>
+void System<S>::put_back(const Batch<S>* batch, int slot, int last) {
+  for (Block& block : blocks) {
+    if (block.batch != batch || (block.slot != slot && block.slot != last)) continue;
+    const bool removed = block.slot == last;
+    block.slot = removed ? slot : last;
+    if (removed) std::fill_n(broken.begin() + block.first, block.rows, 0);
+  }
+}
+
+template <class S>
 void System<S>::load_laws() {
   each_row([&](int row, const Batch<S>& batch, int i) {
     if (!batch.law) return;

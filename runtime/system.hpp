@@ -26,6 +26,8 @@ class System {
   // The rows of `slot`, now kept at `last`, are no more; those that were at `last` are now at
   // `slot`.
   void remove(const Batch<S>* batch, int slot, int last);
+  // The reverse.
+  void put_back(const Batch<S>* batch, int slot, int last);
 
   // Some rows have softness or bounds.
   bool lawful() const { return lawful_; }

@@ -62,6 +62,36 @@ void check(const SpatialBodyDefinition& d) {
 }
 
 template <class S>
+void check_finite(const typename S::Velocity& v, const char* message) {
+  typename S::Scalar numbers[S::freedom];
+  S::write(v, numbers);
+  for (auto number : numbers) require(std::isfinite(number), message);
+}
+
+// In the World's own precision, which may be float.
+template <class S>
+void check_finite(const typename S::Pose& q) {
+  typename S::Scalar numbers[S::pose_numbers];
+  S::write(q, numbers);
+  for (auto number : numbers)
+    require(std::isfinite(number), "every number of a pose must be finite, and an orientation not the zero quaternion");
+}
+
+template <class S>
+void check_in_precision(const typename S::BodyDefinition& d) {
+  check_finite<S>(S::placed(S::place_of(d)));
+  check_finite<S>(S::velocity_of(d), "every number of a body must be finite");
+  check_finite<S>(S::components(S::wrench_of(d)), "every number of a body must be finite");
+  typename S::Velocity one{}, weighted;
+  typename S::Scalar numbers[S::freedom];
+  std::fill_n(numbers, S::freedom, typename S::Scalar(1));
+  one = S::read_velocity(numbers);
+  weighted = S::weighted(S::inverse_mass_of(d), one);
+  check_finite<S>(weighted, "a mass or inertia is so small that the precision has no number for its inverse");
+  require(d.is_static || weighted.x > 0, "a mass is so large that the precision has no number for its inverse");
+}
+
+template <class S>
 void check_body(const WorldState<S>& world, int body) {
   if (body < 0 || body >= world.bodies.count())
     throw Error(fmt::format("there is no body number {}", body));
@@ -111,20 +141,6 @@ void set_acceleration(WorldState<S>& world, int body) {
       if (gyroscope.body == body) S::set_torque(gyroscope, all.force[body]);
 }
 
-template <class S>
-void advance(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
-  switch (world.settings.integrator) {
-    case Integrator::euler:
-    case Integrator::implicit:
-      return step_euler(world, island, h);
-    case Integrator::rattle:
-      return step_rattle(world, island, h);
-    case Integrator::rk4:
-    case Integrator::dop853:
-      return step_runge_kutta(world, island, h);
-  }
-}
-
 }  // namespace
 
 template <class S>
@@ -149,6 +165,7 @@ void BasicWorld<S>::set_origin(double x, double y, double z) {
 template <class S>
 int BasicWorld<S>::add_body(const BodyDefinition& d) {
   check(d);
+  check_in_precision<S>(d);
   Bodies<S>& all = state_->bodies;
   const int body = all.count();
   const auto m = S::inverse_mass_of(d);
@@ -235,6 +252,7 @@ int BasicWorld<S>::add_spring(const SpringDefinition& d) {
 template <class S>
 void BasicWorld<S>::set_force(int body, const Wrench& force) {
   check_body(*state_, body);
+  check_finite<S>(S::components(force), "every number of a force must be finite");
   state_->bodies.force[body] = S::components(force);
   set_acceleration(*state_, body);
   wake(*state_, body);
@@ -244,7 +262,9 @@ template <class S>
 void BasicWorld<S>::set_pose(int body, const Place& place) {
   check_body(*state_, body);
   Bodies<S>& all = state_->bodies;
-  all.pose[body] = S::placed(body == state_->ground ? place : moved_by(place, state_->origin, -1));
+  const auto pose = S::placed(body == state_->ground ? place : moved_by(place, state_->origin, -1));
+  check_finite<S>(pose);
+  all.pose[body] = pose;
   if constexpr (S::has_gyroscopes)
     for (auto& gyroscope : state_->gyroscopes)
       if (gyroscope.body == body) {
@@ -259,6 +279,7 @@ template <class S>
 void BasicWorld<S>::set_velocity(int body, const typename S::Exact::Velocity& velocity) {
   check_body(*state_, body);
   require(!is_static(body), "a static body has no velocity");
+  check_finite<S>(S::rounded(velocity), "every number of a velocity must be finite");
   state_->bodies.velocity[body] = S::rounded(velocity);
   wake(*state_, body);
 }
@@ -268,6 +289,8 @@ void BasicWorld<S>::apply_impulse(int body, const typename S::Exact::Velocity& i
   check_body(*state_, body);
   auto& all = state_->bodies;
   const auto change = S::weighted(all.inverse_mass[body], S::rounded(impulse));
+  check_finite<S>(S::rounded(impulse), "every number of an impulse must be finite");
+  check_finite<S>(S::sum(all.velocity[body], change, T(1)), "an impulse must leave the velocity finite");
   all.velocity[body] = S::sum(all.velocity[body], change, T(1));
   wake(*state_, body);
 }
@@ -278,19 +301,9 @@ void BasicWorld<S>::prepare() {
 }
 
 template <class S>
-void BasicWorld<S>::step(double h) {
-  WorldState<S>& world = *state_;
-  if (!(h > 0)) return;
-  prepare_topology(world);
-  const double part = h / world.settings.substeps;
-  const T dt = T(part);
-  for (int substep = 0; substep < world.settings.substeps; ++substep) {
-    for (int index : world.awake) advance(world, world.islands[index], dt);
-    for (const auto& hook : world.after_substep) hook.run(world, dt);
-    world.time += part;
-    world.last_step = part;
-  }
-  put_to_sleep(world, h);
+void BasicWorld<S>::on_failure(OnFailure what) {
+  state_->on_failure = what;
+  state_->prepared = false;
 }
 
 #define CDOT_INSTANTIATE(S) template class BasicWorld<S>;

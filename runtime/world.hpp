@@ -22,6 +22,7 @@
 #include "runtime/snapshot.hpp"
 #include "runtime/spaces.hpp"
 #include "runtime/step_counts.hpp"
+#include "runtime/step_result.hpp"
 
 namespace cdot {
 
@@ -68,6 +69,7 @@ class BasicWorld {
   int add_joint(const JointDefinition& definition);
   int add_spring(const SpringDefinition& definition);
   void set_force(int body, const Wrench& force);
+  void on_failure(OnFailure what);  // of step(); stop unless set
 
   // Rows of joints that the present pose or velocity violates by more than the tolerance ([m] or
   // [rad], and /s).
@@ -83,7 +85,9 @@ class BasicWorld {
 
   // With Settings::local_error the state at its end may lie between the ends of a step that the method chose: by the
   // method's interpolant, brought back onto the joints. Asking often then costs no steps.
-  void step(double h);
+  //
+  // A step that fails leaves the World as it was before it (but for what is computed from that anew) and says so.
+  StepResult step(double h);
 
   // Each of these wakes the body's island.
   void set_pose(int body, const Place& place);

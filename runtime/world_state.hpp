@@ -11,8 +11,10 @@
 #include "runtime/block.hpp"
 #include "runtime/bodies.hpp"
 #include "runtime/broyden.hpp"
+#include "runtime/gyroscope.hpp"
 #include "runtime/settings.hpp"
 #include "runtime/step_counts.hpp"
+#include "runtime/step_result.hpp"
 #include "runtime/system.hpp"
 
 namespace cdot {
@@ -21,6 +23,7 @@ namespace cdot {
 struct Place {
   int batch;
   int slot;
+  int before_breaking = -1;  // the slot that a broken joint's rows had
 };
 
 struct JointRecord {
@@ -70,6 +73,27 @@ struct Flow {
   }
 };
 
+// What a step that fails goes back to.
+template <class S>
+struct Kept {
+  using T = typename S::Scalar;
+  // A body whose inertia tensor turns with it.
+  struct Turning {
+    typename std::conditional_t<S::has_gyroscopes, spatial::Vector<T>, int> momentum, spin;
+    typename S::Velocity acceleration;
+  };
+  std::vector<std::pair<int, int>> runs;  // of the island's bodies that follow each other: first, count
+  std::vector<typename S::Pose> pose;
+  std::vector<typename S::Velocity> velocity;
+  std::vector<typename S::InverseMass> effective_mass;  // where geometric stiffness adds to inertias; else none
+  std::vector<Turning> gyroscopes;
+  std::vector<T> rows;  // impulses, corrections and counters, segment by segment
+  std::vector<unsigned char> dependent;
+  T residual = 0;
+  int redundant_rows = 0;
+  bool evaluated = false;
+};
+
 // Bodies that push each other through joints and springs: solved together, and asleep together.
 template <class S>
 struct Island {
@@ -92,6 +116,8 @@ struct Island {
   Flow<S> flow;
   bool asleep = false;
   double rested = 0;  // [s]
+  Kept<S> kept;
+  StepProblem trouble = StepProblem::none;  // that a stage of the step ran into
 };
 
 template <class S>
@@ -100,6 +126,7 @@ struct WorldState {
   // Something that must be looked at after every substep, such as breaking loads.
   struct Hook {
     void (*run)(WorldState&, T h);
+    void (*undo)(WorldState&);  // of all since keep_state()
   };
 
   Settings settings;
@@ -119,6 +146,10 @@ struct WorldState {
   std::vector<Note> notes;
 
   StepCounts counts;
+  OnFailure on_failure = OnFailure::stop;
+  double kept_time = 0, kept_last_step = 0;  // what a step that fails goes back to, beside Island::kept
+  StepCounts kept_counts;
+  std::vector<int> broken_in_step;  // joints, in the order in which they broke since then
 
   bool prepared = false;  // islands, order of slots and patterns are those of the present joints
   std::vector<Island<S>> islands;

@@ -229,5 +229,22 @@ TEST(Effects, MistakesAreRefused) {
   }
 }
 
+// A damped spring on an angle: every way of second order or more comes to the same motion.
+TEST(Effects, ADampedSpringMovesTheSameByEveryIntegrator) {
+  const auto end_by = [](Integrator integrator, Solver solver) {
+    Settings s = settings(solver, Drift::projection, -9.81);
+    s.integrator = integrator;
+    World<double> world(s);
+    add_chain(world, 1, 0);
+    add_spring(world, 0, "angle", {.softness = {.by_frequency = false, .stiffness = 30, .damping = 2}, .rest = 0.5});
+    run(world, 1, 0.0025);
+    return world.pose(1).angle;
+  };
+  const double exact = end_by(Integrator::dop853, Solver::direct);
+  for (Solver solver : {Solver::direct, Solver::iterative})
+    for (Integrator integrator : {Integrator::rattle, Integrator::rk4})
+      EXPECT_NEAR(end_by(integrator, solver), exact, 1e-5);
+}
+
 }  // namespace
 }  // namespace cdot::test
