@@ -2,6 +2,9 @@
 // added to the velocities and these projected onto J v = -dC/dt at the new poses. Moving the poses
 // alone would drain energy at first order: every step turns the velocity out of the tangent plane,
 // and what the next solve cuts off is gone.
+#include <algorithm>
+#include <cmath>
+
 #include "runtime/hold.hpp"
 #include "runtime/spaces.hpp"
 
@@ -39,7 +42,10 @@ void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   hold_poses(world, island, time, false);
   // Otherwise it would be thrown in as energy.
   const bool keep = from_motion && bends_the_path(world, island, double(h));
-  if (!keep && island.residual > T(2) * error && island.residual > foreign<T>) island.trouble = StepProblem::joints_apart;
+  // One such step may be mended by the next; where that one begins apart and ends further apart, none will.
+  const bool was_apart = foreign_error > foreign<T> && std::isfinite(foreign_error);
+  if (!keep && was_apart && island.residual > T(2) * std::max(error, foreign_error))
+    island.trouble = StepProblem::joints_apart;
   add_corrections(world, island, keep ? T(1) / h : T(0));
   evaluate_anew(world, island, time);
   hold_velocities(world, island);

@@ -26,8 +26,7 @@ const char* likely_fix(StepProblem problem) {
       return "a shorter step; the direct solver; integrator implicit where loads are heavy or springs stiff; or "
              "on_failure = \"retry\"";
     case StepProblem::joints_apart:
-      return "a shorter step: at most a tenth of a radian in each; or on_failure = \"retry\""; or rattle with a short step, where the mechanism passes a pose in which it loses a "
-             "row";
+      return "a shorter step: at most a tenth of a radian in each; or on_failure = \"retry\"";
     case StepProblem::bad_step:
       return "a step is a finite number of seconds above 0";
     case StepProblem::none:
