@@ -16,11 +16,10 @@ namespace {
 // What is computed from poses and velocities alone need not be what it was.
 bool is_computed(const std::string& item) {
   for (const char* name :
-       {"island.flags", "flow.",           "rows.jacobian",   "rows.factor",    "rows.C",
-        "rows.bias",    "rows.parameters", "rows.softness",   "rows.lower",     "rows.upper",
-        "rows.mode",    "system.lambda",   "system.softness", "system.lower",   "system.upper",
-        "system.flags", "factor.K",        "factor.L",        "factor.inverse", "bodies.velocity_rate",
-        "counts.steps"})
+       {"island.flags",     "flow.",           "rows.jacobian",        "rows.factor",  "rows.C",       "rows.bias",
+        "rows.parameters",  "rows.softness",   "rows.lower",           "rows.upper",   "rows.mode",    "system.lambda",
+        "system.dependent", "system.softness", "system.lower",         "system.upper", "system.flags", "factor.K",
+        "factor.L",         "factor.inverse",  "bodies.velocity_rate", "counts.steps"})
     if (item.starts_with(name)) return true;
   return false;
 }
