@@ -33,9 +33,8 @@ bodies = ["world", "rod"]
 at = [5, 0]
 [[spring]]
 bodies = ["world", "stone"]
-points = [[0, 0], [0, 0]]
 stiffness = 1e308
-rest_length = 1
+rest = 1
 )";
 
 struct Failing {
