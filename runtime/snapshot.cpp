@@ -145,7 +145,7 @@ std::uint64_t hash_of_joints(const WorldState<S>& world) {
   hash.add(world.springs);
   for (const Drag<S>& drag : world.drags) hash.add(drag.body), hash.add(drag.linear), hash.add(drag.angular);
   for (const auto& [joint, load] : world.breaking_loads) hash.add(joint), hash.add(load);
-  hash.add(S::gravity(world.settings));
+  hash.add(S::gravity(world.settings)), hash.add(world.origin);
   return hash.value;
 }
 
