@@ -55,11 +55,12 @@ double potential_of_rows(const WorldState<S>& world) {
   double energy = 0;
   for (const auto& batch : world.batches) {
     if (!batch->law || !batch->law->energy) continue;
-    for (int slot = 0; slot < batch->count(); ++slot) {
-      if (world.joints[batch->joint[slot]].broken) continue;
-      batch->ops->position(*batch, slot, slot + 1, world.bodies, typename S::Scalar(world.time));
-      batch->ops->effective_mass(*batch, slot, slot + 1, world.bodies);
-      energy += batch->law->energy(*batch, slot);
+    Batch<S> rows = *batch;  // the next step may start from the World's own as they are
+    for (int slot = 0; slot < rows.count(); ++slot) {
+      if (world.joints[rows.joint[slot]].broken) continue;
+      rows.ops->position(rows, slot, slot + 1, world.bodies, typename S::Scalar(world.time));
+      rows.ops->effective_mass(rows, slot, slot + 1, world.bodies);
+      energy += rows.law->energy(rows, slot);
     }
   }
   return energy;
