@@ -1,0 +1,269 @@
+#include "tests/torture/invariants.hpp"
+
+#include <fmt/format.h>
+
+#include <thread>
+
+#include "runtime/run_frame.hpp"
+#include "tests/torture/observer.hpp"
+#include "tests/torture/scene_text.hpp"
+
+namespace cdot::torture {
+namespace {
+
+constexpr double resolved = 0.5;  // of Accounts::roughest: above, a step does not resolve the motion
+
+constexpr int dear = 300;          // evaluations of an island's accelerations in a step, on average
+
+template <class T>
+constexpr double start_tolerance = std::is_same_v<T, double> ? 1e-9 : 1e-4;
+// What is left of C after a step, as a share of the row's size, by Newton down to round-off.
+template <class T>
+constexpr double held_tolerance = std::is_same_v<T, double> ? 1e-10 : 1e-4;
+
+Verdict verdict(Outcome outcome, std::string what, std::string detail, double value = 0, double bound = 0, int step = 0) {
+  Verdict v;
+  v.outcome = outcome, v.what = std::move(what), v.detail = std::move(detail);
+  v.value = value, v.bound = bound, v.step = step;
+  return v;
+}
+
+// Rounded operations on a body's velocity in a step, at most about: each row of each of its joints, once per solve.
+double operations_of(const Scene& scene) {
+  std::vector<int> rows(scene.bodies.size() + 1, 1);
+  for (const SceneJoint& joint : scene.joints)
+    for (const int body : joint.definition.bodies)
+      rows[static_cast<std::size_t>(body + 1)] +=
+          static_cast<int>(find_joint_type(scene.dimension, joint.definition.type)->row_kinds.size()) + 1;
+  const Settings& s = scene.settings;
+  const double stages = s.integrator == Integrator::dop853 ? 12 : s.integrator == Integrator::rk4 ? 4 : 2;
+  const double sweeps = s.solver == Solver::iterative ? 3 * s.iterations : 10;
+  return *std::max_element(rows.begin(), rows.end()) * stages * sweeps * s.substeps;
+}
+
+template <class S>
+class Trial {
+ public:
+  Trial(const Scene& scene, const Asked& asked)
+      : scene_(&scene), asked_(&asked), steps_(steps_of(scene)), operations_(operations_of(scene)) {}
+
+  Verdict run();
+
+ private:
+  using T = typename S::Scalar;
+  BasicWorld<S> started() const;
+  void step(BasicWorld<S>& world, int k) const;
+  Verdict watch(BasicWorld<S>& world);
+  std::optional<Verdict> look(BasicWorld<S>& world, int k);
+  Gap gap_now(BasicWorld<S>& world) const;
+  std::optional<Verdict> look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k);
+  std::optional<Verdict> look_at_energy(double energy, int k) const;
+  Verdict bits() const;
+
+  const Scene* scene_;
+  const Asked* asked_;
+  int steps_;
+  double operations_;
+  Laws laws_;
+  RowSizes sizes_;
+  Motion start_;
+  double start_energy_ = 0, torque_of_gaps_ = 0;
+  std::optional<Accounts> accounts_;
+  Snapshot middle_, end_;
+};
+
+// As cdot-run starts it.
+template <class S>
+BasicWorld<S> Trial<S>::started() const {
+  BasicWorld<S> world = build_world_in<S>(*scene_);
+  if (scene_->project) world.project(start_tolerance<T>);
+  world.prepare();
+  return world;
+}
+
+template <class S>
+void Trial<S>::step(BasicWorld<S>& world, int k) const {
+  world.step(scene_->step);
+  if (asked_->sabotage)
+    asked_->sabotage(*scene_, k, [&](int body, double impulse) {
+      typename S::Exact::Velocity shove{};
+      shove.x = impulse;
+      world.apply_impulse(body, shove);
+    });
+}
+
+template <class S>
+std::optional<Verdict> Trial<S>::look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k) {
+  if (!laws_.momentum()) return {};
+  double impulses = 0;
+  for (int j = 0; j < world.joint_count(); ++j)
+    for (const double lambda : world.impulse(j)) impulses += std::abs(lambda);
+  torque_of_gaps_ += impulses * (gap * sizes_.length + operations_ * std::numeric_limits<T>::epsilon() * sizes_.length);
+  const double linear = accounts_->momentum_round_off();
+  const double angular = accounts_->angular_round_off() + accounts_->angular_order_error() + torque_of_gaps_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double p = std::abs(now.linear[axis] - start_.linear[axis]);
+    const double l = std::abs(now.angular[axis] - start_.angular[axis]);
+    if (laws_.linear[axis] && !(p <= linear))
+      return verdict(Outcome::broken, "momentum", fmt::format("axis {}", "xyz"[axis]), p, linear, k);
+    if (laws_.angular[axis] && k > 1 && !(l <= angular))
+      return verdict(Outcome::broken, "angular momentum", fmt::format("axis {}", "xyz"[axis]), l, angular, k);
+  }
+  return {};
+}
+
+template <class S>
+std::optional<Verdict> Trial<S>::look_at_energy(double energy, int k) const {
+  const double bound = accounts_->order_error() + accounts_->round_off_energy();
+  const double rise = energy - start_energy_;
+  // What sweeps leave unsolved is no part of the methods' orders.
+  const bool sweeps = scene_->settings.solver == Solver::iterative;
+  if (k < 2 || (sweeps && order_of(scene_->settings.integrator) > 1)) return {};
+  if (laws_.energy_falls && !(rise <= bound))
+    return verdict(Outcome::broken, "energy rises", "", rise, bound, k);
+  if (laws_.energy_kept && !sweeps && scene_->settings.integrator != Integrator::implicit && !(-rise <= bound))
+    return verdict(Outcome::broken, "energy falls", "", -rise, bound, k);
+  return {};
+}
+
+// Told by the sizes of the rows at the start, or at present where they have become larger.
+template <class S>
+Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
+  const Gap gap = gap_of(world, *scene_, sizes_);
+  if (gap.share <= held_tolerance<T>) return gap;
+  RowSizes sizes = row_sizes(world);
+  for (std::size_t j = 0; j < sizes.of_joint.size(); ++j)
+    for (std::size_t r = 0; r < sizes.of_joint[j].size(); ++r)
+      sizes.of_joint[j][r] = std::max(sizes.of_joint[j][r], sizes_.of_joint[j][r]);
+  return gap_of(world, *scene_, sizes);
+}
+
+template <class S>
+std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
+  const Frame frame = frame_of(world, world.time(), static_cast<int>(scene_->bodies.size()));
+  if (!finite(frame)) return verdict(Outcome::broken, "finite", "a pose, a velocity or the energy is no number", 0, 0, k);
+  const Gap gap = gap_now(world);
+  const Motion now = motion_of(world);
+  accounts_->step(now, frame.energy, operations_, world.step_counts().taken);
+  if (scene_->settings.drift == Drift::projection && scene_->settings.solver == Solver::direct &&
+      !(gap.share <= held_tolerance<T>))
+    return verdict(laws_.may_contradict ? Outcome::limited : Outcome::broken,
+                   laws_.may_contradict ? "a prescribed motion meets what may stop it" : "C",
+                   gap.joint < 0 ? "" : scene_->joints[static_cast<std::size_t>(gap.joint)].definition.type, gap.share,
+                   held_tolerance<T>, k);
+  if (auto broken = look_at_momentum(now, world, gap.share, k)) return broken;
+  return look_at_energy(frame.energy, k);
+}
+
+template <class S>
+Verdict Trial<S>::watch(BasicWorld<S>& world) {
+  start_ = motion_of(world);
+  start_energy_ = world.energy();
+  accounts_.emplace(start_, start_energy_, *scene_, std::numeric_limits<T>::epsilon());
+  Verdict first;
+  for (int k = 1; k <= steps_; ++k) {
+    step(world, k);
+    if (k == steps_ / 2) middle_ = world.snapshot();
+    if (k == steps_) end_ = world.snapshot();  // before look(): energy() leaves traces in what the next step overwrites
+    if (const auto broken = look(world, k)) return *broken;
+    if (world.step_counts().evaluations > dear * (k + 100LL) * scene_->settings.substeps)
+      return verdict(Outcome::limited, "steps of Runge-Kutta without end", "", double(world.step_counts().evaluations), 0, k);
+  }
+  return first;
+}
+
+// The same bits: in two threads at once, and from the middle's snapshot through text, in a World of the scene's text.
+template <class S>
+Verdict Trial<S>::bits() const {
+  Snapshot twice[2];
+  const auto again = [&](Snapshot& state) {
+    BasicWorld<S> world = started();
+    for (int k = 1; k <= steps_; ++k) step(world, k);
+    state = world.snapshot();
+  };
+  std::thread other([&] { again(twice[1]); });
+  again(twice[0]);
+  other.join();
+  for (const Snapshot& state : twice)
+    if (!(state == end_))
+      return verdict(Outcome::broken, "bits of a repetition", fmt::format("{}", fmt::join(end_.differences(state), ", ")));
+  const Scene copy = read_scene(text_of(*scene_), "copy");
+  BasicWorld<S> world = build_world_in<S>(copy);
+  world.restore(Snapshot::read(middle_.text()));
+  for (int k = steps_ / 2 + 1; k <= steps_; ++k) step(world, k);
+  const Snapshot state = world.snapshot();
+  if (!(state == end_))
+    return verdict(Outcome::broken, "bits from a snapshot", fmt::format("{}", fmt::join(end_.differences(state), ", ")));
+  return {};
+}
+
+template <class S>
+Verdict Trial<S>::run() {
+  BasicWorld<S> world = started();
+  sizes_ = row_sizes(world);
+  const Gap gap = gap_of(world, *scene_, sizes_);
+  if (!(gap.share <= start_tolerance<T>))
+    return verdict(Outcome::refused, "the start is not on the joints", "", gap.share, start_tolerance<T>);
+  laws_ = laws_of(*scene_);
+  middle_ = end_ = world.snapshot();
+  Verdict seen = watch(world);
+  seen.roughest = accounts_->roughest();
+  seen.judged_energy = laws_.energy_falls && seen.roughest <= resolved;
+  seen.judged_momentum = laws_.momentum();
+  if (seen.outcome != Outcome::held || !asked_->bits) return seen;
+  const Verdict same = bits();
+  return same.broken() ? same : seen;
+}
+
+template <class S>
+Verdict judge_in(const Scene& scene, const Asked& asked) {
+  try {
+    return Trial<S>(scene, asked).run();
+  } catch (const SceneError& error) {
+    return verdict(Outcome::refused, error.what(), "");
+  } catch (const Error& error) {
+    return verdict(Outcome::refused, error.what(), "");
+  } catch (const std::exception& error) {
+    return verdict(Outcome::broken, "exception", error.what());
+  }
+}
+
+Verdict judge_once(const Scene& scene, const Asked& asked) {
+  if (scene.dimension == Dimension::planar)
+    return scene.single ? judge_in<Planar<float>>(scene, asked) : judge_in<Planar<double>>(scene, asked);
+  return scene.single ? judge_in<Spatial<float>>(scene, asked) : judge_in<Spatial<double>>(scene, asked);
+}
+
+// Linear momentum and bits are kept by any step; the rest only by one that is short enough.
+bool may_be_the_step(const Verdict& v) {
+  return v.what == "finite" || v.what == "C" || v.what.starts_with("energy") || v.what == "angular momentum";
+}
+
+}  // namespace
+
+int steps_of(const Scene& scene) { return static_cast<int>(std::ceil(scene.duration / scene.step * (1 - 1e-12))); }
+
+Verdict judge(const Scene& scene, const Asked& asked) {
+  const Verdict seen = judge_once(scene, asked);
+  if (!seen.broken() || !may_be_the_step(seen) || asked.refinements == 0) return seen;
+  Scene finer = scene;
+  finer.duration = seen.step * scene.step;
+  Asked without_bits = asked;
+  without_bits.bits = false;
+  Verdict again;
+  for (int k = 0; k < asked.refinements; ++k) {
+    finer.step /= 4;
+    again = judge_once(finer, without_bits);
+    if (!again.broken())
+      return verdict(Outcome::limited, fmt::format("the step is too long: {}", seen.what),
+                     fmt::format("holds at a step {:.0f} times shorter", scene.step / finer.step), seen.value, seen.bound,
+                     seen.step);
+  }
+  const bool unresolved = again.roughest > resolved && again.what != "C" && again.what != "finite";
+  if (unresolved)
+    return verdict(Outcome::limited, fmt::format("no step tried resolves the motion: {}", seen.what), "", seen.value,
+                   seen.bound, seen.step);
+  return seen;
+}
+
+}  // namespace cdot::torture

@@ -1,0 +1,173 @@
+#include "tests/torture/laws.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/jacobian.hpp"
+
+namespace cdot::torture {
+namespace {
+
+const JointType& type_of(const Scene& scene, const SceneJoint& joint) {
+  return *find_joint_type(scene.dimension, joint.definition.type);
+}
+
+bool one_sided(const JointType& type) {
+  return std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::inequality) > 0;
+}
+
+bool immovable(const Scene& scene, int body) {
+  return body == world_body || scene.bodies[static_cast<std::size_t>(body)].is_static;
+}
+
+// By a body that never moves, or by a place in the world that a parameter names.
+bool holds_the_world(const Scene& scene, const SceneJoint& joint) {
+  for (const int body : joint.definition.bodies)
+    if (immovable(scene, body)) return true;
+  for (const ParameterInfo& info : type_of(scene, joint).parameters)
+    if (info.body < 0 && info.kind != ParameterKind::scalar) return true;
+  return false;
+}
+
+bool pushed_from_outside(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [&](const SceneBody& body) {
+    const auto pushed = [](const auto& d, double force, double torque) {
+      return force != 0 || torque != 0 || d.linear_damping != 0 || d.angular_damping != 0;
+    };
+    const BodyDefinition& p = body.definition;
+    const SpatialBodyDefinition& s = body.spatial;
+    return pushed(p, std::hypot(p.force_x, p.force_y), p.torque) ||
+           pushed(s, std::hypot(s.force_x, s.force_y, s.force_z), std::hypot(s.torque_x, s.torque_y, s.torque_z));
+  });
+}
+
+bool is_free(const Scene& scene) {
+  for (const SceneJoint& joint : scene.joints)
+    if (holds_the_world(scene, joint)) return false;
+  for (const SpringDefinition& spring : scene.springs)
+    if (immovable(scene, spring.body_a) || immovable(scene, spring.body_b)) return false;
+  return !pushed_from_outside(scene);
+}
+
+// Do all rows let everything turn together about the origin, at the start? A gear against the ground does not.
+template <class S>
+bool turns_as_one(const Scene& scene) {
+  BasicWorld<S> world = build_world_in<S>(scene);
+  const SystemMatrix D = system_matrix(world);
+  constexpr bool in_space = S::dimension == Dimension::spatial;
+  for (int axis = in_space ? 0 : 2; axis < 3; ++axis) {
+    std::vector<double> v;
+    for (const int body : D.bodies) {
+      const auto q = world.place(body);
+      if constexpr (in_space) {
+        const double w[3] = {axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0};
+        v.insert(v.end(), {w[1] * q.z - w[2] * q.y, w[2] * q.x - w[0] * q.z, w[0] * q.y - w[1] * q.x, w[0], w[1], w[2]});
+      } else {
+        v.insert(v.end(), {-q.y, q.x, 1.0});
+      }
+    }
+    for (int r = 0; r < D.rows; ++r) {
+      double sum = 0, size = 0;
+      for (int c = 0; c < D.columns; ++c) {
+        const double term = D.entry(r, c) * v[static_cast<std::size_t>(c)];
+        sum += term, size += std::abs(term);
+      }
+      if (std::abs(sum) > 1e-7 * size) return false;
+    }
+  }
+  return true;
+}
+
+bool has_damping(const Softness& s) { return s.damping_ratio != 0 || s.damping != 0; }
+
+// What a scene has that gives energy, or takes it.
+struct Exchange {
+  bool gives = false, takes = false;
+  // A spring told by its frequency has another stiffness in every pose: its force has no potential.
+  void spring(const Softness& s) { gives |= s.by_frequency, takes |= has_damping(s); }
+};
+
+void add_effects(const SceneEffects& effects, Exchange& exchange) {
+  exchange.gives |= effects.motor && effects.motor->speed != 0;
+  exchange.takes |= effects.motor || effects.limit || effects.friction;
+  for (const SceneSpring& spring : effects.springs) exchange.spring(spring.softness);
+}
+
+Exchange exchange_of(const Scene& scene) {
+  Exchange exchange;
+  for (const SceneBody& body : scene.bodies) {
+    const auto damped = [](const auto& d) { return d.linear_damping != 0 || d.angular_damping != 0; };
+    exchange.takes |= damped(body.definition) || damped(body.spatial);
+    const SpatialBodyDefinition& s = body.spatial;
+    exchange.gives |= s.torque_x != 0 || s.torque_y != 0 || s.torque_z != 0;  // has no potential
+  }
+  for (const SceneJoint& joint : scene.joints) {
+    const JointType& type = type_of(scene, joint);
+    exchange.gives |= type.explicit_time;
+    exchange.takes |= one_sided(type) || joint.breaking.has_value();
+    if (joint.definition.soft) {
+      exchange.spring(*joint.definition.soft);
+      exchange.takes |= std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::velocity) > 0;
+    }
+    for (const SceneEffects& effects : joint.effects) add_effects(effects, exchange);
+  }
+  for (const SpringDefinition& spring : scene.springs) exchange.takes |= spring.damping != 0;
+  exchange.takes |= scene.settings.sleep_after > 0;
+  return exchange;
+}
+
+// A soft row pushes along its own direction only: with several, the force need not point along the stretch.
+bool has_soft_rows(const Scene& scene) {
+  return std::any_of(scene.joints.begin(), scene.joints.end(),
+                     [](const SceneJoint& joint) { return joint.definition.soft.has_value(); });
+}
+
+bool prescribes_motion(const Scene& scene) {
+  return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
+    if (type_of(scene, joint).explicit_time) return true;
+    return std::any_of(joint.effects.begin(), joint.effects.end(), [](const SceneEffects& effects) {
+      return effects.motor && effects.motor->max_force == unlimited;
+    });
+  });
+}
+
+// Ropes, limits, or a loop: joints that hold bodies which hang together without them. All that never moves is one.
+bool may_stop_a_motion(const Scene& scene) {
+  std::vector<int> group(scene.bodies.size() + 1);
+  for (std::size_t k = 0; k < group.size(); ++k) group[k] = static_cast<int>(k);
+  const auto node = [&](int body) { return immovable(scene, body) ? std::size_t(0) : std::size_t(body + 1); };
+  for (const SceneJoint& joint : scene.joints) {
+    if (one_sided(type_of(scene, joint))) return true;
+    for (const SceneEffects& effects : joint.effects)
+      if (effects.limit) return true;
+    const std::vector<int>& bodies = joint.definition.bodies;
+    for (std::size_t k = 1; k < bodies.size(); ++k) {
+      const int from = group[node(bodies[k])], to = group[node(bodies[0])];
+      if (from == to) return true;
+      std::replace(group.begin(), group.end(), from, to);
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Laws laws_of(const Scene& scene) {
+  Laws laws;
+  const Exchange exchange = exchange_of(scene);
+  laws.energy_kept = !exchange.gives && !exchange.takes;
+  laws.energy_falls = !exchange.gives;
+  laws.may_contradict = prescribes_motion(scene) && may_stop_a_motion(scene);
+  if (scene.settings.sleep_after > 0 || !is_free(scene)) return laws;
+  const double g[3] = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
+  const bool planar = scene.dimension == Dimension::planar;
+  const bool turns = !has_soft_rows(scene) &&
+                     (planar ? turns_as_one<Planar<double>>(scene) : turns_as_one<Spatial<double>>(scene));
+  for (std::size_t k = 0; k < 3; ++k) {
+    laws.linear[k] = g[k] == 0 && !(planar && k == 2);
+    laws.angular[k] = turns && g[(k + 1) % 3] == 0 && g[(k + 2) % 3] == 0 && !(planar && k != 2);
+  }
+  return laws;
+}
+
+}  // namespace cdot::torture

@@ -1,0 +1,20 @@
+// What the motion of a scene keeps, by what the scene consists of: which momenta, and whether energy.
+#pragma once
+
+#include <array>
+
+#include "runtime/scene.hpp"
+
+namespace cdot::torture {
+
+struct Laws {
+  std::array<bool, 3> linear{}, angular{};  // by axis; angular about the origin. In the plane: x, y and about z.
+  bool energy_kept = false;                 // nothing takes or gives any
+  bool energy_falls = false;                // nothing gives any
+  bool may_contradict = false;              // a motion is prescribed, and something else may not let it happen
+  bool momentum() const { return linear[0] || linear[1] || linear[2] || angular[0] || angular[1] || angular[2]; }
+};
+
+Laws laws_of(const Scene& scene);
+
+}  // namespace cdot::torture

@@ -1,0 +1,113 @@
+// The motion of a World at one moment as a physicist sees it: momenta, kinetic energy, how much the velocities changed.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "runtime/rotation.hpp"
+#include "runtime/world.hpp"
+
+namespace cdot::torture {
+
+// Of one body, in doubles, in world axes.
+struct BodyMotion {
+  double mass = 0;
+  std::array<double, 3> x{}, v{}, w{}, spin{};  // spin: its angular momentum about its own centre
+  spatial::Symmetric<double> inertia{};
+};
+
+struct Motion {
+  std::vector<BodyMotion> bodies;              // those that move
+  std::array<double, 3> linear{}, angular{};   // momenta; angular about the origin
+  double linear_size = 0, angular_size = 0;    // sums of the bodies' absolute momenta: what round-off is told by
+  double spin_size = 0, root_mass = 0;  // sum of the bodies' own angular momenta; root of the sum of masses
+  double kinetic = 0;
+};
+
+template <class T>
+BodyMotion motion_of(const planar::Pose<T>& q, const planar::Velocity<T>& v, const planar::InverseMass<T>& m) {
+  BodyMotion body;
+  body.mass = 1 / double(m.m);
+  body.inertia.zz = m.I > 0 ? 1 / double(m.I) : 0;
+  body.x = {q.x, q.y, 0}, body.v = {v.x, v.y, 0}, body.w = {0, 0, v.w};
+  return body;
+}
+template <class T>
+BodyMotion motion_of(const spatial::Pose<T>& q, const spatial::Velocity<T>& v, const spatial::InverseMass<T>& m) {
+  BodyMotion body;
+  body.mass = 1 / double(m.m);
+  // Scaled by the largest entry: the cofactors of a tiny tensor would vanish.
+  const double size = std::max({double(m.Ixx), double(m.Iyy), double(m.Izz)});
+  if (size > 0) {
+    const double s = 1 / size;
+    const spatial::Symmetric<double> scaled = {s * m.Ixx, s * m.Iyy, s * m.Izz, s * m.Ixy, s * m.Ixz, s * m.Iyz};
+    body.inertia = s * spatial::inverse(scaled);
+  }
+  body.x = {q.x, q.y, q.z}, body.v = {v.x, v.y, v.z}, body.w = {v.wx, v.wy, v.wz};
+  return body;
+}
+
+inline std::array<double, 3> times(const spatial::Symmetric<double>& I, const std::array<double, 3>& w) {
+  const spatial::Vector<double> L = I * spatial::Vector<double>{w[0], w[1], w[2]};
+  return {L.x, L.y, L.z};
+}
+inline double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline double norm(const std::array<double, 3>& a) { return std::sqrt(dot(a, a)); }
+
+template <class S>
+Motion motion_of(const BasicWorld<S>& world) {
+  Motion motion;
+  for (int i = 0; i < world.body_count(); ++i) {
+    if (world.is_static(i)) continue;
+    BodyMotion body = motion_of(world.pose(i), world.velocity(i), world.inverse_mass(i));
+    body.spin = times(body.inertia, body.w);
+    const auto &x = body.x, &v = body.v;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
+      motion.linear[k] += body.mass * v[k];
+      motion.angular[k] += body.mass * (x[a] * v[b] - x[b] * v[a]) + body.spin[k];
+    }
+    motion.linear_size += body.mass * norm(v);
+    motion.angular_size += body.mass * norm(x) * norm(v) + norm(body.spin);
+    motion.spin_size += norm(body.spin);
+    motion.root_mass = std::sqrt(motion.root_mass * motion.root_mass + body.mass);
+    motion.kinetic += 0.5 * body.mass * dot(v, v) + 0.5 * dot(body.w, body.spin);
+    motion.bodies.push_back(body);
+  }
+  return motion;
+}
+
+// What <a, M b> is of two changes of velocity, body by body.
+struct VelocityChange {
+  std::vector<std::array<double, 6>> bodies;
+};
+inline VelocityChange change(const Motion& from, const Motion& to) {
+  VelocityChange d;
+  for (std::size_t i = 0; i < to.bodies.size(); ++i) {
+    std::array<double, 6> c{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      c[k] = to.bodies[i].v[k] - from.bodies[i].v[k];
+      c[3 + k] = to.bodies[i].w[k] - from.bodies[i].w[k];
+    }
+    d.bodies.push_back(c);
+  }
+  return d;
+}
+// |b - a|^2 in the metric of the masses of `at`; an empty a is 0.
+inline double square(const Motion& at, const VelocityChange& b, const VelocityChange& a = {}) {
+  double sum = 0;
+  for (std::size_t i = 0; i < at.bodies.size(); ++i) {
+    std::array<double, 3> v{}, w{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      v[k] = b.bodies[i][k] - (a.bodies.empty() ? 0 : a.bodies[i][k]);
+      w[k] = b.bodies[i][3 + k] - (a.bodies.empty() ? 0 : a.bodies[i][3 + k]);
+    }
+    sum += at.bodies[i].mass * dot(v, v) + dot(w, times(at.bodies[i].inertia, w));
+  }
+  return sum;
+}
+
+}  // namespace cdot::torture

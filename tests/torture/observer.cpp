@@ -1,0 +1,69 @@
+#include "tests/torture/observer.hpp"
+
+namespace cdot::torture {
+namespace {
+
+// h |M^-1 F| in the metric of the masses: gravity and the constant forces.
+double pushed_by_forces(const Scene& scene) {
+  const Settings& s = scene.settings;
+  double sum = 0;
+  for (const SceneBody& body : scene.bodies) {
+    const bool planar = scene.dimension == Dimension::planar;
+    const BodyDefinition& p = body.definition;
+    const SpatialBodyDefinition& q = body.spatial;
+    const double mass = planar ? p.mass : q.mass, inertia = planar ? p.inertia : 0;
+    if (body.is_static) continue;
+    const double x = s.gravity_x + (planar ? p.force_x : q.force_x) / mass;
+    const double y = s.gravity_y + (planar ? p.force_y : q.force_y) / mass;
+    const double z = s.gravity_z + (planar ? 0 : q.force_z / mass);
+    sum += mass * (x * x + y * y + z * z) + (inertia > 0 ? p.torque * p.torque / inertia : 0);
+  }
+  return scene.step / s.substeps * std::sqrt(sum);
+}
+
+}  // namespace
+
+Accounts::Accounts(const Motion& start, double energy, const Scene& scene, double epsilon)
+    : order_(order_of(scene.settings.integrator)),
+      epsilon_(epsilon),
+      start_energy_(energy),
+      local_error_(scene.settings.local_error),
+      pushed_(pushed_by_forces(scene)),
+      step_(scene.step),
+      last_(start) {}
+
+// Per step: |dv| (|dv| + |h F|) rho^(p-1), rho being how much the acceleration changes within a step, against the
+// largest so far.
+void Accounts::step(const Motion& now, double energy, double operations, long long taken) {
+  const VelocityChange d = change(last_, now);
+  const double size = std::sqrt(square(now, d)), first_order = size * (size + pushed_);
+  largest_change_ = std::max(largest_change_, size);
+  largest_speed_ = std::max(largest_speed_, std::sqrt(2 * now.kinetic));
+  largest_energy_ = std::max({largest_energy_, now.kinetic, std::abs(energy - start_energy_)});
+  if (!change_) roughest_ = largest_speed_ > 0 ? size / largest_speed_ : 0;
+  if (change_) {
+    const double noise = 1000 * epsilon_ * largest_speed_;
+    const double rough = largest_change_ > noise ? std::sqrt(square(now, d, *change_)) / largest_change_ : 0;
+    const double rho = std::pow(std::max(rough, rough_before_), order_ - 1);
+    const double term = (first_order + pending_) * rho;
+    order_error_ += term;
+    if (largest_speed_ > 0) angular_order_ += now.angular_size * term / (largest_speed_ * largest_speed_);
+    roughest_ = std::max(roughest_, rough);
+    rough_before_ = rough;
+    pending_ = 0;
+  } else {
+    pending_ = first_order;  // of the step that had none before it
+  }
+  // An error of local_error in every pose and velocity, at the end of each step taken.
+  const double chosen = double(taken - taken_) * local_error_ * (now.linear_size + now.spin_size + largest_change_ / step_ * now.root_mass);
+  order_error_ += chosen;
+  angular_order_ += chosen * (largest_speed_ > 0 ? now.angular_size / (largest_speed_ * largest_speed_) : 0);
+  round_off_ += operations * epsilon_ * largest_energy_;
+  momentum_ += operations * epsilon_ * now.linear_size;
+  angular_ += operations * epsilon_ * now.angular_size;
+  change_ = d;
+  last_ = now;
+  taken_ = taken;
+}
+
+}  // namespace cdot::torture

@@ -1,0 +1,119 @@
+// Watches the steps of a World and keeps the accounts that the bounds are made of.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/jacobian.hpp"
+#include "tests/torture/invariants.hpp"
+#include "tests/torture/laws.hpp"
+#include "tests/torture/motion.hpp"
+
+namespace cdot::torture {
+
+// What C of one is, by row of a joint: |J| of a displacement of the mechanism's size and of a turn of one radian.
+struct RowSizes {
+  std::vector<std::vector<double>> of_joint;
+  double length = 1;  // of the mechanism: the longest distance between two bodies, or arm of a joint
+};
+
+template <class S>
+RowSizes row_sizes(BasicWorld<S>& world) {
+  const SystemMatrix D = system_matrix(world);
+  constexpr int lengths = S::dimension == Dimension::planar ? 2 : 3;
+  const auto place = [&](int k) { return motion_of(world.pose(k), world.velocity(k), world.inverse_mass(k)).x; };
+  RowSizes sizes;
+  double longest = 0;
+  for (const int a : D.bodies)
+    for (const int b : D.bodies) {
+      const auto p = place(a), q = place(b);
+      longest = std::max(longest, norm({p[0] - q[0], p[1] - q[1], p[2] - q[2]}));
+    }
+  std::vector<std::array<double, 2>> rows;  // |J| of lengths and of turns
+  for (int r = 0; r < D.rows; ++r) {
+    double straight = 0, turning = 0;
+    for (int c = 0; c < D.columns; ++c) {
+      const double x = D.entry(r, c);
+      (c % D.freedom < lengths ? straight : turning) += x * x;
+    }
+    rows.push_back({std::sqrt(straight), std::sqrt(turning)});
+    if (straight > 0) longest = std::max(longest, std::sqrt(turning / straight));
+  }
+  sizes.length = longest > 0 ? longest : 1;
+  sizes.of_joint.resize(static_cast<std::size_t>(world.joint_count()));
+  for (const SystemMatrix::Joint& joint : D.joints)
+    for (int r = joint.first; r < joint.first + joint.rows; ++r)
+      sizes.of_joint[static_cast<std::size_t>(joint.joint)].push_back(
+          std::hypot(rows[static_cast<std::size_t>(r)][0] * sizes.length, rows[static_cast<std::size_t>(r)][1]));
+  return sizes;
+}
+
+// The largest C as a share of its row's size, and whose it is.
+struct Gap {
+  double share = 0;
+  int joint = -1;
+};
+
+template <class S>
+Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes) {
+  Gap gap;
+  for (int j = 0; j < world.joint_count(); ++j) {
+    const auto& size = sizes.of_joint[static_cast<std::size_t>(j)];
+    if (size.empty() || world.broken(j) || scene.joints[static_cast<std::size_t>(j)].definition.soft) continue;
+    const std::vector<double> C = world.position_error(j);
+    const auto& kinds = world.joint_type(j).row_kinds;
+    for (std::size_t r = 0; r < C.size(); ++r) {
+      if (kinds[r] == RowKind::inequality && C[r] > 0) continue;
+      const double share = std::abs(C[r]) / size[r];
+      if (!(share <= gap.share)) gap = {share, j};
+    }
+  }
+  return gap;
+}
+
+constexpr double order_of(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::euler:
+    case Integrator::implicit:
+      return 1;
+    case Integrator::rattle:
+      return 2;
+    case Integrator::rk4:
+      return 4;
+    case Integrator::dop853:
+      return 8;
+  }
+  return 1;
+}
+
+// See README.md: how far energy and angular momentum may be off after the steps so far.
+class Accounts {
+ public:
+  Accounts(const Motion& start, double energy, const Scene& scene, double epsilon);
+
+  // `taken`: steps of an integrator that chooses its own, so far.
+  void step(const Motion& now, double energy, double operations, long long taken);
+
+  double order_error() const { return order_error_; }       // [J]
+  double round_off_energy() const { return round_off_; }    // [J]
+  double roughest() const { return roughest_; }             // the largest change of acceleration in a step, relative
+  double momentum_round_off() const { return momentum_; }   // [kg m/s]
+  double angular_round_off() const { return angular_; }     // [kg m^2/s]
+  double angular_order_error() const { return angular_order_; }
+
+ private:
+  double order_, epsilon_, start_energy_, local_error_;
+  double pushed_;  // what the constant forces add to the velocities in a step, in the metric of the masses
+  double step_;
+  long long taken_ = 0;
+  Motion last_;
+  std::optional<VelocityChange> change_;
+  double rough_before_ = 0, pending_ = 0, largest_change_ = 0, largest_speed_ = 0, largest_energy_ = 0;
+  double order_error_ = 0, round_off_ = 0, roughest_ = 0, momentum_ = 0, angular_ = 0, angular_order_ = 0;
+};
+
+}  // namespace cdot::torture

@@ -1,0 +1,13 @@
+// A Scene as the TOML text that reads back as the same Scene, to the bit: what is drawn (shapes, traces) left out.
+#pragma once
+
+#include <string>
+
+#include "runtime/scene.hpp"
+
+namespace cdot::torture {
+
+// Frames in space are written by two axes: their parameters must have three or six numbers.
+std::string text_of(const Scene& scene);
+
+}  // namespace cdot::torture

@@ -1,0 +1,219 @@
+#include "tests/torture/shrink.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+
+namespace cdot::torture {
+namespace {
+
+using Change = std::function<void(Scene&)>;
+
+// The scene without that body, and without what is attached to it.
+void remove_body(Scene& scene, int body) {
+  const auto uses = [&](const std::vector<int>& bodies) { return std::count(bodies.begin(), bodies.end(), body) > 0; };
+  std::erase_if(scene.joints, [&](const SceneJoint& joint) { return uses(joint.definition.bodies); });
+  std::erase_if(scene.springs, [&](const SpringDefinition& s) { return s.body_a == body || s.body_b == body; });
+  scene.bodies.erase(scene.bodies.begin() + body);
+  const auto moved = [&](int& index) { index -= index > body; };
+  for (SceneJoint& joint : scene.joints)
+    for (int& index : joint.definition.bodies) moved(index);
+  for (SpringDefinition& spring : scene.springs) moved(spring.body_a), moved(spring.body_b);
+}
+
+double rounded(double x, int digits) { return std::strtod(fmt::format("{:.{}e}", x, digits - 1).c_str(), nullptr); }
+
+void round_planar(BodyDefinition& d, int digits) {
+  for (double* x : {&d.x, &d.y, &d.angle, &d.vx, &d.vy, &d.w, &d.mass, &d.inertia, &d.force_x, &d.force_y, &d.torque,
+                    &d.linear_damping, &d.angular_damping})
+    *x = rounded(*x, digits);
+}
+
+void round_spatial(SpatialBodyDefinition& d, int digits) {
+  for (double* x : {&d.x, &d.y, &d.z, &d.e0, &d.e1, &d.e2, &d.e3, &d.vx, &d.vy, &d.vz, &d.wx, &d.wy, &d.wz, &d.mass,
+                    &d.inertia.xx, &d.inertia.yy, &d.inertia.zz, &d.inertia.xy, &d.inertia.xz, &d.inertia.yz,
+                    &d.force_x, &d.force_y, &d.force_z, &d.torque_x, &d.torque_y, &d.torque_z, &d.linear_damping,
+                    &d.angular_damping})
+    *x = rounded(*x, digits);
+}
+
+void round_softness(Softness& s, int digits) {
+  for (double* x : {&s.frequency, &s.damping_ratio, &s.stiffness, &s.damping}) *x = rounded(*x, digits);
+}
+
+void round_effects(SceneEffects& effects, int digits) {
+  if (effects.limit)
+    for (auto* end : {&effects.limit->lower, &effects.limit->upper})
+      if (*end) **end = rounded(**end, digits);
+  if (effects.motor) {
+    effects.motor->speed = rounded(effects.motor->speed, digits);
+    if (effects.motor->max_force != unlimited) effects.motor->max_force = rounded(effects.motor->max_force, digits);
+  }
+  for (SceneSpring& spring : effects.springs) {
+    round_softness(spring.softness, digits);
+    if (spring.rest) *spring.rest = rounded(*spring.rest, digits);
+  }
+  if (effects.friction) effects.friction->max_force = rounded(effects.friction->max_force, digits);
+}
+
+void round_joint(SceneJoint& joint, int digits) {
+  for (NamedValue& value : joint.definition.parameters)
+    for (double& x : value.numbers) x = rounded(x, digits);
+  for (SceneEffects& effects : joint.effects) round_effects(effects, digits);
+  if (joint.definition.soft) round_softness(*joint.definition.soft, digits);
+}
+
+void round_spring(SpringDefinition& s, int digits) {
+  for (double* x : {&s.ax, &s.ay, &s.az, &s.bx, &s.by, &s.bz, &s.stiffness, &s.rest_length, &s.damping})
+    *x = rounded(*x, digits);
+}
+
+void round_settings(Scene& scene, int digits) {
+  Settings& s = scene.settings;
+  const int steps = steps_of(scene);
+  for (double* x : {&scene.step, &s.gravity_x, &s.gravity_y, &s.gravity_z, &s.local_error, &s.sleep_after})
+    *x = rounded(*x, digits);
+  scene.duration = steps * scene.step;
+}
+
+void round_all(Scene& scene, int digits) {
+  round_settings(scene, digits);
+  for (SceneBody& body : scene.bodies) round_planar(body.definition, digits), round_spatial(body.spatial, digits);
+  for (SceneJoint& joint : scene.joints) round_joint(joint, digits);
+  for (SpringDefinition& spring : scene.springs) round_spring(spring, digits);
+}
+
+class Shrinker {
+ public:
+  Shrinker(const Scene& scene, const Verdict& verdict, const Asked& asked, int most_tries)
+      : asked_(asked), most_tries_(most_tries), best_{scene, verdict, 0} {}
+
+  Shrunk run() {
+    for (bool smaller = true; smaller && best_.tries < most_tries_;) {
+      smaller = false;
+      for (const auto pass : {&Shrinker::fewer_steps, &Shrinker::fewer_bodies, &Shrinker::fewer_joints,
+                              &Shrinker::fewer_effects, &Shrinker::plainer_settings, &Shrinker::plainer_bodies})
+        smaller |= (this->*pass)();
+    }
+    rounder_numbers();
+    fewer_steps();
+    return std::move(best_);
+  }
+
+ private:
+  // Kept if the same invariant still breaks.
+  bool attempt(const Change& change) {
+    if (best_.tries >= most_tries_) return false;
+    Scene scene = best_.scene;
+    change(scene);
+    ++best_.tries;
+    const Verdict seen = judge(scene, asked_);
+    if (!seen.broken() || seen.what != best_.verdict.what) return false;
+    best_.scene = std::move(scene), best_.verdict = seen;
+    return true;
+  }
+  // From the last to the first, so that an index stays good when something is gone.
+  bool each(std::size_t count, const std::function<void(Scene&, std::size_t)>& change) {
+    bool smaller = false;
+    for (std::size_t k = count; k-- > 0;) smaller |= attempt([&](Scene& scene) { change(scene, k); });
+    return smaller;
+  }
+
+  bool fewer_steps() {
+    const int steps = steps_of(best_.scene);
+    const auto end_after = [](int count) {
+      return [count](Scene& scene) { scene.duration = count * scene.step; };
+    };
+    const int seen = best_.verdict.step;
+    if (seen > 0 && seen < steps && attempt(end_after(seen))) return true;
+    return steps > 1 && (attempt(end_after(steps / 4 + 1)) || attempt(end_after(steps / 2)));
+  }
+  bool fewer_bodies() {
+    return best_.scene.bodies.size() > 1 &&
+           each(best_.scene.bodies.size(), [](Scene& s, std::size_t k) { remove_body(s, static_cast<int>(k)); });
+  }
+  bool fewer_joints() {
+    return each(best_.scene.joints.size(), [](Scene& s, std::size_t k) { s.joints.erase(s.joints.begin() + long(k)); }) |
+           each(best_.scene.springs.size(), [](Scene& s, std::size_t k) { s.springs.erase(s.springs.begin() + long(k)); });
+  }
+  bool fewer_effects() {
+    bool smaller = false;
+    for (std::size_t j = 0; j < best_.scene.joints.size(); ++j) {
+      if (best_.scene.joints[j].definition.soft)
+        smaller |= attempt([&](Scene& s) { s.joints[j].definition.soft.reset(); });
+      if (best_.scene.joints[j].breaking) smaller |= attempt([&](Scene& s) { s.joints[j].breaking.reset(); });
+      smaller |= each(best_.scene.joints[j].effects.size(), [&](Scene& s, std::size_t k) {
+        s.joints[j].effects.erase(s.joints[j].effects.begin() + long(k));
+      });
+    }
+    return smaller;
+  }
+  bool plainer_settings() {
+    const Settings usual;
+    bool smaller = false;
+    const auto set = [&](auto member, auto value) {
+      if (best_.scene.settings.*member != value) smaller |= attempt([&](Scene& s) { s.settings.*member = value; });
+    };
+    set(&Settings::drift, usual.drift);
+    set(&Settings::kernels, usual.kernels);
+    set(&Settings::substeps, usual.substeps);
+    set(&Settings::iterations, usual.iterations);
+    set(&Settings::baumgarte, usual.baumgarte);
+    set(&Settings::warm_start, usual.warm_start);
+    set(&Settings::local_error, 0.0);
+    set(&Settings::sleep_after, 0.0);
+    for (const auto axis : {&Settings::gravity_x, &Settings::gravity_y, &Settings::gravity_z}) set(axis, 0.0);
+    if (best_.scene.single) smaller |= attempt([](Scene& s) { s.single = false; });
+    return smaller;
+  }
+  bool plainer_bodies() {
+    bool smaller = false;
+    for (std::size_t k = 0; k < best_.scene.bodies.size(); ++k) {
+      const auto zero = [&](auto... members) {
+        auto& planar = best_.scene.bodies[k].definition;
+        if ((... || (planar.*members != 0)))
+          smaller |= attempt([&](Scene& s) { ((s.bodies[k].definition.*members = 0), ...); });
+      };
+      const auto zero_in_space = [&](auto... members) {
+        auto& spatial = best_.scene.bodies[k].spatial;
+        if ((... || (spatial.*members != 0)))
+          smaller |= attempt([&](Scene& s) { ((s.bodies[k].spatial.*members = 0), ...); });
+      };
+      using P = BodyDefinition;
+      using V = SpatialBodyDefinition;
+      zero(&P::vx, &P::vy), zero(&P::w), zero(&P::force_x, &P::force_y, &P::torque);
+      zero(&P::linear_damping, &P::angular_damping);
+      zero_in_space(&V::vx, &V::vy, &V::vz), zero_in_space(&V::wx, &V::wy, &V::wz);
+      zero_in_space(&V::force_x, &V::force_y, &V::force_z, &V::torque_x, &V::torque_y, &V::torque_z);
+      zero_in_space(&V::linear_damping, &V::angular_damping), zero_in_space(&V::e1, &V::e2, &V::e3);
+    }
+    return smaller;
+  }
+  void rounder_numbers() {
+    for (const int digits : {1, 2, 3, 4, 6})
+      if (attempt([&](Scene& s) { round_all(s, digits); })) break;
+    for (const int digits : {1, 2, 3}) {
+      attempt([&](Scene& s) { round_settings(s, digits); });
+      each(best_.scene.bodies.size(), [&](Scene& s, std::size_t k) {
+        round_planar(s.bodies[k].definition, digits), round_spatial(s.bodies[k].spatial, digits);
+      });
+      each(best_.scene.joints.size(), [&](Scene& s, std::size_t k) { round_joint(s.joints[k], digits); });
+      each(best_.scene.springs.size(), [&](Scene& s, std::size_t k) { round_spring(s.springs[k], digits); });
+    }
+  }
+
+  const Asked& asked_;
+  int most_tries_;
+  Shrunk best_;
+};
+
+}  // namespace
+
+Shrunk shrink(const Scene& scene, const Verdict& verdict, const Asked& asked, int most_tries) {
+  return Shrinker(scene, verdict, asked, most_tries).run();
+}
+
+}  // namespace cdot::torture

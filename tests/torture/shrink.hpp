@@ -1,0 +1,17 @@
+// Makes a scene in which an invariant breaks as small as it can while the same one breaks: fewer bodies, joints and
+// effects, plain settings, round numbers, fewer steps.
+#pragma once
+
+#include "tests/torture/invariants.hpp"
+
+namespace cdot::torture {
+
+struct Shrunk {
+  Scene scene;
+  Verdict verdict;
+  int tries = 0;
+};
+
+Shrunk shrink(const Scene& scene, const Verdict& verdict, const Asked& asked = {}, int most_tries = 3000);
+
+}  // namespace cdot::torture

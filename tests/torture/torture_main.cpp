@@ -1,0 +1,133 @@
+// Draws mechanisms until told to stop, judges each, shrinks and keeps those in which an invariant breaks.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "runtime/methods.hpp"
+#include "tests/torture/scene_text.hpp"
+#include "tests/torture/shrink.hpp"
+#include "tests/torture/tally.hpp"
+
+namespace cdot::torture {
+namespace {
+
+struct Options {
+  std::uint64_t seed = 1;
+  int count = 1000;
+  double seconds = 0;
+  Wish wish;
+  std::string method, keep, scene;
+  bool no_bits = false, no_shrink = false, print = false;
+};
+
+// "direct", "rattle", "float" or several of them.
+void read_method(const std::string& method, Wish& wish) {
+  std::istringstream words(method);
+  for (std::string word; words >> word;) {
+    const auto has = [&](const auto& table) {
+      const auto names = names_of(table);
+      return std::find(names.begin(), names.end(), word) != names.end();
+    };
+    if (has(solvers))
+      wish.solver = method_called(solvers, word);
+    else if (has(integrators))
+      wish.integrator = method_called(integrators, word);
+    else if (has(precisions))
+      wish.single = method_called(precisions, word);
+    else
+      throw Error(fmt::format("--method: no solver, integrator or precision is called {}", word));
+  }
+}
+
+std::string told(const Verdict& v) {
+  return fmt::format("{}{}{}: {:.3g}, at most {:.3g}, after step {}", v.what, v.detail.empty() ? "" : " of ", v.detail,
+                     v.value, v.bound, v.step);
+}
+
+void keep(const Options& options, const std::string& name, const std::string& text) {
+  std::filesystem::create_directories(options.keep);
+  std::ofstream(options.keep + "/" + name) << text;
+}
+
+// Prints what breaks, the smallest scene in which it does, and how to see it again.
+void report(const Options& options, std::uint64_t seed, const Scene& scene, const Verdict& verdict) {
+  fmt::print("\nBROKEN {}\n  seed {:#x}, {}\n", told(verdict), seed, way_of(scene));
+  if (options.no_shrink) return;
+  Asked asked;
+  asked.bits = verdict.what.starts_with("bits");
+  Shrunk small = shrink(scene, verdict, asked);
+  small.scene.title = fmt::format("seed {:#x}: {}", seed, small.verdict.what);
+  const std::string text = text_of(small.scene), name = fmt::format("{:016x}.toml", seed);
+  fmt::print("  shrunk in {} tries: {} bodies, {} joints, {} steps: {}\n", small.tries, small.scene.bodies.size(),
+             small.scene.joints.size(), steps_of(small.scene), told(small.verdict));
+  fmt::print("  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}; cdot-run simulate {}\n\n{}\n",
+             seed, options.wish.steps, name, name, text);
+  if (!options.keep.empty()) keep(options, name, text);
+}
+
+int judge_file(const Options& options) {
+  const Scene scene = read_scene(options.scene);
+  Asked asked;
+  asked.bits = !options.no_bits;
+  const Verdict verdict = judge(scene, asked);
+  const char* words[] = {"held", "refused", "limited", "BROKEN"};
+  fmt::print("{}: {}\n", words[static_cast<int>(verdict.outcome)], told(verdict));
+  return verdict.broken();
+}
+
+int torture(const Options& options) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
+  Tally tally;
+  Asked asked;
+  asked.bits = !options.no_bits;
+  for (int k = 0; options.seconds > 0 ? passed() < options.seconds : k < options.count; ++k) {
+    const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
+    const Mechanism mechanism = generate(seed, options.wish);
+    if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
+    const Verdict verdict = judge(mechanism.scene, asked);
+    tally.add(mechanism, verdict);
+    if (verdict.broken()) report(options, seed, mechanism.scene, verdict);
+    if (k % 100 == 99) fmt::print(stderr, "\r{} mechanisms, {} broken", k + 1, tally.count(Outcome::broken));
+  }
+  fmt::print(stderr, "\r{:60}\r", "");
+  if (options.count > 1) fmt::print("{}", tally.text());
+  return tally.count(Outcome::broken) > 0;
+}
+
+}  // namespace
+}  // namespace cdot::torture
+
+int main(int count, char** arguments) {
+  using namespace cdot::torture;
+  Options options;
+  CLI::App app("Random mechanisms, run in all ways, and what must hold of them. Exit 1: an invariant broke.");
+  app.add_option("--seed", options.seed, "of the first mechanism; the next has the next");
+  app.add_option("--count", options.count, "so many mechanisms");
+  app.add_option("--seconds", options.seconds, "in place of --count");
+  app.add_option("--steps", options.wish.steps, "of each");
+  app.add_option("--joint", options.wish.joint, "is part of each; of the space where it is known");
+  app.add_option("--method", options.method, "solver, integrator, precision: any of them, as in \"direct float\"");
+  app.add_option("--keep", options.keep, "a folder for the scenes in which something breaks");
+  app.add_option("--scene", options.scene, "judge this scene and no other");
+  app.add_flag("--no-bits", options.no_bits, "without repetitions: three times as fast");
+  app.add_flag("--no-shrink", options.no_shrink);
+  app.add_flag("--print", options.print, "every scene");
+  CLI11_PARSE(app, count, arguments);
+  try {
+    read_method(options.method, options.wish);
+    if (!options.wish.joint.empty()) {
+      const bool planar = cdot::find_joint_type(cdot::Dimension::planar, options.wish.joint) != nullptr;
+      const bool spatial = cdot::find_joint_type(cdot::Dimension::spatial, options.wish.joint) != nullptr;
+      if (!planar && !spatial) throw cdot::Error("--joint: no joint is called " + options.wish.joint);
+      if (planar != spatial) options.wish.dimension = planar ? cdot::Dimension::planar : cdot::Dimension::spatial;
+    }
+    return options.scene.empty() ? torture(options) : judge_file(options);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 2;
+  }
+}

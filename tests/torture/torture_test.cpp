@@ -1,0 +1,131 @@
+// The bounded torture: fixed seeds, every joint of both registries; scenes that once broke; and whether the torture
+// itself finds, shrinks and writes down what is made to break.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/torture/scene_text.hpp"
+#include "tests/torture/shrink.hpp"
+#include "tests/torture/tally.hpp"
+
+namespace cdot::torture {
+namespace {
+
+constexpr int steps = 60;
+
+void run(std::uint64_t seed, const Wish& wish, Tally& tally) {
+  const Mechanism mechanism = generate(seed, wish);
+  const Verdict verdict = judge(mechanism.scene);
+  tally.add(mechanism, verdict);
+  EXPECT_FALSE(verdict.broken()) << fmt::format("seed {}, {}: {} {} is {:.3g}, at most {:.3g}, after step {}\n", seed,
+                                                way_of(mechanism.scene), verdict.what, verdict.detail, verdict.value,
+                                                verdict.bound, verdict.step)
+                                 << text_of(mechanism.scene);
+}
+
+TEST(Torture, Bounded) {
+  Tally tally;
+  for (const Dimension dimension : {Dimension::planar, Dimension::spatial})
+    for (const JointType& type : joint_types(dimension))
+      for (std::uint64_t seed = 1; seed <= 4; ++seed)
+        run(1000 * seed + 7, {.joint = std::string(type.name), .dimension = dimension, .steps = steps}, tally);
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) run(seed, {.steps = steps}, tally);
+  for (const Dimension dimension : {Dimension::planar, Dimension::spatial})
+    for (const JointType& type : joint_types(dimension))
+      EXPECT_GT(tally.drawn(dimension, std::string(type.name)), 0) << type.name;
+  EXPECT_GT(tally.count(Outcome::held), tally.mechanisms() * 3 / 4);
+  fmt::print("{}", tally.text());
+}
+
+// What the long run found, and what was mended since.
+TEST(Torture, FoundAndMended) {
+  int scenes = 0;
+  for (const auto& file : std::filesystem::directory_iterator(CDOT_FOUND)) {
+    if (file.path().extension() != ".toml") continue;
+    const Verdict verdict = judge(read_scene(file.path().string()));
+    EXPECT_EQ(verdict.outcome, Outcome::held) << file.path() << ": " << verdict.what << " " << verdict.detail;
+    ++scenes;
+  }
+  fmt::print("{} scenes\n", scenes);
+}
+
+TEST(Torture, SameMechanismFromTheSameSeed) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed)
+    ASSERT_EQ(text_of(generate(seed).scene), text_of(generate(seed).scene)) << seed;
+  EXPECT_NE(text_of(generate(1).scene), text_of(generate(2).scene));
+}
+
+template <class S>
+Snapshot after(const Scene& scene, int count) {
+  BasicWorld<S> world = build_world_in<S>(scene);
+  for (int k = 0; k < count; ++k) world.step(scene.step);
+  return world.snapshot();
+}
+Snapshot after(const Scene& scene, int count) {
+  return scene.dimension == Dimension::planar ? after<Planar<double>>(scene, count) : after<Spatial<double>>(scene, count);
+}
+
+// A scene, written and read, is the same scene: its run has the same bits, its text the same letters.
+TEST(Torture, WrittenSceneReadsBack) {
+  for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+    const Scene scene = generate(seed, {.steps = 10}).scene;
+    const Scene copy = read_scene(text_of(scene), "copy");
+    ASSERT_EQ(text_of(copy), text_of(scene)) << seed;
+    ASSERT_EQ(after(copy, 10).differences(after(scene, 10)), std::vector<std::string>{}) << seed;
+    ASSERT_EQ(copy.single, scene.single);
+  }
+}
+
+// Gives every joint of that type, now and then, a push on one of its bodies that the other does not feel: as if an
+// impulse had the wrong sign.
+Sabotage wrong_sign(const std::string& type) {
+  return [type](const Scene& scene, int step, const Push& push) {
+    if (step % 5 != 0) return;
+    for (const SceneJoint& joint : scene.joints)
+      for (const int body : joint.definition.bodies) {
+        if (joint.definition.type != type || body == world_body) continue;
+        const SceneBody& pushed = scene.bodies[static_cast<std::size_t>(body)];
+        const double mass = pushed.definition.mass + pushed.spatial.mass;
+        if (!pushed.is_static) push(body, mass);
+        break;
+      }
+  };
+}
+
+// Found in many seeds, shrunk to what has it, and the scene that is printed shows it.
+TEST(Torture, FindsAndShrinksWhatIsSabotaged) {
+  Asked asked;
+  asked.bits = false;
+  asked.sabotage = wrong_sign("revolute");
+  int found = 0, sound = 0;
+  for (std::uint64_t seed = 1; found < 5 && seed < 400; ++seed) {
+    const Mechanism mechanism = generate(seed, {.joint = "revolute", .solver = Solver::direct, .single = false, .steps = 40});
+    const Verdict verdict = judge(mechanism.scene, asked);
+    if (!verdict.broken()) {
+      ++sound;
+      continue;
+    }
+    const Shrunk small = shrink(mechanism.scene, verdict, asked);
+    ++found;
+    EXPECT_EQ(small.verdict.what, verdict.what);
+    EXPECT_LE(small.scene.bodies.size(), 3u) << text_of(small.scene);
+    EXPECT_LE(steps_of(small.scene), steps_of(mechanism.scene));
+    const Scene copy = read_scene(text_of(small.scene), "copy");
+    const Verdict again = judge(copy, asked);
+    EXPECT_TRUE(again.broken());
+    EXPECT_EQ(again.what, verdict.what);
+    EXPECT_EQ(again.value, small.verdict.value);
+    Asked honest = asked;
+    honest.sabotage = {};
+    EXPECT_FALSE(judge(copy, honest).broken()) << text_of(small.scene);
+    fmt::print("seed {}: {}, {} bodies to {}, {} joints to {}, in {} tries\n", seed, verdict.what,
+               mechanism.scene.bodies.size(), small.scene.bodies.size(), mechanism.scene.joints.size(),
+               small.scene.joints.size(), small.tries);
+  }
+  EXPECT_EQ(found, 5);
+  EXPECT_LT(sound, 20);
+}
+
+}  // namespace
+}  // namespace cdot::torture
