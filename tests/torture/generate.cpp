@@ -6,6 +6,7 @@
 
 #include "runtime/methods.hpp"
 #include "tests/torture/draw.hpp"
+#include "tests/torture/scene_text.hpp"
 
 namespace cdot::torture {
 namespace {
@@ -20,6 +21,7 @@ class Growth {
  private:
   template <class S>
   void grow();
+  const std::string& any_type();
   void choose_scales();
   void choose_method();
   void add_bodies();
@@ -40,6 +42,7 @@ class Growth {
   Mechanism made_;
   Scales scales_;
   bool anchored_ = true;
+  std::string type_;
 };
 
 void Growth::choose_scales() {
@@ -47,7 +50,22 @@ void Growth::choose_scales() {
   scales_.rate = random_.chance(0.6) ? 1 : random_.log_between(1e-2, 1e2);
   scales_.mass = random_.chance(0.5) ? 1 : random_.log_between(1e-6, 1e6);
   scales_.spread = random_.of<double>({1, 10, 10, 1e3, 1e6});
-  anchored_ = random_.chance(0.6);
+  anchored_ = random_.chance(0.55);
+}
+
+// Of what floats freely mostly joints that do so too.
+const std::string& Growth::any_type() {
+  const auto types = joint_types(made_.scene.dimension);
+  const auto holds_the_world = [](const JointType& type) {
+    return type.bodies == 1 || std::any_of(type.parameters.begin(), type.parameters.end(), [](const ParameterInfo& info) {
+             return info.body < 0 && info.kind != ParameterKind::scalar;
+           });
+  };
+  const bool free = !anchored_ && random_.chance(0.9);
+  do
+    type_ = types[static_cast<std::size_t>(random_.below(static_cast<int>(types.size())))].name;
+  while (free && holds_the_world(*find_joint_type(made_.scene.dimension, type_)));
+  return type_;
 }
 
 void Growth::choose_method() {
@@ -67,10 +85,11 @@ void Growth::choose_method() {
   if (random_.chance(0.1)) s.sleep_after = random_.between(0.1, 1) / scales_.rate;
   if (random_.chance(0.2) && works_on_accelerations(s.integrator))
     s.local_error = random_.log_between(1e-8, 1e-4) * scales_.length;
+  if (random_.chance(0.2)) scene.on_failure = OnFailure::retry;
   if (wrong_with_methods(s)) s.drift = Drift::projection;
   scene.step = random_.log_between(0.002, 0.1) / scales_.rate;
   scene.duration = wish_.steps * scene.step;
-  if (random_.chance(0.6)) {
+  if (random_.chance(anchored_ ? 0.8 : 0.2)) {
     const double g = scales_.length * scales_.rate * scales_.rate * random_.log_between(0.1, 10);
     const auto direction = random_.in_cube(1, scene.dimension == Dimension::spatial);
     const double length = std::max(1e-3, std::hypot(direction[0], direction[1], direction[2]));
@@ -84,7 +103,7 @@ void Growth::add_bodies() {
   for (int k = 0; k < count; ++k) {
     SceneBody body = random_body(random_, scales_, made_.scene.dimension);
     body.name = fmt::format("b{}", k + 1);
-    if (k > 0 && random_.chance(0.05)) make_static(body);
+    if (k > 0 && anchored_ && random_.chance(0.05)) make_static(body);
     made_.scene.bodies.push_back(std::move(body));
   }
 }
@@ -100,7 +119,7 @@ std::vector<int> Growth::bodies_for(const JointType& type, int child) {
   std::vector<int> bodies{child};
   const auto wanted = static_cast<std::size_t>(type.bodies);
   for (std::size_t k = 0; k < others.size() && bodies.size() < wanted; ++k)
-    if (others[k] < child || others[k] == world_body || bodies.size() + others.size() - k <= wanted)
+    if (others[k] < child || !anchored_ || others[k] == world_body || bodies.size() + others.size() - k <= wanted)
       bodies.push_back(others[k]);
   while (bodies.size() < wanted) bodies.push_back(world_body);
   if (bodies.size() > 1 && random_.chance(0.5)) std::swap(bodies[0], bodies[1]);
@@ -111,6 +130,7 @@ std::vector<int> Growth::bodies_for(const JointType& type, int child) {
 template <class S>
 bool Growth::add_joint(BasicWorld<S>& world, const std::string& type, int child) {
   const JointType& info = *find_joint_type(S::dimension, type);
+  if (!anchored_ && type != wish_.joint && info.bodies > static_cast<int>(made_.scene.bodies.size())) return false;
   SceneJoint joint;
   joint.name = fmt::format("j{}", made_.scene.joints.size() + 1);
   joint.definition.type = type;
@@ -132,23 +152,18 @@ bool Growth::add_joint(BasicWorld<S>& world, const std::string& type, int child)
 
 template <class S>
 void Growth::add_tree(BasicWorld<S>& world) {
-  const auto types = joint_types(S::dimension);
-  const auto any = [&] { return std::string(types[static_cast<std::size_t>(random_.below(int(types.size())))].name); };
   const int bodies = static_cast<int>(made_.scene.bodies.size());
   if (!wish_.joint.empty()) add_joint(world, wish_.joint, random_.below(bodies));
   for (int child = 0; child < bodies; ++child)
-    if (random_.chance(0.9)) add_joint(world, any(), child);
+    if (random_.chance(0.9)) add_joint(world, any_type(), child);
 }
 
 // Joints beyond the tree: close a loop, or are there already.
 template <class S>
 void Growth::add_loops(BasicWorld<S>& world) {
-  const auto types = joint_types(S::dimension);
   const int bodies = static_cast<int>(made_.scene.bodies.size());
   if (random_.chance(0.4))
-    for (int k = random_.below(1 + bodies / 2); k >= 0; --k)
-      add_joint(world, std::string(types[static_cast<std::size_t>(random_.below(int(types.size())))].name),
-                random_.below(bodies));
+    for (int k = random_.below(1 + bodies / 2); k >= 0; --k) add_joint(world, any_type(), random_.below(bodies));
   if (random_.chance(0.2) && !made_.scene.joints.empty()) {
     SceneJoint copy = random_.of(made_.scene.joints);
     copy.name += "_again";
@@ -222,6 +237,7 @@ Mechanism Growth::grown() {
 Mechanism generate(std::uint64_t seed, const Wish& wish) {
   Random random(seed);
   Mechanism mechanism = Growth(random, wish).grown();
+  plain_zeros(mechanism.scene);
   mechanism.scene.title = fmt::format("seed {:#x}", seed);
   return mechanism;
 }

@@ -33,7 +33,7 @@ using Sabotage = std::function<void(const Scene& scene, int step, const Push& pu
 
 struct Asked {
   bool bits = true;    // also repeat it, in two threads at once, and from a snapshot
-  int refinements = 3;  // how often a step at which something breaks is made four times shorter
+  int refinements = 4;  // how often a step at which something breaks is made four times shorter
   Sabotage sabotage;
 };
 

@@ -116,23 +116,44 @@ Exchange exchange_of(const Scene& scene) {
   return exchange;
 }
 
+// A body that never turns takes any torque.
+bool takes_torque(const Scene& scene) {
+  return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const SceneBody& body) {
+    return body.definition.fixed_rotation || body.spatial.fixed_rotation;
+  });
+}
+
 // A soft row pushes along its own direction only: with several, the force need not point along the stretch.
 bool has_soft_rows(const Scene& scene) {
   return std::any_of(scene.joints.begin(), scene.joints.end(),
                      [](const SceneJoint& joint) { return joint.definition.soft.has_value(); });
 }
 
+bool is_smooth(const Scene& scene) {
+  return std::none_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
+    if (one_sided(type_of(scene, joint)) || joint.breaking) return true;
+    return std::any_of(joint.effects.begin(), joint.effects.end(), [](const SceneEffects& effects) {
+      return effects.limit || effects.motor || effects.friction;
+    });
+  });
+}
+
+// By time, by a motor of any force, or by rolling: the velocities are told, not the places.
 bool prescribes_motion(const Scene& scene) {
   return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
-    if (type_of(scene, joint).explicit_time) return true;
+    const JointType& type = type_of(scene, joint);
+    if (type.explicit_time) return true;
+    if (std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::velocity) > 0) return true;
     return std::any_of(joint.effects.begin(), joint.effects.end(), [](const SceneEffects& effects) {
       return effects.motor && effects.motor->max_force == unlimited;
     });
   });
 }
 
-// Ropes, limits, or a loop: joints that hold bodies which hang together without them. All that never moves is one.
+// Ropes, limits, bodies that never turn, or a loop: joints that hold bodies which hang together without them. All that
+// never moves is one.
 bool may_stop_a_motion(const Scene& scene) {
+  if (takes_torque(scene)) return true;
   std::vector<int> group(scene.bodies.size() + 1);
   for (std::size_t k = 0; k < group.size(); ++k) group[k] = static_cast<int>(k);
   const auto node = [&](int body) { return immovable(scene, body) ? std::size_t(0) : std::size_t(body + 1); };
@@ -157,11 +178,12 @@ Laws laws_of(const Scene& scene) {
   const Exchange exchange = exchange_of(scene);
   laws.energy_kept = !exchange.gives && !exchange.takes;
   laws.energy_falls = !exchange.gives;
+  laws.smooth = is_smooth(scene);
   laws.may_contradict = prescribes_motion(scene) && may_stop_a_motion(scene);
   if (scene.settings.sleep_after > 0 || !is_free(scene)) return laws;
   const double g[3] = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
   const bool planar = scene.dimension == Dimension::planar;
-  const bool turns = !has_soft_rows(scene) &&
+  const bool turns = !has_soft_rows(scene) && !takes_torque(scene) &&
                      (planar ? turns_as_one<Planar<double>>(scene) : turns_as_one<Spatial<double>>(scene));
   for (std::size_t k = 0; k < 3; ++k) {
     laws.linear[k] = g[k] == 0 && !(planar && k == 2);

@@ -12,6 +12,7 @@ struct Laws {
   bool energy_kept = false;                 // nothing takes or gives any
   bool energy_falls = false;                // nothing gives any
   bool may_contradict = false;              // a motion is prescribed, and something else may not let it happen
+  bool smooth = false;  // nothing that hits, sticks or switches: every motion is resolved by some step
   bool momentum() const { return linear[0] || linear[1] || linear[2] || angular[0] || angular[1] || angular[2]; }
 };
 

@@ -58,7 +58,9 @@ void Accounts::step(const Motion& now, double energy, double operations, long lo
   const double chosen = double(taken - taken_) * local_error_ * (now.linear_size + now.spin_size + largest_change_ / step_ * now.root_mass);
   order_error_ += chosen;
   angular_order_ += chosen * (largest_speed_ > 0 ? now.angular_size / (largest_speed_ * largest_speed_) : 0);
-  round_off_ += operations * epsilon_ * largest_energy_;
+  for (const BodyMotion& body : now.bodies) farthest_ = std::max(farthest_, norm(body.x));
+  // Places are rounded too, and a force takes that for way.
+  round_off_ += operations * epsilon_ * (largest_energy_ + pushed_ / step_ * now.root_mass * farthest_);
   momentum_ += operations * epsilon_ * now.linear_size;
   angular_ += operations * epsilon_ * now.angular_size;
   change_ = d;

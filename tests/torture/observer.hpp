@@ -52,14 +52,14 @@ RowSizes row_sizes(BasicWorld<S>& world) {
   return sizes;
 }
 
-// The largest C as a share of its row's size, and whose it is.
+// The largest C as a share of its row's size, and whose it is. Of inequalities what is beyond `slack` [m, rad].
 struct Gap {
   double share = 0;
   int joint = -1;
 };
 
 template <class S>
-Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes) {
+Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes, double slack = 0) {
   Gap gap;
   for (int j = 0; j < world.joint_count(); ++j) {
     const auto& size = sizes.of_joint[static_cast<std::size_t>(j)];
@@ -67,8 +67,9 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
     const std::vector<double> C = world.position_error(j);
     const auto& kinds = world.joint_type(j).row_kinds;
     for (std::size_t r = 0; r < C.size(); ++r) {
-      if (kinds[r] == RowKind::inequality && C[r] > 0) continue;
-      const double share = std::abs(C[r]) / size[r];
+      const bool one_sided = kinds[r] == RowKind::inequality;
+      if (one_sided && C[r] > -slack) continue;
+      const double share = std::abs(one_sided ? C[r] + slack : C[r]) / size[r];
       if (!(share <= gap.share)) gap = {share, j};
     }
   }
@@ -109,6 +110,7 @@ class Accounts {
   double order_, epsilon_, start_energy_, local_error_;
   double pushed_;  // what the constant forces add to the velocities in a step, in the metric of the masses
   double step_;
+  double farthest_ = 0;  // from the origin [m]
   long long taken_ = 0;
   Motion last_;
   std::optional<VelocityChange> change_;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "runtime/methods.hpp"
+#include "tests/torture/numbers.hpp"
 
 namespace cdot::torture {
 namespace {
@@ -53,6 +54,7 @@ void write_settings(const Scene& scene, Lines lines) {
   lines.number_unless(usual.sleep_after, "sleep_after", s.sleep_after);
   lines.number_unless(usual.sleep_speed, "sleep_speed", s.sleep_speed);
   lines.number_unless(Scene{}.tolerance, "tolerance", scene.tolerance);
+  if (scene.on_failure != OnFailure::stop) lines.text("on_failure", name_of(failure_answers, scene.on_failure));
   lines.flag_unless(false, "project", scene.project);
 }
 
@@ -180,6 +182,10 @@ std::string text_of(const Scene& scene) {
     write_spring(scene, spring, lines);
   }
   return text;
+}
+
+void plain_zeros(Scene& scene) {
+  each_number(scene, [](double& x) { x += 0.0; });
 }
 
 }  // namespace cdot::torture

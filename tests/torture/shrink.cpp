@@ -3,9 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <functional>
+
+#include "tests/torture/numbers.hpp"
 
 namespace cdot::torture {
 namespace {
@@ -24,66 +25,15 @@ void remove_body(Scene& scene, int body) {
   for (SpringDefinition& spring : scene.springs) moved(spring.body_a), moved(spring.body_b);
 }
 
-double rounded(double x, int digits) { return std::strtod(fmt::format("{:.{}e}", x, digits - 1).c_str(), nullptr); }
-
-void round_planar(BodyDefinition& d, int digits) {
-  for (double* x : {&d.x, &d.y, &d.angle, &d.vx, &d.vy, &d.w, &d.mass, &d.inertia, &d.force_x, &d.force_y, &d.torque,
-                    &d.linear_damping, &d.angular_damping})
-    *x = rounded(*x, digits);
+auto rounder(int digits) {
+  return [digits](double& x) { x = std::strtod(fmt::format("{:.{}e}", x, digits - 1).c_str(), nullptr) + 0.0; };
 }
 
-void round_spatial(SpatialBodyDefinition& d, int digits) {
-  for (double* x : {&d.x, &d.y, &d.z, &d.e0, &d.e1, &d.e2, &d.e3, &d.vx, &d.vy, &d.vz, &d.wx, &d.wy, &d.wz, &d.mass,
-                    &d.inertia.xx, &d.inertia.yy, &d.inertia.zz, &d.inertia.xy, &d.inertia.xz, &d.inertia.yz,
-                    &d.force_x, &d.force_y, &d.force_z, &d.torque_x, &d.torque_y, &d.torque_z, &d.linear_damping,
-                    &d.angular_damping})
-    *x = rounded(*x, digits);
-}
-
-void round_softness(Softness& s, int digits) {
-  for (double* x : {&s.frequency, &s.damping_ratio, &s.stiffness, &s.damping}) *x = rounded(*x, digits);
-}
-
-void round_effects(SceneEffects& effects, int digits) {
-  if (effects.limit)
-    for (auto* end : {&effects.limit->lower, &effects.limit->upper})
-      if (*end) **end = rounded(**end, digits);
-  if (effects.motor) {
-    effects.motor->speed = rounded(effects.motor->speed, digits);
-    if (effects.motor->max_force != unlimited) effects.motor->max_force = rounded(effects.motor->max_force, digits);
-  }
-  for (SceneSpring& spring : effects.springs) {
-    round_softness(spring.softness, digits);
-    if (spring.rest) *spring.rest = rounded(*spring.rest, digits);
-  }
-  if (effects.friction) effects.friction->max_force = rounded(effects.friction->max_force, digits);
-}
-
-void round_joint(SceneJoint& joint, int digits) {
-  for (NamedValue& value : joint.definition.parameters)
-    for (double& x : value.numbers) x = rounded(x, digits);
-  for (SceneEffects& effects : joint.effects) round_effects(effects, digits);
-  if (joint.definition.soft) round_softness(*joint.definition.soft, digits);
-}
-
-void round_spring(SpringDefinition& s, int digits) {
-  for (double* x : {&s.ax, &s.ay, &s.az, &s.bx, &s.by, &s.bz, &s.stiffness, &s.rest_length, &s.damping})
-    *x = rounded(*x, digits);
-}
-
+// The number of steps stays.
 void round_settings(Scene& scene, int digits) {
-  Settings& s = scene.settings;
   const int steps = steps_of(scene);
-  for (double* x : {&scene.step, &s.gravity_x, &s.gravity_y, &s.gravity_z, &s.local_error, &s.sleep_after})
-    *x = rounded(*x, digits);
+  each_number_of_settings(scene, rounder(digits));
   scene.duration = steps * scene.step;
-}
-
-void round_all(Scene& scene, int digits) {
-  round_settings(scene, digits);
-  for (SceneBody& body : scene.bodies) round_planar(body.definition, digits), round_spatial(body.spatial, digits);
-  for (SceneJoint& joint : scene.joints) round_joint(joint, digits);
-  for (SpringDefinition& spring : scene.springs) round_spring(spring, digits);
 }
 
 class Shrinker {
@@ -166,6 +116,7 @@ class Shrinker {
     set(&Settings::local_error, 0.0);
     set(&Settings::sleep_after, 0.0);
     for (const auto axis : {&Settings::gravity_x, &Settings::gravity_y, &Settings::gravity_z}) set(axis, 0.0);
+    if (best_.scene.on_failure != OnFailure::stop) smaller |= attempt([](Scene& s) { s.on_failure = OnFailure::stop; });
     if (best_.scene.single) smaller |= attempt([](Scene& s) { s.single = false; });
     return smaller;
   }
@@ -194,14 +145,15 @@ class Shrinker {
   }
   void rounder_numbers() {
     for (const int digits : {1, 2, 3, 4, 6})
-      if (attempt([&](Scene& s) { round_all(s, digits); })) break;
+      if (attempt([&](Scene& s) { round_settings(s, digits), each_number(s, rounder(digits)); })) break;
     for (const int digits : {1, 2, 3}) {
       attempt([&](Scene& s) { round_settings(s, digits); });
+      const auto round = rounder(digits);
       each(best_.scene.bodies.size(), [&](Scene& s, std::size_t k) {
-        round_planar(s.bodies[k].definition, digits), round_spatial(s.bodies[k].spatial, digits);
+        each_number(s.bodies[k].definition, round), each_number(s.bodies[k].spatial, round);
       });
-      each(best_.scene.joints.size(), [&](Scene& s, std::size_t k) { round_joint(s.joints[k], digits); });
-      each(best_.scene.springs.size(), [&](Scene& s, std::size_t k) { round_spring(s.springs[k], digits); });
+      each(best_.scene.joints.size(), [&](Scene& s, std::size_t k) { each_number(s.joints[k], round); });
+      each(best_.scene.springs.size(), [&](Scene& s, std::size_t k) { each_number(s.springs[k], round); });
     }
   }
 

@@ -20,6 +20,7 @@ struct Options {
   double seconds = 0;
   Wish wish;
   std::string method, keep, scene;
+  int dimension = 0;
   bool no_bits = false, no_shrink = false, print = false;
 };
 
@@ -110,6 +111,7 @@ int main(int count, char** arguments) {
   app.add_option("--seconds", options.seconds, "in place of --count");
   app.add_option("--steps", options.wish.steps, "of each");
   app.add_option("--joint", options.wish.joint, "is part of each; of the space where it is known");
+  app.add_option("--dimension", options.dimension, "of the space, 2 or 3");
   app.add_option("--method", options.method, "solver, integrator, precision: any of them, as in \"direct float\"");
   app.add_option("--keep", options.keep, "a folder for the scenes in which something breaks");
   app.add_option("--scene", options.scene, "judge this scene and no other");
@@ -119,6 +121,8 @@ int main(int count, char** arguments) {
   CLI11_PARSE(app, count, arguments);
   try {
     read_method(options.method, options.wish);
+    if (options.dimension == 2) options.wish.dimension = cdot::Dimension::planar;
+    if (options.dimension == 3) options.wish.dimension = cdot::Dimension::spatial;
     if (!options.wish.joint.empty()) {
       const bool planar = cdot::find_joint_type(cdot::Dimension::planar, options.wish.joint) != nullptr;
       const bool spatial = cdot::find_joint_type(cdot::Dimension::spatial, options.wish.joint) != nullptr;
