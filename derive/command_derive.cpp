@@ -4,15 +4,12 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
-#include <iostream>
+#include <optional>
 #include <sstream>
 
 #include "derive/commands.hpp"
-#include "derive/diff.hpp"
-#include "derive/generate.hpp"
-#include "derive/held.hpp"
-#include "derive/prove.hpp"
-#include "derive/specs_folder.hpp"
+#include "derive/outcome.hpp"
+#include "derive/processes.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -22,7 +19,8 @@ namespace fs = std::filesystem;
 struct Options {
   std::vector<std::string> specs;
   std::string specs_folder = "specs", output = "generated";
-  bool check = false;
+  bool check = false, fresh = false;
+  int processes = usual_processes();
 };
 
 std::string content_of(const fs::path& path) {
@@ -32,57 +30,46 @@ std::string content_of(const fs::path& path) {
   return all.str();
 }
 
-// Reads and proves; says everything that is wrong with every spec. Empty if anything is.
-std::vector<Joint> read_and_prove(const std::vector<fs::path>& paths, const SpecsFolder& folder) {
-  std::vector<Joint> joints;
-  bool failed = false;
-  for (const fs::path& path : paths) {
-    const ReadResult read = folder.read(path);
-    std::cerr << render(*read.file, read.diagnostics);
-    if (!read.joint) {
-      failed = true;
-      continue;
-    }
-    for (const Coordinate& held : held_coordinates(*read.joint)) {
-      failed = true;
-      std::cerr << render(*read.file, held_error(held));
-    }
-    const Proof proof = prove(*read.joint, derive_rows(*read.joint));
-    for (const Law& law : proof.laws) {
-      if (law.verdict == Verdict::shown) {
-        fmt::print("{}: shown at {} random points, too much to prove: {}\n", read.joint->name, exact_points,
-                   name_of(law.id));
-      }
-      if (law.verdict != Verdict::fails && law.verdict != Verdict::undecided) continue;
-      failed = true;
-      Diagnostics said;
-      const Span where = law.row ? law.row->where : Span{};
-      said.error(where, fmt::format("{}: {}", name_of(law.id), law.text), law.fix, law.parts);
-      std::cerr << render(*read.file, said);
-    }
-    joints.push_back(*read.joint);
-  }
-  if (failed) joints.clear();
-  return joints;
-}
-
-// The costs of the published derivations beside these specs, as far as they are right. Two of them
-// may be about the same that the ledger does not have otherwise.
-std::vector<LedgerRow> hand_costs(const std::vector<fs::path>& specs, const SpecsFolder& folder) {
+// The rows of all, each once: two published derivations may be about the same.
+std::vector<LedgerRow> without_repetition(const std::vector<LedgerRow>& all) {
   std::vector<LedgerRow> rows;
-  for (const fs::path& spec : specs) {
-    fs::path hand = spec;
-    hand.replace_extension(".hand");
-    if (!fs::exists(hand)) continue;
-    const DiffReport report = judge(hand, spec, folder);
-    std::cerr << render(*report.file, report.diagnostics);
-    for (const Judgement& j : report.judgements) {
-      for (const LedgerRow& cost : j.costs) {
-        if (std::find(rows.begin(), rows.end(), cost) == rows.end()) rows.push_back(cost);
-      }
-    }
+  for (const LedgerRow& row : all) {
+    if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(row);
   }
   return rows;
+}
+
+// The files of all specs, or none if there is anything wrong with any of them, which is said here.
+std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsFolder& folder,
+                                const Options& options) {
+  const Memory memory(usual_memory());
+  const std::string program = identity_of_program();
+  std::vector<GeneratedJoint> joints;
+  std::vector<LedgerRow> hand_costs;
+  std::size_t remembered = 0;
+  Tasks tasks;
+  for (const fs::path& path : paths) tasks.names.push_back(path.string());
+  tasks.run = [&](std::size_t i) {
+    return packed(derive_spec(paths[i], folder, memory, program, options.fresh));
+  };
+  tasks.take = [&](std::size_t i, const Answer& answer) {
+    if (!answer.failure.empty()) return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
+    const Outcome outcome = unpacked_outcome(answer.result);
+    fmt::print(stderr, "{}", outcome.complaints);
+    fmt::print("{}", outcome.said);
+    if (!outcome.proved) return;
+    remembered += outcome.remembered ? 1 : 0;
+    joints.push_back(outcome.joint);
+    hand_costs.insert(hand_costs.end(), outcome.hand_costs.begin(), outcome.hand_costs.end());
+  };
+  in_processes(tasks, options.processes);
+  memory.trim();
+  if (remembered > 0) {
+    fmt::print(stderr, "{} of {} specs are as they were when they were proved before (--fresh: prove all again)\n",
+               remembered, paths.size());
+  }
+  if (joints.size() < paths.size()) return std::nullopt;
+  return collect(joints, without_repetition(hand_costs));
 }
 
 // What stands below `root` and is ours: everything that `cdot derive` could have written.
@@ -179,14 +166,13 @@ int run(const Options& options) {
   std::vector<fs::path> paths;
   for (const std::string& spec : options.specs) paths.push_back(folder.find(spec));
   if (paths.empty()) paths = folder.all();
-  const std::vector<Joint> joints = read_and_prove(paths, folder);
-  if (joints.empty()) {
+  const std::optional<Files> wanted = derive_all(paths, folder, options);
+  if (!wanted) {
     fmt::print(stderr, "nothing was written\n");
     return 2;
   }
-  const Files wanted = generate(joints, hand_costs(paths, folder));
-  if (options.check) return compare(wanted, options.output, command_line(options));
-  write(wanted, options.output);
+  if (options.check) return compare(*wanted, options.output, command_line(options));
+  write(*wanted, options.output);
   return 0;
 }
 
@@ -203,6 +189,15 @@ void add_derive_command(CLI::App& app, Command& selected) {
   command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
   command->add_flag("--check", options->check,
                     "Write nothing; exit 1 unless DIR has exactly the files that would be written");
+  command->add_flag("--fresh", options->fresh, "Prove everything anew, remembered or not");
+  command->add_option("-j,--jobs", options->processes, "Specs at once, each in a process of its own")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->footer(
+      "A spec that was proved is remembered until it, what it includes, the .hand beside it, or this program "
+      "changes,\nin $CDOT_CACHE, else $XDG_CACHE_HOME/cdot, else ~/.cache/cdot, a folder that may be deleted at "
+      "any time.");
   command->callback([options, &selected] { selected = [options] { return run(*options); }; });
 }
 

@@ -156,6 +156,7 @@ void Elaborator::finish(ReadResult& result, Source& spec) {
   for (const auto& [name, entry] : names_) result.names.emplace(name, entry.value);
   spec.diagnostics.sort();
   result.diagnostics = spec.diagnostics;
+  result.included = std::move(included_);
   if (!result.diagnostics.has_errors()) result.joint = std::move(joint_);
 }
 

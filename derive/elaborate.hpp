@@ -108,6 +108,7 @@ class Elaborator {
   std::map<std::string, Span> row_names_, coordinate_names_;
   Diagnostics* spec_diagnostics_ = nullptr;
   std::vector<Span> parameters_where_;
+  std::vector<std::shared_ptr<const SourceFile>> included_;
   int include_count_ = 0;
   int row_count_ = 0;
 };

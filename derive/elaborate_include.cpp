@@ -16,6 +16,7 @@ void Elaborator::include(Source& source, const IncludeAst& item) {
   if (!includable(source, item)) return;
   Source inner;
   inner.file = library_.at(item.joint.text);
+  included_.push_back(inner.file);
   inner.include = in_spec(source, item.where);
   inner.including = source.including;
   inner.including.push_back(item.joint.text);

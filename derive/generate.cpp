@@ -7,17 +7,19 @@
 
 namespace cdot::derive {
 
-Files generate(const std::vector<Joint>& joints, const std::vector<LedgerRow>& hand_counts) {
+GeneratedJoint generate(const Joint& joint) {
+  const Kernel kernel = plan_kernel(joint);
+  return {name_of_space(joint.dimension), joint.name, emit_kernel(kernel), ledger_of(kernel)};
+}
+
+Files collect(const std::vector<GeneratedJoint>& joints, const std::vector<LedgerRow>& hand_counts) {
   Files files;
   std::map<std::string, std::vector<std::string>> names = {{"planar", {}}, {"spatial", {}}};
   std::vector<LedgerRow> ledger;
-  for (const Joint& joint : joints) {
-    const Kernel kernel = plan_kernel(joint);
-    const std::string space = name_of_space(joint.dimension);
-    files[space + "/" + joint.name + ".hpp"] = emit_kernel(kernel);
-    names[space].push_back(joint.name);
-    const std::vector<LedgerRow> rows = ledger_of(kernel);
-    ledger.insert(ledger.end(), rows.begin(), rows.end());
+  for (const GeneratedJoint& joint : joints) {
+    files[joint.space + "/" + joint.name + ".hpp"] = joint.kernel;
+    names[joint.space].push_back(joint.name);
+    ledger.insert(ledger.end(), joint.ledger.begin(), joint.ledger.end());
   }
   ledger.insert(ledger.end(), hand_counts.begin(), hand_counts.end());
   for (auto& [space, list] : names) {

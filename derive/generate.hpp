@@ -13,7 +13,14 @@ namespace cdot::derive {
 
 using Files = std::map<std::string, std::string>;  // path below generated/ -> content
 
-// Kernels, registry and ledger; the order of `joints` does not matter.
-Files generate(const std::vector<Joint>& joints, const std::vector<LedgerRow>& hand_counts);
+// What one joint contributes: its kernel, and what that costs.
+struct GeneratedJoint {
+  std::string space, name, kernel;
+  std::vector<LedgerRow> ledger;
+};
+GeneratedJoint generate(const Joint& joint);
+
+// Kernels, registries and ledger; the order of `joints` does not matter.
+Files collect(const std::vector<GeneratedJoint>& joints, const std::vector<LedgerRow>& hand_counts);
 
 }  // namespace cdot::derive

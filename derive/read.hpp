@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "derive/joint.hpp"
 #include "derive/source.hpp"
@@ -33,6 +34,7 @@ struct ReadOptions {
 struct ReadResult {
   std::optional<Joint> joint;  // empty if there are errors
   std::shared_ptr<const SourceFile> file;
+  std::vector<std::shared_ptr<const SourceFile>> included;  // what it brings in, directly or not
   Diagnostics diagnostics;
   std::map<std::string, Value> names;  // every parameter, arm and let, typed
 };

@@ -57,9 +57,9 @@ struct Mask {
   using Vector = typename VectorOf<T, width>::Bits;
   Vector lanes;
 
-  friend Mask operator&&(Mask a, Mask b) { return {a.lanes & b.lanes}; }
-  friend Mask operator||(Mask a, Mask b) { return {a.lanes | b.lanes}; }
-  friend Mask operator!(Mask a) { return {~a.lanes}; }
+  friend Mask operator&&(const Mask& a, const Mask& b) { return {a.lanes & b.lanes}; }
+  friend Mask operator||(const Mask& a, const Mask& b) { return {a.lanes | b.lanes}; }
+  friend Mask operator!(const Mask& a) { return {~a.lanes}; }
   bool operator[](int lane) const { return lanes[lane] != 0; }
 };
 
@@ -85,27 +85,27 @@ struct Pack {
   }
   void store(T* to) const { std::memcpy(to, &lanes, sizeof(Vector)); }
 
-  friend Pack operator+(Pack a, Pack b) { return Pack(a.lanes + b.lanes); }
-  friend Pack operator-(Pack a, Pack b) { return Pack(a.lanes - b.lanes); }
-  friend Pack operator*(Pack a, Pack b) { return Pack(a.lanes * b.lanes); }
-  friend Pack operator/(Pack a, Pack b) { return Pack(a.lanes / b.lanes); }
-  friend Pack operator-(Pack a) { return Pack(-a.lanes); }
-  friend Pack operator+(Pack a) { return a; }
-  Pack& operator+=(Pack b) { return *this = *this + b; }
-  Pack& operator-=(Pack b) { return *this = *this - b; }
-  Pack& operator*=(Pack b) { return *this = *this * b; }
-  Pack& operator/=(Pack b) { return *this = *this / b; }
+  friend Pack operator+(const Pack& a, const Pack& b) { return Pack(a.lanes + b.lanes); }
+  friend Pack operator-(const Pack& a, const Pack& b) { return Pack(a.lanes - b.lanes); }
+  friend Pack operator*(const Pack& a, const Pack& b) { return Pack(a.lanes * b.lanes); }
+  friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.lanes / b.lanes); }
+  friend Pack operator-(const Pack& a) { return Pack(-a.lanes); }
+  friend Pack operator+(const Pack& a) { return a; }
+  Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  Pack& operator*=(const Pack& b) { return *this = *this * b; }
+  Pack& operator/=(const Pack& b) { return *this = *this / b; }
 
   using Comparison = Mask<T, width>;
-  friend Comparison operator<(Pack a, Pack b) { return {a.lanes < b.lanes}; }
-  friend Comparison operator<=(Pack a, Pack b) { return {a.lanes <= b.lanes}; }
-  friend Comparison operator>(Pack a, Pack b) { return {a.lanes > b.lanes}; }
-  friend Comparison operator>=(Pack a, Pack b) { return {a.lanes >= b.lanes}; }
-  friend Comparison operator==(Pack a, Pack b) { return {a.lanes == b.lanes}; }
-  friend Comparison operator!=(Pack a, Pack b) { return {a.lanes != b.lanes}; }
+  friend Comparison operator<(const Pack& a, const Pack& b) { return {a.lanes < b.lanes}; }
+  friend Comparison operator<=(const Pack& a, const Pack& b) { return {a.lanes <= b.lanes}; }
+  friend Comparison operator>(const Pack& a, const Pack& b) { return {a.lanes > b.lanes}; }
+  friend Comparison operator>=(const Pack& a, const Pack& b) { return {a.lanes >= b.lanes}; }
+  friend Comparison operator==(const Pack& a, const Pack& b) { return {a.lanes == b.lanes}; }
+  friend Comparison operator!=(const Pack& a, const Pack& b) { return {a.lanes != b.lanes}; }
 
   // Bitwise, as the hardware does it: an Inf or NaN in the lane not chosen does not leak.
-  friend Pack select(Comparison condition, Pack a, Pack b) {
+  friend Pack select(const Comparison& condition, const Pack& a, const Pack& b) {
     using Bits = typename Comparison::Vector;
     Bits x, y;
     std::memcpy(&x, &a.lanes, sizeof x);
@@ -124,42 +124,42 @@ struct ScalarOf<Pack<T, width>> {
 
 // f lane by lane through the scalar library function: equal bits, whatever the width.
 template <class T, int width, class F>
-Pack<T, width> each_lane(Pack<T, width> a, F f) {
+Pack<T, width> each_lane(const Pack<T, width>& a, F f) {
   Pack<T, width> result;
   for (int i = 0; i < width; ++i) result.set(i, f(a[i]));
   return result;
 }
 
 template <class T, int width>
-Pack<T, width> abs(Pack<T, width> a) {
+Pack<T, width> abs(const Pack<T, width>& a) {
   return each_lane(a, [](T x) { return std::fabs(x); });
 }
 template <class T, int width>
-Pack<T, width> sqrt(Pack<T, width> a) {
+Pack<T, width> sqrt(const Pack<T, width>& a) {
   return each_lane(a, [](T x) { return std::sqrt(x); });
 }
 template <class T, int width>
-Pack<T, width> sin(Pack<T, width> a) {
+Pack<T, width> sin(const Pack<T, width>& a) {
   return each_lane(a, [](T x) { return std::sin(x); });
 }
 template <class T, int width>
-Pack<T, width> cos(Pack<T, width> a) {
+Pack<T, width> cos(const Pack<T, width>& a) {
   return each_lane(a, [](T x) { return std::cos(x); });
 }
 template <class T, int width>
-Pack<T, width> tan(Pack<T, width> a) {
+Pack<T, width> tan(const Pack<T, width>& a) {
   return each_lane(a, [](T x) { return std::tan(x); });
 }
 template <class T, int width>
-Pack<T, width> exp(Pack<T, width> a) {
+Pack<T, width> exp(const Pack<T, width>& a) {
   return each_lane(a, [](T x) { return std::exp(x); });
 }
 template <class T, int width>
-Pack<T, width> log(Pack<T, width> a) {
+Pack<T, width> log(const Pack<T, width>& a) {
   return each_lane(a, [](T x) { return std::log(x); });
 }
 template <class T, int width>
-Pack<T, width> atan2(Pack<T, width> y, Pack<T, width> x) {
+Pack<T, width> atan2(const Pack<T, width>& y, const Pack<T, width>& x) {
   Pack<T, width> result;
   for (int i = 0; i < width; ++i) result.set(i, std::atan2(y[i], x[i]));
   return result;

@@ -1,78 +1,14 @@
 // `cdot derive` as a person meets it: what it writes, what --check says, and that nothing is written
 // from a broken spec.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
+#include "tests/derive/command.hpp"
 
 #include <algorithm>
 #include <atomic>
-#include <cstdio>
-#include <filesystem>
-#include <fstream>
-#include <map>
-#include <sstream>
 #include <thread>
 
 #include "derive/operators.hpp"
 
 namespace {
-
-namespace fs = std::filesystem;
-
-std::string content_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  std::ostringstream all;
-  all << in.rdbuf();
-  return all.str();
-}
-
-struct Result {
-  int status;
-  std::string said;
-};
-
-class Derive : public testing::Test {
- protected:
-  void SetUp() override {
-    const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
-    place_ = fs::temp_directory_path() / ("cdot_" + std::to_string(getpid()) + test.name());
-    fs::create_directories(place_ / "specs/planar");
-    for (const char* joint : {"line", "angle"}) {
-      const std::string name = joint + std::string(".joint");
-      fs::copy(fs::path(CDOT_SPECS) / "planar" / name, place_ / "specs/planar" / name);
-    }
-  }
-  void TearDown() override { fs::remove_all(place_); }
-
-  Result run(const std::string& command) const {
-    const std::string whole = "cd '" + place_.string() + "' && " + command + " 2>&1";
-    FILE* pipe = popen(whole.c_str(), "r");
-    Result result{-1, ""};
-    char buffer[4096];
-    while (const std::size_t n = fread(buffer, 1, sizeof buffer, pipe)) result.said.append(buffer, n);
-    result.status = WEXITSTATUS(pclose(pipe));
-    return result;
-  }
-  Result cdot(const std::string& arguments) const { return run(CDOT " " + arguments); }
-
-  void write(const std::string& name, const std::string& text) const {
-    fs::create_directories((place_ / name).parent_path());
-    std::ofstream(place_ / name, std::ios::binary) << text;
-  }
-  std::string read(const std::string& name) const { return content_of(place_ / name); }
-
-  std::map<std::string, std::string> files(const std::string& folder) const {
-    std::map<std::string, std::string> found;
-    if (!fs::exists(place_ / folder)) return found;
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(place_ / folder)) {
-      if (entry.is_regular_file()) {
-        found[fs::relative(entry.path(), place_ / folder).string()] = content_of(entry.path());
-      }
-    }
-    return found;
-  }
-
-  fs::path place_;
-};
 
 const char* const broken = "joint broken planar\n  \"x\"\n  point pa on a\n  norm(pb) = 0\n";
 // Angles of bodies that do not cancel: readable, but it has no proof.

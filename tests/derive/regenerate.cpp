@@ -10,13 +10,13 @@
 int main(int argc, char** argv) {
   using namespace cdot::derive;
   const SpecsFolder folder(argv[1]);
-  std::vector<Joint> joints;
+  std::vector<GeneratedJoint> joints;
   for (int i = 3; i < argc; ++i) {
     const ReadResult read = folder.read(argv[i]);
     if (!read.joint) return 2;
-    joints.push_back(*read.joint);
+    joints.push_back(generate(*read.joint));
   }
-  for (const auto& [name, content] : generate(joints, {})) {
+  for (const auto& [name, content] : collect(joints, {})) {
     const std::filesystem::path path = std::filesystem::path(argv[2]) / name;
     std::filesystem::create_directories(path.parent_path());
     if (!(std::ofstream(path, std::ios::binary) << content).flush()) return 2;
