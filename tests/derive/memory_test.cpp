@@ -126,7 +126,7 @@ TEST_F(Remembered, TheOldestIsForgottenFirst) {
   memory.trim();
   std::string left;
   for (int i = 0; i < 8; ++i) left += memory.recall(key(i)) ? "1" : "0";
-  EXPECT_EQ(left, "10000111");
+  ASSERT_EQ(left, "10000111");
   EXPECT_EQ(*memory.recall(key(7)), std::string(2000, 'x'));
 }
 
