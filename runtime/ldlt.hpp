@@ -92,6 +92,8 @@ class Ldlt {
   int factor(const double* added, const char* out);
   // The last factor() found the row to depend on others.
   bool dependent(int unknown) const { return inverse_[unknown] == 0 && !out_[unknown]; }
+  // Of a row that does not depend on others.
+  double pivot(int unknown) const { return 1 / inverse_[unknown]; }
   // x = K^-1 b for the last factor(); may be in place.
   void solve(const double* b, double* x);
   // y = K x, with values() alone.

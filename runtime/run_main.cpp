@@ -6,6 +6,7 @@
 
 #include "runtime/methods.hpp"
 #include "runtime/run_accuracy.hpp"
+#include "runtime/run_diagnose.hpp"
 #include "runtime/run_jacobian.hpp"
 #include "runtime/run_list.hpp"
 #include "runtime/run_output.hpp"
@@ -20,7 +21,7 @@ enum Status { well = 0, answer_is_no = 1, bad_input = 2, stopped = 130 };
 
 struct Arguments {
   std::string scene, csv, html, svg, save_state, from_state;
-  std::optional<double> state_time;
+  std::optional<double> state_time, diagnose_time;
   double until = 0, step = 0, every = 0, tolerance = 0, local_error = 0, wanted_accuracy = 0;
   std::vector<double> times;
   std::string solver, integrator, drift, kernels, precision;
@@ -29,6 +30,8 @@ struct Arguments {
   cdot::AccuracyOptions accuracy;
 };
 
+constexpr int poses_diagnosed = 64, poses_diagnosed_beside = 8;  // by `diagnose`, and beside `simulate`
+
 constexpr const char* footer = R"(
 Examples
   cdot-run simulate specs/scenes/four_bar.toml
@@ -36,6 +39,7 @@ Examples
   cdot-run simulate specs/scenes/four_bar.toml --step 0.0001 --every 0.1 -o four_bar.csv
   cdot-run simulate specs/scenes/four_bar.toml --until 5 --save-state at_5.state
   cdot-run simulate specs/scenes/four_bar.toml --from-state at_5.state        goes on as if nothing had been between
+  cdot-run diagnose specs/scenes/four_bar.toml                      rank, condition, stiffness, and what they advise
   cdot-run jacobian specs/scenes/four_bar.toml --svg four_bar.svg   the system in blocks and numbers
   cdot-run accuracy specs/scenes/double_pendulum.toml               what accuracy costs in time
   cdot-run list                                                     the joints that a scene may name
@@ -133,6 +137,23 @@ CLI::App* add_jacobian(CLI::App& app, Arguments& arguments) {
   return jacobian;
 }
 
+CLI::App* add_diagnose(CLI::App& app, Arguments& arguments) {
+  CLI::App* diagnose = app.add_subcommand(
+      "diagnose", "Run a scene and say what its equations are like: rank, redundant and conflicting rows, condition, "
+                  "stiffness; and where the scene's method is the wrong one");
+  diagnose->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
+  auto* until = diagnose
+                    ->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
+                    ->check(CLI::PositiveNumber);
+  diagnose->add_option("--at", arguments.diagnose_time, "look at this time [s] only; else at many from start to end")
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(until);
+  diagnose->add_flag("--json", arguments.json, "as JSON, with all islands");
+  diagnose->add_flag("--progress", arguments.progress, "show progress even where stderr is no terminal");
+  diagnose->footer(footer);
+  return diagnose;
+}
+
 CLI::App* add_accuracy(CLI::App& app, Arguments& arguments) {
   CLI::App* accuracy = app.add_subcommand(
       "accuracy", "Solve a scene in every way at every step, and show what accuracy costs in time");
@@ -193,6 +214,7 @@ cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene
   if (arguments.every > 0) options.row_times = cdot::every(arguments.every, scene.duration);
   if (!arguments.html.empty() || !arguments.svg.empty())
     options.film_times = cdot::film_times(scene);
+  options.diagnose_times = cdot::diagnose_times(scene.duration, poses_diagnosed_beside);
   options.progress = arguments.progress || ::isatty(STDERR_FILENO) != 0;
   if (!arguments.from_state.empty()) options.from = cdot::read_state(arguments.from_state);
   if (!arguments.save_state.empty()) options.keep_state = arguments.state_time.value_or(scene.duration);
@@ -221,6 +243,27 @@ int simulate(const Arguments& arguments) {
   fmt::print(
       "{}", arguments.json ? cdot::summary_json(scene, result) : cdot::summary_text(scene, result));
   return cdot::failure(scene, result).empty() ? well : answer_is_no;
+}
+
+int diagnose(const Arguments& arguments) {
+  cdot::Scene scene = cdot::read_scene(arguments.scene);
+  override_scene(arguments, scene);
+  cdot::RunOptions options;
+  options.progress = arguments.progress || ::isatty(STDERR_FILENO) != 0;
+  options.diagnose_times = cdot::diagnose_times(scene.duration, poses_diagnosed);
+  if (arguments.diagnose_time) {
+    if (*arguments.diagnose_time > scene.duration)
+      throw cdot::Error(fmt::format("--at {}: the run ends at {} s", *arguments.diagnose_time, scene.duration));
+    options.diagnose_times = {*arguments.diagnose_time};
+    if (*arguments.diagnose_time > 0) scene.duration = *arguments.diagnose_time;
+  }
+  std::string warnings;
+  const cdot::RunResult result = cdot::simulate(scene, options, warnings);
+  fmt::print(stderr, "{}", warnings);
+  if (result.interrupted) return stopped;
+  fmt::print("{}", arguments.json ? cdot::diagnosis_json(scene, result) : cdot::diagnosis_text(scene, result));
+  const auto concerns = cdot::concerns_about(scene, result.diagnosis, true);
+  return concerns.empty() && cdot::failure(scene, result).empty() ? well : answer_is_no;
 }
 
 int accuracy(const Arguments& arguments) {
@@ -255,6 +298,7 @@ int main(int argc, char** argv) {
   Arguments arguments;
   add_simulate(app, arguments);
   const CLI::App* shown = add_jacobian(app, arguments);
+  const CLI::App* diagnosed = add_diagnose(app, arguments);
   const CLI::App* costs = add_accuracy(app, arguments);
   CLI::App* list =
       app.add_subcommand("list", "Show the joints that a scene may name, with their parameters");
@@ -262,6 +306,7 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
     if (shown->parsed()) return jacobian(arguments);
+    if (diagnosed->parsed()) return diagnose(arguments);
     if (costs->parsed()) return accuracy(arguments);
     if (!list->parsed()) return simulate(arguments);
     fmt::print("{}", arguments.json ? cdot::list_json() : cdot::list_text());

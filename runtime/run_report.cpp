@@ -103,6 +103,8 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
                         result.counts.retried, result.counts.retried == 1 ? "" : "s", result.counts.direct);
   for (const std::string& joint : result.broken_joints) text += fmt::format("  broken          \"{}\"\n", joint);
   for (const std::string& note : result.notes) text += fmt::format("  note            {}\n", note);
+  for (const Concern& concern : concerns_about(scene, result.diagnosis, true))
+    text += fmt::format("  warning         {}. Likely fix: {}\n", concern.what, concern.fix);
   const std::string why = failure(scene, result);
   if (!why.empty()) text += fmt::format("  FAILED          {}\n", why);
   return text;
@@ -133,6 +135,7 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
       {"retried", {{"steps", result.counts.retried}, {"direct", result.counts.direct}}},
       {"broken_joints", result.broken_joints},
       {"notes", result.notes},
+      {"concerns", concerns_json(concerns_about(scene, result.diagnosis, true))},
   };
   if (result.counts.taken > 0)
     json["own_steps"] = {{"taken", result.counts.taken},

@@ -84,6 +84,8 @@ std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
   return ends;
 }
 
+constexpr double same_time = 1e-9;  // of the duration
+
 // The times at which steps end: those of a run that goes on from a state are those of the run that it was taken from.
 class Steps {
  public:
@@ -111,7 +113,6 @@ class Steps {
   double length(long long k) const { return ends_.empty() ? step_ : time(k) - time(k - 1); }
 
  private:
-  static constexpr double same_time = 1e-9;  // of the duration
   double step_, start_, offset_ = 0;
   std::vector<double> ends_;
   long long first_ = 0, count_ = 0;
@@ -136,6 +137,12 @@ BasicWorld<S> world_of_run(const Scene& scene, const RunOptions& options, std::s
 }
 
 template <class S>
+void look(const Scene& scene, BasicWorld<S>& world, RunResult& result) {
+  add_diagnosis(diagnose(world, scene.step / scene.settings.substeps), world.time(), result.diagnosis);
+  ++result.diagnoses;
+}
+
+template <class S>
 RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
   RunResult result;
   BasicWorld<S> world = world_of_run<S>(scene, options, warnings);
@@ -152,6 +159,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   const int bodies = static_cast<int>(scene.bodies.size());
   Frame before = frame_of(world, result.start, bodies), after = before;
   result.energy_start = before.energy;
+  auto next_diagnosis = options.diagnose_times.begin();
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
     if (!result.finite) break;
@@ -160,6 +168,9 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     film.step(before, after);
     if (options.keep_state && result.state.empty() && after.time >= *options.keep_state * (1 - 1e-12))
       result.state = world.snapshot();
+    const auto due = std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
+    if (due != next_diagnosis) look(scene, world, result);
+    next_diagnosis = due;
     if (k == steps.count() || Interrupt::asked()) break;
     const double start = cpu_now();
     const StepResult step = world.step(steps.length(k + 1));
@@ -167,6 +178,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (!step) {
       result.failed_step = step;
       if (options.keep_state && result.state.empty()) result.state = world.snapshot();
+      if (!options.diagnose_times.empty()) look(scene, world, result);
       break;
     }
     result.steps = k + 1;

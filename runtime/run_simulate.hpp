@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "runtime/choose_method.hpp"
+#include "runtime/run_diagnose.hpp"
 #include "runtime/run_frame.hpp"
 #include "runtime/scene.hpp"
 #include "runtime/snapshot.hpp"
@@ -16,6 +17,7 @@ struct RunOptions {
   std::function<void(const Frame&)> row;  // called for every row of the trajectory, if set
   std::vector<double> row_times;          // when; empty: after every step
   std::vector<double> film_times;
+  std::vector<double> diagnose_times;  // after the first step that ends then or later, and before one that fails
   bool progress = false;  // on stderr
   Snapshot from;          // goes on from there; empty: from the scene's start
   // When to keep the state in RunResult::state: after the first step that ends then or later.
@@ -38,6 +40,8 @@ struct RunResult {
   std::vector<std::string> broken_joints, notes;
   bool finite = true, interrupted = false;
   std::optional<StepResult> failed_step;  // the run ends before it
+  std::vector<WorstOfIsland> diagnosis;
+  int diagnoses = 0;  // of how many times that is
   std::vector<Frame> film;
 };
 

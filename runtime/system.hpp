@@ -83,6 +83,12 @@ class System {
   double unmet(int row) const { return contradicted_ ? unmet_[static_cast<size_t>(row)] : 0.0; }
   // The share that a row has of K by itself: J M^-1 J^T of it alone.
   double diagonal(int row) const { return ldlt_.diagonal(row); }
+  // Of the last factor(): what it left of that; the row depends on others; x = K^-1 x of the rows that do not.
+  double pivot(int row) const { return ldlt_.pivot(row); }
+  bool dependent(int row) const { return ldlt_.dependent(row); }
+  void solve_factored(double* x) { ldlt_.solve(x, x); }
+  // y = K x of all rows.
+  void multiply(const double* x, double* y) const { ldlt_.multiply(x, y); }
   // lambda within [lower, upper], by an active set: where a bound holds it back, J v + bias need
   // not vanish. Returns the number of dependent rows of the last factorisation.
   int solve_bounded();
