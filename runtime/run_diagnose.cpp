@@ -171,7 +171,10 @@ std::vector<Concern> concerns_about(const Scene& scene, const std::vector<WorstO
 
 std::string diagnosis_text(const Scene& scene, const RunResult& result) {
   std::string text = fmt::format("{}\nmethod: {}\n", scene.title.empty() ? scene.file : scene.title, method_text(scene));
-  text += fmt::format("the worst of {} poses from t = {:.4g} to {:.4g} s\n", result.diagnoses, result.start, result.time);
+  if (result.diagnoses == 1 && !result.diagnosis.empty())
+    text += fmt::format("at t = {:.4g} s\n", result.diagnosis.front().rank_time);
+  else
+    text += fmt::format("the worst of {} poses from t = {:.4g} to {:.4g} s\n", result.diagnoses, result.start, result.time);
   for (std::size_t k = 0; k < result.diagnosis.size() && k < most_islands; ++k)
     text += island_text(scene, result.diagnosis[k], static_cast<int>(k));
   if (result.diagnosis.size() > most_islands)

@@ -255,7 +255,7 @@ int diagnose(const Arguments& arguments) {
     if (*arguments.diagnose_time > scene.duration)
       throw cdot::Error(fmt::format("--at {}: the run ends at {} s", *arguments.diagnose_time, scene.duration));
     options.diagnose_times = {*arguments.diagnose_time};
-    if (*arguments.diagnose_time > 0) scene.duration = *arguments.diagnose_time;
+    scene.duration = std::max(*arguments.diagnose_time, 1e-9 * scene.step);
   }
   std::string warnings;
   const cdot::RunResult result = cdot::simulate(scene, options, warnings);

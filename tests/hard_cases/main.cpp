@@ -52,13 +52,13 @@ void try_all(std::string_view wanted) {
     Ways held;
     std::string others;
     for (const Way& way : all_ways()) {
-      std::string off;
-      for (const Finding& found : findings_of(hard_case, way))
+      std::string off, said;
+      for (const Finding& found : findings_of(hard_case, way, &said))
         if (!found.held()) off += fmt::format("  {:.60} {:.2e}", found.what, found.value);
       if (off.empty())
         held.push_back(way);
       else
-        others += fmt::format("    {:24}{}\n", name_of(way), off);
+        others += fmt::format("    {:24}{}\n      {}\n", name_of(way), off, said.empty() ? "SILENT" : said);
     }
     fmt::print("{}: held by {}\n{}", name_of(hard_case), text_of(held), others);
   }

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/run_diagnose.hpp"
+
 namespace cdot::hard {
 namespace {
 
@@ -49,7 +51,27 @@ void Trial::start() {
 }
 
 void Trial::step(double by) {
-  change([&](auto& world) { world.step(by); });
+  diagnose(by);
+  const StepResult result = std::visit([&](auto& world) { return world.step(by); }, *world_);
+  if (!result) say(in_words(result, "", ""));
+}
+
+void Trial::say(const std::string& what) {
+  if (listening_ && said_.empty()) said_ = what;
+}
+
+// As `cdot-run simulate` does, but after times that grow: cases are of very different lengths.
+void Trial::diagnose(double by) {
+  if (!listening_ || !said_.empty() || ++steps_ < next_diagnosis_) return;
+  next_diagnosis_ = steps_ + steps_ / 2 + 1;
+  std::vector<WorstOfIsland> worst;
+  change([&](auto& world) {
+    add_diagnosis(cdot::diagnose(world, by / scene.settings.substeps), world.time(), worst);
+    if (world.step_counts().rescued > 0) say(fmt::format("{} steps left to Euler's", world.step_counts().rescued));
+  });
+  Scene asked = scene;
+  asked.step = by, asked.single = way.single;
+  for (const Concern& concern : concerns_about(asked, worst, true)) say(concern.what);
 }
 
 Watch Trial::run(double seconds, double step_of, const std::function<void()>& each) {
@@ -139,10 +161,12 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-std::vector<Finding> findings_of(const Case& hard_case, const Way& way) {
+std::vector<Finding> findings_of(const Case& hard_case, const Way& way, std::string* said) {
   try {
     Trial trial(hard_case.fault + "/" + hard_case.scene, way);
+    if (said) trial.listen();
     hard_case.run(trial);
+    if (said) *said = trial.said();
     return trial.findings();
   } catch (const std::exception& error) {
     return {{fmt::format("thrown: {}", error.what()), finite_only, 0}};

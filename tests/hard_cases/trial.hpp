@@ -82,9 +82,20 @@ class Trial {
 
   const std::vector<Finding>& findings() const { return findings_; }
 
+  // What the runtime says of itself, for whoever listens: of the method, before and while running, and of steps that
+  // fail or that were left to another method. Empty: nothing.
+  void listen() { listening_ = true; }
+  const std::string& said() const { return said_; }
+
  private:
   std::unique_ptr<AnyWorld> world_;
+  void diagnose(double by);
+  void say(const std::string& what);
+
   std::vector<Finding> findings_;
+  bool listening_ = false;
+  std::string said_;
+  long steps_ = 0, next_diagnosis_ = 1;
 };
 
 struct Case {
@@ -106,7 +117,7 @@ struct Register {
 };
 
 // Runs it; what is thrown becomes a finding that does not hold.
-std::vector<Finding> findings_of(const Case& hard_case, const Way& way);
+std::vector<Finding> findings_of(const Case& hard_case, const Way& way, std::string* said = nullptr);
 
 // README.md, and how the row of a case begins there: what it has beside measured numbers.
 std::string table(const std::vector<Case>& cases);

@@ -1,0 +1,211 @@
+// What a diagnosis says, against what is known in closed form or from the dense K.
+#include "runtime/diagnose.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/Dense>
+
+#include "runtime/jacobian.hpp"
+#include "runtime/methods.hpp"
+#include "tests/runtime/mechanisms.hpp"
+#include "tests/runtime/spatial_support.hpp"
+
+namespace cdot::test {
+namespace {
+
+constexpr double h = 1e-3;
+
+// L_n, by (k + 1) L_{k+1} = (2 k + 1 - x) L_k - k L_{k-1}.
+double laguerre(int n, double x) {
+  double before = 0, now = 1;
+  for (int k = 0; k < n; ++k) {
+    const double next = ((2 * k + 1 - x) * now - k * before) / (k + 1);
+    before = now, now = next;
+  }
+  return now;
+}
+
+// All lie below 4 n; the largest is where the sign changes last.
+double largest_root_of_laguerre(int n) {
+  const double step = 1e-3;
+  double high = 4.0 * n;
+  while (laguerre(n, high) * laguerre(n, high - step) > 0) high -= step;
+  double low = high - step;
+  for (int k = 0; k < 60; ++k) {
+    const double middle = 0.5 * (low + high);
+    (laguerre(n, middle) * laguerre(n, high) > 0 ? high : low) = middle;
+  }
+  return low;
+}
+
+template <class T>
+void add_beads(World<T>& world, int count, double mass) {
+  int before = world.ground();
+  for (int k = 1; k <= count; ++k) {
+    const int bead = world.add_body({.y = -0.5 * k, .mass = mass, .inertia = mass});
+    distance(world, before, bead, 0.5);
+    before = bead;
+  }
+}
+
+// n equal beads on a hanging thread, l = 0.5 m apart: omega^2 = g / l times the roots of L_n (Bernoulli).
+template <class T>
+void check_hanging_beads(double within) {
+  for (const int n : {1, 3, 10}) {
+    World<T> world(settings(Solver::direct, Drift::projection, -9.81));
+    add_beads(world, n, 0.2);
+    const Diagnosis found = diagnose(world, h);
+    ASSERT_EQ(found.islands.size(), 1u);
+    const double right = 9.81 / 0.5 * largest_root_of_laguerre(n);
+    fmt::print("  {} beads: omega^2 = {:.4f}, from Laguerre's polynomial {:.4f} 1/s^2\n", n,
+               found.islands[0].stiffest.square, right);
+    EXPECT_NEAR(found.islands[0].stiffest.square / right, 1, within);
+    EXPECT_NEAR(found.islands[0].stiffest.tension / found.islands[0].stiffest.square, 1, 1e-6);
+  }
+}
+
+TEST(Diagnose, StiffestMotionOfAHangingThread) {
+  check_hanging_beads<double>(5e-3);
+  check_hanging_beads<float>(2e-2);
+}
+
+// A rod from its end: omega^2 = 3 g / 2 l, in the plane and in space, the same with the iterative solver. Upside down it
+// does not swing, it falls.
+TEST(Diagnose, StiffestMotionOfAPendulum) {
+  for (const auto& [name, solver] : solvers) {
+    World<double> world(settings(solver, Drift::projection, -9.81));
+    add_chain(world, 1, -pi / 2);
+    EXPECT_NEAR(diagnose(world, h).islands.at(0).stiffest.square, 1.5 * 9.81, 1e-3) << name;
+    World<double> upright(settings(solver, Drift::projection, -9.81));
+    add_chain(upright, 1, pi / 2);
+    EXPECT_NEAR(diagnose(upright, h).islands.at(0).stiffest.square, -1.5 * 9.81, 1e-3) << name;
+  }
+}
+
+// omega^2 = k (1 / m_a + 1 / m_b), of the lighter.
+TEST(Diagnose, StiffestMotionOfASpring) {
+  World<double> world(settings(Solver::direct));
+  const int heavy = world.add_body({.mass = 3, .inertia = 1}), light = world.add_body({.x = 2, .mass = 0.5, .inertia = 1});
+  world.add_spring({.body_a = heavy, .body_b = light, .stiffness = 200, .rest_length = 2});
+  const Diagnosis found = diagnose(world, h);
+  ASSERT_EQ(found.islands.size(), 1u);
+  EXPECT_NEAR(found.islands[0].stiffest.square / (200 * (1 / 3.0 + 1 / 0.5)), 1, 1e-6);
+  EXPECT_EQ(found.islands[0].stiffest.body, light);
+  EXPECT_NEAR(found.islands[0].stiffest.tension, 0, 1e-9);
+  EXPECT_EQ(found.islands[0].rows, 0);
+}
+
+// The linearly implicit step takes the tension that turns rods, and no other: beads stay as stiff as they are.
+TEST(Diagnose, KnowsWhatTheImplicitStepTakesOff) {
+  Settings s = settings(Solver::direct, Drift::projection, -9.81);
+  s.integrator = Integrator::implicit;
+  constexpr double step = 1.0 / 60;
+  World<double> rods(s), beads(s);
+  add_chain(rods, 10, -pi / 2, 0.1);
+  const int lowest = rods.body_count() - 1, load = rods.add_body({.y = -10, .mass = 1000, .inertia = 1});
+  revolute(rods, lowest, load, 0.5, 0, 0, 0);
+  add_beads(beads, 10, 0.1);
+  const int bottom = beads.body_count() - 1;
+  distance(beads, bottom, beads.add_body({.y = -5.5, .mass = 1000, .inertia = 1}), 0.5);
+  const double taken = diagnose(rods, step).islands.at(0).stiffest.square;
+  const double left = diagnose(beads, step).islands.at(0).stiffest.square;
+  fmt::print("  per step: rods {:.3f} rad, beads {:.3f} rad\n", step * std::sqrt(taken), step * std::sqrt(left));
+  EXPECT_LT(step * std::sqrt(taken), 1.01);
+  EXPECT_GT(step * std::sqrt(left), 10);
+}
+
+// Of the K of `cdot-run jacobian`, dense, rows scaled to 1.
+template <class S>
+double dense_condition(BasicWorld<S>& world) {
+  const SystemMatrix system = system_matrix(world);
+  Eigen::MatrixXd K(system.rows, system.rows);
+  for (int r = 0; r < system.rows; ++r)
+    for (int c = 0; c < system.rows; ++c) K(r, c) = system.K[static_cast<std::size_t>(r * system.rows + c)];
+  const Eigen::VectorXd scale = K.diagonal().cwiseSqrt().cwiseInverse();
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(scale.asDiagonal() * K * scale.asDiagonal()).eigenvalues();
+  return values.maxCoeff() / values.minCoeff();
+}
+
+TEST(Diagnose, ConditionIsThatOfTheDenseK) {
+  for (const double ratio : {1.0, 1e3, 1e6}) {
+    World<double> world(settings(Solver::direct));
+    const auto rods = add_chain(world, 8, -0.4);
+    revolute(world, rods.back(), world.add_body({.x = 8, .y = -4, .mass = ratio, .inertia = ratio}), 0.5, 0, 0.1, 0);
+    const double right = dense_condition(world), found = diagnose(world, h).islands.at(0).condition;
+    fmt::print("  mass ratio {:.0e}: condition {:.4e}, of the dense K {:.4e}\n", ratio, found, right);
+    EXPECT_LE(found, right * (1 + 1e-9));
+    EXPECT_GE(found, 0.9 * right);
+  }
+}
+
+// Ten revolutes in one place: 18 of 20 rows say nothing new, each with the joint that says it already.
+TEST(Diagnose, NamesRedundantRows) {
+  World<double> world(settings(Solver::direct));
+  const int body = world.add_body(rod(0, 0, 0));
+  for (int k = 0; k < 10; ++k) revolute(world, world.ground(), body, 0, 0, -0.5, 0);
+  const Diagnosis::Island found = diagnose(world, h).islands.at(0);
+  EXPECT_EQ(found.rows, 20);
+  EXPECT_EQ(found.rank, 2);
+  ASSERT_EQ(found.redundant.size(), 18u);
+  for (const Diagnosis::Redundant& row : found.redundant) {
+    EXPECT_FALSE(row.conflicting);
+    EXPECT_EQ(row.joints.size(), 2u);
+  }
+}
+
+// A side 0.02 m too long: whichever row is said to be too much misses the others by that, and all three take part.
+TEST(Diagnose, TellsConflictsByHowMuch) {
+  World<double> world(settings(Solver::direct));
+  const auto side = [&](double x, double length) { return world.add_body({.x = x, .mass = 1, .inertia = length / 12}); };
+  const int a = side(0.5, 1), b = side(1.5, 1), c = side(1, 2.02), other = side(9, 1);
+  revolute(world, world.ground(), other, 8.5, 0, -0.5, 0);
+  revolute(world, a, b, 0.5, 0, -0.5, 0);
+  revolute(world, b, c, 0.5, 0, 1.01, 0);
+  revolute(world, c, a, -1.01, 0, -0.5, 0);
+  for (const Diagnosis::Island& found : diagnose(world, h).islands) {
+    if (found.bodies.front() == other) {
+      EXPECT_TRUE(found.redundant.empty());
+      continue;
+    }
+    EXPECT_EQ(found.rank, 5);
+    ASSERT_EQ(found.redundant.size(), 1u);
+    EXPECT_TRUE(found.redundant[0].conflicting);
+    EXPECT_NEAR(std::abs(found.redundant[0].missed), 0.02, 1e-12);
+    EXPECT_EQ(found.redundant[0].joints, (std::vector<int>{1, 2, 3}));
+  }
+}
+
+// Looking changes nothing: not a bit, in any method, of the state or of the run.
+template <class S, class Build>
+void check_that_looking_is_free(Build build) {
+  int methods = 0;
+  for (const auto& [solver_name, solver] : solvers)
+    for (const auto& [drift_name, drift] : drifts)
+      for (const auto& [name, integrator] : integrators) {
+        Settings s = settings(solver, drift, -9.81);
+        s.integrator = integrator;
+        if (wrong_with_methods(s)) continue;
+        BasicWorld<S> world(s), unseen(s);
+        build(world), build(unseen);
+        for (int k = 0; k < 10; ++k) {
+          diagnose(world, 0.01);
+          world.step(0.01), unseen.step(0.01);
+          ASSERT_EQ(world.hash(), unseen.hash()) << solver_name << " " << drift_name << " " << name;
+        }
+        ++methods;
+      }
+  EXPECT_GE(methods, 12);
+}
+
+TEST(Diagnose, ChangesNothing) {
+  check_that_looking_is_free<Planar<double>>([](auto& world) {
+    add_chain(world, 4, -0.4);
+    add_motor(world, 1, "angle", {.speed = 1, .max_force = 2});
+    add_limit(world, 2, "angle", {.lower = -0.1, .upper = 0.1});
+  });
+  check_that_looking_is_free<Spatial<float>>([](auto& world) { add_free_mechanism(world); });
+}
+
+}  // namespace
+}  // namespace cdot::test
