@@ -252,6 +252,25 @@ void push(Random& random, const Scales& scales, SceneBody& body) {
 
 }  // namespace
 
+// An angle about an axis has no value where the axes it is told by are antiparallel: there it jumps as a body turns.
+template <class S>
+bool has_value(const Scene& scene, int joint, std::string_view coordinate) {
+  const BasicWorld<S> world = build_world_in<S>(scene);
+  const double now = world.coordinate(joint, coordinate);
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    if (scene.bodies[k].is_static) continue;
+    BasicWorld<S> moved = build_world_in<S>(scene);
+    auto place = moved.place(static_cast<int>(k));
+    if constexpr (S::dimension == Dimension::spatial)
+      place.e1 += 1e-6, place.e2 -= 2e-6, place.e3 += 3e-6, place.e0 += 2e-6;
+    else
+      place.angle += 1e-6;
+    moved.set_pose(static_cast<int>(k), place);
+    if (std::abs(moved.coordinate(joint, coordinate) - now) > 0.01 * std::max(1.0, std::abs(now))) return false;
+  }
+  return true;
+}
+
 template <class S>
 void add_effects(Random& random, const Scales& scales, Scene& scene) {
   const BasicWorld<S> world = build_world_in<S>(scene);
@@ -259,7 +278,7 @@ void add_effects(Random& random, const Scales& scales, Scene& scene) {
     SceneJoint& joint = scene.joints[j];
     const JointType& type = world.joint_type(static_cast<int>(j));
     for (const CoordinateInfo& coordinate : type.coordinates)
-      if (random.chance(0.4))
+      if (random.chance(0.4) && has_value<S>(scene, static_cast<int>(j), coordinate.name))
         joint.effects.push_back(
             random_effects(random, scales, coordinate, world.coordinate(static_cast<int>(j), coordinate.name),
                            scene.settings.local_error == 0));

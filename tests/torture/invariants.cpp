@@ -13,6 +13,7 @@ namespace {
 
 constexpr double resolved = 0.5;  // of Accounts::roughest: above, a step does not resolve the motion
 
+constexpr int most_steps = 30000;  // of a run with shorter steps
 constexpr int dear = 300;          // evaluations of an island's accelerations in a step, on average
 
 template <class T>
@@ -23,6 +24,9 @@ constexpr double held_tolerance = std::is_same_v<T, double> ? 1e-10 : 1e-4;
 // Where one-sided rows act, Runge-Kutta goes on until they have just passed: up to so much of C [m, rad].
 template <class T>
 constexpr double just_passed = std::is_same_v<T, double> ? 3e-9 : 3e-4;
+
+constexpr double turns_round = 0.5;   // of unit rows, in a step
+constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
 
 // Pivots of K are told from round-off down to 64 epsilon of their row: bodies so much lighter than others are lost in it.
 template <class T>
@@ -74,6 +78,8 @@ class Trial {
   StepResult step(BasicWorld<S>& world, int k) const;
   Verdict watch(BasicWorld<S>& world);
   std::optional<Verdict> look(BasicWorld<S>& world, int k);
+  // Why no method needs to hold it together now; nullptr if there is no reason.
+  const char* excuse(BasicWorld<S>& world) const;
   Gap gap_now(BasicWorld<S>& world) const;
   std::optional<Verdict> look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k);
   std::optional<Verdict> look_at_energy(double energy, int k) const;
@@ -91,8 +97,9 @@ class Trial {
   Laws laws_;
   RowSizes sizes_;
   Motion start_;
-  const char* excuse_ = nullptr;  // of a mechanism that no method needs to hold together
-  double start_energy_ = 0, torque_of_gaps_ = 0;
+  double independence_ = 1;  // at the start
+  std::vector<typename S::Place> places_;  // of the scene's bodies, before the step
+  double start_energy_ = 0, torques_ = 0;
   std::optional<Accounts> accounts_;
   Snapshot middle_, end_;
 };
@@ -124,9 +131,15 @@ std::optional<Verdict> Trial<S>::look_at_momentum(const Motion& now, const Basic
   double impulses = 0;
   for (int j = 0; j < world.joint_count(); ++j)
     for (const double lambda : world.impulse(j)) impulses += std::abs(lambda);
-  torque_of_gaps_ += impulses * (gap * sizes_.length + operations_ * std::numeric_limits<T>::epsilon() * sizes_.length);
+  torques_ += impulses * (gap * sizes_.length + operations_ * std::numeric_limits<T>::epsilon() * sizes_.length);
+  // M takes up h dJ'lambda/dq: an impulse on an arm, times the turn of a step.
+  if (scene_->settings.integrator == Integrator::implicit) {
+    double fastest = 0;
+    for (const BodyMotion& body : now.bodies) fastest = std::max(fastest, norm(body.w) + norm(body.v) / sizes_.length);
+    torques_ += impulses * sizes_.length * fastest * scene_->step;
+  }
   const double linear = accounts_->momentum_round_off();
-  const double angular = accounts_->angular_round_off() + accounts_->angular_order_error() + torque_of_gaps_;
+  const double angular = accounts_->angular_round_off() + accounts_->angular_order_error() + torques_;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const double p = std::abs(now.linear[axis] - start_.linear[axis]);
     const double l = std::abs(now.angular[axis] - start_.angular[axis]);
@@ -165,6 +178,19 @@ Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
 }
 
 template <class S>
+const char* Trial<S>::excuse(BasicWorld<S>& world) const {
+  if (laws_.may_contradict) return "a prescribed motion, or a rolling one, meets what may stop it";
+  if (heaviest_over_lightest(*scene_) > told_apart<T>) return "masses further apart than pivots are told from round-off";
+  if (independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon()) < nearly_lost * independence_)
+    return "near a pose where the joints lose a row";
+  BasicWorld<S> before = build_world_in<S>(*scene_);
+  for (std::size_t k = 0; k < places_.size(); ++k) before.set_pose(static_cast<int>(k), places_[k]);
+  if (turned(system_matrix(before), system_matrix(world), sizes_.length) > turns_round)
+    return "a joint's directions turn round within a step";
+  return nullptr;
+}
+
+template <class S>
 std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
   const Frame frame = frame_of(world, world.time(), static_cast<int>(scene_->bodies.size()));
   if (!finite(frame)) return verdict(Outcome::broken, "finite", "a pose, a velocity or the energy is no number", 0, 0, k);
@@ -173,7 +199,7 @@ std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
   accounts_->step(now, frame.energy, operations_, world.step_counts().taken);
   if (scene_->settings.drift == Drift::projection && scene_->settings.solver == Solver::direct &&
       !(gap.share <= held_tolerance<T>))
-    return verdict(excuse_ ? Outcome::limited : Outcome::broken, excuse_ ? excuse_ : "C",
+    return verdict(excuse(world) ? Outcome::limited : Outcome::broken, excuse(world) ? excuse(world) : "C",
                    gap.joint < 0 ? "" : scene_->joints[static_cast<std::size_t>(gap.joint)].definition.type, gap.share,
                    held_tolerance<T>, k);
   if (auto broken = look_at_momentum(now, world, gap.share, k)) return broken;
@@ -187,6 +213,8 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
   accounts_.emplace(start_, start_energy_, *scene_, std::numeric_limits<T>::epsilon());
   Verdict first;
   for (int k = 1; k <= steps_; ++k) {
+    places_.clear();
+    for (std::size_t b = 0; b < scene_->bodies.size(); ++b) places_.push_back(world.place(static_cast<int>(b)));
     const std::uint64_t before = world.hash();
     if (const StepResult result = step(world, k); !result) {
       if (world.hash() != before && !asked_->sabotage)
@@ -245,13 +273,10 @@ Verdict Trial<S>::run() {
   if (!(gap.share <= start_tolerance<T>))
     return verdict(Outcome::refused, "the start is not on the joints", "", gap.share, start_tolerance<T>);
   laws_ = laws_of(*scene_);
-  if (laws_.may_contradict)
-    excuse_ = "a prescribed motion, or a rolling one, meets what may stop it";
-  else if (heaviest_over_lightest(*scene_) > told_apart<T>)
-    excuse_ = "masses further apart than pivots are told from round-off";
+  independence_ = independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon());
   middle_ = end_ = world.snapshot();
   Verdict seen = watch(world);
-  seen.roughest = accounts_->roughest();
+  seen.roughest = accounts_->roughest(), seen.length = sizes_.length;
   seen.judged_energy = laws_.energy_falls && seen.roughest <= resolved;
   seen.judged_momentum = laws_.momentum();
   if (seen.outcome != Outcome::held || !asked_->bits) return seen;
@@ -278,9 +303,10 @@ Verdict judge_once(const Scene& scene, const Asked& asked) {
   return scene.single ? judge_in<Spatial<float>>(scene, asked) : judge_in<Spatial<double>>(scene, asked);
 }
 
-// Linear momentum and bits are kept by any step; the rest only by one that is short enough.
+// Bits are kept by any step, and linear momentum, as long as what is added up does not grow beyond it; the rest only by a
+// step that is short enough.
 bool may_be_the_step(const Verdict& v) {
-  return v.what == "finite" || v.what == "C" || judged_by_order(v.what);
+  return v.what == "finite" || v.what == "C" || v.what == "momentum" || judged_by_order(v.what);
 }
 
 }  // namespace
@@ -294,8 +320,8 @@ Verdict judge(const Scene& scene, const Asked& asked) {
   finer.duration = seen.step * scene.step;
   Asked without_bits = asked;
   without_bits.bits = false;
-  Verdict again;
-  for (int k = 0; k < asked.refinements; ++k) {
+  Verdict again = seen;
+  for (int k = 0; k < asked.refinements && 4 * steps_of(finer) <= most_steps; ++k) {
     finer.step /= 4;
     again = judge_once(finer, without_bits);
     if (!again.broken())
@@ -303,6 +329,10 @@ Verdict judge(const Scene& scene, const Asked& asked) {
                      fmt::format("holds at a step {:.0f} times shorter", scene.step / finer.step), seen.value, seen.bound,
                      seen.step);
   }
+  const bool as_forces = scene.settings.integrator == Integrator::rattle || works_on_accelerations(scene.settings.integrator);
+  if (as_forces && stiff(scene, finer.step, seen.length))
+    return verdict(Outcome::limited, fmt::format("a spring too stiff for a force at any step tried: {}", seen.what), "",
+                   seen.value, seen.bound, seen.step);
   const bool unresolved = again.roughest > resolved && again.what != "C" && again.what != "finite";
   if (unresolved && !laws_of(scene).smooth)
     return verdict(Outcome::limited, fmt::format("no step tried resolves the motion: {}", seen.what), "", seen.value,

@@ -23,6 +23,7 @@ struct Verdict {
   double value = 0, bound = 0;
   int step = 0;  // after which it was seen
   double roughest = 0;  // how much the acceleration changed within a step, relative; above 0.5 no step resolves it
+  double length = 1;    // of the mechanism [m]
   bool judged_energy = false, judged_momentum = false;
   bool broken() const { return outcome == Outcome::broken; }
 };

@@ -171,7 +171,55 @@ bool may_stop_a_motion(const Scene& scene) {
   return false;
 }
 
+// 1 / m of a pull on the body, 1 / I of a turn, at most.
+struct Lightness {
+  double pull = 0, turn = 0;
+};
+Lightness lightness_of(const Scene& scene, const std::vector<int>& bodies, double length) {
+  Lightness sum;
+  for (const int index : bodies) {
+    if (immovable(scene, index)) continue;
+    const SceneBody& body = scene.bodies[static_cast<std::size_t>(index)];
+    const bool planar = scene.dimension == Dimension::planar;
+    const Inertia& I = body.spatial.inertia;
+    // The trace of an inverse tensor is at most 3 over its least moment, which is at least det / (trace / 2)^2.
+    const double det = I.xx * (I.yy * I.zz - I.yz * I.yz) - I.xy * (I.xy * I.zz - I.yz * I.xz) +
+                       I.xz * (I.xy * I.yz - I.yy * I.xz);
+    const double half = (I.xx + I.yy + I.zz) / 2;
+    const double inertia = planar ? body.definition.inertia : half > 0 ? det / (half * half) : 0;
+    const double turn = inertia > 0 ? 1 / inertia : 0;
+    sum.turn += turn;
+    sum.pull += 1 / (planar ? body.definition.mass : body.spatial.mass) + length * length * turn;
+  }
+  return sum;
+}
+
+bool stiff(const Softness& s, double inverse_mass, double h) {
+  if (s.by_frequency) return h * 6.3 * s.frequency * std::max(1.0, s.damping_ratio) > 2;
+  return h * h * s.stiffness * inverse_mass > 4 || h * s.damping * inverse_mass > 2;
+}
+
 }  // namespace
+
+bool stiff(const Scene& scene, double step, double length) {
+  for (const SceneJoint& joint : scene.joints) {
+    const Lightness light = lightness_of(scene, joint.definition.bodies, length);
+    const double any = std::max(light.pull, light.turn);
+    if (joint.definition.soft && stiff(*joint.definition.soft, any, step)) return true;
+    for (const SceneEffects& effects : joint.effects)
+      for (const SceneSpring& spring : effects.springs)
+        if (stiff(spring.softness, any, step)) return true;
+  }
+  for (const SpringDefinition& spring : scene.springs) {
+    const double pull = lightness_of(scene, {spring.body_a, spring.body_b}, length).pull;
+    if (step * step * spring.stiffness * pull > 4 || step * spring.damping * pull > 2) return true;
+  }
+  for (const SceneBody& body : scene.bodies)
+    for (const double damping : {body.definition.linear_damping, body.definition.angular_damping,
+                                 body.spatial.linear_damping, body.spatial.angular_damping})
+      if (step * damping > 2) return true;
+  return false;
+}
 
 Laws laws_of(const Scene& scene) {
   Laws laws;

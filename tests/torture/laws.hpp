@@ -18,4 +18,8 @@ struct Laws {
 
 Laws laws_of(const Scene& scene);
 
+// A spring or damper, taken as a force over a step of that length, would throw its bodies back further than it found
+// them: h^2 k / m > 4 or h d / m > 2, m being the least that it may feel of bodies with arms up to `length`.
+bool stiff(const Scene& scene, double step, double length);
+
 }  // namespace cdot::torture

@@ -1,5 +1,7 @@
 #include "tests/torture/observer.hpp"
 
+#include <Eigen/Eigenvalues>
+
 namespace cdot::torture {
 namespace {
 
@@ -21,7 +23,42 @@ double pushed_by_forces(const Scene& scene) {
   return scene.step / s.substeps * std::sqrt(sum);
 }
 
+// D with turns counted by a length, each row as 1.
+Eigen::MatrixXd unit_rows(const SystemMatrix& system, double length) {
+  const int lengths = system.freedom == 3 ? 2 : 3;
+  Eigen::MatrixXd D(system.rows, system.columns);
+  for (int r = 0; r < system.rows; ++r) {
+    for (int c = 0; c < system.columns; ++c)
+      D(r, c) = system.frozen[static_cast<std::size_t>(c)] ? 0 : system.entry(r, c) / (c % system.freedom < lengths ? 1 : length);
+    const double size = D.row(r).norm();
+    if (size > 0) D.row(r) /= size;
+  }
+  return D;
+}
+
 }  // namespace
+
+double independence(const SystemMatrix& system, double round_off) {
+  if (system.rows == 0 || system.columns == 0) return 1;
+  const int n = system.rows;
+  const auto k = [&](int r, int c) { return system.K[static_cast<std::size_t>(r * n + c)]; };
+  Eigen::MatrixXd K(n, n);
+  for (int r = 0; r < n; ++r)
+    for (int c = 0; c < n; ++c) {
+      const double size = std::sqrt(k(r, r) * k(c, c));
+      K(r, c) = size > 0 ? k(r, c) / size : 0;
+    }
+  const Eigen::VectorXd values = K.selfadjointView<Eigen::Lower>().eigenvalues();
+  double least = 1;
+  for (const double value : values)
+    if (value > n * round_off) least = std::min(least, value);
+  return std::sqrt(least);
+}
+
+double turned(const SystemMatrix& before, const SystemMatrix& after, double length) {
+  if (after.rows == 0 || before.rows != after.rows || after.columns == 0) return 0;
+  return (unit_rows(after, length) - unit_rows(before, length)).rowwise().norm().maxCoeff();
+}
 
 Accounts::Accounts(const Motion& start, double energy, const Scene& scene, double epsilon)
     : order_(order_of(scene.settings.integrator)),

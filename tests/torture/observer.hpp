@@ -52,6 +52,12 @@ RowSizes row_sizes(BasicWorld<S>& world) {
   return sizes;
 }
 
+// How independent the rows are of each other in the metric of the masses: the least eigenvalue of K, its diagonal made 1,
+// that is no round-off, and its root. A pose where it is small has a direction that hardly any row holds.
+double independence(const SystemMatrix& system, double round_off);
+// How far the row turned that turned most, of as many unit rows: 2 where one turned round.
+double turned(const SystemMatrix& before, const SystemMatrix& after, double length);
+
 // The largest C as a share of its row's size, and whose it is. Of inequalities what is beyond `slack` [m, rad].
 struct Gap {
   double share = 0;

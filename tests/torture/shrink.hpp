@@ -12,6 +12,6 @@ struct Shrunk {
   int tries = 0;
 };
 
-Shrunk shrink(const Scene& scene, const Verdict& verdict, const Asked& asked = {}, int most_tries = 3000);
+Shrunk shrink(const Scene& scene, const Verdict& verdict, const Asked& asked = {}, int most_tries = 600);
 
 }  // namespace cdot::torture

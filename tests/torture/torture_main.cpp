@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 
@@ -56,6 +57,7 @@ void keep(const Options& options, const std::string& name, const std::string& te
 // Prints what breaks, the smallest scene in which it does, and how to see it again.
 void report(const Options& options, std::uint64_t seed, const Scene& scene, const Verdict& verdict) {
   fmt::print("\nBROKEN {}\n  seed {:#x}, {}\n", told(verdict), seed, way_of(scene));
+  std::fflush(stdout);  // shrinking may take a while
   if (options.no_shrink) return;
   Asked asked;
   asked.bits = verdict.what.starts_with("bits");

@@ -73,7 +73,8 @@ Snapshot after(const Scene& scene, int count) {
 // A scene, written and read, is the same scene: its run has the same bits, its text the same letters.
 TEST(Torture, WrittenSceneReadsBack) {
   for (std::uint64_t seed = 1; seed <= 80; ++seed) {
-    const Scene scene = generate(seed, {.steps = 3}).scene;
+    // Not Runge-Kutta, whose steps may be many, where this asks for none of its own.
+    const Scene scene = generate(seed, {.integrator = seed % 2 ? Integrator::rattle : Integrator::implicit, .steps = 3}).scene;
     const Scene copy = read_scene(text_of(scene), "copy");
     ASSERT_EQ(text_of(copy), text_of(scene)) << seed;
     ASSERT_EQ(after(copy, 3).differences(after(scene, 3)), std::vector<std::string>{}) << seed;
