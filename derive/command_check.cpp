@@ -8,6 +8,8 @@
 #include "derive/check.hpp"
 #include "derive/commands.hpp"
 #include "derive/operators.hpp"
+#include "derive/parcel.hpp"
+#include "derive/processes.hpp"
 #include "derive/specs_folder.hpp"
 
 namespace cdot::derive {
@@ -19,6 +21,7 @@ struct Options {
   std::vector<std::string> specs;
   std::string specs_folder = "specs";
   bool json = false;
+  int processes = usual_processes();
 };
 
 Json place(const SourceFile& file, Span span) {
@@ -64,8 +67,9 @@ std::string counted(const CheckReport& report, Level level) {
   return n == 0 ? "" : fmt::format(", {} {}{}", n, name_of(level), n == 1 ? "" : "s");
 }
 
-void print(const SourceFile& file, const CheckReport& report) {
-  for (const Finding& f : report.findings) fmt::print("{}", render(file, f));
+std::string as_text(const SourceFile& file, const CheckReport& report) {
+  std::string text;
+  for (const Finding& f : report.findings) text += render(file, f);
   std::size_t proved = 0, shown = 0, laws = 0;
   for (const CheckReport::Proved& p : report.proofs) {
     for (const Law& law : p.proof.laws) {
@@ -75,27 +79,45 @@ void print(const SourceFile& file, const CheckReport& report) {
       if (law.verdict == Verdict::shown) ++shown;
     }
   }
-  fmt::print("{}: {}", file.path, status(report));
-  if (report.readable) fmt::print(", {} of {} laws proved", proved, laws);
-  if (shown > 0) fmt::print(", {} shown at {} random points", shown, exact_points);
-  fmt::print("{}{}{}\n", counted(report, Level::error), counted(report, Level::warning),
-             counted(report, Level::note));
+  text += fmt::format("{}: {}", file.path, status(report));
+  if (report.readable) text += fmt::format(", {} of {} laws proved", proved, laws);
+  if (shown > 0) text += fmt::format(", {} shown at {} random points", shown, exact_points);
+  return text + counted(report, Level::error) + counted(report, Level::warning) + counted(report, Level::note) + "\n";
 }
 
 int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
+  std::vector<std::filesystem::path> paths;
+  for (const std::string& spec : options.specs) paths.push_back(folder.find(spec));
   Json all = Json::array();
   int exit_status = 0;
-  for (const std::string& spec : options.specs) {
-    const ReadResult read = folder.read(folder.find(spec));
+  Tasks tasks;
+  for (const std::filesystem::path& path : paths) tasks.names.push_back(path.string());
+  tasks.run = [&](std::size_t i) {
+    const ReadResult read = folder.read(paths[i]);
     const CheckReport report = check(read);
-    if (options.json)
-      all.push_back(as_json(*read.file, report));
-    else
-      print(*read.file, report);
-    exit_status = std::max(exit_status, !report.readable ? 2 : report.clean() ? 0 : 1);
-  }
-  if (options.json) fmt::print("{}\n", all.dump(2, ' ', false, Json::error_handler_t::replace));
+    Parcel parcel;
+    parcel.put(!report.readable ? 2 : report.clean() ? 0 : 1);
+    parcel.put(options.json ? as_json(*read.file, report).dump(-1, ' ', false, Json::error_handler_t::replace)
+                            : as_text(*read.file, report));
+    return parcel.content();
+  };
+  tasks.take = [&](std::size_t i, const Answer& answer) {
+    if (!answer.failure.empty()) {
+      exit_status = 2;
+      return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
+    }
+    Unpacking parcel(answer.result);
+    exit_status = std::max(exit_status, parcel.number());
+    const std::string text = parcel.text();
+    if (options.json) {
+      all.push_back(Json::parse(text));
+    } else {
+      fmt::print("{}", text);
+    }
+  };
+  in_processes(tasks, options.processes);
+  if (options.json) fmt::print("{}\n", all.dump(2));
   return exit_status;
 }
 
@@ -113,6 +135,7 @@ void add_check_command(CLI::App& app, Command& selected) {
       "--json", options->json,
       "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
       "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
+  add_processes_option(*command, options->processes);
   command->footer(
       "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where "
       "the joint\n"

@@ -39,6 +39,20 @@ std::vector<LedgerRow> without_repetition(const std::vector<LedgerRow>& all) {
   return rows;
 }
 
+// The dear ones first, so that none is left over at the end: those without a kernel yet, then by its size.
+std::vector<std::size_t> dearest_first(const std::vector<fs::path>& paths, const fs::path& output) {
+  std::vector<std::pair<std::uintmax_t, std::size_t>> sized;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    std::error_code missing;  // then the size is the greatest there is
+    const fs::path space = paths[i].parent_path().filename();
+    sized.emplace_back(fs::file_size(output / space / (paths[i].stem().string() + ".hpp"), missing), i);
+  }
+  std::stable_sort(sized.begin(), sized.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::size_t> order;
+  for (const auto& [size, i] : sized) order.push_back(i);
+  return order;
+}
+
 // The files of all specs, or none if there is anything wrong with any of them, which is said here.
 std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsFolder& folder,
                                 const Options& options) {
@@ -49,6 +63,7 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
   std::size_t remembered = 0;
   Tasks tasks;
   for (const fs::path& path : paths) tasks.names.push_back(path.string());
+  tasks.order = dearest_first(paths, options.output);
   tasks.run = [&](std::size_t i) {
     return packed(derive_spec(paths[i], folder, memory, program, options.fresh));
   };
@@ -190,15 +205,19 @@ void add_derive_command(CLI::App& app, Command& selected) {
   command->add_flag("--check", options->check,
                     "Write nothing; exit 1 unless DIR has exactly the files that would be written");
   command->add_flag("--fresh", options->fresh, "Prove everything anew, remembered or not");
-  command->add_option("-j,--jobs", options->processes, "Specs at once, each in a process of its own")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_processes_option(*command, options->processes);
   command->footer(
       "A spec that was proved is remembered until it, what it includes, the .hand beside it, or this program "
       "changes,\nin $CDOT_CACHE, else $XDG_CACHE_HOME/cdot, else ~/.cache/cdot, a folder that may be deleted at "
       "any time.");
   command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+}
+
+void add_processes_option(CLI::App& command, int& processes) {
+  command.add_option("-j,--jobs", processes, "Specs at once, each in a process of its own")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
 }
 
 }  // namespace cdot::derive

@@ -7,6 +7,8 @@
 
 #include "derive/commands.hpp"
 #include "derive/diff.hpp"
+#include "derive/parcel.hpp"
+#include "derive/processes.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -17,6 +19,7 @@ struct Options {
   std::vector<std::string> what;
   std::string specs_folder = "specs";
   bool json = false, all = false;
+  int processes = usual_processes();
 };
 
 // A .hand file and the spec that it is about: the .joint of the same name beside it, or in the
@@ -90,29 +93,70 @@ std::vector<Pairing> pairs_of(const std::vector<std::string>& words, const Specs
   return pairs;
 }
 
+// What one .hand file comes to.
+struct Verdict {
+  std::string complaints, text;  // for stderr and stdout
+  bool unreadable = false;
+  int counts[4] = {};  // by Agreement
+
+  std::string packed() const {
+    Parcel parcel;
+    parcel.put(complaints);
+    parcel.put(text);
+    parcel.put(unreadable ? 1 : 0);
+    for (const int count : counts) parcel.put(count);
+    return parcel.content();
+  }
+  static Verdict unpacked(const std::string& content) {
+    Unpacking parcel(content);
+    Verdict verdict{parcel.text(), parcel.text(), parcel.number() == 1};
+    for (int& count : verdict.counts) count = parcel.number();
+    return verdict;
+  }
+};
+
+Verdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Options& options) {
+  DiffReport report = judge(pair.hand, pair.spec, folder);
+  if (!pair.entry.empty()) {
+    std::erase_if(report.judgements, [&](const Judgement& j) { return j.id != pair.entry; });
+  }
+  const bool everything = options.all || !options.what.empty();
+  Verdict verdict{render(*report.file, report.diagnostics),
+                  options.json ? to_json(report) : to_text(report, everything), report.diagnostics.has_errors()};
+  for (const Judgement& j : report.judgements) ++verdict.counts[static_cast<int>(j.agreement)];
+  return verdict;
+}
+
 int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
-  std::vector<DiffReport> reports;
+  const std::vector<Pairing> pairs = pairs_of(options.what, folder);
+  std::vector<std::string> entries;
   bool unreadable = false;
   int counts[4] = {};
-  for (const Pairing& pair : pairs_of(options.what, folder)) {
-    reports.push_back(judge(pair.hand, pair.spec, folder));
-    DiffReport& report = reports.back();
-    if (!pair.entry.empty()) {
-      std::erase_if(report.judgements, [&](const Judgement& j) { return j.id != pair.entry; });
+  Tasks tasks;
+  for (const Pairing& pair : pairs) tasks.names.push_back(pair.hand.string());
+  tasks.run = [&](std::size_t i) { return verdict_on(pairs[i], folder, options).packed(); };
+  tasks.take = [&](std::size_t i, const Answer& answer) {
+    if (!answer.failure.empty()) {
+      unreadable = true;
+      return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
     }
-    std::cerr << render(*report.file, report.diagnostics);
-    unreadable = unreadable || report.diagnostics.has_errors();
-    for (const Judgement& j : report.judgements) ++counts[static_cast<int>(j.agreement)];
-    const bool everything = options.all || !options.what.empty();
-    if (!options.json) std::cout << to_text(report, everything) << std::flush;
-  }
+    const Verdict verdict = Verdict::unpacked(answer.result);
+    unreadable = unreadable || verdict.unreadable;
+    for (std::size_t k = 0; k < 4; ++k) counts[k] += verdict.counts[k];
+    std::cerr << verdict.complaints;
+    if (options.json) {
+      entries.push_back(verdict.text);
+    } else {
+      std::cout << verdict.text << std::flush;
+    }
+  };
+  in_processes(tasks, options.processes);
   if (options.json) {
-    std::cout << to_json(reports);
+    std::cout << joined_json(entries);
   } else {
-    fmt::print(
-        "{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n",
-        counts[0], counts[1], counts[2], counts[3]);
+    fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", counts[0],
+               counts[1], counts[2], counts[3]);
   }
   return unreadable ? 2 : counts[2] > 0 ? 1 : 0;
 }
@@ -140,6 +184,7 @@ void add_diff_command(CLI::App& app, Command& selected) {
                     "condition (of agrees-if; the reason of listed), remarks, and items: what, "
                     "row, column, kind,\n"
                     "generated, hand, difference, sentence, confirmed (by which numbers)");
+  add_processes_option(*command, options->processes);
   command->footer("Exit status: 0 nothing differs; 1 something does; 2 bad usage or input.");
   command->callback([options, &selected] { selected = [options] { return run(*options); }; });
 }

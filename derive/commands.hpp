@@ -19,4 +19,7 @@ void add_explain_command(CLI::App& app, Command& selected);
 void add_diff_command(CLI::App& app, Command& selected);
 void add_check_command(CLI::App& app, Command& selected);
 
+// -j, which commands have that work on several specs.
+void add_processes_option(CLI::App& command, int& processes);
+
 }  // namespace cdot::derive

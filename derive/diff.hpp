@@ -50,6 +50,7 @@ DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path&
                  const SpecsFolder& folder);
 
 std::string to_text(const DiffReport& report, bool all);  // `all`: also what agrees, in a line each
-std::string to_json(const std::vector<DiffReport>& reports);
+std::string to_json(const DiffReport& report);
+std::string joined_json(const std::vector<std::string>& arrays);  // of several reports, as one
 
 }  // namespace cdot::derive

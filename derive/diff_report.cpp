@@ -32,33 +32,39 @@ std::string to_text(const DiffReport& report, bool all) {
   return s;
 }
 
-std::string to_json(const std::vector<DiffReport>& reports) {
+std::string to_json(const DiffReport& report) {
   nlohmann::ordered_json array = nlohmann::ordered_json::array();
-  for (const DiffReport& report : reports) {
-    for (const Judgement& j : report.judgements) {
-      nlohmann::ordered_json entry = {{"id", j.id},
-                                      {"joint", j.joint},
-                                      {"title", j.title},
-                                      {"source", j.source},
-                                      {"verdict", name_of(j.agreement)},
-                                      {"condition", j.condition}};
-      entry["items"] = nlohmann::ordered_json::array();
-      for (const Difference& d : j.differences) {
-        entry["items"].push_back({{"what", d.what},
-                                  {"row", d.row},
-                                  {"column", d.column},
-                                  {"kind", d.kind},
-                                  {"generated", d.generated},
-                                  {"hand", d.hand},
-                                  {"difference", d.difference},
-                                  {"sentence", d.sentence},
-                                  {"confirmed", d.confirmed}});
-      }
-      entry["remarks"] = j.remarks;
-      array.push_back(std::move(entry));
+  for (const Judgement& j : report.judgements) {
+    nlohmann::ordered_json entry = {{"id", j.id},
+                                    {"joint", j.joint},
+                                    {"title", j.title},
+                                    {"source", j.source},
+                                    {"verdict", name_of(j.agreement)},
+                                    {"condition", j.condition}};
+    entry["items"] = nlohmann::ordered_json::array();
+    for (const Difference& d : j.differences) {
+      entry["items"].push_back({{"what", d.what},
+                                {"row", d.row},
+                                {"column", d.column},
+                                {"kind", d.kind},
+                                {"generated", d.generated},
+                                {"hand", d.hand},
+                                {"difference", d.difference},
+                                {"sentence", d.sentence},
+                                {"confirmed", d.confirmed}});
     }
+    entry["remarks"] = j.remarks;
+    array.push_back(std::move(entry));
   }
-  return array.dump(2) + "\n";
+  return array.dump();
+}
+
+std::string joined_json(const std::vector<std::string>& arrays) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const std::string& array : arrays) {
+    for (const auto& entry : nlohmann::ordered_json::parse(array)) all.push_back(entry);
+  }
+  return all.dump(2) + "\n";
 }
 
 }  // namespace cdot::derive

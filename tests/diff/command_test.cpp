@@ -1,6 +1,7 @@
 // `cdot diff` as a person or a program meets it: JSON, exit status, errors.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include <array>
 #include <cstdio>
@@ -20,9 +21,9 @@ struct Result {
   std::string out;  // with what went to the standard error, where that was asked for
 };
 
-Result diff(const std::string& arguments, bool errors_too = true) {
-  const std::string command = std::string(CDOT_COMMAND) + " diff --specs '" +
-                              specs_folder().string() + "' " + arguments +
+Result diff(const std::string& arguments, bool errors_too = true,
+            const std::filesystem::path& specs = specs_folder()) {
+  const std::string command = std::string(CDOT_COMMAND) + " diff --specs '" + specs.string() + "' " + arguments +
                               (errors_too ? " 2>&1" : " 2>/dev/null");
   Result result;
   FILE* pipe = popen(command.c_str(), "r");
@@ -114,10 +115,27 @@ TEST(Command, AnEntryCanBeAskedForByItsId) {
 TEST(Command, StatusIsZeroWhereNothingDiffers) {
   EXPECT_EQ(diff("weld").status, 0);
   EXPECT_EQ(diff("line").status, 1);
-  const Result all = diff("");
+}
+
+TEST(Command, ShowsWhatDiffersOfAllInTheSameOrderHoweverManyAtOnce) {
+  namespace fs = std::filesystem;
+  const fs::path few = fs::path(testing::TempDir()) / ("cdot_few_" + std::to_string(getpid()));
+  fs::create_directories(few / "planar");
+  for (const char* name : {"line", "angle", "gear"}) {
+    for (const char* kind : {".joint", ".hand"}) {
+      const std::string file = std::string("planar/") + name + kind;
+      fs::copy(specs_folder() / file, few / file);
+    }
+  }
+  const Result all = diff("-j 1", true, few);
   EXPECT_EQ(all.status, 1);
   EXPECT_TRUE(contains(all.out, "LIN-4")) << all.out;
   EXPECT_FALSE(contains(all.out, "ANG-1 ")) << "entries that agree are shown without --all";
+  EXPECT_EQ(diff("-j 3", true, few).out, all.out);
+  const Result as_json = diff("--json -j 1", true, few);
+  EXPECT_EQ(diff("--json -j 3", true, few).out, as_json.out);
+  EXPECT_EQ(json::parse(as_json.out).front()["id"], "ANG-1");
+  fs::remove_all(few);
 }
 
 TEST(Command, WhatIsNotThereIsTwoAndSaysSo) {
