@@ -1,171 +1,14 @@
 // Passes from program to program. Each finds its best single rewriting, deterministically: the most frequent pair, the
 // first of equals. They are run in several orders and the cheapest program wins, for sharing and factoring compete.
 #include <algorithm>
-#include <functional>
 #include <optional>
 #include <set>
-#include <tuple>
 
-#include "derive/program_builder.hpp"
+#include "derive/rewrite.hpp"
+#include "derive/share_pairs.hpp"
 
 namespace cdot::derive {
 namespace {
-
-// How often an operation is used by needed operations and outputs.
-std::vector<int> use_counts(const Program& program) {
-  std::vector<int> uses(program.ops.size());
-  for (const Output& output : program.outputs) ++uses[static_cast<std::size_t>(output.op)];
-  for (std::size_t i = program.ops.size(); i-- > 0;) {
-    if (uses[i] == 0) continue;
-    for (const int arg : program.ops[i].args) ++uses[static_cast<std::size_t>(arg)];
-  }
-  return uses;
-}
-
-// Copies the needed operations; `rewrite` may build something else in the place of an operation (its operands, in
-// terms of the new program, are given), or say nullopt to keep it.
-using Rewrite = std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index,
-                                                 const std::vector<int>& new_index)>;
-Program copy(const Program& program, const Rewrite& rewrite) {
-  const std::vector<int> uses = use_counts(program);
-  ProgramBuilder builder;
-  std::vector<int> at(program.ops.size(), -1);
-  for (std::size_t i = 0; i < program.ops.size(); ++i) {
-    if (uses[i] == 0) continue;
-    const Operation& op = program.ops[i];
-    std::optional<int> made = rewrite(builder, op, static_cast<int>(i), at);
-    if (!made) {
-      std::vector<int> args;
-      for (const int arg : op.args) args.push_back(at[static_cast<std::size_t>(arg)]);
-      made = builder.rebuild(op, std::move(args));
-    }
-    at[i] = *made;
-  }
-  for (const Output& o : program.outputs) builder.output(o.name, at[static_cast<std::size_t>(o.op)]);
-  return builder.finish();
-}
-
-// Two operands that occur together: a term pair x + ratio y (up to a common factor), or a factor pair x y.
-struct Pair {
-  int x = 0, y = 0;
-  Rational ratio;
-};
-
-std::vector<Pair> term_pairs(const Program& program, const Operation& op) {
-  std::vector<Pair> pairs;
-  if (op.kind != OpKind::sum) return pairs;
-  for (std::size_t i = 0; i < op.args.size(); ++i) {
-    for (std::size_t j = i + 1; j < op.args.size(); ++j) {
-      // The difference of two positions cancels what is large in both: neither is ever paired with anything else.
-      const bool first = program.ops[static_cast<std::size_t>(op.args[i])].is_position;
-      const bool second = program.ops[static_cast<std::size_t>(op.args[j])].is_position;
-      if (first != second && op.args.size() > 2) continue;
-      const bool swap = op.args[i] > op.args[j];
-      const std::size_t x = swap ? j : i, y = swap ? i : j;
-      pairs.push_back({op.args[x], op.args[y], op.coefs[y] / op.coefs[x]});
-    }
-  }
-  return pairs;
-}
-
-std::vector<Pair> factor_pairs(const Program&, const Operation& op) {
-  std::vector<Pair> pairs;
-  if (op.kind != OpKind::product) return pairs;
-  for (std::size_t i = 0; i < op.args.size(); ++i) {
-    if (op.exponents[i] > 1) pairs.push_back({op.args[i], op.args[i], Rational(1)});
-    for (std::size_t j = i + 1; j < op.args.size(); ++j) {
-      pairs.push_back({std::min(op.args[i], op.args[j]), std::max(op.args[i], op.args[j]),
-                       Rational(1)});
-    }
-  }
-  return pairs;
-}
-
-using PairFinder = std::vector<Pair> (*)(const Program&, const Operation&);
-
-// The pair that occurs in most operations, if in more than one; the first such.
-std::optional<Pair> most_frequent(const Program& program, PairFinder pairs_of) {
-  const std::vector<int> uses = use_counts(program);
-  const auto less = [](const Pair& a, const Pair& b) {
-    return std::tie(a.x, a.y, a.ratio) < std::tie(b.x, b.y, b.ratio);
-  };
-  std::map<Pair, int, decltype(less)> seen(less);
-  std::optional<Pair> best;
-  int best_count = 1;
-  for (std::size_t i = 0; i < program.ops.size(); ++i) {
-    if (uses[i] == 0) continue;
-    for (const Pair& pair : pairs_of(program, program.ops[i])) {
-      const int n = ++seen[pair];
-      if (n > best_count) best_count = n, best = pair;
-    }
-  }
-  return best;
-}
-
-std::size_t find(const std::vector<int>& args, int arg) {
-  return static_cast<std::size_t>(std::find(args.begin(), args.end(), arg) - args.begin());
-}
-
-// What the spec calls x + ratio y, if it has a name there.
-std::string name_of(const Program& program, const Pair& pair) {
-  for (const Operation& op : program.ops) {
-    if (op.kind != OpKind::sum || op.args.size() != 2 || op.name.empty()) continue;
-    const std::size_t x = find(op.args, pair.x), y = 1 - x;
-    if (x < 2 && op.args[y] == pair.y && op.coefs[x] == Rational(1) && op.coefs[y] == pair.ratio)
-      return op.name;
-  }
-  return {};
-}
-
-// x + y once for all sums that contain it.
-std::optional<Program> share_terms(const Program& program) {
-  const std::optional<Pair> pair = most_frequent(program, term_pairs);
-  if (!pair) return std::nullopt;
-  const std::string name = name_of(program, *pair);
-  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
-                           const std::vector<int>& at) -> std::optional<int> {
-    if (op.kind != OpKind::sum) return std::nullopt;
-    const std::size_t x = find(op.args, pair->x), y = find(op.args, pair->y);
-    if (x == op.args.size() || y == op.args.size() || op.coefs[y] / op.coefs[x] != pair->ratio) {
-      return std::nullopt;
-    }
-    const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
-    std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio}, name)};
-    std::vector<Rational> coefs{op.coefs[x]};
-    for (std::size_t i = 0; i < op.args.size(); ++i) {
-      if (i == x || i == y) continue;
-      args.push_back(mapped(i));
-      coefs.push_back(op.coefs[i]);
-    }
-    return builder.sum(std::move(args), std::move(coefs), op.name);
-  });
-}
-
-// x y once for all products that contain it.
-std::optional<Program> share_factors(const Program& program) {
-  const std::optional<Pair> pair = most_frequent(program, factor_pairs);
-  if (!pair) return std::nullopt;
-  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
-                           const std::vector<int>& at) -> std::optional<int> {
-    if (op.kind != OpKind::product) return std::nullopt;
-    std::vector<int> exponents = op.exponents;
-    const std::size_t x = find(op.args, pair->x), y = find(op.args, pair->y);
-    if (x == op.args.size() || y == op.args.size()) return std::nullopt;
-    const int times = x == y ? exponents[x] / 2 : std::min(exponents[x], exponents[y]);
-    if (times == 0) return std::nullopt;
-    exponents[x] -= times;
-    exponents[y] -= times;
-    const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
-    std::vector<int> args{builder.product({mapped(x), mapped(y)}, {1, 1})};
-    std::vector<int> powers{times};
-    for (std::size_t i = 0; i < op.args.size(); ++i) {
-      if (exponents[i] == 0) continue;
-      args.push_back(mapped(i));
-      powers.push_back(exponents[i]);
-    }
-    return builder.product(std::move(args), std::move(powers), op.name);
-  });
-}
 
 // Terms of `sum` from which `factor` can be taken without computing anything twice.
 std::vector<std::size_t> terms_with(const Program& program, const Operation& sum, int factor,
@@ -174,7 +17,7 @@ std::vector<std::size_t> terms_with(const Program& program, const Operation& sum
   for (std::size_t i = 0; i < sum.args.size(); ++i) {
     const Operation& term = program.ops[static_cast<std::size_t>(sum.args[i])];
     const bool own = uses[static_cast<std::size_t>(sum.args[i])] == 1;
-    const bool contains = term.kind == OpKind::product && own && find(term.args, factor) < term.args.size();
+    const bool contains = term.kind == OpKind::product && own && index_of(term.args, factor) < term.args.size();
     if (sum.args[i] == factor || contains) terms.push_back(i);
   }
   return terms;
@@ -210,7 +53,7 @@ std::optional<Factoring> best_factoring(const Program& program) {
 std::optional<Program> take_out_factor(const Program& program) {
   const std::optional<Factoring> f = best_factoring(program);
   if (!f) return std::nullopt;
-  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int index,
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index,
                            const std::vector<int>& at) -> std::optional<int> {
     if (index != f->sum) return std::nullopt;
     std::vector<int> inner, outer;
@@ -244,7 +87,7 @@ std::optional<Program> take_out_factor(const Program& program) {
 
 // -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for whatever uses the sum, not one per term.
 Program take_out_coefficients(const Program& program) {
-  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int,
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int,
                            const std::vector<int>& at) -> std::optional<int> {
     // What has a name in the spec keeps it.
     if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
@@ -287,7 +130,7 @@ Program flatten_sums(const Program& program) {
       absorbed[a] = flattens(outer, outer.coefs[k], program.ops[a], uses[a]);
     }
   }
-  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int index,
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index,
                            const std::vector<int>& at) -> std::optional<int> {
     if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // nobody reads it
     if (op.kind != OpKind::sum) return std::nullopt;
@@ -321,7 +164,7 @@ std::optional<Cancelling> find_cancelling(const Program& program) {
       const Operation& inner = program.ops[static_cast<std::size_t>(outer.args[k])];
       if (inner.kind != OpKind::sum) continue;
       for (std::size_t i = 0; i < inner.args.size(); ++i) {
-        const std::size_t same = find(outer.args, inner.args[i]);
+        const std::size_t same = index_of(outer.args, inner.args[i]);
         if (same < outer.args.size() && outer.coefs[same] == -(outer.coefs[k] * inner.coefs[i])) {
           return Cancelling{s, k};
         }
@@ -334,7 +177,7 @@ std::optional<Cancelling> find_cancelling(const Program& program) {
 std::optional<Program> cancel_terms(const Program& program) {
   const std::optional<Cancelling> found = find_cancelling(program);
   if (!found) return std::nullopt;
-  return copy(program, [&](ProgramBuilder& builder, const Operation& op, int index,
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index,
                            const std::vector<int>& at) -> std::optional<int> {
     if (index != static_cast<int>(found->first)) return std::nullopt;
     std::vector<int> args;
