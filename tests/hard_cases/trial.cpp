@@ -34,6 +34,8 @@ double force_norm(const spatial::Wrench& w) { return std::hypot(w.force_x, w.for
 
 }  // namespace
 
+std::function<Mover(const Scene&, AnyWorld&)> another_engine;
+
 bool Finding::held() const { return std::isfinite(value) && value <= bound; }
 
 Trial::Trial(const std::string& scene_file, const Way& the_way)
@@ -43,14 +45,16 @@ Trial::Trial(const std::string& scene_file, const Way& the_way)
 }
 
 void Trial::start() {
-  const bool planar = scene.dimension == Dimension::planar;
+  const bool planar = scene.dimension == Dimension::planar, single = way.single && !another_engine;
   if (planar)
-    world_ = way.single ? started<Planar<float>>(scene) : started<Planar<double>>(scene);
+    world_ = single ? started<Planar<float>>(scene) : started<Planar<double>>(scene);
   else
-    world_ = way.single ? started<Spatial<float>>(scene) : started<Spatial<double>>(scene);
+    world_ = single ? started<Spatial<float>>(scene) : started<Spatial<double>>(scene);
+  if (another_engine) mover_ = another_engine(scene, *world_);
 }
 
 void Trial::step(double by) {
+  if (mover_) return mover_(by);
   diagnose(by);
   const StepResult result = std::visit([&](auto& world) { return world.step(by); }, *world_);
   if (!result) say(in_words(result, "", ""));
@@ -116,6 +120,7 @@ double Trial::gap() const {
   return one_sided ? worst.value : norm_of_error(worst.joint);  // C > 0 is slack
 }
 double Trial::force(int joint) const {
+  if (mover_) return std::numeric_limits<double>::quiet_NaN();
   return ask([&](const auto& world) { return force_norm(world.reaction(joint, world.joint_bodies(joint).back())); });
 }
 double Trial::coordinate(int joint, const char* name) const {

@@ -39,6 +39,13 @@ struct Watch {
 
 using AnyWorld = std::variant<World<double>, World<float>, SpatialWorld<double>, SpatialWorld<float>>;
 
+// Moves the bodies of a trial, and puts into its World where they went.
+using Mover = std::function<void(double by)>;
+
+// Who moves the bodies of all trials, if not their Worlds: another engine. Its World is one of doubles, measures poses
+// and velocities, and knows no forces.
+extern std::function<Mover(const Scene&, AnyWorld&)> another_engine;
+
 class Trial {
  public:
   Trial(const std::string& scene_file, const Way& way);
@@ -59,7 +66,7 @@ class Trial {
   double energy() const;
   double gap() const;  // the largest norm of a joint's C now [m], [rad]
   double norm_of_error(int joint) const;
-  double force(int joint) const;  // the norm of what the joint exerts on its last body [N]
+  double force(int joint) const;  // the norm of what the joint exerts on its last body [N]; NaN if nobody knows
   double coordinate(int joint, const char* name) const;
   bool finite() const;
   int joint_named(const std::string& name) const;
@@ -88,10 +95,11 @@ class Trial {
   const std::string& said() const { return said_; }
 
  private:
-  std::unique_ptr<AnyWorld> world_;
   void diagnose(double by);
   void say(const std::string& what);
 
+  std::unique_ptr<AnyWorld> world_;
+  Mover mover_;
   std::vector<Finding> findings_;
   bool listening_ = false;
   std::string said_;

@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -33,9 +34,15 @@ inline constexpr int world = -1;
 
 struct Joint {
   JointKind kind;
-  int a, b;       // indices of bodies, or `world`
-  Vec3 anchor{};  // at the start, in world axes
-  Vec3 axis{};    // likewise: what it turns about or slides along
+  int a, b;         // indices of bodies, or `world`
+  Vec3 anchor{};    // of a, at the start, in world axes
+  Vec3 axis{};      // likewise: what it turns about or slides along
+  Vec3 anchor_b{};  // of b: elsewhere where a joint starts open
+};
+
+// What an engine has no words for.
+struct CannotSay : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 // What an error is the largest of, over bodies and sample times.
@@ -60,6 +67,7 @@ class Run {
  public:
   virtual ~Run() = default;
   virtual void advance(double to) = 0;  // may throw if the engine gives up
+  virtual void step(double by) = 0;     // likewise
   virtual State state(int body) const = 0;
 };
 
@@ -68,14 +76,10 @@ class SteppedRun : public Run {
  public:
   explicit SteppedRun(double h) : h_(h) {}
   void advance(double to) final {
-    for (; double(taken_) * h_ < to - 0.5 * h_; ++taken_) step();
+    for (; double(taken_) * h_ < to - 0.5 * h_; ++taken_) step(h_);
   }
 
- protected:
-  double h() const { return h_; }
-
  private:
-  virtual void step() = 0;
   double h_;
   long taken_ = 0;
 };

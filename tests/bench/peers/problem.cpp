@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -16,15 +18,15 @@ namespace {
 
 constexpr int samples = 4;
 
-Body body_of(const SceneBody& source, const planar::Pose<double>& q) {
+Body body_of(const SceneBody& source, const planar::Place& q, const planar::Velocity<double>& v) {
   const BodyDefinition& d = source.definition;
   return {source.name,
           d.mass,
           {d.inertia, d.inertia, d.inertia},
-          {{q.x, q.y, 0}, about_z(q.angle), {d.vx, d.vy, 0}, {0, 0, d.w}}};
+          {{q.x, q.y, 0}, about_z(q.angle), {v.x, v.y, 0}, {0, 0, v.w}}};
 }
 
-Body body_of(const SceneBody& source, const spatial::Pose<double>& q) {
+Body body_of(const SceneBody& source, const spatial::Place& q, const spatial::Velocity<double>& v) {
   const SpatialBodyDefinition& d = source.spatial;
   const Inertia& I = d.inertia;
   if (I.xy != 0 || I.xz != 0 || I.yz != 0)
@@ -32,7 +34,7 @@ Body body_of(const SceneBody& source, const spatial::Pose<double>& q) {
   return {source.name,
           d.mass,
           {I.xx, I.yy, I.zz},
-          {{q.x, q.y, q.z}, {q.e0, q.e1, q.e2, q.e3}, {d.vx, d.vy, d.vz}, {d.wx, d.wy, d.wz}}};
+          {{q.x, q.y, q.z}, {q.e0, q.e1, q.e2, q.e3}, {v.x, v.y, v.z}, {v.wx, v.wy, v.wz}}};
 }
 
 // The numbers of one of the joint's parameters.
@@ -53,18 +55,32 @@ Vec3 world_direction(const Problem& problem, int body, const Vec3& u) {
 }
 
 template <class S>
+Vec3 anchor_of(const Problem& problem, const BasicWorld<S>& built, int joint, int body, const char* name) {
+  const Vec3 p = world_direction(problem, body, parameter(built, joint, name));
+  return body == world ? p : p + problem.bodies[std::size_t(body)].start.x;
+}
+
+JointKind kind_of(const SceneJoint& source, Dimension dimension) {
+  static const std::map<std::string, JointKind> kinds{{"revolute", JointKind::revolute},
+                                                      {"hinge", JointKind::revolute},
+                                                      {"prismatic", JointKind::prismatic},
+                                                      {"spherical", JointKind::spherical}};
+  const auto found = kinds.find(source.definition.type);
+  if (found == kinds.end() || (found->second == JointKind::spherical && dimension == Dimension::planar))
+    throw CannotSay(source.definition.type + ": no adapter knows this joint");
+  if (!source.effects.empty() || source.breaking || source.definition.soft)
+    throw CannotSay(source.name + ": no adapter knows its motor, limit, spring or breaking load");
+  return found->second;
+}
+
+template <class S>
 Joint joint_of(const Problem& problem, const BasicWorld<S>& built, const SceneJoint& source, int index) {
-  const std::string& type = source.definition.type;
   const bool planar = S::dimension == Dimension::planar;
-  if (type != "revolute" && type != "prismatic" && (planar || type != "spherical"))
-    throw std::runtime_error(type + ": no adapter knows this joint");
   const int a = source.definition.bodies[0], b = source.definition.bodies[1];
-  Joint joint{type == "revolute"    ? JointKind::revolute
-              : type == "prismatic" ? JointKind::prismatic
-                                    : JointKind::spherical,
-              a, b};
-  joint.anchor = world_direction(problem, a, parameter(built, index, "pa"));
-  if (a != world) joint.anchor = joint.anchor + problem.bodies[std::size_t(a)].start.x;
+  Joint joint{kind_of(source, S::dimension), a, b};
+  joint.anchor = anchor_of(problem, built, index, a, "pa");
+  joint.anchor_b = anchor_of(problem, built, index, b, "pb");
+  if (joint.kind == JointKind::prismatic) joint.anchor_b = joint.anchor;  // apart by what it has slid
   if (planar) {
     joint.axis = {0, 0, 1};
     if (joint.kind == JointKind::prismatic) {
@@ -77,13 +93,28 @@ Joint joint_of(const Problem& problem, const BasicWorld<S>& built, const SceneJo
   return joint;
 }
 
-template <class S>
-void fill(Problem& problem, const Scene& scene) {
-  const BasicWorld<S> built = build_world_in<S>(scene);
-  for (std::size_t k = 0; k < scene.bodies.size(); ++k)
-    problem.bodies.push_back(body_of(scene.bodies[k], built.pose(int(k))));
-  for (std::size_t k = 0; k < scene.joints.size(); ++k)
-    problem.joints.push_back(joint_of(problem, built, scene.joints[k], int(k)));
+bool pushed(const BodyDefinition& d) { return d.force_x != 0 || d.force_y != 0 || d.torque != 0; }
+bool pushed(const SpatialBodyDefinition& d) {
+  return norm({d.force_x, d.force_y, d.force_z}) + norm({d.torque_x, d.torque_y, d.torque_z}) > 0;
+}
+
+// Whether all that holds it goes through its centre, so that nothing turns it.
+bool held_at_centre(const Problem& problem, int body) {
+  return std::all_of(problem.joints.begin(), problem.joints.end(), [&](const Joint& joint) {
+    if (joint.a != body && joint.b != body) return true;
+    const Vec3 at = (joint.a == body ? joint.anchor : joint.anchor_b) - problem.bodies[std::size_t(body)].start.x;
+    return joint.kind != JointKind::prismatic && norm(at) == 0;
+  });
+}
+
+// A body that cannot turn: where nothing turns it, one with any inertia moves the same.
+template <class Definition>
+void check(const SceneBody& source, const Definition& d, Problem& problem, int body) {
+  if (source.is_static) throw CannotSay(source.name + ": no adapter knows a body that is static");
+  if (pushed(d)) throw CannotSay(source.name + ": no adapter knows a force on a body");
+  if (!d.fixed_rotation) return;
+  if (!held_at_centre(problem, body)) throw CannotSay(source.name + ": no adapter knows a body that cannot turn");
+  problem.bodies[std::size_t(body)].inertia = {d.mass, d.mass, d.mass};
 }
 
 Vec3 vec3(const nlohmann::json& from, std::size_t at) { return {from[at], from[at + 1], from[at + 2]}; }
@@ -107,21 +138,38 @@ const std::vector<ProblemRow>& problem_rows() {
   return rows;
 }
 
+template <class S>
+Problem problem_of(const Scene& scene, const BasicWorld<S>& built) {
+  Problem problem;
+  problem.planar = S::dimension == Dimension::planar;
+  problem.gravity = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k)
+    problem.bodies.push_back(body_of(scene.bodies[k], built.place(int(k)), built.velocity(int(k))));
+  if (!scene.springs.empty()) throw CannotSay("no adapter knows springs");
+  for (std::size_t k = 0; k < scene.joints.size(); ++k)
+    problem.joints.push_back(joint_of(problem, built, scene.joints[k], int(k)));
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    if constexpr (S::dimension == Dimension::planar)
+      check(scene.bodies[k], scene.bodies[k].definition, problem, int(k));
+    else
+      check(scene.bodies[k], scene.bodies[k].spatial, problem, int(k));
+  }
+  return problem;
+}
+template Problem problem_of(const Scene&, const BasicWorld<Planar<double>>&);
+template Problem problem_of(const Scene&, const BasicWorld<Spatial<double>>&);
+
 Problem pose(const ProblemRow& row) {
   const Scene scene = read_scene(fmt::format("{}/specs/scenes/{}.toml", CDOT_SOURCE_DIR, row.scene));
-  Problem problem;
+  Problem problem = scene.dimension == Dimension::planar
+                        ? problem_of(scene, build_world_in<Planar<double>>(scene))
+                        : problem_of(scene, build_world_in<Spatial<double>>(scene));
   problem.name = row.name;
   problem.title = row.title;
   problem.scene = row.scene;
-  problem.planar = scene.dimension == Dimension::planar;
-  problem.gravity = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
   problem.duration = row.duration;
   problem.measure = row.measure;
   for (int k = 1; k <= samples; ++k) problem.times.push_back(row.duration * k / samples);
-  if (problem.planar)
-    fill<Planar<double>>(problem, scene);
-  else
-    fill<Spatial<double>>(problem, scene);
   return problem;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "runtime/scene.hpp"
 #include "tests/bench/peers/peer.hpp"
 
 namespace cdot::peers {
@@ -19,6 +20,10 @@ struct ProblemRow {
 };
 
 const std::vector<ProblemRow>& problem_rows();
+
+// Bodies and joints of a scene, as its World has them at the start; throws CannotSay. S is in doubles.
+template <class S>
+Problem problem_of(const Scene& scene, const BasicWorld<S>& built);
 
 // Without its reference.
 Problem pose(const ProblemRow& row);

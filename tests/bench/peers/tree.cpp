@@ -11,6 +11,14 @@ const State& state(const Problem& problem, int body) {
   return body == world ? still : problem.bodies[std::size_t(body)].start;
 }
 
+void check_closed(const Problem& problem, const Joint& joint) {
+  double reach = 0;
+  for (const int body : {joint.a, joint.b})
+    if (body != world) reach += norm(local_point(problem, body, body == joint.a ? joint.anchor : joint.anchor_b));
+  if (norm(joint.anchor_b - joint.anchor) > 1e-9 * (1 + reach))
+    throw CannotSay("the joints of its trees cannot start open");
+}
+
 Vec3 velocity_at(const State& s, const Vec3& point) { return s.v + cross(s.w, point - s.x); }
 
 }  // namespace
@@ -24,6 +32,7 @@ Tree tree_of(const Problem& problem) {
       if (joint.a != parent && joint.b != parent) continue;
       const int child = joint.a == parent ? joint.b : joint.a;
       if (child == world || reached[std::size_t(child)]) continue;
+      check_closed(problem, joint);
       reached[std::size_t(child)] = used[std::size_t(k)] = true;
       tree.branches.push_back({child, parent, k});
     }
@@ -41,7 +50,7 @@ double rate(const Problem& problem, const Branch& branch) {
   const Joint& joint = problem.joints[std::size_t(branch.joint)];
   const State &parent = state(problem, branch.parent), &child = state(problem, branch.body);
   if (joint.kind == JointKind::revolute) return dot(child.w - parent.w, joint.axis);
-  return dot(velocity_at(child, joint.anchor) - velocity_at(parent, joint.anchor), joint.axis);
+  return dot(velocity_at(child, joint.anchor_b) - velocity_at(parent, joint.anchor), joint.axis);
 }
 
 Vec3 spin(const Problem& problem, const Branch& branch) {

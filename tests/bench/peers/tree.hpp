@@ -18,6 +18,7 @@ struct Tree {
   std::vector<int> loops;        // joints that the tree does not use
 };
 
+// Throws CannotSay where a joint of the tree starts open.
 Tree tree_of(const Problem& problem);
 
 // How fast the joint of a branch moves at the start: child against parent, along or about the axis.

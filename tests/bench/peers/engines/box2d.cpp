@@ -23,7 +23,7 @@ class Box2dRun final : public SteppedRun {
     const b2BodyDef ground;
     ground_ = world_.CreateBody(&ground);
     for (const Body& body : problem.bodies) add(body);
-    for (const Joint& joint : problem.joints) add(joint);
+    for (const Joint& joint : problem.joints) add(problem, joint);
   }
 
   State state(int body) const override {
@@ -31,6 +31,7 @@ class Box2dRun final : public SteppedRun {
     const b2Vec2 x = b.GetWorldCenter(), v = b.GetLinearVelocity();
     return {{x.x, x.y, 0}, about_z(b.GetAngle()), {v.x, v.y, 0}, {0, 0, b.GetAngularVelocity()}};
   }
+  void step(double h) override { world_.Step(float(h), velocity_iterations_, position_iterations_); }
 
  private:
   void add(const Body& body) {
@@ -51,19 +52,19 @@ class Box2dRun final : public SteppedRun {
 
   b2Body* body(int index) const { return index == peers::world ? ground_ : bodies_[std::size_t(index)]; }
 
-  void add(const Joint& joint) {
+  void add(const Problem& problem, const Joint& joint) {
     if (joint.kind == JointKind::prismatic) {
       b2PrismaticJointDef def;
       def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor), vec(joint.axis));
+      def.localAnchorB = vec(local_point(problem, joint.b, joint.anchor_b));
       world_.CreateJoint(&def);
     } else {
       b2RevoluteJointDef def;
       def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor));
+      def.localAnchorB = vec(local_point(problem, joint.b, joint.anchor_b));
       world_.CreateJoint(&def);
     }
   }
-
-  void step() override { world_.Step(float(h()), velocity_iterations_, position_iterations_); }
 
   b2World world_;
   int velocity_iterations_, position_iterations_;

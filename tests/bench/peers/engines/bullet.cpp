@@ -46,6 +46,7 @@ class BulletRun final : public SteppedRun {
     return {from(b.getCenterOfMassPosition()), from(b.getOrientation()), from(b.getLinearVelocity()),
             from(b.getAngularVelocity())};
   }
+  void step(double h) override { world_.stepSimulation(h, 0, h); }
 
  private:
   void add(const Body& body, const Way& way) {
@@ -62,14 +63,14 @@ class BulletRun final : public SteppedRun {
   }
 
   // The frame of a slider at the start, its x along the axis, in a body's own.
-  static btTransform frame(const Problem& problem, const Joint& joint, int body) {
+  static btTransform frame(const Problem& problem, const Joint& joint, int body, const Vec3& anchor) {
     const btVector3 x = bt(joint.axis).normalized();
     btVector3 y, z;
     btPlaneSpace1(x, y, z);
     const btMatrix3x3 axes(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z());
-    if (body == peers::world) return btTransform(axes, bt(joint.anchor));
+    if (body == peers::world) return btTransform(axes, bt(anchor));
     const State& s = problem.bodies[std::size_t(body)].start;
-    return btTransform(bt(s.q), bt(s.x)).inverse() * btTransform(axes, bt(joint.anchor));
+    return btTransform(bt(s.q), bt(s.x)).inverse() * btTransform(axes, bt(anchor));
   }
 
   btRigidBody& body(int index) {
@@ -79,7 +80,7 @@ class BulletRun final : public SteppedRun {
   void add(const Problem& problem, const Joint& joint) {
     btRigidBody &a = body(joint.a), &b = body(joint.b);
     const btVector3 pa = bt(local_point(problem, joint.a, joint.anchor)),
-                    pb = bt(local_point(problem, joint.b, joint.anchor));
+                    pb = bt(local_point(problem, joint.b, joint.anchor_b));
     std::unique_ptr<btTypedConstraint> made;
     if (joint.kind == JointKind::spherical)
       made = std::make_unique<btPoint2PointConstraint>(a, b, pa, pb);
@@ -87,13 +88,11 @@ class BulletRun final : public SteppedRun {
       made = std::make_unique<btHingeConstraint>(a, b, pa, pb, bt(local_direction(problem, joint.a, joint.axis)),
                                                  bt(local_direction(problem, joint.b, joint.axis)));
     else
-      made = std::make_unique<btSliderConstraint>(a, b, frame(problem, joint, joint.a), frame(problem, joint, joint.b),
-                                                  true);
+      made = std::make_unique<btSliderConstraint>(a, b, frame(problem, joint, joint.a, joint.anchor),
+                                                  frame(problem, joint, joint.b, joint.anchor_b), true);
     world_.addConstraint(made.get(), true);
     joints_.push_back(std::move(made));
   }
-
-  void step() override { world_.stepSimulation(h(), 0, h()); }
 
   BulletParts parts_;
   btSequentialImpulseConstraintSolver sweeps_;

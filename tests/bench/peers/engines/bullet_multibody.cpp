@@ -48,6 +48,7 @@ class MultibodyRun final : public SteppedRun {
   MultibodyRun(const MultibodyRun&) = delete;
   MultibodyRun& operator=(const MultibodyRun&) = delete;
 
+  void step(double h) override { world_.stepSimulation(h, 0, h); }
   State state(int body) const override {
     const int link = link_of_[std::size_t(body)];
     const btMultiBody& m = *multibody_;
@@ -130,12 +131,10 @@ class MultibodyRun final : public SteppedRun {
   void close(const Problem& problem, const Joint& joint) {
     loops_.push_back(std::make_unique<btMultiBodyPoint2Point>(
         multibody_.get(), link_of(joint.a), multibody_.get(), link_of(joint.b),
-        bt(local_point(problem, joint.a, joint.anchor)), bt(local_point(problem, joint.b, joint.anchor))));
+        bt(local_point(problem, joint.a, joint.anchor)), bt(local_point(problem, joint.b, joint.anchor_b))));
     loops_.back()->setMaxAppliedImpulse(1e9);
     world_.addMultiBodyConstraint(loops_.back().get());
   }
-
-  void step() override { world_.stepSimulation(h(), 0, h()); }
 
   BulletParts parts_;
   btMultiBodyConstraintSolver solver_;

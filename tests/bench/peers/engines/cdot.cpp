@@ -1,5 +1,6 @@
 // Cdot itself, in the plane where the problem is planar; and, as an engine of its own, planar problems in space,
 // since the others that know only space have no choice.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -47,7 +48,7 @@ NamedValue spatial_value(const char* name, const Vec3& u) { return {name, {u[0],
 JointDefinition definition(const Planar<double>*, const Problem& problem, const Joint& joint) {
   JointDefinition d;
   d.parameters = {planar_value("pa", local_point(problem, joint.a, joint.anchor)),
-                  planar_value("pb", local_point(problem, joint.b, joint.anchor))};
+                  planar_value("pb", local_point(problem, joint.b, joint.anchor_b))};
   d.type = joint.kind == JointKind::prismatic ? "prismatic" : "revolute";
   if (joint.kind == JointKind::prismatic) {
     const Vec3 normal{-joint.axis[1], joint.axis[0], 0};
@@ -59,7 +60,7 @@ JointDefinition definition(const Planar<double>*, const Problem& problem, const 
 JointDefinition definition(const Spatial<double>*, const Problem& problem, const Joint& joint) {
   JointDefinition d;
   d.parameters = {spatial_value("pa", local_point(problem, joint.a, joint.anchor)),
-                  spatial_value("pb", local_point(problem, joint.b, joint.anchor))};
+                  spatial_value("pb", local_point(problem, joint.b, joint.anchor_b))};
   d.type = joint.kind == JointKind::prismatic   ? "prismatic"
            : joint.kind == JointKind::spherical ? "spherical"
                                                 : "revolute";
@@ -68,11 +69,21 @@ JointDefinition definition(const Spatial<double>*, const Problem& problem, const
   return d;
 }
 
-State state_of(const planar::Pose<double>& q, const planar::Velocity<double>& v) {
+State state_of(const planar::Place& q, const planar::Velocity<double>& v) {
   return {{q.x, q.y, 0}, about_z(q.angle), {v.x, v.y, 0}, {0, 0, v.w}};
 }
-State state_of(const spatial::Pose<double>& q, const spatial::Velocity<double>& v) {
+State state_of(const spatial::Place& q, const spatial::Velocity<double>& v) {
   return {{q.x, q.y, q.z}, {q.e0, q.e1, q.e2, q.e3}, {v.x, v.y, v.z}, {v.wx, v.wy, v.wz}};
+}
+
+// As a scene far away is counted from among its bodies.
+template <class S>
+void choose_origin(const Problem& problem, BasicWorld<S>& world) {
+  constexpr double far_away = 1000;
+  const Vec3 from = problem.bodies[0].start.x;
+  double apart = 1;
+  for (const Body& body : problem.bodies) apart = std::max(apart, norm(body.start.x - from));
+  if (norm(from) > far_away * apart) world.set_origin(std::round(from[0]), std::round(from[1]), std::round(from[2]));
 }
 
 template <class S>
@@ -82,6 +93,7 @@ BasicWorld<S> build(const Problem& problem, Settings settings) {
   settings.gravity_y = problem.gravity[1];
   settings.gravity_z = problem.gravity[2];
   BasicWorld<S> made(settings);
+  choose_origin(problem, made);
   for (const Body& body : problem.bodies) made.add_body(definition(space, body));
   for (const Joint& joint : problem.joints) {
     JointDefinition d = definition(space, problem, joint);
@@ -97,10 +109,11 @@ class CdotRun final : public SteppedRun {
  public:
   CdotRun(const Problem& problem, const Settings& settings, double h)
       : SteppedRun(h), world_(build<S>(problem, settings)) {}
-  State state(int body) const override { return state_of(world_.pose(body), world_.velocity(body)); }
+  State state(int body) const override { return state_of(world_.place(body), world_.velocity(body)); }
+
+  void step(double h) override { world_.step(h); }
 
  private:
-  void step() override { world_.step(typename S::Scalar(h())); }
   BasicWorld<S> world_;
 };
 
@@ -110,11 +123,12 @@ class AdaptiveRun final : public Run {
  public:
   AdaptiveRun(const Problem& problem, Settings settings, double local_error)
       : world_(build<S>(problem, with(settings, local_error))) {}
-  void advance(double to) override {
-    world_.step(to - now_);
-    now_ = to;
+  void advance(double to) override { step(to - now_); }
+  void step(double by) override {
+    world_.step(by);
+    now_ += by;
   }
-  State state(int body) const override { return state_of(world_.pose(body), world_.velocity(body)); }
+  State state(int body) const override { return state_of(world_.place(body), world_.velocity(body)); }
 
  private:
   static Settings with(Settings settings, double local_error) {

@@ -41,6 +41,7 @@ class ChipmunkRun final : public SteppedRun {
   ChipmunkRun(const ChipmunkRun&) = delete;
   ChipmunkRun& operator=(const ChipmunkRun&) = delete;
 
+  void step(double h) override { cpSpaceStep(space_, h); }
   State state(int body) const override {
     const cpBody* b = bodies_[std::size_t(body)];
     const cpVect x = cpBodyGetPosition(b), v = cpBodyGetVelocity(b);
@@ -65,7 +66,8 @@ class ChipmunkRun final : public SteppedRun {
 
   void add(const Problem& problem, const Joint& joint) {
     if (joint.kind != JointKind::prismatic) {
-      add(cpPivotJointNew(body(joint.a), body(joint.b), vec(joint.anchor)));
+      add(cpPivotJointNew2(body(joint.a), body(joint.b), vec(local_point(problem, joint.a, joint.anchor)),
+                           vec(local_point(problem, joint.b, joint.anchor_b))));
       return;
     }
     // A groove that is long enough on both sides, and equal angles.
@@ -74,12 +76,10 @@ class ChipmunkRun final : public SteppedRun {
       return vec(local_point(problem, joint.a, joint.anchor + (side * half) * joint.axis));
     };
     add(cpGrooveJointNew(body(joint.a), body(joint.b), end(-1), end(1),
-                         vec(local_point(problem, joint.b, joint.anchor))));
+                         vec(local_point(problem, joint.b, joint.anchor_b))));
     const double turn = cpBodyGetAngle(body(joint.b)) - cpBodyGetAngle(body(joint.a));
     add(cpGearJointNew(body(joint.a), body(joint.b), turn, 1));
   }
-
-  void step() override { cpSpaceStep(space_, h()); }
 
   cpSpace* space_;
   std::vector<cpBody*> bodies_;

@@ -134,7 +134,8 @@ class MujocoRun final : public SteppedRun {
     }
   }
 
-  void step() override {
+  void step(double h) override {
+    model_->opt.timestep = h;
     mj_step(model_, data_);
     for (const int bad : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
       if (data_->warning[bad].number > 0) throw std::runtime_error("MuJoCo: the run is no number");

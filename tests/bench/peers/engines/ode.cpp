@@ -43,6 +43,12 @@ class OdeRun final : public SteppedRun {
   OdeRun(const OdeRun&) = delete;
   OdeRun& operator=(const OdeRun&) = delete;
 
+  void step(double h) override {
+    if (sweeps_ > 0)
+      dWorldQuickStep(world_, h);
+    else
+      dWorldStep(world_, h);
+  }
   State state(int body) const override {
     const dBodyID b = bodies_[std::size_t(body)];
     const dReal *x = dBodyGetPosition(b), *q = dBodyGetQuaternion(b), *v = dBodyGetLinearVel(b),
@@ -77,7 +83,21 @@ class OdeRun final : public SteppedRun {
 
   dBodyID body(int index) const { return index == peers::world ? nullptr : bodies_[std::size_t(index)]; }
 
+  // A joint is told where it is, once for both bodies: one that starts open is made with the second where it would fit.
   void add(const Joint& joint) {
+    const Vec3 gap = joint.anchor_b - joint.anchor;
+    move(body(joint.b), -1.0 * gap);
+    connect(joint);
+    move(body(joint.b), gap);
+  }
+
+  static void move(dBodyID b, const Vec3& by) {
+    if (b == nullptr || norm(by) == 0) return;
+    const dReal* x = dBodyGetPosition(b);
+    dBodySetPosition(b, x[0] + by[0], x[1] + by[1], x[2] + by[2]);
+  }
+
+  void connect(const Joint& joint) {
     const Vec3 &p = joint.anchor, &n = joint.axis;
     const dBodyID a = body(joint.a), b = body(joint.b);
     if (joint.kind == JointKind::spherical) {
@@ -94,13 +114,6 @@ class OdeRun final : public SteppedRun {
       dJointAttach(made, a, b);
       dJointSetSliderAxis(made, n[0], n[1], n[2]);
     }
-  }
-
-  void step() override {
-    if (sweeps_ > 0)
-      dWorldQuickStep(world_, h());
-    else
-      dWorldStep(world_, h());
   }
 
   dWorldID world_;

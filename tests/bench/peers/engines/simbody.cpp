@@ -1,6 +1,7 @@
 // Simbody: space, double precision, minimal coordinates, integrators that control their error; loops are closed by
 // constraints that are projected.
 #include <Simbody.h>
+#include <fmt/format.h>
 
 #include <string>
 #include <utility>
@@ -13,6 +14,8 @@ namespace {
 SimTK::Vec3 vec(const Vec3& a) { return {a[0], a[1], a[2]}; }
 Vec3 vec(const SimTK::Vec3& a) { return {a[0], a[1], a[2]}; }
 SimTK::Rotation rotation(const Quaternion& q) { return SimTK::Rotation(SimTK::Quaternion(q[0], q[1], q[2], q[3])); }
+
+constexpr int most_steps = 1000;  // of its own choice, in one that it is asked for
 
 struct Way {
   std::string name, changed;
@@ -41,7 +44,14 @@ class SimbodyRun final : public Run {
   }
 
   void advance(double to) override {
-    while (integrator_->getTime() < to) integrator_->stepTo(to);
+    while (integrator_->getTime() < to)
+      if (integrator_->stepTo(to) == SimTK::Integrator::ReachedStepLimit)
+        throw std::runtime_error(fmt::format("takes more than {} steps of its own in one", most_steps));
+  }
+
+  void step(double by) override {
+    integrator_->setInternalStepLimit(most_steps);
+    advance(integrator_->getTime() + by);
   }
 
   State state(int body) const override {

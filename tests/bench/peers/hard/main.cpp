@@ -1,0 +1,66 @@
+// cdot-peers-hard: what Cdot and today's engines make of the hard cases, in one table.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+
+#include "tests/bench/peers/hard/table.hpp"
+
+namespace {
+
+using namespace cdot::peers;
+
+Cell ask(const Question& question) {
+  Cell cell;
+  Asked asked{question.engine};
+  if (question.hard_case == nullptr) {
+    cell.settings.emplace_back();
+    cell.settings[0].message = "knows the plane only";
+    return cell;
+  }
+  for (Outcome outcome; judge(*question.hard_case, asked, outcome); ++asked.setting) {
+    cell.settings.push_back(outcome);
+    if (outcome.kind == Outcome::cannot_say) return cell;
+  }
+  asked.setting = int(cell.best());
+  asked.finer = finer_parts;
+  if (cell.settings[cell.best()].kind != Outcome::survives) judge(*question.hard_case, asked, cell.finer);
+  return cell;
+}
+
+nlohmann::json read(const std::string& file) {
+  std::ifstream in(file);
+  return in ? nlohmann::json::parse(in) : nlohmann::json::object();
+}
+
+void write(const std::string& folder, const nlohmann::json& found) {
+  std::ofstream(folder + "/hard_cases.json") << found.dump(1) << "\n";
+  std::ofstream(folder + "/hard_cases.md") << page(found);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"What Cdot and today's engines make of the hard cases."};
+  std::string only, engine, output;
+  bool pages = false;
+  app.add_option("--only", only, "Only cases whose name begins with this");
+  app.add_option("--engine", engine, "Only the column of this title");
+  app.add_option("-o,--output", output, "Folder of hard_cases.json, which is completed, and hard_cases.md");
+  app.add_flag("--page", pages, "Ask nobody: write hard_cases.md of hard_cases.json");
+  CLI11_PARSE(app, argc, argv);
+  nlohmann::json found = output.empty() ? nlohmann::json::object() : read(output + "/hard_cases.json");
+  for (const Row& row : rows()) {
+    if (pages || !row.name.starts_with(only) || !row.reason.empty()) continue;
+    fmt::print(stderr, "{}\n", row.name);
+    for (const Column& column : columns()) {
+      if (!engine.empty() && engine != column.title) continue;
+      found[row.name][column.title] = json_of(ask(question(row, column)));
+      if (!output.empty()) write(output, found);
+    }
+  }
+  if (output.empty())
+    fmt::print("{}", page(found));
+  else
+    write(output, found);
+}

@@ -1,0 +1,193 @@
+#include "tests/bench/peers/hard/table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace cdot::peers {
+namespace {
+
+constexpr const char* head = R"(# Hard cases beside today's engines
+
+What Cdot and today's engines make of the [hard cases](../../hard_cases/README.md). One criterion per case, the code of
+that folder, judges all of them; it looks at poses and velocities only, which every engine is asked for after every step,
+and computes gaps, angles and energies of them itself. What joints carry is not compared. Bodies, joints, start and step
+(1/60 s unless the case says otherwise) are the same for all; nobody has damping, contact or sleep. Engines of the plane
+are asked in the plane, those of space in space; where a case has only a planar scene, it is posed in space to them.
+
+Every engine is asked with its defaults and with every series of settings that paid in [results](results/README.md), at
+the same step. *holds*: with its defaults. *holds, tuned*: with another setting, named below. ×12: the worst number of its
+best setting is 12 times the bound. *explodes*: a body is no number, or 10 000 sizes of the scene away, at that time.
+—: it cannot pose the case, for the reason below. What no setting holds was also run at a hundredth of the step, below.
+
+    cdot-peers-hard -o tests/bench/peers        # remakes this page and hard_cases.json, where all settings stand
+    cdot-peers-hard --only ball_and_chain --engine ODE
+
+)";
+
+// Why some are not asked, by the beginnings of names.
+const std::vector<std::pair<std::string, std::string>>& not_asked() {
+  static const std::string meddled = "something is done to the mechanism half-way, for which adapters have no words";
+  static const std::vector<std::pair<std::string, std::string>> all = {
+      {"awakened", meddled},
+      {"axis_not_unit", "adapters hand over directions of length 1"},
+      {"ball_and_chain, planar_at_rest", "only what the top joint carries is judged"},
+      {"bridge_with_slack", "it comes to rest by damping, which nobody has here"},
+      {"both_immovable", "what is judged is what Cdot says of it"},
+      {"changed_while_running", meddled},
+      {"zero_length_distance, length 0", "what is judged is that Cdot refuses it"}};
+  return all;
+}
+
+std::string reason_of(const std::string& row) {
+  for (const auto& [start, reason] : not_asked())
+    if (row.starts_with(start)) return reason;
+  return "";
+}
+
+std::string row_of(const hard::Case& hard_case) {
+  std::string name = hard_case.fault;
+  if (hard_case.scene != "planar" && hard_case.scene != "spatial") name += ", " + hard_case.scene;
+  return hard_case.variant.empty() ? name : name + ", " + hard_case.variant;
+}
+
+const Engine* engine_of(const std::string& name) {
+  for (const Engine& engine : engines())
+    if (engine.name == name) return &engine;
+  return nullptr;
+}
+
+bool is_planar(const hard::Case& hard_case) {
+  return hard::Trial(hard_case.fault + "/" + hard_case.scene, {}).scene.dimension == Dimension::planar;
+}
+
+std::string times(const hard::Finding& found) {
+  const double ratio = found.value / found.bound;
+  return std::isfinite(ratio) ? fmt::format("×{:.2g}", ratio) : fmt::format("{} {:.2g}", found.what, found.value);
+}
+
+// In the table, of the best setting.
+std::string brief(const Cell& cell) {
+  const std::size_t best = cell.best();
+  const Outcome& o = cell.settings[best];
+  if (o.kind == Outcome::cannot_say) return "—";
+  if (o.kind == Outcome::survives) return best == 0 ? "holds" : "holds, tuned";
+  if (o.kind == Outcome::wrong) return times(o.worst());
+  return fmt::format("{} at {:.3g} s", name_of(o.kind), o.time);
+}
+
+// Below the table.
+std::string account(const Outcome& o) {
+  if (o.kind == Outcome::survives || o.kind == Outcome::wrong) {
+    std::string text = o.kind == Outcome::survives ? "holds: " : "";
+    bool first = true;
+    for (const hard::Finding& found : o.findings) {
+      if (o.kind == Outcome::wrong && found.held()) continue;
+      text += fmt::format("{}{} {:.2g}", first ? "" : "; ", found.what, found.value);
+      if (!found.held()) text += fmt::format(", not {:.2g}", found.bound);
+      first = false;
+    }
+    return text;
+  }
+  if (o.kind == Outcome::explodes) return fmt::format("explodes at {:.3g} s", o.time);
+  if (o.kind == Outcome::cannot_say) return "cannot say it: " + o.message;
+  return fmt::format("{} at {:.3g} s: {}", name_of(o.kind), o.time, o.message);
+}
+
+std::string details(const Row& row, const nlohmann::json& cells) {
+  std::string text = fmt::format("\n### {}\n\n", row.name);
+  if (!row.reason.empty()) return text + "Not asked: " + row.reason + ".\n";
+  text += "| engine | its defaults | its best setting | that at a hundredth of the step |\n|---|---|---|---|\n";
+  for (const Column& column : columns()) {
+    if (!cells.contains(column.title)) continue;
+    const Cell cell = cell_of(cells.at(column.title));
+    const std::size_t best = cell.best();
+    const Outcome &plain = cell.settings[0], &tuned = cell.settings[best];
+    const std::string changed = tuned.changed.empty() ? tuned.setting : tuned.changed;
+    text += fmt::format("| {} | {} | {} | {} |\n", column.title, account(plain),
+                        best == 0 ? "" : fmt::format("({}) {}", changed, account(tuned)),
+                        cell.finer.exists() ? account(cell.finer) : "");
+  }
+  return text;
+}
+
+}  // namespace
+
+const std::vector<Column>& columns() {
+  static const std::vector<Column> all = {{"Cdot, plane", "Cdot", nullptr, true},
+                                          {"Cdot, space", "Cdot", "Cdot in space", false},
+                                          {"Box2D", "Box2D", nullptr, true},
+                                          {"Chipmunk", "Chipmunk", nullptr, true},
+                                          {"Bullet", "Bullet", "Bullet", false},
+                                          {"Bullet multibody", "Bullet multibody", "Bullet multibody", false},
+                                          {"MuJoCo", "MuJoCo", "MuJoCo", false},
+                                          {"ODE", "ODE", "ODE", false},
+                                          {"Simbody", "Simbody", "Simbody", false}};
+  return all;
+}
+
+std::vector<Row> rows() {
+  std::map<std::string, Row> by_name;
+  for (const hard::Case& hard_case : hard::all_cases()) {
+    const std::string name = row_of(hard_case);
+    Row& row = by_name[name];
+    row.name = name;
+    row.reason = reason_of(name);
+    row.cases.push_back(hard_case);
+  }
+  std::vector<Row> all;
+  for (const auto& [name, row] : by_name) all.push_back(row);
+  return all;
+}
+
+Question question(const Row& row, const Column& column) {
+  const hard::Case *planar = nullptr, *spatial = nullptr;
+  for (const hard::Case& hard_case : row.cases) (is_planar(hard_case) ? planar : spatial) = &hard_case;
+  if (column.planar) return {planar, engine_of(column.engine)};
+  if (spatial != nullptr) return {spatial, engine_of(column.engine)};
+  return {planar, engine_of(column.lifted)};
+}
+
+std::size_t Cell::best() const {
+  return std::size_t(std::min_element(settings.begin(), settings.end()) - settings.begin());
+}
+
+nlohmann::json json_of(const Cell& cell) {
+  nlohmann::json settings = nlohmann::json::array();
+  for (const Outcome& outcome : cell.settings) settings.push_back(json_of(outcome));
+  nlohmann::json json{{"settings", settings}};
+  if (cell.finer.exists()) json["finer"] = json_of(cell.finer);
+  return json;
+}
+
+Cell cell_of(const nlohmann::json& json) {
+  Cell cell;
+  for (const nlohmann::json& outcome : json.at("settings")) cell.settings.push_back(outcome_of(outcome));
+  if (json.contains("finer")) cell.finer = outcome_of(json.at("finer"));
+  return cell;
+}
+
+std::string page(const nlohmann::json& found) {
+  std::string text = head, below;
+  text += "| case |";
+  std::string line = "|---|";
+  for (const Column& column : columns()) {
+    text += fmt::format(" {} |", column.title);
+    line += "---|";
+  }
+  text += "\n" + line + "\n";
+  for (const Row& row : rows()) {
+    if (row.reason.empty() && !found.contains(row.name)) continue;
+    const nlohmann::json cells = row.reason.empty() ? found.at(row.name) : nlohmann::json::object();
+    text += fmt::format("| {} |", row.name);
+    for (const Column& column : columns())
+      text += fmt::format(" {} |", cells.contains(column.title) ? brief(cell_of(cells.at(column.title))) : "—");
+    text += "\n";
+    below += details(row, cells);
+  }
+  return text + "\n## Case by case\n" + below;
+}
+
+}  // namespace cdot::peers
