@@ -38,6 +38,17 @@ inline Vec3 local_direction(const Problem& problem, int body, const Vec3& u) {
   return turned(conjugate(problem.bodies[std::size_t(body)].start.q), u);
 }
 
+// For adapters that cannot hold an orientation.
+inline void need_all_turn(const Problem& problem) {
+  for (const Body& body : problem.bodies)
+    if (!body.turns) throw CannotSay("no body that cannot turn");
+}
+// For those with hinges that nothing drives or stops.
+inline void need_free_hinges(const Problem& problem) {
+  for (const Joint& joint : problem.joints)
+    if (joint.motor || joint.stops) throw CannotSay("no motor that has a speed and a greatest torque");
+}
+
 // Of planar poses.
 inline double angle(const Quaternion& q) { return 2 * std::atan2(q[3], q[0]); }
 inline Quaternion about_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }

@@ -5,6 +5,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,18 +27,31 @@ struct Body {
   double mass = 0;
   Vec3 inertia{};  // about the axes of the body's frame, which are principal
   State start;
+  bool turns = true;  // its orientation is not held
 };
 
-enum class JointKind { revolute, prismatic, spherical };
+// `distance` keeps two points apart, `max_distance` is a string.
+enum class JointKind { revolute, prismatic, spherical, fixed, distance, max_distance };
+
+// What drives a hinge from a to b, and what stops it; in the plane an angle is zero where both bodies' are equal.
+struct Motor {
+  double speed = 0, most = 0;  // [rad/s], [N m]
+};
+struct Stops {
+  double lower = 0, upper = 0;  // [rad]
+};
 
 inline constexpr int world = -1;
 
 struct Joint {
-  JointKind kind;
-  int a, b;         // indices of bodies, or `world`
+  JointKind kind = JointKind::revolute;
+  int a = 0, b = 0;  // indices of bodies, or `world`
   Vec3 anchor{};    // of a, at the start, in world axes
   Vec3 axis{};      // likewise: what it turns about or slides along
   Vec3 anchor_b{};  // of b: elsewhere where a joint starts open
+  double length = 0;
+  std::optional<Motor> motor;
+  std::optional<Stops> stops;
 };
 
 // What an engine has no words for.

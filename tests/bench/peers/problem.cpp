@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -43,8 +44,10 @@ Vec3 parameter(const BasicWorld<S>& built, int joint, std::string_view name) {
   for (const ParameterInfo& info : built.joint_type(joint).parameters) {
     if (info.name != name) continue;
     const std::vector<double> all = built.joint_parameters(joint);
-    const auto at = all.begin() + info.offset;
-    return {at[0], at[1], S::dimension == Dimension::spatial ? at[2] : 0};
+    const auto at = all.begin() + info.offset, end = all.end();
+    Vec3 numbers{};  // up to three; those of the next parameter do no harm
+    std::copy_n(at, std::min<std::ptrdiff_t>(end - at, S::dimension == Dimension::spatial ? 3 : 2), numbers.begin());
+    return numbers;
   }
   throw std::runtime_error(fmt::format("no parameter {}", name));
 }
@@ -64,30 +67,51 @@ JointKind kind_of(const SceneJoint& source, Dimension dimension) {
   static const std::map<std::string, JointKind> kinds{{"revolute", JointKind::revolute},
                                                       {"hinge", JointKind::revolute},
                                                       {"prismatic", JointKind::prismatic},
-                                                      {"spherical", JointKind::spherical}};
+                                                      {"spherical", JointKind::spherical},
+                                                      {"weld", JointKind::fixed},
+                                                      {"fixed", JointKind::fixed},
+                                                      {"distance", JointKind::distance},
+                                                      {"max_distance", JointKind::max_distance}};
   const auto found = kinds.find(source.definition.type);
   if (found == kinds.end() || (found->second == JointKind::spherical && dimension == Dimension::planar))
     throw CannotSay(source.definition.type + ": no adapter knows this joint");
-  if (!source.effects.empty() || source.breaking || source.definition.soft)
-    throw CannotSay(source.name + ": no adapter knows its motor, limit, spring or breaking load");
+  if (source.breaking || source.definition.soft)
+    throw CannotSay(source.name + ": no adapter knows soft or breaking joints");
   return found->second;
+}
+
+// Of a hinge; motors of any strength are not comparable.
+void take_effects(const SceneJoint& source, Joint& joint) {
+  for (const SceneEffects& effects : source.effects) {
+    const bool strong = effects.motor && !std::isfinite(effects.motor->max_force);
+    if (joint.kind != JointKind::revolute || !effects.springs.empty() || effects.friction || strong)
+      throw CannotSay(source.name + ": no adapter knows its spring, friction, or motor of any strength");
+    if (effects.motor) joint.motor = {effects.motor->speed, effects.motor->max_force};
+    if (effects.limit) joint.stops = {effects.limit->lower.value(), effects.limit->upper.value()};
+  }
 }
 
 template <class S>
 Joint joint_of(const Problem& problem, const BasicWorld<S>& built, const SceneJoint& source, int index) {
   const bool planar = S::dimension == Dimension::planar;
   const int a = source.definition.bodies[0], b = source.definition.bodies[1];
-  Joint joint{kind_of(source, S::dimension), a, b};
+  Joint joint;
+  joint.kind = kind_of(source, S::dimension);
+  joint.a = a;
+  joint.b = b;
   joint.anchor = anchor_of(problem, built, index, a, "pa");
   joint.anchor_b = anchor_of(problem, built, index, b, "pb");
   if (joint.kind == JointKind::prismatic) joint.anchor_b = joint.anchor;  // apart by what it has slid
+  take_effects(source, joint);
+  if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
+    joint.length = parameter(built, index, "l")[0];
   if (planar) {
     joint.axis = {0, 0, 1};
     if (joint.kind == JointKind::prismatic) {
       const Vec3 normal = world_direction(problem, b, parameter(built, index, "t"));
       joint.axis = {normal[1], -normal[0], 0};
     }
-  } else if (joint.kind != JointKind::spherical) {
+  } else if (joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic) {
     joint.axis = world_direction(problem, a, parameter(built, index, "fa"));
   }
   return joint;
@@ -103,7 +127,7 @@ bool held_at_centre(const Problem& problem, int body) {
   return std::all_of(problem.joints.begin(), problem.joints.end(), [&](const Joint& joint) {
     if (joint.a != body && joint.b != body) return true;
     const Vec3 at = (joint.a == body ? joint.anchor : joint.anchor_b) - problem.bodies[std::size_t(body)].start.x;
-    return joint.kind != JointKind::prismatic && norm(at) == 0;
+    return (joint.kind == JointKind::revolute || joint.kind == JointKind::spherical) && norm(at) == 0;
   });
 }
 
@@ -113,8 +137,9 @@ void check(const SceneBody& source, const Definition& d, Problem& problem, int b
   if (source.is_static) throw CannotSay(source.name + ": no adapter knows a body that is static");
   if (pushed(d)) throw CannotSay(source.name + ": no adapter knows a force on a body");
   if (!d.fixed_rotation) return;
-  if (!held_at_centre(problem, body)) throw CannotSay(source.name + ": no adapter knows a body that cannot turn");
-  problem.bodies[std::size_t(body)].inertia = {d.mass, d.mass, d.mass};
+  Body& made = problem.bodies[std::size_t(body)];
+  made.turns = held_at_centre(problem, body);
+  made.inertia = {d.mass, d.mass, d.mass};
 }
 
 Vec3 vec3(const nlohmann::json& from, std::size_t at) { return {from[at], from[at + 1], from[at + 2]}; }

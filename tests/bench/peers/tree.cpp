@@ -12,6 +12,8 @@ const State& state(const Problem& problem, int body) {
 }
 
 void check_closed(const Problem& problem, const Joint& joint) {
+  if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
+    throw CannotSay("no joint that keeps a distance");
   double reach = 0;
   for (const int body : {joint.a, joint.b})
     if (body != world) reach += norm(local_point(problem, body, body == joint.a ? joint.anchor : joint.anchor_b));
@@ -37,10 +39,18 @@ Tree tree_of(const Problem& problem) {
       tree.branches.push_back({child, parent, k});
     }
   };
+  std::size_t grown = 0;
+  const auto grow_all = [&] {
+    for (; grown < tree.branches.size(); ++grown) grow(tree.branches[grown].body);
+  };
   grow(world);
-  for (std::size_t k = 0; k < tree.branches.size(); ++k) grow(tree.branches[k].body);
-  for (std::size_t k = 0; k < reached.size(); ++k)
-    if (!reached[k]) tree.branches.push_back({int(k), world, -1});
+  grow_all();
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    if (reached[k]) continue;
+    reached[k] = true;
+    tree.branches.push_back({int(k), world, -1});
+    grow_all();
+  }
   for (std::size_t k = 0; k < used.size(); ++k)
     if (!used[k]) tree.loops.push_back(int(k));
   return tree;

@@ -47,22 +47,47 @@ class Box2dRun final : public SteppedRun {
     mass.center.SetZero();
     mass.I = float(body.inertia[2]);
     made->SetMassData(&mass);
+    made->SetFixedRotation(!body.turns);
     bodies_.push_back(made);
   }
 
   b2Body* body(int index) const { return index == peers::world ? ground_ : bodies_[std::size_t(index)]; }
 
+  template <class Def>
+  void add(Def& def, const Problem& problem, const Joint& joint) {
+    def.localAnchorB = vec(local_point(problem, joint.b, joint.anchor_b));
+    world_.CreateJoint(&def);
+  }
+
   void add(const Problem& problem, const Joint& joint) {
+    b2Body *a = body(joint.a), *b = body(joint.b);
+    const b2Vec2 at = vec(joint.anchor);
     if (joint.kind == JointKind::prismatic) {
       b2PrismaticJointDef def;
-      def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor), vec(joint.axis));
-      def.localAnchorB = vec(local_point(problem, joint.b, joint.anchor_b));
-      world_.CreateJoint(&def);
-    } else {
+      def.Initialize(a, b, at, vec(joint.axis));
+      add(def, problem, joint);
+    } else if (joint.kind == JointKind::revolute) {
       b2RevoluteJointDef def;
-      def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor));
-      def.localAnchorB = vec(local_point(problem, joint.b, joint.anchor_b));
-      world_.CreateJoint(&def);
+      def.Initialize(a, b, at);
+      if ((def.enableMotor = joint.motor.has_value())) {
+        def.motorSpeed = float(joint.motor->speed);
+        def.maxMotorTorque = float(joint.motor->most);
+      }
+      if ((def.enableLimit = joint.stops.has_value())) {
+        def.lowerAngle = float(joint.stops->lower) - def.referenceAngle;
+        def.upperAngle = float(joint.stops->upper) - def.referenceAngle;
+      }
+      add(def, problem, joint);
+    } else if (joint.kind == JointKind::fixed) {
+      b2WeldJointDef def;
+      def.Initialize(a, b, at);
+      add(def, problem, joint);
+    } else {
+      b2DistanceJointDef def;
+      def.Initialize(a, b, at, vec(joint.anchor_b));
+      def.length = def.maxLength = float(joint.length);
+      def.minLength = joint.kind == JointKind::distance ? def.length : 0;
+      add(def, problem, joint);
     }
   }
 

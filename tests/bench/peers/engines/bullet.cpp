@@ -46,12 +46,16 @@ class BulletRun final : public SteppedRun {
     return {from(b.getCenterOfMassPosition()), from(b.getOrientation()), from(b.getLinearVelocity()),
             from(b.getAngularVelocity())};
   }
-  void step(double h) override { world_.stepSimulation(h, 0, h); }
+  void step(double h) override {
+    for (const auto& [hinge, motor] : motors_) hinge->enableAngularMotor(true, -motor.speed, motor.most * h);
+    world_.stepSimulation(h, 0, h);
+  }
 
  private:
   void add(const Body& body, const Way& way) {
     const State& s = body.start;
-    btRigidBody::btRigidBodyConstructionInfo info(body.mass, nullptr, &parts_.shape, bt(body.inertia));
+    const btVector3 inertia = body.turns ? bt(body.inertia) : btVector3(0, 0, 0);  // 0: it cannot turn
+    btRigidBody::btRigidBodyConstructionInfo info(body.mass, nullptr, &parts_.shape, inertia);
     info.m_startWorldTransform = btTransform(bt(s.q), bt(s.x));
     bodies_.push_back(std::make_unique<btRigidBody>(info));
     btRigidBody& made = *bodies_.back();
@@ -64,7 +68,7 @@ class BulletRun final : public SteppedRun {
 
   // The frame of a slider at the start, its x along the axis, in a body's own.
   static btTransform frame(const Problem& problem, const Joint& joint, int body, const Vec3& anchor) {
-    const btVector3 x = bt(joint.axis).normalized();
+    const btVector3 x = joint.kind == JointKind::fixed ? btVector3(1, 0, 0) : bt(joint.axis).normalized();
     btVector3 y, z;
     btPlaneSpace1(x, y, z);
     const btMatrix3x3 axes(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z());
@@ -77,16 +81,30 @@ class BulletRun final : public SteppedRun {
     return index == peers::world ? btTypedConstraint::getFixedBody() : *bodies_[std::size_t(index)];
   }
 
+  // Its motor counts from b to a, its limits from a to b.
+  std::unique_ptr<btTypedConstraint> hinge(const Problem& problem, const Joint& joint, btRigidBody& a, btRigidBody& b) {
+    auto made = std::make_unique<btHingeConstraint>(
+        a, b, bt(local_point(problem, joint.a, joint.anchor)), bt(local_point(problem, joint.b, joint.anchor_b)),
+        bt(local_direction(problem, joint.a, joint.axis)), bt(local_direction(problem, joint.b, joint.axis)));
+    if (joint.motor) motors_.emplace_back(made.get(), *joint.motor);
+    if (joint.stops) made->setLimit(joint.stops->lower, joint.stops->upper);
+    return made;
+  }
+
   void add(const Problem& problem, const Joint& joint) {
     btRigidBody &a = body(joint.a), &b = body(joint.b);
     const btVector3 pa = bt(local_point(problem, joint.a, joint.anchor)),
                     pb = bt(local_point(problem, joint.b, joint.anchor_b));
     std::unique_ptr<btTypedConstraint> made;
+    if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
+      throw CannotSay("no joint that keeps a distance");
     if (joint.kind == JointKind::spherical)
       made = std::make_unique<btPoint2PointConstraint>(a, b, pa, pb);
     else if (joint.kind == JointKind::revolute)
-      made = std::make_unique<btHingeConstraint>(a, b, pa, pb, bt(local_direction(problem, joint.a, joint.axis)),
-                                                 bt(local_direction(problem, joint.b, joint.axis)));
+      made = hinge(problem, joint, a, b);
+    else if (joint.kind == JointKind::fixed)
+      made = std::make_unique<btFixedConstraint>(a, b, frame(problem, joint, joint.a, joint.anchor),
+                                                 frame(problem, joint, joint.b, joint.anchor_b));
     else
       made = std::make_unique<btSliderConstraint>(a, b, frame(problem, joint, joint.a, joint.anchor),
                                                   frame(problem, joint, joint.b, joint.anchor_b), true);
@@ -101,6 +119,7 @@ class BulletRun final : public SteppedRun {
   Untouched<btDiscreteDynamicsWorld> world_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
+  std::vector<std::pair<btHingeConstraint*, Motor>> motors_;
 };
 
 std::vector<Series> series(const Problem& problem) {

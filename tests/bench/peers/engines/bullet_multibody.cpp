@@ -5,6 +5,7 @@
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <BulletDynamics/Featherstone/btMultiBodyPoint2Point.h>
 
+#include <algorithm>
 #include <string>
 
 #include "tests/bench/peers/engines/bullet_world.hpp"
@@ -27,6 +28,8 @@ class MultibodyRun final : public SteppedRun {
         link_of_(problem.bodies.size(), -1) {
     world_.setGravity(bt(problem.gravity));
     world_.getSolverInfo().m_erp = way.erp;
+    need_all_turn(problem);
+    need_free_hinges(problem);
     const Tree tree = tree_of(problem);
     make(problem, tree);
     multibody_->setLinearDamping(0);
@@ -67,6 +70,10 @@ class MultibodyRun final : public SteppedRun {
  private:
   // The world is the base, or the one body that nothing holds.
   void make(const Problem& problem, const Tree& tree) {
+    const bool rootless = std::any_of(tree.branches.begin(), tree.branches.end(),
+                                      [](const Branch& branch) { return branch.joint < 0; });
+    if (rootless && problem.bodies.size() > 1)
+      throw CannotSay("the adapter makes one tree that hangs from the world, or one free body");
     if (problem.joints.empty()) {
       const Body& body = problem.bodies.at(0);
       multibody_ = std::make_unique<btMultiBody>(0, body.mass, bt(body.inertia), false, false);
@@ -99,7 +106,9 @@ class MultibodyRun final : public SteppedRun {
                     out = -bt(local_point(problem, branch.body, joint.anchor)),
                     axis = bt(local_direction(problem, branch.body, joint.axis)), inertia = bt(body.inertia);
     const int above = link_of(branch.parent);
-    if (joint.kind == JointKind::spherical)
+    if (joint.kind == JointKind::fixed)
+      multibody_->setupFixed(link, body.mass, inertia, above, turn, in, out, true);
+    else if (joint.kind == JointKind::spherical)
       multibody_->setupSpherical(link, body.mass, inertia, above, turn, in, out, true);
     else if (joint.kind == JointKind::revolute)
       multibody_->setupRevolute(link, body.mass, inertia, above, turn, axis, in, out, true);
@@ -112,7 +121,7 @@ class MultibodyRun final : public SteppedRun {
       const Quaternion& q = problem.bodies[std::size_t(branch.body)].start.q;
       const Vec3 w = turned(conjugate(q), spin(problem, branch));
       multibody_->setJointVelMultiDof(link, w.data());
-    } else {
+    } else if (problem.joints[std::size_t(branch.joint)].kind != JointKind::fixed) {
       multibody_->setJointVel(link, rate(problem, branch));
     }
   }

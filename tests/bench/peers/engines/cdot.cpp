@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include "runtime/effects.hpp"
 #include "runtime/spatial.hpp"
 #include "runtime/world.hpp"
 #include "tests/bench/peers/geometry.hpp"
@@ -20,7 +21,8 @@ BodyDefinition definition(const Planar<double>*, const Body& body) {
           .vy = s.v[1],
           .w = s.w[2],
           .mass = body.mass,
-          .inertia = body.inertia[2]};
+          .inertia = body.inertia[2],
+          .fixed_rotation = !body.turns};
 }
 
 SpatialBodyDefinition definition(const Spatial<double>*, const Body& body) {
@@ -39,17 +41,26 @@ SpatialBodyDefinition definition(const Spatial<double>*, const Body& body) {
           .wy = s.w[1],
           .wz = s.w[2],
           .mass = body.mass,
-          .inertia = {.xx = body.inertia[0], .yy = body.inertia[1], .zz = body.inertia[2]}};
+          .inertia = {.xx = body.inertia[0], .yy = body.inertia[1], .zz = body.inertia[2]},
+          .fixed_rotation = !body.turns};
 }
 
 NamedValue planar_value(const char* name, const Vec3& u) { return {name, {u[0], u[1]}}; }
 NamedValue spatial_value(const char* name, const Vec3& u) { return {name, {u[0], u[1], u[2]}}; }
 
+const char* with_length(const Joint& joint, JointDefinition& d) {
+  d.parameters.push_back({"l", {joint.length}});
+  return joint.kind == JointKind::distance ? "distance" : "max_distance";
+}
+
 JointDefinition definition(const Planar<double>*, const Problem& problem, const Joint& joint) {
   JointDefinition d;
   d.parameters = {planar_value("pa", local_point(problem, joint.a, joint.anchor)),
                   planar_value("pb", local_point(problem, joint.b, joint.anchor_b))};
-  d.type = joint.kind == JointKind::prismatic ? "prismatic" : "revolute";
+  d.type = joint.kind == JointKind::prismatic  ? "prismatic"
+           : joint.kind == JointKind::fixed    ? "weld"
+           : joint.kind == JointKind::revolute ? "revolute"
+                                               : with_length(joint, d);
   if (joint.kind == JointKind::prismatic) {
     const Vec3 normal{-joint.axis[1], joint.axis[0], 0};
     d.parameters.push_back(planar_value("t", local_direction(problem, joint.b, normal)));
@@ -63,8 +74,11 @@ JointDefinition definition(const Spatial<double>*, const Problem& problem, const
                   spatial_value("pb", local_point(problem, joint.b, joint.anchor_b))};
   d.type = joint.kind == JointKind::prismatic   ? "prismatic"
            : joint.kind == JointKind::spherical ? "spherical"
-                                                : "revolute";
-  if (joint.kind != JointKind::spherical)
+           : joint.kind == JointKind::fixed     ? "fixed"
+           : joint.kind == JointKind::revolute  ? (joint.motor || joint.stops ? "hinge" : "revolute")
+                                                : with_length(joint, d);
+  if (joint.kind == JointKind::fixed) d.parameters.push_back(spatial_value("fa", {1, 0, 0}));
+  if (joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic)
     d.parameters.push_back(spatial_value("fa", local_direction(problem, joint.a, joint.axis)));
   return d;
 }
@@ -98,7 +112,9 @@ BasicWorld<S> build(const Problem& problem, Settings settings) {
   for (const Joint& joint : problem.joints) {
     JointDefinition d = definition(space, problem, joint);
     for (const int body : {joint.a, joint.b}) d.bodies.push_back(body == world ? made.ground() : body);
-    made.add_joint(d);
+    const int index = made.add_joint(d);
+    if (joint.stops) add_limit(made, index, "angle", {joint.stops->lower, joint.stops->upper});
+    if (joint.motor) add_motor(made, index, "angle", {joint.motor->speed, joint.motor->most});
   }
   made.prepare();
   return made;

@@ -50,7 +50,7 @@ class ChipmunkRun final : public SteppedRun {
 
  private:
   void add(const Body& body) {
-    cpBody* b = cpBodyNew(body.mass, body.inertia[2]);
+    cpBody* b = cpBodyNew(body.mass, body.turns ? body.inertia[2] : INFINITY);
     cpBodySetPosition(b, vec(body.start.x));
     cpBodySetAngle(b, angle(body.start.q));
     cpBodySetVelocity(b, vec(body.start.v));
@@ -65,20 +65,31 @@ class ChipmunkRun final : public SteppedRun {
   void add(cpConstraint* constraint) { constraints_.push_back(cpSpaceAddConstraint(space_, constraint)); }
 
   void add(const Problem& problem, const Joint& joint) {
-    if (joint.kind != JointKind::prismatic) {
-      add(cpPivotJointNew2(body(joint.a), body(joint.b), vec(local_point(problem, joint.a, joint.anchor)),
-                           vec(local_point(problem, joint.b, joint.anchor_b))));
-      return;
+    cpBody *a = body(joint.a), *b = body(joint.b);
+    const cpVect pa = vec(local_point(problem, joint.a, joint.anchor)),
+                 pb = vec(local_point(problem, joint.b, joint.anchor_b));
+    if (joint.kind == JointKind::distance) {
+      cpConstraint* rod = cpPinJointNew(a, b, pa, pb);
+      cpPinJointSetDist(rod, joint.length);
+      return add(rod);
     }
-    // A groove that is long enough on both sides, and equal angles.
+    if (joint.kind == JointKind::max_distance) return add(cpSlideJointNew(a, b, pa, pb, 0, joint.length));
+    if (joint.kind == JointKind::prismatic)
+      add(cpGrooveJointNew(a, b, end(problem, joint, -1), end(problem, joint, 1), pb));
+    else
+      add(cpPivotJointNew2(a, b, pa, pb));
+    if (joint.kind == JointKind::prismatic || joint.kind == JointKind::fixed)
+      add(cpGearJointNew(a, b, cpBodyGetAngle(b) - cpBodyGetAngle(a), 1));
+    if (joint.stops) add(cpRotaryLimitJointNew(a, b, joint.stops->lower, joint.stops->upper));
+    if (!joint.motor) return;
+    add(cpSimpleMotorNew(a, b, -joint.motor->speed));
+    cpConstraintSetMaxForce(constraints_.back(), joint.motor->most);
+  }
+
+  // Of a groove that is long enough on both sides.
+  static cpVect end(const Problem& problem, const Joint& joint, double side) {
     const double half = 10;
-    const auto end = [&](double side) {
-      return vec(local_point(problem, joint.a, joint.anchor + (side * half) * joint.axis));
-    };
-    add(cpGrooveJointNew(body(joint.a), body(joint.b), end(-1), end(1),
-                         vec(local_point(problem, joint.b, joint.anchor_b))));
-    const double turn = cpBodyGetAngle(body(joint.b)) - cpBodyGetAngle(body(joint.a));
-    add(cpGearJointNew(body(joint.a), body(joint.b), turn, 1));
+    return vec(local_point(problem, joint.a, joint.anchor + (side * half) * joint.axis));
   }
 
   cpSpace* space_;
@@ -108,7 +119,7 @@ std::vector<Series> series(const Problem& problem) {
 }
 
 const Registration registration{
-    {"Chipmunk", cpVersionString, "double", "#8250df", "no shapes; a slider is a groove and a gear", series}};
+    {"Chipmunk", cpVersionString, "double", "#8250df", "no shapes; a slider is a groove and a gear, a weld a pivot and a gear", series}};
 
 }  // namespace
 }  // namespace cdot::peers

@@ -14,9 +14,12 @@ namespace {
 std::string text(const Vec3& a) { return fmt::format("{} {} {}", a[0], a[1], a[2]); }
 std::string text(const Quaternion& q) { return fmt::format("{} {} {} {}", q[0], q[1], q[2], q[3]); }
 
+std::string name_of(int body) { return body == peers::world ? "world" : fmt::format("b{}", body); }
+
 std::string joint_text(const Problem& problem, const Branch& branch) {
   if (branch.joint < 0) return "<freejoint/>";
   const Joint& joint = problem.joints[std::size_t(branch.joint)];
+  if (joint.kind == JointKind::fixed) return "";  // part of its parent
   const char* type = joint.kind == JointKind::revolute    ? "hinge"
                      : joint.kind == JointKind::prismatic ? "slide"
                                                           : "ball";
@@ -50,7 +53,7 @@ std::string model_text(const Problem& problem, const Tree& tree) {
   out += "</worldbody><equality>";
   for (const int loop : tree.loops) {
     const Joint& joint = problem.joints[std::size_t(loop)];
-    out += fmt::format("<connect body1='b{}' body2='b{}' anchor='{}'/>", joint.a, joint.b,
+    out += fmt::format("<connect body1='{}' body2='{}' anchor='{}'/>", name_of(joint.a), name_of(joint.b),
                        text(local_point(problem, joint.a, joint.anchor)));
   }
   return out + "</equality></mujoco>";
@@ -61,6 +64,8 @@ using Model = std::shared_ptr<mjModel>;
 Model model_of(const Problem& problem) {
   mju_user_warning = [](const char*) {};
   mju_user_error = [](const char* message) { throw std::runtime_error(message); };
+  need_all_turn(problem);
+  need_free_hinges(problem);
   const std::string xml = model_text(problem, tree_of(problem));
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
@@ -92,12 +97,14 @@ class MujocoRun final : public SteppedRun {
         model_->eq_solimp[mjNIMP * k] = model_->eq_solimp[mjNIMP * k + 1] = 0.9999;
       }
     }
-    for (const Branch& branch : tree_of(problem).branches) {
+    const Tree tree = tree_of(problem);
+    for (std::size_t k = 0; k < tree.loops.size(); ++k) open(problem, problem.joints[std::size_t(tree.loops[k])], int(k));
+    for (const Branch& branch : tree.branches) {
       bodies_.push_back(0);
       set_velocity(problem, branch);
     }
     for (std::size_t k = 0; k < bodies_.size(); ++k)
-      bodies_[k] = mj_name2id(model_, mjOBJ_BODY, fmt::format("b{}", k).c_str());
+      bodies_[k] = mj_name2id(model_, mjOBJ_BODY, name_of(int(k)).c_str());
   }
   ~MujocoRun() override {
     mj_deleteData(data_);
@@ -118,9 +125,16 @@ class MujocoRun final : public SteppedRun {
   }
 
  private:
+  // A loop that starts open: the compiler takes its second point for where the first is.
+  void open(const Problem& problem, const Joint& joint, int loop) {
+    if (norm(joint.anchor_b - joint.anchor) == 0) return;
+    const Vec3 at = local_point(problem, joint.b, joint.anchor_b);
+    std::copy(at.begin(), at.end(), model_->eq_data + mjNEQDATA * loop + 3);
+  }
+
   void set_velocity(const Problem& problem, const Branch& branch) {
-    const std::string name = fmt::format("b{}", branch.body);
-    const int b = mj_name2id(model_, mjOBJ_BODY, name.c_str());
+    const int b = mj_name2id(model_, mjOBJ_BODY, name_of(branch.body).c_str());
+    if (model_->body_dofnum[b] == 0) return;
     double* qvel = data_->qvel + model_->body_dofadr[b];
     const State& s = problem.bodies[std::size_t(branch.body)].start;
     const auto put = [](double* to, const Vec3& u) { std::copy(u.begin(), u.end(), to); };

@@ -32,6 +32,7 @@ void ignore(int, const char*, va_list) {}
 class OdeRun final : public SteppedRun {
  public:
   OdeRun(const Problem& problem, const Way& way, double h) : SteppedRun(h), world_(made()), sweeps_(way.sweeps) {
+    need_all_turn(problem);
     dWorldSetGravity(world_, problem.gravity[0], problem.gravity[1], problem.gravity[2]);
     dWorldSetERP(world_, way.erp);
     dWorldSetCFM(world_, way.cfm);
@@ -91,6 +92,19 @@ class OdeRun final : public SteppedRun {
     move(body(joint.b), gap);
   }
 
+  // Its angle counts from b to a, but from the world to b where the world is a.
+  static void drive(dJointID hinge, const Joint& joint) {
+    const bool forth = joint.a == peers::world;
+    if (joint.motor) {
+      dJointSetHingeParam(hinge, dParamVel, forth ? joint.motor->speed : -joint.motor->speed);
+      dJointSetHingeParam(hinge, dParamFMax, joint.motor->most);
+    }
+    if (joint.stops) {
+      dJointSetHingeParam(hinge, dParamLoStop, forth ? joint.stops->lower : -joint.stops->upper);
+      dJointSetHingeParam(hinge, dParamHiStop, forth ? joint.stops->upper : -joint.stops->lower);
+    }
+  }
+
   static void move(dBodyID b, const Vec3& by) {
     if (b == nullptr || norm(by) == 0) return;
     const dReal* x = dBodyGetPosition(b);
@@ -109,10 +123,17 @@ class OdeRun final : public SteppedRun {
       dJointAttach(made, a, b);
       dJointSetHingeAnchor(made, p[0], p[1], p[2]);
       dJointSetHingeAxis(made, n[0], n[1], n[2]);
-    } else {
+      drive(made, joint);
+    } else if (joint.kind == JointKind::fixed) {
+      const dJointID made = dJointCreateFixed(world_, nullptr);
+      dJointAttach(made, a, b);
+      dJointSetFixed(made);
+    } else if (joint.kind == JointKind::prismatic) {
       const dJointID made = dJointCreateSlider(world_, nullptr);
       dJointAttach(made, a, b);
       dJointSetSliderAxis(made, n[0], n[1], n[2]);
+    } else {
+      throw CannotSay("no joint that keeps a distance");
     }
   }
 

@@ -29,6 +29,8 @@ class SimbodyRun final : public Run {
         forces_(system_),
         gravity_(forces_, matter_, vec(problem.gravity)),
         bodies_(problem.bodies.size()) {
+    need_all_turn(problem);
+    need_free_hinges(problem);
     const Tree tree = tree_of(problem);
     for (const Branch& branch : tree.branches) add(problem, branch);
     for (const int loop : tree.loops) close(problem, problem.joints[std::size_t(loop)]);
@@ -91,7 +93,10 @@ class SimbodyRun final : public Run {
       return std::pair{frame(problem, branch.parent, axes, joint.anchor),
                        frame(problem, branch.body, axes, joint.anchor)};
     };
-    if (joint.kind == JointKind::spherical) {
+    if (joint.kind == JointKind::fixed) {
+      const auto [in, out] = both(SimTK::Rotation());
+      made = SimTK::MobilizedBody::Weld(parent, in, rigid, out);
+    } else if (joint.kind == JointKind::spherical) {
       const auto [in, out] = both(SimTK::Rotation());
       made = SimTK::MobilizedBody::Ball(parent, in, rigid, out);
     } else if (joint.kind == JointKind::revolute) {
@@ -105,13 +110,26 @@ class SimbodyRun final : public Run {
 
   // The tree keeps the plane, so that a pin which closes a loop is two rows.
   void close(const Problem& problem, const Joint& joint) {
-    if (!problem.planar) throw std::runtime_error("Simbody: only loops of the plane are closed here");
+    if (joint.kind == JointKind::prismatic) throw CannotSay("the adapter closes no loop by a slider");
+    if (!problem.planar) return close_in_space(problem, joint);
     for (const Vec3& side : {Vec3{1, 0, 0}, Vec3{0, 1, 0}}) {
       const Vec3 normal = local_direction(problem, joint.a, side);
       SimTK::Constraint::PointInPlane(mobile(joint.a), SimTK::UnitVec3(vec(normal)),
                                       dot(normal, local_point(problem, joint.a, joint.anchor)), mobile(joint.b),
-                                      vec(local_point(problem, joint.b, joint.anchor)));
+                                      vec(local_point(problem, joint.b, joint.anchor_b)));
     }
+  }
+  // A ball, and for a hinge two right angles between the axis of one body and two across it of the other.
+  void close_in_space(const Problem& problem, const Joint& joint) {
+    SimTK::Constraint::Ball(mobile(joint.a), vec(local_point(problem, joint.a, joint.anchor)), mobile(joint.b),
+                            vec(local_point(problem, joint.b, joint.anchor_b)));
+    if (joint.kind != JointKind::revolute) return;
+    const auto in = [&](int body, const SimTK::Vec3& u) {
+      return SimTK::UnitVec3(vec(local_direction(problem, body, vec(u))));
+    };
+    const SimTK::UnitVec3 axis(vec(joint.axis)), across = axis.perp();
+    for (const SimTK::Vec3& side : {SimTK::Vec3(across), SimTK::cross(axis, across)})
+      SimTK::Constraint::ConstantAngle(mobile(joint.a), in(joint.a, axis), mobile(joint.b), in(joint.b, side));
   }
 
   void set_velocity(const Problem& problem, const Branch& branch, SimTK::State& state) {
@@ -122,7 +140,7 @@ class SimbodyRun final : public Run {
       made.setUToFitVelocity(state, SimTK::SpatialVec(vec(turned(back, start.w)), vec(turned(back, start.v))));
     } else if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
       made.setUToFitAngularVelocity(state, vec(spin(problem, branch)));
-    } else {
+    } else if (problem.joints[std::size_t(branch.joint)].kind != JointKind::fixed) {
       made.setOneU(state, 0, rate(problem, branch));
     }
   }

@@ -19,32 +19,6 @@ constexpr double beyond_measure = 1e4;                   // sizes of the scene t
 constexpr std::array accuracies{1e-3, 1e-6};             // of methods that choose their steps
 constexpr double start_off = 1e-9, float_start_off = 1e-6;  // of the largest place or speed
 
-struct Setting {
-  Series series;
-  double knob = 0;  // 0: the step
-};
-
-// The first that changes nothing is the engine's default; else the very first.
-std::vector<Setting> settings(const Engine& engine, const Problem& problem) {
-  std::vector<Setting> all;
-  for (const Series& series : engine.series(problem)) {
-    if (series.knob == "h") {
-      all.push_back({series});
-      continue;
-    }
-    for (const double knob : accuracies) {
-      Setting setting{series, knob};
-      setting.series.name += fmt::format(", {} {:.0e}", series.knob, knob);
-      if (knob != accuracies.front()) setting.series.changed = setting.series.name;
-      all.push_back(setting);
-    }
-  }
-  const auto plain =
-      std::find_if(all.begin(), all.end(), [](const Setting& s) { return s.series.changed.empty(); });
-  if (plain != all.end()) std::rotate(all.begin(), plain, plain + 1);
-  return all;
-}
-
 template <std::size_t size>
 void say(char (&to)[size], const std::string& text) {
   to[text.copy(to, size - 1)] = 0;
@@ -78,6 +52,15 @@ void put(SpatialWorld<double>& world, int body, const State& s, double) {
   world.set_pose(body, {s.x[0], s.x[1], s.x[2], s.q[0], s.q[1], s.q[2], s.q[3]});
 }
 
+// With times for those that choose steps by them.
+template <class S>
+Problem posed(const Scene& scene, const BasicWorld<S>& world) {
+  Problem problem = problem_of(scene, world);
+  problem.duration = 1;
+  problem.times = {1};
+  return problem;
+}
+
 // Of one trial. The run starts with the first step, whose length some engines have to know.
 template <class S>
 class Stand {
@@ -85,12 +68,10 @@ class Stand {
   Stand(const Asked& asked, Told& told, const Scene& scene, BasicWorld<S>& world)
       : asked_(asked),
         told_(&told),
-        problem_(std::make_unique<Problem>(problem_of(scene, world))),
+        problem_(std::make_unique<Problem>(posed(scene, world))),
         world_(&world),
         parts_(scene.settings.substeps * asked.finer),
         reach_(beyond_measure * size_of(*problem_)) {
-    problem_->duration = 1;
-    problem_->times = {1};
     std::vector<Setting> all = settings(*asked.engine, *problem_);
     if (all.empty()) throw CannotSay("knows the plane only");
     if (asked.setting >= int(all.size())) throw NoSuchSetting();
@@ -135,6 +116,43 @@ hard::Mover stand(const Asked& asked, Told& told, const Scene& scene, BasicWorld
 }
 
 }  // namespace
+
+std::vector<Setting> settings(const Engine& engine, const Problem& problem) {
+  std::vector<Setting> all;
+  for (const Series& series : engine.series(problem)) {
+    if (series.knob == "h") {
+      all.push_back({series});
+      continue;
+    }
+    for (const double knob : accuracies) {
+      Setting setting{series, knob};
+      setting.series.name += fmt::format(", {} {:.0e}", series.knob, knob);
+      if (knob != accuracies.front()) setting.series.changed = setting.series.name;
+      all.push_back(setting);
+    }
+  }
+  const auto plain =
+      std::find_if(all.begin(), all.end(), [](const Setting& s) { return s.series.changed.empty(); });
+  if (plain != all.end()) std::rotate(all.begin(), plain, plain + 1);
+  return all;
+}
+
+Problem problem_of(const hard::Case& hard_case) {
+  Problem problem;
+  struct Started {};
+  hard::another_engine = [&](const Scene& scene, hard::AnyWorld& world) -> hard::Mover {
+    problem = scene.dimension == Dimension::planar ? posed(scene, std::get<World<double>>(world))
+                                                   : posed(scene, std::get<SpatialWorld<double>>(world));
+    throw Started();
+  };
+  hard::Trial trial(hard_case.fault + "/" + hard_case.scene, {});
+  try {
+    hard_case.run(trial);
+  } catch (const Started&) {
+  }
+  hard::another_engine = nullptr;
+  return problem;
+}
 
 void let_move(const Asked& asked, Told& told) {
   hard::another_engine = [asked, &told](const Scene& scene, hard::AnyWorld& world) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "tests/bench/peers/peer.hpp"
+#include "tests/hard_cases/trial.hpp"
 
 namespace cdot::peers {
 
@@ -25,6 +26,16 @@ struct NoSuchSetting {};
 struct Exploded {
   double time;
 };
+
+struct Setting {
+  Series series;
+  double knob = 0;  // 0: the step
+};
+// The engine's defaults first. Empty if the problem is not of its kind.
+std::vector<Setting> settings(const Engine& engine, const Problem& problem);
+
+// What a case asks, as it starts; throws CannotSay.
+Problem problem_of(const hard::Case& hard_case);
 
 // What has been told stays up to date while trials run.
 void let_move(const Asked& asked, Told& told);

@@ -134,7 +134,8 @@ nlohmann::json json_of(const Outcome& outcome) {
   for (const hard::Finding& found : outcome.findings)
     findings.push_back({{"what", found.what}, {"value", number(found.value)}, {"bound", number(found.bound)}});
   return {{"outcome", name_of(outcome.kind)}, {"setting", outcome.setting}, {"changed", outcome.changed},
-          {"message", outcome.message},       {"time", outcome.time},       {"findings", findings}};
+          {"message", outcome.message},       {"time", outcome.time},       {"parts", outcome.parts},
+          {"findings", findings}};
 }
 
 Outcome outcome_of(const nlohmann::json& json) {
@@ -145,6 +146,7 @@ Outcome outcome_of(const nlohmann::json& json) {
   outcome.changed = json.at("changed");
   outcome.message = json.at("message");
   outcome.time = json.at("time");
+  outcome.parts = json.at("parts");
   for (const nlohmann::json& found : json.at("findings"))
     outcome.findings.push_back({found.at("what"), number(found.at("value")), number(found.at("bound"))});
   return outcome;
@@ -158,6 +160,7 @@ Outcome judged(const hard::Case& hard_case, const Asked& asked, Told& told) {
   outcome.setting = told.setting;
   outcome.changed = told.changed;
   outcome.time = told.time;
+  outcome.parts = asked.finer;
   return outcome;
 }
 
@@ -182,6 +185,7 @@ bool judge(const hard::Case& hard_case, const Asked& asked, Outcome& outcome) {
   outcome.setting = memory.told.setting;
   outcome.changed = memory.told.changed;
   outcome.time = memory.told.time;
+  outcome.parts = asked.finer;
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU || signal == SIGKILL)
     failed(outcome, Outcome::hangs, fmt::format("no end within {} s of CPU time", longest));

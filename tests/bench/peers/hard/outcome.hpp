@@ -15,6 +15,7 @@ struct Outcome {
   enum Kind { survives, wrong, explodes, gives_up, aborts, hangs, cannot_say } kind = cannot_say;
   std::string setting, changed, message;
   double time = 0;  // that was reached [s]
+  int parts = 1;    // of each step
   std::vector<hard::Finding> findings;
 
   bool exists() const { return !findings.empty() || !message.empty() || kind == explodes; }

@@ -8,8 +8,6 @@
 
 namespace cdot::peers {
 
-inline constexpr int finer_parts = 100;  // of a step, where no setting holds a case
-
 // A way to be asked: engines of the plane get a case's planar scene, those of space the other; Cdot both.
 struct Column {
   const char* title;

@@ -1,0 +1,144 @@
+// That the page of hard cases is whole, and that what an engine makes of a case is not a mistake of its adapter.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include "tests/bench/peers/geometry.hpp"
+#include "tests/bench/peers/hard/table.hpp"
+#include "tests/bench/peers/measure.hpp"
+#include "tests/bench/peers/problem.hpp"
+
+namespace cdot::peers {
+namespace {
+
+const std::string folder = CDOT_SOURCE_DIR "/tests/bench/peers/";
+
+std::string text_of(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+nlohmann::json committed() { return nlohmann::json::parse(text_of(folder + "hard_cases.json")); }
+
+TEST(HardCases, HaveACellForEveryCaseAndEngine) {
+  const nlohmann::json found = committed();
+  int cells = 0;
+  for (const Row& row : rows()) {
+    if (!row.reason.empty()) continue;
+    ASSERT_TRUE(found.contains(row.name)) << row.name << ": remake the page";
+    for (const Column& column : columns()) {
+      EXPECT_TRUE(found.at(row.name).contains(column.title)) << row.name << ", " << column.title;
+      ++cells;
+    }
+  }
+  EXPECT_EQ(text_of(folder + "hard_cases.md"), page(found)) << "remake it with --page";
+  std::printf("%d cells\n", cells);
+}
+
+// Small steps: 1/6000 s, or a hundredth of a radian; and so many.
+constexpr int moment = 120;
+double fine_step(const Problem& problem) {
+  double spin = 60;
+  for (const Body& body : problem.bodies) spin = std::max(spin, norm(body.start.w));
+  return 0.01 / spin;
+}
+
+std::vector<State> after_a_moment(const Problem& problem, const Setting& setting, double& start_off) {
+  const double h = fine_step(problem);
+  const auto run = setting.series.start(setting.knob > 0 ? setting.knob : h);
+  start_off = start_error(problem, *run);
+  for (int k = 0; k < moment; ++k) run->step(h);
+  std::vector<State> states;
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) states.push_back(run->state(int(k)));
+  return states;
+}
+
+double apart(const std::vector<State>& a, const std::vector<State>& b) {
+  double worst = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, norm(a[k].x - b[k].x));
+  return worst;
+}
+
+const Engine& named(const std::string& name) {
+  return *std::find_if(engines().begin(), engines().end(), [&](const Engine& e) { return e.name == name; });
+}
+
+Setting exact(const Problem& problem) {
+  for (const Setting& setting : settings(named("Cdot"), problem))
+    if (setting.series.name.starts_with("dop853, adaptive") && setting.knob < 1e-5) return setting;
+  throw std::logic_error("no such setting");
+}
+
+// How far a start is from its joints, and the largest number in it.
+double open(const Problem& problem) {
+  double gap = 0;
+  for (const Joint& joint : problem.joints) gap = std::max(gap, norm(joint.anchor_b - joint.anchor));
+  return gap;
+}
+double scale(const Problem& problem) {
+  double most = 1;
+  for (const Body& body : problem.bodies)
+    most = std::max({most, norm(body.start.x), norm(body.start.v), norm(body.start.w)});
+  return most;
+}
+
+// Sweeps come closer slowly where masses are a million apart.
+double share(const Problem& problem) {
+  double least = never, most = 0;
+  for (const Body& body : problem.bodies) {
+    least = std::min(least, body.mass);
+    most = std::max(most, body.mass);
+  }
+  return most > 1e5 * least ? 0.12 : 0.02;
+}
+
+// Settings that end the process would end the test.
+bool aborts(const nlohmann::json& cell, const std::string& setting) {
+  const std::vector<Outcome> all = cell_of(cell).settings;
+  return std::any_of(all.begin(), all.end(),
+                     [&](const Outcome& o) { return o.setting == setting && o.kind == Outcome::aborts; });
+}
+
+// In small steps, in the best of its settings, every engine goes where Cdot goes.
+TEST(HardCases, AreTheSameForEveryEngineInSmallSteps) {
+  const nlohmann::json found = committed();
+  int agreed = 0;
+  for (const Row& row : rows()) {
+    if (!row.reason.empty()) continue;
+    for (const Column& column : columns()) {
+      const Question asked = question(row, column);
+      if (asked.hard_case == nullptr || column.title == std::string("Cdot, plane")) continue;
+      const std::string what = row.name + ", " + column.title;
+      try {
+        const Problem problem = problem_of(*asked.hard_case);
+        if (problem.bodies.size() > 50 || open(problem) > 1e-6 * scale(problem)) continue;
+        double off = 0, best = never;
+        const std::vector<State> right = after_a_moment(problem, exact(problem), off);
+        const bool single = asked.engine->number == "float";
+        for (const Setting& setting : settings(*asked.engine, problem)) {
+          if (aborts(found.at(row.name).at(column.title), setting.series.name)) continue;
+          try {
+            best = std::min(best, apart(after_a_moment(problem, setting, off), right));
+          } catch (const CannotSay&) {
+            throw;
+          } catch (const std::exception& gave_up) {
+            std::printf("%s, %s: %s\n", what.c_str(), setting.series.name.c_str(), gave_up.what());
+          }
+          EXPECT_LE(off, (single ? 1e-6 : 1e-9) * scale(problem)) << what << ", " << setting.series.name << ": start";
+        }
+        const double way = apart(right, starts(problem)), grain = (single ? 1e-6 : 1e-12) * scale(problem);
+        EXPECT_LE(best, share(problem) * way + grain) << what << ", of " << way;
+        ++agreed;
+      } catch (const CannotSay&) {
+      }
+    }
+  }
+  std::printf("%d agree\n", agreed);
+  EXPECT_GT(agreed, 0);
+}
+
+}  // namespace
+}  // namespace cdot::peers
