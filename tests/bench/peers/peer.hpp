@@ -46,9 +46,9 @@ inline constexpr int world = -1;
 struct Joint {
   JointKind kind = JointKind::revolute;
   int a = 0, b = 0;  // indices of bodies, or `world`
-  Vec3 anchor{};    // of a, at the start, in world axes
-  Vec3 axis{};      // likewise: what it turns about or slides along
-  Vec3 anchor_b{};  // of b: elsewhere where a joint starts open
+  Vec3 anchor{};     // of a, at the start, in world axes
+  Vec3 axis{};       // likewise: what it turns about or slides along
+  Vec3 anchor_b{};   // of b: elsewhere where a joint starts open
   double length = 0;
   std::optional<Motor> motor;
   std::optional<Stops> stops;

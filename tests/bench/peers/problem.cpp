@@ -64,14 +64,11 @@ Vec3 anchor_of(const Problem& problem, const BasicWorld<S>& built, int joint, in
 }
 
 JointKind kind_of(const SceneJoint& source, Dimension dimension) {
-  static const std::map<std::string, JointKind> kinds{{"revolute", JointKind::revolute},
-                                                      {"hinge", JointKind::revolute},
-                                                      {"prismatic", JointKind::prismatic},
-                                                      {"spherical", JointKind::spherical},
-                                                      {"weld", JointKind::fixed},
-                                                      {"fixed", JointKind::fixed},
-                                                      {"distance", JointKind::distance},
-                                                      {"max_distance", JointKind::max_distance}};
+  static const std::map<std::string, JointKind> kinds{
+      {"revolute", JointKind::revolute},   {"hinge", JointKind::revolute},
+      {"prismatic", JointKind::prismatic}, {"spherical", JointKind::spherical},
+      {"weld", JointKind::fixed},          {"fixed", JointKind::fixed},
+      {"distance", JointKind::distance},   {"max_distance", JointKind::max_distance}};
   const auto found = kinds.find(source.definition.type);
   if (found == kinds.end() || (found->second == JointKind::spherical && dimension == Dimension::planar))
     throw CannotSay(source.definition.type + ": no adapter knows this joint");
@@ -186,9 +183,8 @@ template Problem problem_of(const Scene&, const BasicWorld<Spatial<double>>&);
 
 Problem pose(const ProblemRow& row) {
   const Scene scene = read_scene(fmt::format("{}/specs/scenes/{}.toml", CDOT_SOURCE_DIR, row.scene));
-  Problem problem = scene.dimension == Dimension::planar
-                        ? problem_of(scene, build_world_in<Planar<double>>(scene))
-                        : problem_of(scene, build_world_in<Spatial<double>>(scene));
+  Problem problem = scene.dimension == Dimension::planar ? problem_of(scene, build_world_in<Planar<double>>(scene))
+                                                         : problem_of(scene, build_world_in<Spatial<double>>(scene));
   problem.name = row.name;
   problem.title = row.title;
   problem.scene = row.scene;

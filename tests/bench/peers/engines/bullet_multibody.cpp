@@ -70,8 +70,8 @@ class MultibodyRun final : public SteppedRun {
  private:
   // The world is the base, or the one body that nothing holds.
   void make(const Problem& problem, const Tree& tree) {
-    const bool rootless = std::any_of(tree.branches.begin(), tree.branches.end(),
-                                      [](const Branch& branch) { return branch.joint < 0; });
+    const bool rootless =
+        std::any_of(tree.branches.begin(), tree.branches.end(), [](const Branch& branch) { return branch.joint < 0; });
     if (rootless && problem.bodies.size() > 1)
       throw CannotSay("the adapter makes one tree that hangs from the world, or one free body");
     if (problem.joints.empty()) {

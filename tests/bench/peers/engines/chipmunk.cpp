@@ -118,8 +118,8 @@ std::vector<Series> series(const Problem& problem) {
   return all;
 }
 
-const Registration registration{
-    {"Chipmunk", cpVersionString, "double", "#8250df", "no shapes; a slider is a groove and a gear, a weld a pivot and a gear", series}};
+const Registration registration{{"Chipmunk", cpVersionString, "double", "#8250df",
+                                 "no shapes; a slider is a groove and a gear, a weld a pivot and a gear", series}};
 
 }  // namespace
 }  // namespace cdot::peers

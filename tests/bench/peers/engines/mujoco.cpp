@@ -98,7 +98,8 @@ class MujocoRun final : public SteppedRun {
       }
     }
     const Tree tree = tree_of(problem);
-    for (std::size_t k = 0; k < tree.loops.size(); ++k) open(problem, problem.joints[std::size_t(tree.loops[k])], int(k));
+    for (std::size_t k = 0; k < tree.loops.size(); ++k)
+      open(problem, problem.joints[std::size_t(tree.loops[k])], int(k));
     for (const Branch& branch : tree.branches) {
       bodies_.push_back(0);
       set_velocity(problem, branch);

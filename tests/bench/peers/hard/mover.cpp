@@ -15,8 +15,8 @@
 namespace cdot::peers {
 namespace {
 
-constexpr double beyond_measure = 1e4;                   // sizes of the scene that a body has gone
-constexpr std::array accuracies{1e-3, 1e-6};             // of methods that choose their steps
+constexpr double beyond_measure = 1e4;                      // sizes of the scene that a body has gone
+constexpr std::array accuracies{1e-3, 1e-6};                // of methods that choose their steps
 constexpr double start_off = 1e-9, float_start_off = 1e-6;  // of the largest place or speed
 
 template <std::size_t size>
@@ -131,8 +131,7 @@ std::vector<Setting> settings(const Engine& engine, const Problem& problem) {
       all.push_back(setting);
     }
   }
-  const auto plain =
-      std::find_if(all.begin(), all.end(), [](const Setting& s) { return s.series.changed.empty(); });
+  const auto plain = std::find_if(all.begin(), all.end(), [](const Setting& s) { return s.series.changed.empty(); });
   if (plain != all.end()) std::rotate(all.begin(), plain, plain + 1);
   return all;
 }
@@ -156,8 +155,7 @@ Problem problem_of(const hard::Case& hard_case) {
 
 void let_move(const Asked& asked, Told& told) {
   hard::another_engine = [asked, &told](const Scene& scene, hard::AnyWorld& world) {
-    if (scene.dimension == Dimension::planar)
-      return stand(asked, told, scene, std::get<World<double>>(world));
+    if (scene.dimension == Dimension::planar) return stand(asked, told, scene, std::get<World<double>>(world));
     return stand(asked, told, scene, std::get<SpatialWorld<double>>(world));
   };
 }

@@ -18,7 +18,8 @@ namespace {
 
 constexpr rlim_t longest = 900;  // CPU seconds of one run: only for one that would not end
 
-constexpr std::array<const char*, 7> kinds{"survives", "wrong", "explodes", "gives up", "aborts", "hangs", "cannot say"};
+constexpr std::array<const char*, 7> kinds{"survives", "wrong", "explodes",  "gives up",
+                                           "aborts",   "hangs", "cannot say"};
 
 // Forces are not read from engines: what joints carry is not judged.
 bool of_motion(const hard::Finding& found) {
@@ -75,8 +76,7 @@ struct Shared {
 };
 
 Shared& shared() {
-  static void* const memory =
-      mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  static void* const memory = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   return *static_cast<Shared*>(memory);
 }
 
@@ -133,8 +133,12 @@ nlohmann::json json_of(const Outcome& outcome) {
   nlohmann::json findings = nlohmann::json::array();
   for (const hard::Finding& found : outcome.findings)
     findings.push_back({{"what", found.what}, {"value", number(found.value)}, {"bound", number(found.bound)}});
-  return {{"outcome", name_of(outcome.kind)}, {"setting", outcome.setting}, {"changed", outcome.changed},
-          {"message", outcome.message},       {"time", outcome.time},       {"parts", outcome.parts},
+  return {{"outcome", name_of(outcome.kind)},
+          {"setting", outcome.setting},
+          {"changed", outcome.changed},
+          {"message", outcome.message},
+          {"time", outcome.time},
+          {"parts", outcome.parts},
           {"findings", findings}};
 }
 

@@ -145,15 +145,12 @@ std::string details(const Row& row, const nlohmann::json& cells) {
 }  // namespace
 
 const std::vector<Column>& columns() {
-  static const std::vector<Column> all = {{"Cdot, plane", "Cdot", nullptr, true},
-                                          {"Cdot, space", "Cdot", "Cdot in space", false},
-                                          {"Box2D", "Box2D", nullptr, true},
-                                          {"Chipmunk", "Chipmunk", nullptr, true},
-                                          {"Bullet", "Bullet", "Bullet", false},
-                                          {"Bullet multibody", "Bullet multibody", "Bullet multibody", false},
-                                          {"MuJoCo", "MuJoCo", "MuJoCo", false},
-                                          {"ODE", "ODE", "ODE", false},
-                                          {"Simbody", "Simbody", "Simbody", false}};
+  static const std::vector<Column> all = {
+      {"Cdot, plane", "Cdot", nullptr, true},  {"Cdot, space", "Cdot", "Cdot in space", false},
+      {"Box2D", "Box2D", nullptr, true},       {"Chipmunk", "Chipmunk", nullptr, true},
+      {"Bullet", "Bullet", "Bullet", false},   {"Bullet multibody", "Bullet multibody", "Bullet multibody", false},
+      {"MuJoCo", "MuJoCo", "MuJoCo", false},   {"ODE", "ODE", "ODE", false},
+      {"Simbody", "Simbody", "Simbody", false}};
   return all;
 }
 
