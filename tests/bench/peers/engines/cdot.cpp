@@ -1,5 +1,7 @@
 // Cdot itself, in the plane where the problem is planar; and, as an engine of its own, planar problems in space,
 // since the others that know only space have no choice.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -120,16 +122,24 @@ BasicWorld<S> build(const Problem& problem, Settings settings) {
   return made;
 }
 
+// What step() says, aloud.
+void check(const StepResult& result, const Problem& problem) {
+  if (result) return;
+  const std::string body = result.body >= 0 ? problem.bodies[std::size_t(result.body)].name : "";
+  throw std::runtime_error(in_words(result, body, fmt::format("joint {}", result.joint + 1)));
+}
+
 template <class S>
 class CdotRun final : public SteppedRun {
  public:
   CdotRun(const Problem& problem, const Settings& settings, double h)
-      : SteppedRun(h), world_(build<S>(problem, settings)) {}
+      : SteppedRun(h), problem_(problem), world_(build<S>(problem, settings)) {}
   State state(int body) const override { return state_of(world_.place(body), world_.velocity(body)); }
 
-  void step(double h) override { world_.step(h); }
+  void step(double h) override { check(world_.step(h), problem_); }
 
  private:
+  const Problem& problem_;
   BasicWorld<S> world_;
 };
 
@@ -138,10 +148,10 @@ template <class S>
 class AdaptiveRun final : public Run {
  public:
   AdaptiveRun(const Problem& problem, Settings settings, double local_error)
-      : world_(build<S>(problem, with(settings, local_error))) {}
+      : problem_(problem), world_(build<S>(problem, with(settings, local_error))) {}
   void advance(double to) override { step(to - now_); }
   void step(double by) override {
-    world_.step(by);
+    check(world_.step(by), problem_);
     now_ += by;
   }
   State state(int body) const override { return state_of(world_.place(body), world_.velocity(body)); }
@@ -151,6 +161,7 @@ class AdaptiveRun final : public Run {
     settings.local_error = local_error;
     return settings;
   }
+  const Problem& problem_;
   BasicWorld<S> world_;
   double now_ = 0;
 };
