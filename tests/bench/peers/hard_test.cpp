@@ -95,11 +95,46 @@ double share(const Problem& problem) {
   return most > 1e5 * least ? 0.12 : 0.02;
 }
 
-// Settings that end the process would end the test.
-bool aborts(const nlohmann::json& cell, const std::string& setting) {
+// Settings that the page knows to end the process, or to be no number at once, which ends some: they would end the
+// test.
+bool ends_at_once(const nlohmann::json& cell, const std::string& setting) {
   const std::vector<Outcome> all = cell_of(cell).settings;
-  return std::any_of(all.begin(), all.end(),
-                     [&](const Outcome& o) { return o.setting == setting && o.kind == Outcome::aborts; });
+  return std::any_of(all.begin(), all.end(), [&](const Outcome& o) {
+    return o.setting == setting && (o.kind == Outcome::aborts || (o.kind == Outcome::explodes && o.time < 0.1));
+  });
+}
+
+// How far bodies came in that moment, or would fall.
+double way(const Problem& problem, const std::vector<State>& right) {
+  const double time = moment * fine_step(problem);
+  return std::max(apart(right, starts(problem)), 0.5 * norm(problem.gravity) * time * time);
+}
+
+// The least that a setting is off, against what it may be; never if none could be asked.
+double least_off(const Question& asked, const Problem& problem, const nlohmann::json& cell, const std::string& what) {
+  double off = 0, best = never;
+  const std::vector<State> right = after_a_moment(problem, exact(problem), off);
+  const double grain = (asked.engine->number == "float" ? 1e-6 : 1e-12) * scale(problem);
+  const double bound = share(problem) * way(problem, right) + grain;
+  for (const Setting& setting : settings(*asked.engine, problem)) {
+    if (best <= bound) break;
+    if (ends_at_once(cell, setting.series.name)) continue;
+    try {
+      best = std::min(best, apart(after_a_moment(problem, setting, off), right));
+    } catch (const CannotSay&) {
+      throw;
+    } catch (const std::exception& gave_up) {
+      std::printf("%s, %s: %s\n", what.c_str(), setting.series.name.c_str(), gave_up.what());
+    }
+    EXPECT_LE(off, std::max(grain, 1e-9 * scale(problem))) << what << ", " << setting.series.name << ": start";
+  }
+  return best / bound;
+}
+
+// Where no setting may be asked, all fail for reasons that the page tells.
+bool all_end_at_once(const nlohmann::json& cell) {
+  const std::vector<Outcome> all = cell_of(cell).settings;
+  return std::all_of(all.begin(), all.end(), [&](const Outcome& o) { return ends_at_once(cell, o.setting); });
 }
 
 // In small steps, in the best of its settings, every engine goes where Cdot goes.
@@ -110,34 +145,20 @@ TEST(HardCases, AreTheSameForEveryEngineInSmallSteps) {
     if (!row.reason.empty()) continue;
     for (const Column& column : columns()) {
       const Question asked = question(row, column);
-      if (asked.hard_case == nullptr || column.title == std::string("Cdot, plane")) continue;
+      const nlohmann::json cell = found.at(row.name).at(column.title);
+      if (asked.hard_case == nullptr || all_end_at_once(cell)) continue;
       const std::string what = row.name + ", " + column.title;
       try {
         const Problem problem = problem_of(*asked.hard_case);
         if (problem.bodies.size() > 50 || open(problem) > 1e-6 * scale(problem)) continue;
-        double off = 0, best = never;
-        const std::vector<State> right = after_a_moment(problem, exact(problem), off);
-        const bool single = asked.engine->number == "float";
-        for (const Setting& setting : settings(*asked.engine, problem)) {
-          if (aborts(found.at(row.name).at(column.title), setting.series.name)) continue;
-          try {
-            best = std::min(best, apart(after_a_moment(problem, setting, off), right));
-          } catch (const CannotSay&) {
-            throw;
-          } catch (const std::exception& gave_up) {
-            std::printf("%s, %s: %s\n", what.c_str(), setting.series.name.c_str(), gave_up.what());
-          }
-          EXPECT_LE(off, (single ? 1e-6 : 1e-9) * scale(problem)) << what << ", " << setting.series.name << ": start";
-        }
-        const double way = apart(right, starts(problem)), grain = (single ? 1e-6 : 1e-12) * scale(problem);
-        EXPECT_LE(best, share(problem) * way + grain) << what << ", of " << way;
+        EXPECT_LE(least_off(asked, problem, cell, what), 1) << what;
         ++agreed;
       } catch (const CannotSay&) {
       }
     }
   }
   std::printf("%d agree\n", agreed);
-  EXPECT_GT(agreed, 0);
+  EXPECT_GT(agreed, 200);
 }
 
 }  // namespace

@@ -41,13 +41,13 @@ class Box2dRun final : public SteppedRun {
     def.angle = float(angle(body.start.q));
     def.linearVelocity = vec(body.start.v);
     def.angularVelocity = float(body.start.w[2]);
+    def.fixedRotation = !body.turns;
     b2Body* made = world_.CreateBody(&def);
     b2MassData mass;
     mass.mass = float(body.mass);
     mass.center.SetZero();
     mass.I = float(body.inertia[2]);
     made->SetMassData(&mass);
-    made->SetFixedRotation(!body.turns);
     bodies_.push_back(made);
   }
 

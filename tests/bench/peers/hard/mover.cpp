@@ -49,7 +49,10 @@ void put(World<double>& world, int body, const State& s, double by) {
 }
 void put(SpatialWorld<double>& world, int body, const State& s, double) {
   world.set_velocity(body, {s.v[0], s.v[1], s.v[2], s.w[0], s.w[1], s.w[2]});
-  world.set_pose(body, {s.x[0], s.x[1], s.x[2], s.q[0], s.q[1], s.q[2], s.q[3]});
+  // Of the two quaternions of an orientation, that on the side of the last.
+  const auto last = world.pose(body);
+  const double side = last.e0 * s.q[0] + last.e1 * s.q[1] + last.e2 * s.q[2] + last.e3 * s.q[3] < 0 ? -1 : 1;
+  world.set_pose(body, {s.x[0], s.x[1], s.x[2], side * s.q[0], side * s.q[1], side * s.q[2], side * s.q[3]});
 }
 
 // With times for those that choose steps by them.

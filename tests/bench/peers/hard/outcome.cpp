@@ -49,7 +49,9 @@ void settle(Outcome& outcome, const std::vector<hard::Finding>& findings) {
 
 void failed(Outcome& outcome, Outcome::Kind kind, const std::string& message) {
   outcome.kind = kind;
-  outcome.message = message.substr(0, message.find('\n'));
+  outcome.message = message.substr(0, 300);
+  std::replace(outcome.message.begin(), outcome.message.end(), '\n', ' ');
+  std::replace(outcome.message.begin(), outcome.message.end(), '|', '/');
 }
 
 void run(Outcome& outcome, const hard::Case& hard_case, const Asked& asked) {

@@ -114,6 +114,9 @@ struct Remark {
 constexpr Remark remarks[] = {
     {"bodies_that_cannot_turn", "Chipmunk",
      "the gear that keeps the angle divides by the sum of the inverse moments, which is zero here"},
+    {"redundant_hinges", "Simbody",
+     "a loop all of whose rows repeat what the tree holds leaves it without a number, closed by balls alone too"},
+    {"same_joint_ten_times", "Simbody", "the same"},
     {"scales, 1e-6 m, 1e-9 kg", "Bullet multibody", "takes inertias below 2e-16 for none"},
     {"scales, 1e3 m", "Box2D", "moves a body by 2 m in a step at most, b2_maxTranslation"},
     {"scales, 1e6 m", "Box2D", "moves a body by 2 m in a step at most, b2_maxTranslation"}};
@@ -140,6 +143,23 @@ std::string details(const Row& row, const nlohmann::json& cells) {
                         cell.finer.exists() ? fmt::format("(h/{}) {}", cell.finer.parts, account(cell.finer)) : "");
   }
   return text + remarks_on(row);
+}
+
+// How many cases a column holds: with its defaults, with any setting, of those that it can say.
+std::string tally(const nlohmann::json& found) {
+  std::string text = "| of those it can say: holds with its defaults, with any setting |";
+  for (const Column& column : columns()) {
+    int said = 0, plain = 0, any = 0;
+    for (const Row& row : rows()) {
+      if (!row.reason.empty() || !found.contains(row.name) || !found.at(row.name).contains(column.title)) continue;
+      const Cell cell = cell_of(found.at(row.name).at(column.title));
+      said += cell.settings[0].kind != Outcome::cannot_say;
+      plain += cell.settings[0].kind == Outcome::survives;
+      any += cell.settings[cell.best()].kind == Outcome::survives;
+    }
+    text += fmt::format(" {}: {}, {} |", said, plain, any);
+  }
+  return text + "\n";
 }
 
 }  // namespace
@@ -178,6 +198,7 @@ Question question(const Row& row, const Column& column) {
 }
 
 std::size_t Cell::best() const {
+  if (settings[0].kind == Outcome::survives) return 0;
   return std::size_t(std::min_element(settings.begin(), settings.end()) - settings.begin());
 }
 
@@ -214,7 +235,7 @@ std::string page(const nlohmann::json& found) {
     text += "\n";
     below += details(row, cells);
   }
-  return text + "\n## Case by case\n" + below;
+  return text + tally(found) + "\n## Case by case\n" + below;
 }
 
 }  // namespace cdot::peers

@@ -36,7 +36,7 @@ Question question(const Row& row, const Column& column);
 struct Cell {
   std::vector<Outcome> settings;
   Outcome finer;
-  std::size_t best() const;
+  std::size_t best() const;  // the defaults, if they do
 };
 nlohmann::json json_of(const Cell& cell);
 Cell cell_of(const nlohmann::json& json);
