@@ -11,8 +11,8 @@ namespace {
 using namespace cdot::peers;
 namespace hard = cdot::hard;
 
-// Of a step, where no setting holds a case; fewer where that would take hours.
-int finer_parts(const hard::Case& hard_case) { return problem_of(hard_case).bodies.size() > 50 ? 10 : 100; }
+constexpr int finer_parts = 100;             // of a step, where no setting holds a case
+constexpr std::size_t too_many_bodies = 50;  // for that: it would take hours
 
 Cell ask(const Question& question) {
   Cell cell;
@@ -28,7 +28,8 @@ Cell ask(const Question& question) {
   }
   const int best = int(cell.best());
   if (cell.settings[cell.best()].kind == Outcome::survives) return cell;
-  asked.finer = finer_parts(*question.hard_case);
+  if (problem_of(*question.hard_case).bodies.size() > too_many_bodies) return cell;
+  asked.finer = finer_parts;
   for (const int setting : {best, 0}) {
     Outcome outcome;
     asked.setting = setting;

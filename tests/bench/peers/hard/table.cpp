@@ -20,8 +20,8 @@ are asked in the plane, those of space in space; where a case has only a planar 
 Every engine is asked with its defaults and with every series of settings that paid in [results](results/README.md), at
 the same step. **holds**: with its defaults. *holds, tuned*: with another setting, named below. A number: of its best
 setting, the one that is worst against its bound, and that bound. *explodes*: a body is no number, or 10 000 sizes of the
-scene away, at that time. —: it cannot pose the case, for the reason below. What no setting holds was also run in finer
-steps, so that what is wrong there is told from what the step costs.
+scene away, at that time. —: it cannot pose the case, for the reason below. What no setting holds was also run at a
+hundredth of the step (but for chains of 100 links), which tells what the step costs from what is wrong there.
 
 **To read it fairly.** The bounds are those that Cdot is tested by; many are far below what an engine made for games aims
 at: a gap of a millimetre is none to a player. Engines in minimal coordinates (Bullet's multibodies, MuJoCo, Simbody)
@@ -131,7 +131,7 @@ std::string remarks_on(const Row& row) {
 std::string details(const Row& row, const nlohmann::json& cells) {
   std::string text = fmt::format("\n### {}\n\n", row.name);
   if (!row.reason.empty()) return text + "Not asked: " + row.reason + ".\n";
-  text += "| engine | its defaults | its best setting | that in finer steps |\n|---|---|---|---|\n";
+  text += "| engine | its defaults | its best setting | that at a hundredth of the step |\n|---|---|---|---|\n";
   for (const Column& column : columns()) {
     if (!cells.contains(column.title)) continue;
     const Cell cell = cell_of(cells.at(column.title));
@@ -140,7 +140,7 @@ std::string details(const Row& row, const nlohmann::json& cells) {
     const std::string changed = tuned.changed.empty() ? tuned.setting : tuned.changed;
     text += fmt::format("| {} | {} | {} | {} |\n", column.title, account(plain),
                         best == 0 ? "" : fmt::format("({}) {}", changed, account(tuned)),
-                        cell.finer.exists() ? fmt::format("(h/{}) {}", cell.finer.parts, account(cell.finer)) : "");
+                        cell.finer.exists() ? account(cell.finer) : "");
   }
   return text + remarks_on(row);
 }
