@@ -11,10 +11,10 @@ namespace {
 using namespace cdot::peers;
 namespace hard = cdot::hard;
 
-constexpr int finer_parts = 100;             // of a step, where no setting holds a case
-constexpr std::size_t too_many_bodies = 50;  // for that: it would take hours
+constexpr int finer_parts = 100;         // of a step, where no setting holds a case
+constexpr std::size_t many_bodies = 50;  // more would take hours
 
-Cell ask(const Question& question) {
+Cell ask(const Question& question, bool slow) {
   Cell cell;
   Asked asked{question.engine};
   if (question.hard_case == nullptr) {
@@ -22,13 +22,15 @@ Cell ask(const Question& question) {
     cell.settings[0].message = "knows the plane only";
     return cell;
   }
+  const auto large = [&] { return problem_of(*question.hard_case).bodies.size() > many_bodies; };
+  const auto enough = [&](const Outcome& plain) { return plain.kind == Outcome::survives || large(); };
   for (Outcome outcome; judge(*question.hard_case, asked, outcome); ++asked.setting) {
     cell.settings.push_back(outcome);
-    if (outcome.kind == Outcome::cannot_say) return cell;
+    if (outcome.kind == Outcome::cannot_say || (slow && enough(outcome))) return cell;
   }
   const int best = int(cell.best());
   if (cell.settings[cell.best()].kind == Outcome::survives) return cell;
-  if (problem_of(*question.hard_case).bodies.size() > too_many_bodies) return cell;
+  if (large()) return cell;
   asked.finer = finer_parts;
   for (const int setting : {best, 0}) {
     Outcome outcome;
@@ -46,7 +48,20 @@ nlohmann::json read(const std::string& file) {
 }
 
 void write(const std::string& folder, const nlohmann::json& found) {
-  std::ofstream(folder + "/hard_cases.json") << found.dump(1) << "\n";
+  std::ofstream out(folder + "/hard_cases.json");  // a cell a line
+  const char* row_end = "";
+  out << "{";
+  for (const auto& [row, cells] : found.items()) {
+    out << row_end << "\n " << nlohmann::json(row).dump() << ": {";
+    const char* cell_end = "";
+    for (const auto& [column, cell] : cells.items()) {
+      out << cell_end << "\n  " << nlohmann::json(column).dump() << ": " << cell.dump();
+      cell_end = ",";
+    }
+    out << "}";
+    row_end = ",";
+  }
+  out << "\n}\n";
   std::ofstream(folder + "/hard_cases.md") << page(found);
 }
 
@@ -67,7 +82,7 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "{}\n", row.name);
     for (const Column& column : columns()) {
       if (!engine.empty() && engine != column.title) continue;
-      found[row.name][column.title] = json_of(ask(question(row, column)));
+      found[row.name][column.title] = json_of(ask(question(row, column), column.slow));
       if (!output.empty()) write(output, found);
     }
   }

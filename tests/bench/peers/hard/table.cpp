@@ -21,7 +21,9 @@ Every engine is asked with its defaults and with every series of settings that p
 the same step. **holds**: with its defaults. *holds, tuned*: with another setting, named below. A number: of its best
 setting, the one that is worst against its bound, and that bound. *explodes*: a body is no number, or 10 000 sizes of the
 scene away, at that time. —: it cannot pose the case, for the reason below. What no setting holds was also run at a
-hundredth of the step (but for chains of 100 links), which tells what the step costs from what is wrong there.
+hundredth of the step, which tells what the step costs from what is wrong there. Simbody, which
+is slow here, is asked until one of its settings holds. Chains of 100 links are not refined, and Simbody is asked these
+with its defaults only: it would take hours.
 
 **To read it fairly.** The bounds are those that Cdot is tested by; many are far below what an engine made for games aims
 at: a gap of a millimetre is none to a player. Engines in minimal coordinates (Bullet's multibodies, MuJoCo, Simbody)
@@ -114,6 +116,8 @@ struct Remark {
 constexpr Remark remarks[] = {
     {"bodies_that_cannot_turn", "Chipmunk",
      "the gear that keeps the angle divides by the sum of the inverse moments, which is zero here"},
+    {"hanging_chain", "Simbody",
+     "only its default was run here and in jittered_step, where accuracy 1e-6 had not ended after 100 s of CPU time"},
     {"redundant_hinges", "Simbody",
      "a loop all of whose rows repeat what the tree holds leaves it without a number, closed by balls alone too"},
     {"same_joint_ten_times", "Simbody", "the same"},
@@ -165,12 +169,15 @@ std::string tally(const nlohmann::json& found) {
 }  // namespace
 
 const std::vector<Column>& columns() {
-  static const std::vector<Column> all = {
-      {"Cdot, plane", "Cdot", nullptr, true},  {"Cdot, space", "Cdot", "Cdot in space", false},
-      {"Box2D", "Box2D", nullptr, true},       {"Chipmunk", "Chipmunk", nullptr, true},
-      {"Bullet", "Bullet", "Bullet", false},   {"Bullet multibody", "Bullet multibody", "Bullet multibody", false},
-      {"MuJoCo", "MuJoCo", "MuJoCo", false},   {"ODE", "ODE", "ODE", false},
-      {"Simbody", "Simbody", "Simbody", false}};
+  static const std::vector<Column> all = {{"Cdot, plane", "Cdot", nullptr, true},
+                                          {"Cdot, space", "Cdot", "Cdot in space", false},
+                                          {"Box2D", "Box2D", nullptr, true},
+                                          {"Chipmunk", "Chipmunk", nullptr, true},
+                                          {"Bullet", "Bullet", "Bullet", false},
+                                          {"Bullet multibody", "Bullet multibody", "Bullet multibody", false},
+                                          {"MuJoCo", "MuJoCo", "MuJoCo", false},
+                                          {"ODE", "ODE", "ODE", false},
+                                          {"Simbody", "Simbody", "Simbody", false, true}};
   return all;
 }
 

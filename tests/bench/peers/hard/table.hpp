@@ -14,6 +14,7 @@ struct Column {
   const char* engine;
   const char* lifted;  // asked in its place where the case has a planar scene only
   bool planar;
+  bool slow = false;  // asked until a setting holds, and with its defaults only in chains of 100 links
 };
 const std::vector<Column>& columns();
 
