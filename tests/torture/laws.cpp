@@ -201,6 +201,10 @@ bool stiff(const Softness& s, double inverse_mass, double h) {
 
 }  // namespace
 
+double lightness(const Scene& scene, const std::vector<int>& bodies, double length) {
+  return lightness_of(scene, bodies, length).pull;
+}
+
 bool stiff(const Scene& scene, double step, double length) {
   for (const SceneJoint& joint : scene.joints) {
     const Lightness light = lightness_of(scene, joint.definition.bodies, length);
@@ -211,7 +215,7 @@ bool stiff(const Scene& scene, double step, double length) {
         if (stiff(spring.softness, any, step)) return true;
   }
   for (const SpringDefinition& spring : scene.springs) {
-    const double pull = lightness_of(scene, {spring.body_a, spring.body_b}, length).pull;
+    const double pull = lightness(scene, {spring.body_a, spring.body_b}, length);
     if (step * step * spring.stiffness * pull > 4 || step * spring.damping * pull > 2) return true;
   }
   for (const SceneBody& body : scene.bodies)

@@ -18,6 +18,9 @@ struct Laws {
 
 Laws laws_of(const Scene& scene);
 
+// 1 / m that a pull on these bodies feels at most, at arms of that length.
+double lightness(const Scene& scene, const std::vector<int>& bodies, double length);
+
 // A spring or damper, taken as a force over a step of that length, would throw its bodies back further than it found
 // them: h^2 k / m > 4 or h d / m > 2, m being the least that it may feel of bodies with arms up to `length`.
 bool stiff(const Scene& scene, double step, double length);

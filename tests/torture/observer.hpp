@@ -117,8 +117,9 @@ class Accounts {
   double angular_order_error() const { return angular_order_; }
 
  private:
+  const Scene* scene_;
   double order_, epsilon_, start_energy_, local_error_;
-  double pushed_;  // what the constant forces add to the velocities in a step, in the metric of the masses
+  double constant_, pushed_;  // what the constant forces, and springs as well, add to the velocities in a step, in the metric of the masses
   double step_;
   double farthest_ = 0;  // from the origin [m]
   long long taken_ = 0;
