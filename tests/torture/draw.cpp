@@ -28,8 +28,10 @@ void orient(Random& random, SpatialBodyDefinition& d) {
   const auto axis = random.in_cube(1, true);
   d.e0 = random.between(-1, 1), d.e1 = axis[0], d.e2 = axis[1], d.e3 = axis[2];
   const double length = std::sqrt(d.e0 * d.e0 + d.e1 * d.e1 + d.e2 * d.e2 + d.e3 * d.e3);
-  if (!(length > 1e-3)) d.e0 = 1, d.e1 = d.e2 = d.e3 = 0;
-  else d.e0 /= length, d.e1 /= length, d.e2 /= length, d.e3 /= length;
+  if (!(length > 1e-3))
+    d.e0 = 1, d.e1 = d.e2 = d.e3 = 0;
+  else
+    d.e0 /= length, d.e1 /= length, d.e2 /= length, d.e3 /= length;
 }
 
 std::vector<double> cut(const std::array<double, 3>& v, Dimension dimension) {
@@ -37,8 +39,8 @@ std::vector<double> cut(const std::array<double, 3>& v, Dimension dimension) {
 }
 
 // In the frame of the body, within its size; in the world's, near another body of the joint.
-std::vector<double> random_point(Random& random, const Scales& scales, const Scene& scene, const std::vector<int>& bodies,
-                                 int body) {
+std::vector<double> random_point(Random& random, const Scales& scales, const Scene& scene,
+                                 const std::vector<int>& bodies, int body) {
   const bool in_space = scene.dimension == Dimension::spatial;
   auto p = random.in_cube(0.5 * scales.length, in_space);
   if (body != world_body) return cut(p, scene.dimension);
@@ -221,8 +223,7 @@ SceneEffects random_effects(Random& random, const Scales& scales, const Coordina
     if (random.chance(0.8) || !may_be_unlimited) effects.motor->max_force = force;
   }
   if (kind == 2 || random.chance(0.1)) effects.springs.push_back({random_softness(random, scales, turns), now});
-  if (kind == 3)
-    effects.springs.push_back({{.by_frequency = false, .damping = force / (scales.rate * unit)}, 0.0});
+  if (kind == 3) effects.springs.push_back({{.by_frequency = false, .damping = force / (scales.rate * unit)}, 0.0});
   if (kind == 4) effects.friction = DryFriction{force};
   return effects;
 }
@@ -279,9 +280,9 @@ void add_effects(Random& random, const Scales& scales, Scene& scene) {
     const JointType& type = world.joint_type(static_cast<int>(j));
     for (const CoordinateInfo& coordinate : type.coordinates)
       if (random.chance(0.4) && has_value<S>(scene, static_cast<int>(j), coordinate.name))
-        joint.effects.push_back(
-            random_effects(random, scales, coordinate, world.coordinate(static_cast<int>(j), coordinate.name),
-                           scene.settings.local_error == 0));
+        joint.effects.push_back(random_effects(random, scales, coordinate,
+                                               world.coordinate(static_cast<int>(j), coordinate.name),
+                                               scene.settings.local_error == 0));
     if (random.chance(0.1)) joint.definition.soft = random_softness(random, scales, false);
     if (random.chance(0.05))
       joint.breaking = scales.mass * scales.length * scales.rate * scales.rate * random.log_between(1, 100);
@@ -291,9 +292,9 @@ void add_effects(Random& random, const Scales& scales, Scene& scene) {
     if (random.chance(0.1)) push(random, scales, body);
 }
 
-#define CDOT_INSTANTIATE(S)                                         \
-  template void take_state(const BasicWorld<S>&, int, SceneBody&);  \
-  template bool on_joints(BasicWorld<S>&, const Scene&);            \
+#define CDOT_INSTANTIATE(S)                                        \
+  template void take_state(const BasicWorld<S>&, int, SceneBody&); \
+  template bool on_joints(BasicWorld<S>&, const Scene&);           \
   template void add_effects<S>(Random&, const Scales&, Scene&);
 CDOT_INSTANTIATE(Planar<double>)
 CDOT_INSTANTIATE(Spatial<double>)

@@ -57,13 +57,12 @@ void Growth::choose_scales() {
 const std::string& Growth::any_type() {
   const auto types = joint_types(made_.scene.dimension);
   const auto holds_the_world = [](const JointType& type) {
-    return type.bodies == 1 || std::any_of(type.parameters.begin(), type.parameters.end(), [](const ParameterInfo& info) {
-             return info.body < 0 && info.kind != ParameterKind::scalar;
-           });
+    return type.bodies == 1 ||
+           std::any_of(type.parameters.begin(), type.parameters.end(),
+                       [](const ParameterInfo& info) { return info.body < 0 && info.kind != ParameterKind::scalar; });
   };
   const bool free = !anchored_ && random_.chance(0.9);
-  do
-    type_ = types[static_cast<std::size_t>(random_.below(static_cast<int>(types.size())))].name;
+  do type_ = types[static_cast<std::size_t>(random_.below(static_cast<int>(types.size())))].name;
   while (free && holds_the_world(*find_joint_type(made_.scene.dimension, type_)));
   return type_;
 }

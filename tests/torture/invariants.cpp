@@ -28,7 +28,8 @@ constexpr double just_passed = std::is_same_v<T, double> ? 3e-9 : 3e-4;
 constexpr double turns_round = 0.5;   // of unit rows, in a step
 constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
 
-// Pivots of K are told from round-off down to 64 epsilon of their row: bodies so much lighter than others are lost in it.
+// Pivots of K are told from round-off down to 64 epsilon of their row: bodies so much lighter than others are lost in
+// it.
 template <class T>
 constexpr double told_apart = 1 / (64.0 * std::numeric_limits<T>::epsilon());
 
@@ -42,7 +43,8 @@ double heaviest_over_lightest(const Scene& scene) {
   return most > 0 ? most / least : 1;
 }
 
-Verdict verdict(Outcome outcome, std::string what, std::string detail, double value = 0, double bound = 0, int step = 0) {
+Verdict verdict(Outcome outcome, std::string what, std::string detail, double value = 0, double bound = 0,
+                int step = 0) {
   Verdict v;
   v.outcome = outcome, v.what = std::move(what), v.detail = std::move(detail);
   v.value = value, v.bound = bound, v.step = step;
@@ -97,7 +99,7 @@ class Trial {
   Laws laws_;
   RowSizes sizes_;
   Motion start_;
-  double independence_ = 1;  // at the start
+  double independence_ = 1;                // at the start
   std::vector<typename S::Place> places_;  // of the scene's bodies, before the step
   double start_energy_ = 0, torques_ = 0;
   std::optional<Accounts> accounts_;
@@ -157,8 +159,7 @@ std::optional<Verdict> Trial<S>::look_at_energy(double energy, int k) const {
   const double rise = energy - start_energy_;
   if (k < 2 || sweeps_only()) return {};
   const bool sweeps = scene_->settings.solver == Solver::iterative;
-  if (laws_.energy_falls && !(rise <= bound))
-    return verdict(Outcome::broken, "energy rises", "", rise, bound, k);
+  if (laws_.energy_falls && !(rise <= bound)) return verdict(Outcome::broken, "energy rises", "", rise, bound, k);
   if (laws_.energy_kept && !sweeps && scene_->settings.integrator != Integrator::implicit && !(-rise <= bound))
     return verdict(Outcome::broken, "energy falls", "", -rise, bound, k);
   return {};
@@ -180,7 +181,8 @@ Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
 template <class S>
 const char* Trial<S>::excuse(BasicWorld<S>& world) const {
   if (laws_.may_contradict) return "a prescribed motion, or a rolling one, meets what may stop it";
-  if (heaviest_over_lightest(*scene_) > told_apart<T>) return "masses further apart than pivots are told from round-off";
+  if (heaviest_over_lightest(*scene_) > told_apart<T>)
+    return "masses further apart than pivots are told from round-off";
   if (independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon()) < nearly_lost * independence_)
     return "near a pose where the joints lose a row";
   BasicWorld<S> before = build_world_in<S>(*scene_);
@@ -193,7 +195,8 @@ const char* Trial<S>::excuse(BasicWorld<S>& world) const {
 template <class S>
 std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
   const Frame frame = frame_of(world, world.time(), static_cast<int>(scene_->bodies.size()));
-  if (!finite(frame)) return verdict(Outcome::broken, "finite", "a pose, a velocity or the energy is no number", 0, 0, k);
+  if (!finite(frame))
+    return verdict(Outcome::broken, "finite", "a pose, a velocity or the energy is no number", 0, 0, k);
   const Gap gap = gap_now(world);
   const Motion now = motion_of(world);
   accounts_->step(now, frame.energy, operations_, world.step_counts().taken);
@@ -231,7 +234,8 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
       return *broken;
     }
     if (world.step_counts().evaluations > dear * (k + 100LL) * scene_->settings.substeps)
-      return verdict(Outcome::limited, "steps of Runge-Kutta without end", "", double(world.step_counts().evaluations), 0, k);
+      return verdict(Outcome::limited, "steps of Runge-Kutta without end", "", double(world.step_counts().evaluations),
+                     0, k);
   }
   return first;
 }
@@ -250,7 +254,8 @@ Verdict Trial<S>::bits() const {
   other.join();
   for (const Snapshot& state : twice)
     if (!(state == end_))
-      return verdict(Outcome::broken, "bits of a repetition", fmt::format("{}", fmt::join(end_.differences(state), ", ")));
+      return verdict(Outcome::broken, "bits of a repetition",
+                     fmt::format("{}", fmt::join(end_.differences(state), ", ")));
   const Scene copy = read_scene(text_of(*scene_), "copy");
   BasicWorld<S> world = build_world_in<S>(copy);
   try {
@@ -261,7 +266,8 @@ Verdict Trial<S>::bits() const {
   for (int k = steps_ / 2 + 1; k <= steps_; ++k) step(world, k);
   const Snapshot state = world.snapshot();
   if (!(state == end_))
-    return verdict(Outcome::broken, "bits from a snapshot", fmt::format("{}", fmt::join(end_.differences(state), ", ")));
+    return verdict(Outcome::broken, "bits from a snapshot",
+                   fmt::format("{}", fmt::join(end_.differences(state), ", ")));
   return {};
 }
 
@@ -303,8 +309,8 @@ Verdict judge_once(const Scene& scene, const Asked& asked) {
   return scene.single ? judge_in<Spatial<float>>(scene, asked) : judge_in<Spatial<double>>(scene, asked);
 }
 
-// Bits are kept by any step, and linear momentum, as long as what is added up does not grow beyond it; the rest only by a
-// step that is short enough.
+// Bits are kept by any step, and linear momentum, as long as what is added up does not grow beyond it; the rest only by
+// a step that is short enough.
 bool may_be_the_step(const Verdict& v) {
   return v.what == "finite" || v.what == "C" || v.what == "momentum" || judged_by_order(v.what);
 }
@@ -326,10 +332,11 @@ Verdict judge(const Scene& scene, const Asked& asked) {
     again = judge_once(finer, without_bits);
     if (!again.broken())
       return verdict(Outcome::limited, fmt::format("the step is too long: {}", seen.what),
-                     fmt::format("holds at a step {:.0f} times shorter", scene.step / finer.step), seen.value, seen.bound,
-                     seen.step);
+                     fmt::format("holds at a step {:.0f} times shorter", scene.step / finer.step), seen.value,
+                     seen.bound, seen.step);
   }
-  const bool as_forces = scene.settings.integrator == Integrator::rattle || works_on_accelerations(scene.settings.integrator);
+  const bool as_forces =
+      scene.settings.integrator == Integrator::rattle || works_on_accelerations(scene.settings.integrator);
   if (as_forces && stiff(scene, finer.step, seen.length))
     return verdict(Outcome::limited, fmt::format("a spring too stiff for a force at any step tried: {}", seen.what), "",
                    seen.value, seen.bound, seen.step);

@@ -21,7 +21,7 @@ struct Verdict {
   std::string what;  // the invariant, the limitation, or the refusal: the same words for the same kind
   std::string detail;
   double value = 0, bound = 0;
-  int step = 0;  // after which it was seen
+  int step = 0;         // after which it was seen
   double roughest = 0;  // how much the acceleration changed within a step, relative; above 0.5 no step resolves it
   double length = 1;    // of the mechanism [m]
   bool judged_energy = false, judged_momentum = false;
@@ -33,7 +33,7 @@ using Push = std::function<void(int body, double impulse)>;
 using Sabotage = std::function<void(const Scene& scene, int step, const Push& push)>;
 
 struct Asked {
-  bool bits = true;    // also repeat it, in two threads at once, and from a snapshot
+  bool bits = true;     // also repeat it, in two threads at once, and from a snapshot
   int refinements = 4;  // how often a step at which something breaks is made four times shorter
   Sabotage sabotage;
 };

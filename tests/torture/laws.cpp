@@ -61,7 +61,8 @@ bool turns_as_one(const Scene& scene) {
       const auto q = world.place(body);
       if constexpr (in_space) {
         const double w[3] = {axis == 0 ? 1.0 : 0, axis == 1 ? 1.0 : 0, axis == 2 ? 1.0 : 0};
-        v.insert(v.end(), {w[1] * q.z - w[2] * q.y, w[2] * q.x - w[0] * q.z, w[0] * q.y - w[1] * q.x, w[0], w[1], w[2]});
+        v.insert(v.end(),
+                 {w[1] * q.z - w[2] * q.y, w[2] * q.x - w[0] * q.z, w[0] * q.y - w[1] * q.x, w[0], w[1], w[2]});
       } else {
         v.insert(v.end(), {-q.y, q.x, 1.0});
       }
@@ -132,9 +133,8 @@ bool has_soft_rows(const Scene& scene) {
 bool is_smooth(const Scene& scene) {
   return std::none_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
     if (one_sided(type_of(scene, joint)) || joint.breaking) return true;
-    return std::any_of(joint.effects.begin(), joint.effects.end(), [](const SceneEffects& effects) {
-      return effects.limit || effects.motor || effects.friction;
-    });
+    return std::any_of(joint.effects.begin(), joint.effects.end(),
+                       [](const SceneEffects& effects) { return effects.limit || effects.motor || effects.friction; });
   });
 }
 
@@ -183,8 +183,8 @@ Lightness lightness_of(const Scene& scene, const std::vector<int>& bodies, doubl
     const bool planar = scene.dimension == Dimension::planar;
     const Inertia& I = body.spatial.inertia;
     // The trace of an inverse tensor is at most 3 over its least moment, which is at least det / (trace / 2)^2.
-    const double det = I.xx * (I.yy * I.zz - I.yz * I.yz) - I.xy * (I.xy * I.zz - I.yz * I.xz) +
-                       I.xz * (I.xy * I.yz - I.yy * I.xz);
+    const double det =
+        I.xx * (I.yy * I.zz - I.yz * I.yz) - I.xy * (I.xy * I.zz - I.yz * I.xz) + I.xz * (I.xy * I.yz - I.yy * I.xz);
     const double half = (I.xx + I.yy + I.zz) / 2;
     const double inertia = planar ? body.definition.inertia : half > 0 ? det / (half * half) : 0;
     const double turn = inertia > 0 ? 1 / inertia : 0;

@@ -18,10 +18,10 @@ struct BodyMotion {
 };
 
 struct Motion {
-  std::vector<BodyMotion> bodies;              // those that move
-  std::array<double, 3> linear{}, angular{};   // momenta; angular about the origin
-  double linear_size = 0, angular_size = 0;    // sums of the bodies' absolute momenta: what round-off is told by
-  double spin_size = 0, root_mass = 0;  // sum of the bodies' own angular momenta; root of the sum of masses
+  std::vector<BodyMotion> bodies;             // those that move
+  std::array<double, 3> linear{}, angular{};  // momenta; angular about the origin
+  double linear_size = 0, angular_size = 0;   // sums of the bodies' absolute momenta: what round-off is told by
+  double spin_size = 0, root_mass = 0;        // sum of the bodies' own angular momenta; root of the sum of masses
   double kinetic = 0;
 };
 

@@ -14,9 +14,33 @@ void each_number(BodyDefinition& d, F f) {
 
 template <class F>
 void each_number(SpatialBodyDefinition& d, F f) {
-  for (double* x : {&d.x, &d.y, &d.z, &d.e0, &d.e1, &d.e2, &d.e3, &d.vx, &d.vy, &d.vz, &d.wx, &d.wy, &d.wz, &d.mass,
-                    &d.inertia.xx, &d.inertia.yy, &d.inertia.zz, &d.inertia.xy, &d.inertia.xz, &d.inertia.yz,
-                    &d.force_x, &d.force_y, &d.force_z, &d.torque_x, &d.torque_y, &d.torque_z, &d.linear_damping,
+  for (double* x : {&d.x,
+                    &d.y,
+                    &d.z,
+                    &d.e0,
+                    &d.e1,
+                    &d.e2,
+                    &d.e3,
+                    &d.vx,
+                    &d.vy,
+                    &d.vz,
+                    &d.wx,
+                    &d.wy,
+                    &d.wz,
+                    &d.mass,
+                    &d.inertia.xx,
+                    &d.inertia.yy,
+                    &d.inertia.zz,
+                    &d.inertia.xy,
+                    &d.inertia.xz,
+                    &d.inertia.yz,
+                    &d.force_x,
+                    &d.force_y,
+                    &d.force_z,
+                    &d.torque_x,
+                    &d.torque_y,
+                    &d.torque_z,
+                    &d.linear_damping,
                     &d.angular_damping})
     f(*x);
 }

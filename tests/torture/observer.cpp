@@ -50,7 +50,9 @@ Eigen::MatrixXd unit_rows(const SystemMatrix& system, double length) {
   Eigen::MatrixXd D(system.rows, system.columns);
   for (int r = 0; r < system.rows; ++r) {
     for (int c = 0; c < system.columns; ++c)
-      D(r, c) = system.frozen[static_cast<std::size_t>(c)] ? 0 : system.entry(r, c) / (c % system.freedom < lengths ? 1 : length);
+      D(r, c) = system.frozen[static_cast<std::size_t>(c)]
+                    ? 0
+                    : system.entry(r, c) / (c % system.freedom < lengths ? 1 : length);
     const double size = D.row(r).norm();
     if (size > 0) D.row(r) /= size;
   }
@@ -116,7 +118,8 @@ void Accounts::step(const Motion& now, double energy, double operations, long lo
     pending_ = first_order;  // of the step that had none before it
   }
   // An error of local_error in every pose and velocity, at the end of each step taken.
-  const double chosen = double(taken - taken_) * local_error_ * (now.linear_size + now.spin_size + largest_change_ / step_ * now.root_mass);
+  const double chosen = double(taken - taken_) * local_error_ *
+                        (now.linear_size + now.spin_size + largest_change_ / step_ * now.root_mass);
   order_error_ += chosen;
   angular_order_ += chosen * (largest_speed_ > 0 ? now.angular_size / (largest_speed_ * largest_speed_) : 0);
   for (const BodyMotion& body : now.bodies) farthest_ = std::max(farthest_, norm(body.x));

@@ -52,8 +52,8 @@ RowSizes row_sizes(BasicWorld<S>& world) {
   return sizes;
 }
 
-// How independent the rows are of each other in the metric of the masses: the least eigenvalue of K, its diagonal made 1,
-// that is no round-off, and its root. A pose where it is small has a direction that hardly any row holds.
+// How independent the rows are of each other in the metric of the masses: the least eigenvalue of K, its diagonal made
+// 1, that is no round-off, and its root. A pose where it is small has a direction that hardly any row holds.
 double independence(const SystemMatrix& system, double round_off);
 // How far the row turned that turned most, of as many unit rows: 2 where one turned round.
 double turned(const SystemMatrix& before, const SystemMatrix& after, double length);
@@ -110,16 +110,17 @@ class Accounts {
     const double away = largest_change_ + pushed_;
     return order_error_ + (order_ == 2 ? away * away / 8 : 0);
   }
-  double round_off_energy() const { return round_off_; }    // [J]
-  double roughest() const { return roughest_; }             // the largest change of acceleration in a step, relative
-  double momentum_round_off() const { return momentum_; }   // [kg m/s]
-  double angular_round_off() const { return angular_; }     // [kg m^2/s]
+  double round_off_energy() const { return round_off_; }   // [J]
+  double roughest() const { return roughest_; }            // the largest change of acceleration in a step, relative
+  double momentum_round_off() const { return momentum_; }  // [kg m/s]
+  double angular_round_off() const { return angular_; }    // [kg m^2/s]
   double angular_order_error() const { return angular_order_; }
 
  private:
   const Scene* scene_;
   double order_, epsilon_, start_energy_, local_error_;
-  double constant_, pushed_;  // what the constant forces, and springs as well, add to the velocities in a step, in the metric of the masses
+  double constant_, pushed_;  // what the constant forces, and springs as well, add to the velocities in a step, in the
+                              // metric of the masses
   double step_;
   double farthest_ = 0;  // from the origin [m]
   long long taken_ = 0;

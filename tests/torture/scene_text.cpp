@@ -82,8 +82,8 @@ void write_spatial(const SpatialBodyDefinition& d, Lines lines) {
   const Inertia& I = d.inertia;
   lines.number_unless(0, "mass", d.mass);
   if (!d.is_static && I.xx != 0)
-    lines.raw("inertia",
-              fmt::format("[{}, {}, {}]", list({I.xx, I.xy, I.xz}), list({I.xy, I.yy, I.yz}), list({I.xz, I.yz, I.zz})));
+    lines.raw("inertia", fmt::format("[{}, {}, {}]", list({I.xx, I.xy, I.xz}), list({I.xy, I.yy, I.yz}),
+                                     list({I.xz, I.yz, I.zz})));
   lines.flag_unless(false, "fixed_rotation", d.fixed_rotation);
   triple("position", d.x, d.y, d.z);
   if (d.e0 != 1 || d.e1 != 0 || d.e2 != 0 || d.e3 != 0) lines.raw("orientation", list({d.e0, d.e1, d.e2, d.e3}));

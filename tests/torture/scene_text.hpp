@@ -7,7 +7,8 @@
 
 namespace cdot::torture {
 
-// The reader knows no -0: no number of the scene may be one (plain_zeros). Frames in space are written by two axes: their parameters must have three or six numbers.
+// The reader knows no -0: no number of the scene may be one (plain_zeros). Frames in space are written by two axes:
+// their parameters must have three or six numbers.
 std::string text_of(const Scene& scene);
 
 // Every -0 becomes 0.

@@ -74,9 +74,7 @@ class Shrinker {
 
   bool fewer_steps() {
     const int steps = steps_of(best_.scene);
-    const auto end_after = [](int count) {
-      return [count](Scene& scene) { scene.duration = count * scene.step; };
-    };
+    const auto end_after = [](int count) { return [count](Scene& scene) { scene.duration = count * scene.step; }; };
     const int seen = best_.verdict.step;
     if (seen > 0 && seen < steps && attempt(end_after(seen))) return true;
     return steps > 1 && (attempt(end_after(steps / 4 + 1)) || attempt(end_after(steps / 2)));
@@ -86,8 +84,10 @@ class Shrinker {
            each(best_.scene.bodies.size(), [](Scene& s, std::size_t k) { remove_body(s, static_cast<int>(k)); });
   }
   bool fewer_joints() {
-    return each(best_.scene.joints.size(), [](Scene& s, std::size_t k) { s.joints.erase(s.joints.begin() + long(k)); }) |
-           each(best_.scene.springs.size(), [](Scene& s, std::size_t k) { s.springs.erase(s.springs.begin() + long(k)); });
+    return each(best_.scene.joints.size(),
+                [](Scene& s, std::size_t k) { s.joints.erase(s.joints.begin() + long(k)); }) |
+           each(best_.scene.springs.size(),
+                [](Scene& s, std::size_t k) { s.springs.erase(s.springs.begin() + long(k)); });
   }
   bool fewer_effects() {
     bool smaller = false;

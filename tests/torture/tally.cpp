@@ -37,8 +37,8 @@ const char* word(Outcome outcome) {
 }  // namespace
 
 std::string way_of(const Scene& scene) {
-  return fmt::format("{} {} {}", name_of(solvers, scene.settings.solver), name_of(integrators, scene.settings.integrator),
-                     name_of(precisions, scene.single));
+  return fmt::format("{} {} {}", name_of(solvers, scene.settings.solver),
+                     name_of(integrators, scene.settings.integrator), name_of(precisions, scene.single));
 }
 
 void Tally::add(const Mechanism& mechanism, const Verdict& verdict) {

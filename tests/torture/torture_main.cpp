@@ -66,8 +66,10 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
   const std::string text = text_of(small.scene), name = fmt::format("{:016x}.toml", seed);
   fmt::print("  shrunk in {} tries: {} bodies, {} joints, {} steps: {}\n", small.tries, small.scene.bodies.size(),
              small.scene.joints.size(), steps_of(small.scene), told(small.verdict));
-  fmt::print("  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}; cdot-run simulate {}\n\n{}\n",
-             seed, options.wish.steps, name, name, text);
+  fmt::print(
+      "  again: torture --seed {:#x} --count 1 --steps {}; the small one: torture --scene {}; cdot-run simulate "
+      "{}\n\n{}\n",
+      seed, options.wish.steps, name, name, text);
   if (!options.keep.empty()) keep(options, name, text);
 }
 

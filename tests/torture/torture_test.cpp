@@ -18,13 +18,14 @@ void run(std::uint64_t seed, const Wish& wish, Tally& tally) {
   const Mechanism mechanism = generate(seed, wish);
   const Verdict verdict = judge(mechanism.scene);
   tally.add(mechanism, verdict);
-  const std::string wish_text =
-      wish.joint.empty() ? ""
-                         : fmt::format(" --joint {} --dimension {}", wish.joint, wish.dimension == Dimension::planar ? 2 : 3);
-  EXPECT_FALSE(verdict.broken()) << fmt::format("torture --count 1 --steps {} --seed {}{}, {}: {} {} is {:.3g}, at most {:.3g}, after step {}\n",
-                                                steps, seed, wish_text, way_of(mechanism.scene), verdict.what, verdict.detail, verdict.value,
-                                                verdict.bound, verdict.step)
-                                 << text_of(mechanism.scene);
+  const std::string wish_text = wish.joint.empty() ? ""
+                                                   : fmt::format(" --joint {} --dimension {}", wish.joint,
+                                                                 wish.dimension == Dimension::planar ? 2 : 3);
+  EXPECT_FALSE(verdict.broken())
+      << fmt::format("torture --count 1 --steps {} --seed {}{}, {}: {} {} is {:.3g}, at most {:.3g}, after step {}\n",
+                     steps, seed, wish_text, way_of(mechanism.scene), verdict.what, verdict.detail, verdict.value,
+                     verdict.bound, verdict.step)
+      << text_of(mechanism.scene);
 }
 
 TEST(Torture, Bounded) {
@@ -67,14 +68,16 @@ Snapshot after(const Scene& scene, int count) {
   return world.snapshot();
 }
 Snapshot after(const Scene& scene, int count) {
-  return scene.dimension == Dimension::planar ? after<Planar<double>>(scene, count) : after<Spatial<double>>(scene, count);
+  return scene.dimension == Dimension::planar ? after<Planar<double>>(scene, count)
+                                              : after<Spatial<double>>(scene, count);
 }
 
 // A scene, written and read, is the same scene: its run has the same bits, its text the same letters.
 TEST(Torture, WrittenSceneReadsBack) {
   for (std::uint64_t seed = 1; seed <= 80; ++seed) {
     // Not Runge-Kutta, whose steps may be many, where this asks for none of its own.
-    const Scene scene = generate(seed, {.integrator = seed % 2 ? Integrator::rattle : Integrator::implicit, .steps = 3}).scene;
+    const Scene scene =
+        generate(seed, {.integrator = seed % 2 ? Integrator::rattle : Integrator::implicit, .steps = 3}).scene;
     const Scene copy = read_scene(text_of(scene), "copy");
     ASSERT_EQ(text_of(copy), text_of(scene)) << seed;
     ASSERT_EQ(after(copy, 3).differences(after(scene, 3)), std::vector<std::string>{}) << seed;
@@ -105,7 +108,8 @@ TEST(Torture, FindsAndShrinksWhatIsSabotaged) {
   asked.sabotage = wrong_sign("revolute");
   int found = 0, sound = 0;
   for (std::uint64_t seed = 1; found < 5 && seed < 400; ++seed) {
-    const Mechanism mechanism = generate(seed, {.joint = "revolute", .solver = Solver::direct, .single = false, .steps = 40});
+    const Mechanism mechanism =
+        generate(seed, {.joint = "revolute", .solver = Solver::direct, .single = false, .steps = 40});
     const Verdict verdict = judge(mechanism.scene, asked);
     if (!verdict.broken()) {
       ++sound;
