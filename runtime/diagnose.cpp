@@ -56,32 +56,54 @@ double largest_eigenvalue(Equations<S>& equations) {
   return value;
 }
 
-// Row d = sum of shares of the kept rows: K_II shares = K_Id. What C has besides is missed.
+// Row d = sum of shares of the kept rows: K_II shares = K_Id. Who takes part is found for so many rows, and for all that
+// conflict.
+constexpr int most_explained = 64;
+
 template <class S>
-Diagnosis::Redundant redundant_row(Equations<S>& equations, size_t d) {
+std::vector<int> joints_of_row(Equations<S>& equations, size_t d) {
   std::vector<double> unit(equations.size(), 0.0);
   unit[d] = 1;
   const std::vector<double> shares = equations.solve(equations.multiply(unit));
-  Diagnosis::Redundant found{equations.joint(d), {}, equations.C(d), false};
-  std::set<int> joints{found.row.joint};
-  double least = double(Equations<S>::slight);
-  for (size_t r = 0; r < shares.size(); ++r) {
-    found.missed -= shares[r] * equations.C(r);
-    least = std::max(least, 1e-9 * std::abs(shares[r] * equations.C(r)));
+  std::set<int> joints{equations.joint(d).joint};
+  for (size_t r = 0; r < shares.size(); ++r)
     if (std::abs(shares[r]) * std::sqrt(equations.diagonal(r)) > takes_part * std::sqrt(equations.diagonal(d)))
       joints.insert(equations.joint(r).joint);
+  return {joints.begin(), joints.end()};
+}
+
+// What C of the dropped rows has beside their shares of the others' C: C_d - K_dI K_II^-1 C_I.
+template <class S>
+std::vector<double> missed_by_rows(Equations<S>& equations) {
+  std::vector<double> C(equations.size());
+  for (size_t r = 0; r < C.size(); ++r) C[r] = equations.kept(r) ? equations.C(r) : 0.0;
+  std::vector<double> missed = equations.multiply(equations.solve(C));
+  for (size_t r = 0; r < C.size(); ++r) missed[r] = equations.C(r) - missed[r];
+  return missed;
+}
+
+template <class S>
+void look_at_dependent_rows(Equations<S>& equations, std::vector<Diagnosis::Redundant>& redundant) {
+  if (equations.rank() == equations.rows()) return;
+  const std::vector<double> missed = missed_by_rows(equations);
+  double largest = 0;
+  for (size_t r = 0; r < equations.size(); ++r) largest = std::max(largest, std::abs(equations.C(r)));
+  const double least = std::max(double(Equations<S>::slight), 1e-9 * largest);
+  for (size_t r = 0; r < equations.size(); ++r) {
+    if (!equations.dependent(r)) continue;
+    const bool conflicting = !(std::abs(missed[r]) <= least);
+    const bool explained = conflicting || redundant.size() < most_explained;
+    redundant.push_back({equations.joint(r), explained ? joints_of_row(equations, r) : std::vector{equations.joint(r).joint},
+                         missed[r], conflicting});
   }
-  found.joints.assign(joints.begin(), joints.end());
-  found.conflicting = !(std::abs(found.missed) <= least);
-  return found;
 }
 
 template <class S>
 void look_at_rows(Equations<S>& equations, Diagnosis::Island& found) {
   found.rows = equations.rows();
   found.rank = equations.rank();
+  look_at_dependent_rows(equations, found.redundant);
   for (size_t r = 0; r < equations.size(); ++r) {
-    if (equations.dependent(r)) found.redundant.push_back(redundant_row(equations, r));
     if (!equations.kept(r)) continue;
     const double share = equations.pivot(r) / equations.diagonal(r);
     if (found.weakest.joint >= 0 && share >= found.smallest_pivot) continue;

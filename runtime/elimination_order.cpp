@@ -18,7 +18,11 @@ int rows_of(const std::vector<int>& blocks, const std::vector<int>& rows) {
   return sum;
 }
 
+// To look at all pairs costs more than it saves where there are many.
+constexpr size_t most_looked_at = 64;
+
 bool fills_in(int block, const std::vector<std::vector<int>>& neighbours) {
+  if (neighbours[block].size() > most_looked_at) return true;
   for (int i : neighbours[block])
     for (int j : neighbours[block])
       if (j < i && !std::binary_search(neighbours[i].begin(), neighbours[i].end(), j)) return true;

@@ -1,0 +1,43 @@
+// Almost twice as many pins as bodies: as many independent loops as bodies.
+#include <cmath>
+
+#include "tests/hard_cases/trial.hpp"
+
+namespace cdot::hard {
+namespace {
+
+void add_pin(Trial& t, int a, int b, double dx, double dy) {
+  SceneJoint joint;
+  joint.definition = {"revolute", {a, b}, {{"pa", {dx / 2, dy / 2}}, {"pb", {-dx / 2, -dy / 2}}}, {}};
+  t.scene.joints.push_back(joint);
+}
+
+void build(Trial& t, int n) {
+  const SceneBody disc_of_scene = t.scene.bodies[0];
+  t.scene.bodies.clear();
+  for (int k = 0; k < n * n; ++k) {
+    SceneBody disc = disc_of_scene;
+    const int row = k / n, column = k % n;
+    disc.is_static = row == 0 && std::abs(column - n / 2) <= 3;
+    disc.definition.x = column;
+    disc.definition.y = -row;
+    disc.definition.is_static = disc.is_static;
+    t.scene.bodies.push_back(disc);
+    if (column > 0) add_pin(t, k - 1, k, 1, 0);
+    if (row > 0) add_pin(t, k - n, k, 0, -1);
+  }
+}
+
+void hang(Trial& t, int n, double seconds) {
+  build(t, n);
+  t.start();
+  const Watch w = t.run(seconds);
+  t.at_most("gap [m]", w.gap, 1e-2);
+}
+void five_seconds(Trial& t) { hang(t, 25, 5); }
+
+const Register planar({"joint_grid", "planar", in_double(only(direct(), {Integrator::implicit})), five_seconds,
+                       "25 x 25"});
+
+}  // namespace
+}  // namespace cdot::hard
