@@ -27,6 +27,7 @@ double stable_radians(Integrator integrator) {
 }
 
 constexpr double sharp_turn = 0.5;         // [rad] per step: a chord is 1 % shorter than its arc
+constexpr double slow_turn = 0.02, needs_no_help = 0.5;  // [rad] per step
 constexpr double sweeps_per_condition = 4;  // that leave little of an error
 constexpr double float_noise = 6e-8, blurred = 0.01;
 
@@ -87,6 +88,20 @@ void on_spin(const Diagnosis::Island& island, const Settings& settings, double h
                                 std::ceil(radians / sharp_turn) * settings.substeps)});
 }
 
+// What tension stiffens is taken as inertia by the linearly implicit step: where h omega is small without it, that only
+// slows down what turns.
+void on_damping(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
+                std::vector<Concern>& concerns) {
+  if (settings.integrator != Integrator::implicit) return;
+  const double radians = h * std::sqrt(std::max(0.0, island.stiffest.square)), turn = h * island.fastest_spin;
+  if (radians > needs_no_help || turn < slow_turn) return;
+  concerns.push_back({true,
+                      fmt::format("implicit slows down what turns, as {} does by {:.2g} rad per substep, and no tension "
+                                  "here needs it: the stiffest motion swings by {:.2g} rad per substep",
+                                  names.body(island.spinning), turn, radians),
+                      "integrator = \"rattle\""});
+}
+
 void on_condition(const Diagnosis::Island& island, const Settings& settings, bool single, const Names& names,
                   std::vector<Concern>& concerns) {
   const double sweeps = settings.iterations;
@@ -111,6 +126,7 @@ std::vector<Concern> concerns_about(const Diagnosis::Island& island, const Setti
   on_rows(island, names, concerns);
   on_stiffness(island, settings, h, names, concerns);
   on_spin(island, settings, h, names, concerns);
+  on_damping(island, settings, h, names, concerns);
   on_condition(island, settings, single, names, concerns);
   return concerns;
 }

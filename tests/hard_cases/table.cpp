@@ -15,8 +15,11 @@ integrator, in double and in float. A test fails where a number is above its bou
 ten iterations, unless the case says otherwise; each folder's .cpp has its criterion.
 
     build/dev/tests/hard_cases/hard_cases_tests                  # the tests
-    build/dev/tests/hard_cases/hard_cases_tests --try [FAULT]    # all ways, also those that claim nothing
+    build/dev/tests/hard_cases/hard_cases_tests --try [FAULT]    # what is said of the ways that claim nothing
     build/dev/tests/hard_cases/hard_cases_tests --table > tests/hard_cases/README.md
+
+A way that is not among those that hold a case says why before or while it runs, as `cdot-run diagnose` and
+`cdot-run simulate` do, or is merely inexact: `NoSilence.*` tests that none is lost without a word.
 
 The last command wrote this page. Of each number the worst over the ways is shown, and its bound.
 

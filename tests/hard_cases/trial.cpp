@@ -38,6 +38,11 @@ std::function<Mover(const Scene&, AnyWorld&)> another_engine;
 
 bool Finding::held() const { return std::isfinite(value) && value <= bound; }
 
+bool Finding::together() const {
+  const bool gap = what.starts_with("gap") || what.starts_with("a rope") || what.starts_with("rope off");
+  return std::isfinite(value) && (!gap || value <= 10 * bound);
+}
+
 Trial::Trial(const std::string& scene_file, const Way& the_way)
     : file(scene_file), way(the_way), scene(read_scene(std::string(CDOT_HARD_CASES) + "/" + scene_file + ".toml")) {
   scene.settings.solver = way.solver;
@@ -61,12 +66,12 @@ void Trial::step(double by) {
 }
 
 void Trial::say(const std::string& what) {
-  if (listening_ && said_.empty()) said_ = what;
+  if (listening_) throw Warned{what};
 }
 
 // As `cdot-run simulate` does, but after times that grow: cases are of very different lengths.
 void Trial::diagnose(double by) {
-  if (!listening_ || !said_.empty() || ++steps_ < next_diagnosis_) return;
+  if (!listening_ || ++steps_ < next_diagnosis_) return;
   next_diagnosis_ = steps_ + steps_ / 2 + 1;
   std::vector<WorstOfIsland> worst;
   change([&](auto& world) {
@@ -166,16 +171,33 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-std::vector<Finding> findings_of(const Case& hard_case, const Way& way, std::string* said) {
+std::vector<Finding> findings_of(const Case& hard_case, const Way& way) {
   try {
     Trial trial(hard_case.fault + "/" + hard_case.scene, way);
-    if (said) trial.listen();
     hard_case.run(trial);
-    if (said) *said = trial.said();
     return trial.findings();
   } catch (const std::exception& error) {
     return {{fmt::format("thrown: {}", error.what()), finite_only, 0}};
   }
+}
+
+Verdict verdict_on(const Case& hard_case, const Way& way) {
+  Verdict verdict;
+  try {
+    Trial trial(hard_case.fault + "/" + hard_case.scene, way);
+    trial.listen();
+    hard_case.run(trial);
+    for (const Finding& found : trial.findings()) {
+      verdict.together &= found.together();
+      if (!found.held()) verdict.off += fmt::format("  {:.60} {:.2e}", found.what, found.value);
+    }
+    verdict.held = verdict.off.empty();
+  } catch (const Trial::Warned& warned) {
+    verdict.said = warned.what;
+  } catch (const std::exception& error) {
+    verdict.said = error.what();
+  }
+  return verdict;
 }
 
 }  // namespace cdot::hard

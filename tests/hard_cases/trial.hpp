@@ -26,6 +26,7 @@ struct Finding {
   std::string what;  // "gap [m]"
   double value, bound;
   bool held() const;
+  bool together() const;
 };
 
 // What was seen at the ends of the steps of a run.
@@ -89,10 +90,12 @@ class Trial {
 
   const std::vector<Finding>& findings() const { return findings_; }
 
-  // What the runtime says of itself, for whoever listens: of the method, before and while running, and of steps that
-  // fail or that were left to another method. Empty: nothing.
+  // What the runtime says of itself to whoever listens: of the method, before and while running, and of steps that fail
+  // or that were left to another method. The trial ends with it.
+  struct Warned {
+    std::string what;
+  };
   void listen() { listening_ = true; }
-  const std::string& said() const { return said_; }
 
  private:
   void diagnose(double by);
@@ -102,7 +105,6 @@ class Trial {
   Mover mover_;
   std::vector<Finding> findings_;
   bool listening_ = false;
-  std::string said_;
   long steps_ = 0, next_diagnosis_ = 1;
 };
 
@@ -112,6 +114,7 @@ struct Case {
   Ways ways;          // that claim to hold it
   std::function<void(Trial&)> run;
   std::string variant = {};  // tells cases of the same scene apart, in words
+  bool large = false;        // too large to be tried in ways that claim nothing
 };
 
 std::string name_of(const Case& hard_case);  // "fault_scene" or "fault_scene_variant"
@@ -125,7 +128,15 @@ struct Register {
 };
 
 // Runs it; what is thrown becomes a finding that does not hold.
-std::vector<Finding> findings_of(const Case& hard_case, const Way& way, std::string* said = nullptr);
+std::vector<Finding> findings_of(const Case& hard_case, const Way& way);
+// Of a way that claims nothing: that it holds the case all the same, or what the runtime says of it, or neither.
+struct Verdict {
+  bool held = false;
+  // Inexact, as a method of low order is, but in one piece: every number finite, every gap within ten times its bound.
+  bool together = true;
+  std::string said, off;  // off: what does not hold
+};
+Verdict verdict_on(const Case& hard_case, const Way& way);
 
 // README.md, and how the row of a case begins there: what it has beside measured numbers.
 std::string table(const std::vector<Case>& cases);

@@ -37,7 +37,7 @@ void hang(Trial& t, int n, double seconds) {
 void five_seconds(Trial& t) { hang(t, 25, 5); }
 
 const Register planar({"joint_grid", "planar", in_double(only(direct(), {Integrator::implicit})), five_seconds,
-                       "25 x 25"});
+                       "25 x 25", true});
 
 }  // namespace
 }  // namespace cdot::hard
