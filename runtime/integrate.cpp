@@ -22,6 +22,7 @@ void set_inertias(WorldState<S>& world, Island<S>& island) {
   Bodies<S>& all = world.bodies;
   for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
     S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
+    S::turn_acceleration(gyroscope, all.inverse_mass[i], all.acceleration[i]);
     all.effective_mass[i] = all.inverse_mass[i];
   });
 }
