@@ -21,7 +21,7 @@ struct Diagnosis {
     bool conflicting = false;
   };
   // Small oscillations about the present motion, within the joints, under forces that are taken as they are at the start
-  // of a step: gravity, springs between points, and the tensions in the joints, whose directions turn with the bodies.
+  // of a step: gravity, springs between points (but for Euler's methods also those on coordinates), and the tensions in the joints, whose directions turn with the bodies.
   struct Stiffest {
     double square = 0;   // [1/s^2] omega^2, the largest in size; negative where it grows in place of oscillating
     int body = -1;       // that moves most in it

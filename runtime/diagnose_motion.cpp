@@ -23,7 +23,13 @@ class Motion {
   using Velocities = std::vector<typename S::Velocity>;
 
   Motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations)
-      : world_(world), island_(island), equations_(equations), pose_(world.bodies.pose) {}
+      : world_(world), island_(island), equations_(equations), pose_(world.bodies.pose) {
+    // Euler's methods solve for the forces of springs on coordinates; the others take them as they are.
+    const Integrator integrator = world.settings.integrator;
+    if (integrator == Integrator::euler || integrator == Integrator::implicit) return;
+    for (const Segment<S>& segment : island.segments)
+      if (segment.batch->law && segment.batch->law->force) coordinate_springs_.push_back(segment);
+  }
 
   // The forces that the joints exert now: J dv/dt = gamma.
   void find_forces(T h) {
@@ -96,10 +102,12 @@ class Motion {
   Velocities rates(const Velocities& w, T e, bool tension, bool springs) {
     Bodies<S>& all = world_.bodies;
     for (int i : island_.bodies) all.pose[i] = S::moved(pose_[i], S::sum({}, w[i], e));
-    if (springs)
+    if (springs) {
       push_free_bodies(world_, island_);
-    else
+      for (const Segment<S>& segment : coordinate_springs_) push_by(segment);
+    } else {
       for (int i : island_.bodies) all.velocity_rate[i] = {};
+    }
     if (tension) {
       equations_.evaluate();
       for (const Segment<S>& segment : equations_.segments())
@@ -109,9 +117,18 @@ class Motion {
     return all.velocity_rate;
   }
 
+  void push_by(const Segment<S>& segment) {
+    Batch<S>& batch = *segment.batch;
+    batch.ops->evaluate(batch, segment.begin, segment.end, world_.bodies, T(world_.time));
+    find_known_forces(world_, batch, segment.begin, segment.end);
+    batch.ops->apply(batch, segment.begin, segment.end, world_.bodies, batch.lower.data(),
+                     world_.bodies.velocity_rate.data());
+  }
+
   WorldState<S>& world_;
   Island<S>& island_;
   Equations<S>& equations_;
+  std::vector<Segment<S>> coordinate_springs_;
   const std::vector<typename S::Pose> pose_;
 };
 

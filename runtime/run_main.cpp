@@ -51,6 +51,34 @@ Exit status
 
 The format of scenes is described in specs/scenes/README.md.)";
 
+// What takes the place of the scene's own.
+void add_method(CLI::App* command, Arguments& arguments) {
+  command->add_option("--step", arguments.step, "the time step [s]")->check(CLI::PositiveNumber);
+  command->add_option("--solver", arguments.solver, "direct or iterative")
+      ->check(CLI::IsMember(cdot::names_of(cdot::solvers)));
+  command
+      ->add_option("--integrator", arguments.integrator,
+                   "euler, implicit (heavy loads on light chains), rattle (long runs), rk4 or dop853 (accuracy)")
+      ->check(CLI::IsMember(cdot::names_of(cdot::integrators)));
+  command
+      ->add_option("--local-error", arguments.local_error,
+                   "let rk4 or dop853 choose its steps: the estimated error of one [m, rad, and per s]")
+      ->check(CLI::PositiveNumber);
+  command
+      ->add_option("--kernels", arguments.kernels,
+                   "how the iterative solver solves the rows of one joint together: fast, balanced or robust")
+      ->check(CLI::IsMember(cdot::names_of(cdot::kernel_forms)));
+  command->add_option("--precision", arguments.precision, "compute in double or float")
+      ->check(CLI::IsMember(cdot::names_of(cdot::precisions)));
+  command
+      ->add_option("--drift", arguments.drift,
+                   "what keeps joints together: projection, baumgarte or none")
+      ->check(CLI::IsMember(cdot::names_of(cdot::drifts)));
+  command->add_option("--iterations", arguments.iterations, "of the iterative solver, per substep")
+      ->check(CLI::PositiveNumber);
+  command->add_option("--substeps", arguments.substeps, "per step")->check(CLI::PositiveNumber);
+}
+
 void add_simulate(CLI::App& app, Arguments& arguments) {
   CLI::App* simulate = app.add_subcommand("simulate", "Run a scene and say how it went");
   simulate->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
@@ -58,23 +86,7 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
       ->add_option("--until", arguments.until,
                    "end at this time [s], in place of the scene's duration")
       ->check(CLI::PositiveNumber);
-  simulate->add_option("--step", arguments.step, "the time step [s]")->check(CLI::PositiveNumber);
-  simulate->add_option("--solver", arguments.solver, "direct or iterative")
-      ->check(CLI::IsMember(cdot::names_of(cdot::solvers)));
-  simulate
-      ->add_option("--integrator", arguments.integrator,
-                   "euler, implicit (heavy loads on light chains), rattle (long runs), rk4 or dop853 (accuracy)")
-      ->check(CLI::IsMember(cdot::names_of(cdot::integrators)));
-  simulate
-      ->add_option("--local-error", arguments.local_error,
-                   "let rk4 or dop853 choose its steps: the estimated error of one [m, rad, and per s]")
-      ->check(CLI::PositiveNumber);
-  simulate
-      ->add_option("--kernels", arguments.kernels,
-                   "how the iterative solver solves the rows of one joint together: fast, balanced or robust")
-      ->check(CLI::IsMember(cdot::names_of(cdot::kernel_forms)));
-  simulate->add_option("--precision", arguments.precision, "compute in double or float")
-      ->check(CLI::IsMember(cdot::names_of(cdot::precisions)));
+  add_method(simulate, arguments);
   simulate
       ->add_option("--accuracy", arguments.wanted_accuracy,
                    "choose the method such that the trajectory is as exact as that [m, rad]")
@@ -84,13 +96,6 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
       ->excludes("--solver")
       ->excludes("--kernels")
       ->excludes("--precision");
-  simulate
-      ->add_option("--drift", arguments.drift,
-                   "what keeps joints together: projection, baumgarte or none")
-      ->check(CLI::IsMember(cdot::names_of(cdot::drifts)));
-  simulate->add_option("--iterations", arguments.iterations, "of the iterative solver, per substep")
-      ->check(CLI::PositiveNumber);
-  simulate->add_option("--substeps", arguments.substeps, "per step")->check(CLI::PositiveNumber);
   simulate
       ->add_option("--tolerance", arguments.tolerance,
                    "joint error from which the run has failed [m, rad]")
@@ -145,6 +150,7 @@ CLI::App* add_diagnose(CLI::App& app, Arguments& arguments) {
   auto* until = diagnose
                     ->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
                     ->check(CLI::PositiveNumber);
+  add_method(diagnose, arguments);
   diagnose->add_option("--at", arguments.diagnose_time, "look at this time [s] only; else at many from start to end")
       ->check(CLI::NonNegativeNumber)
       ->excludes(until);

@@ -95,6 +95,20 @@ TEST(Diagnose, StiffestMotionOfASpring) {
   EXPECT_EQ(found.islands[0].rows, 0);
 }
 
+// On a coordinate, with a damper: sqrt(k / I) of a rod about its end where the spring's force is taken as it is, nothing
+// where it is solved for.
+TEST(Diagnose, StiffestMotionOfASpringOnACoordinate) {
+  for (const auto& [name, integrator] : integrators) {
+    Settings s = settings(Solver::direct);
+    s.integrator = integrator;
+    World<double> world(s);
+    add_chain(world, 1, 0);
+    add_spring(world, 0, "angle", {.softness = {.by_frequency = false, .stiffness = 300, .damping = 2}});
+    const bool solved_for = integrator == Integrator::euler || integrator == Integrator::implicit;
+    EXPECT_NEAR(diagnose(world, h).islands.at(0).stiffest.square, solved_for ? 0 : 300 * 3, 1e-3) << name;
+  }
+}
+
 // The linearly implicit step takes the tension that turns rods, and no other: beads stay as stiff as they are.
 TEST(Diagnose, KnowsWhatTheImplicitStepTakesOff) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);

@@ -39,6 +39,7 @@ constexpr Wrong wrong[] = {
     {"fast_spin/planar", "--integrator rattle", "rad per substep: rattle follows turns of less than about 0.5",
      "integrator = \"dop853\" with local_error = 1e-6"},
     {"incompatible_triangle/planar", "", "\"ab\", \"bc\", \"ca\" contradict each other", "correct the anchors or the lengths"},
+    {"stiff_and_soft/planar", "--integrator rattle", "a spring makes \"box", "substeps = "},
 };
 
 TEST(DiagnoseCommand, SaysWhichMethodIsWrongAndWhatIsRight) {
