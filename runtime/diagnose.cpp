@@ -23,15 +23,11 @@ double normalise(std::vector<double>& x) {
   return length;
 }
 
-// A start that no eigenvector is orthogonal to, but by chance.
 template <class S>
 std::vector<double> any_impulses(const Equations<S>& equations) {
   std::vector<double> x(equations.size());
-  unsigned random = 1;
-  for (size_t r = 0; r < x.size(); ++r) {
-    random = random * 1664525u + 1013904223u;
-    x[r] = equations.kept(r) ? 0.5 + random / 4294967296.0 : 0.0;
-  }
+  Arbitrary arbitrary;
+  for (size_t r = 0; r < x.size(); ++r) x[r] = equations.kept(r) ? 0.5 + arbitrary() : 0.0;
   normalise(x);
   return x;
 }

@@ -9,6 +9,18 @@
 
 namespace cdot {
 
+// Starts of power iterations: numbers in [0, 1) that no eigenvector is orthogonal to, but by chance.
+class Arbitrary {
+ public:
+  double operator()() {
+    state_ = state_ * 1664525u + 1013904223u;
+    return state_ / 4294967296.0;
+  }
+
+ private:
+  unsigned state_ = 1;
+};
+
 template <class S>
 class Equations {
  public:

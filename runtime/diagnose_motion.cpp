@@ -132,17 +132,13 @@ class Motion {
   const std::vector<typename S::Pose> pose_;
 };
 
-// A start that no eigenvector is orthogonal to, but by chance.
 template <class S>
 std::vector<typename S::Velocity> any_motion(const WorldState<S>& world, const Island<S>& island) {
   std::vector<typename S::Velocity> w(world.bodies.pose.size());
-  unsigned random = 1;
+  Arbitrary arbitrary;
   for (int i : island.bodies) {
     typename S::Scalar numbers[S::freedom];
-    for (auto& number : numbers) {
-      random = random * 1664525u + 1013904223u;
-      number = typename S::Scalar(random / 4294967296.0 - 0.5);
-    }
+    for (auto& number : numbers) number = typename S::Scalar(arbitrary() - 0.5);
     w[i] = S::read_velocity(numbers);
   }
   return w;
