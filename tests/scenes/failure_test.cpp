@@ -69,5 +69,27 @@ TEST(FailedStep, IsToldWithPlaceReasonAndFix) {
   EXPECT_EQ(json["failed_step"]["problem"], "not_finite");
 }
 
+// A ball of 4 t on a light chain, by steps far too long for its tension: the run ends at 1.8 s, or goes on in parts.
+TEST(FailedStep, IsTakenAgainInPartsWhereTheSceneAllows) {
+  const TemporaryFolder folder;
+  std::ifstream original(source_dir() / "tests/hard_cases/ball_and_chain/planar.toml");
+  const std::string text(std::istreambuf_iterator<char>(original), {});
+  const auto run = [&](const std::string& keys) {
+    const auto file = folder / "chain.toml";
+    std::ofstream(file) << keys << text;
+    return cdot_run(fmt::format("simulate '{}' --integrator euler --until 1.9 --tolerance 1 --json", file.string()));
+  };
+  const CommandResult stopped = run(""), retried = run("on_failure = \"retry\"\n");
+  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
+  const auto failed = nlohmann::json::parse(stopped.out)["failed_step"];
+  EXPECT_EQ(failed["problem"], "joints_apart");
+  EXPECT_EQ(retried.status, 0) << retried.out << retried.err;
+  const auto json = nlohmann::json::parse(retried.out);
+  EXPECT_GE(json["retried"]["steps"], 1);
+  EXPECT_GE(json["time"], 1.9 - 1e-9);
+  EXPECT_LT(json["worst_error"], 0.02);
+  EXPECT_FALSE(json.contains("failed_step"));
+}
+
 }  // namespace
 }  // namespace cdot::test
