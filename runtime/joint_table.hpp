@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "runtime/block_loops.hpp"
+#include "runtime/block_ops.hpp"
 #include "runtime/joints.hpp"
 
 namespace cdot {
