@@ -8,23 +8,22 @@
 namespace cdot {
 
 template <class S>
-void System<S>::remove(const Batch<S>* batch, int slot, int last) {
+void System<S>::exchange(const Batch<S>* batch, int slot, int last, int marked, char value) {
   for (Block& block : blocks) {
     if (block.batch != batch || (block.slot != slot && block.slot != last)) continue;
-    const bool removed = block.slot == slot;
-    block.slot = removed ? last : slot;
-    if (removed) std::fill_n(broken.begin() + block.first, block.rows, 1);
+    if (block.slot == marked) std::fill_n(broken.begin() + block.first, block.rows, value);
+    block.slot = block.slot == slot ? last : slot;
   }
 }
 
 template <class S>
+void System<S>::remove(const Batch<S>* batch, int slot, int last) {
+  exchange(batch, slot, last, slot, 1);
+}
+
+template <class S>
 void System<S>::put_back(const Batch<S>* batch, int slot, int last) {
-  for (Block& block : blocks) {
-    if (block.batch != batch || (block.slot != slot && block.slot != last)) continue;
-    const bool removed = block.slot == last;
-    block.slot = removed ? slot : last;
-    if (removed) std::fill_n(broken.begin() + block.first, block.rows, 0);
-  }
+  exchange(batch, slot, last, last, 0);
 }
 
 template <class S>

@@ -114,6 +114,8 @@ class System {
 
  private:
   friend struct StateList;  // runtime/snapshot_list.hpp
+  // Of a batch: what is said of one slot is said of the other; `broken` of the marked one becomes `value`.
+  void exchange(const Batch<S>* batch, int slot, int last, int marked, char value);
   void order_rows(const Bodies<S>& bodies);
   void list_products(const Bodies<S>& bodies);
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
