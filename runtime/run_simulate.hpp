@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "runtime/choose_method.hpp"
-#include "runtime/run_diagnose.hpp"
+#include "runtime/run_worst.hpp"
 #include "runtime/run_frame.hpp"
 #include "runtime/scene.hpp"
 #include "runtime/snapshot.hpp"

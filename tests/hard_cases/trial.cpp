@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/run_diagnose.hpp"
+#include "runtime/run_worst.hpp"
 
 namespace cdot::hard {
 namespace {
