@@ -6,7 +6,7 @@
 #include <Eigen/Dense>
 
 #include "runtime/jacobian.hpp"
-#include "runtime/methods.hpp"
+#include "tests/methods.hpp"
 #include "tests/runtime/mechanisms.hpp"
 #include "tests/runtime/spatial_support.hpp"
 
@@ -193,22 +193,16 @@ TEST(Diagnose, TellsConflictsByHowMuch) {
 // Looking changes nothing: not a bit, in any method, of the state or of the run.
 template <class S, class Build>
 void check_that_looking_is_free(Build build) {
-  int methods = 0;
-  for (const auto& [solver_name, solver] : solvers)
-    for (const auto& [drift_name, drift] : drifts)
-      for (const auto& [name, integrator] : integrators) {
-        Settings s = settings(solver, drift, -9.81);
-        s.integrator = integrator;
-        if (wrong_with_methods(s)) continue;
+  const int methods =
+      for_each_method(settings(Solver::direct, Drift::projection, -9.81), [&](const Settings& s, const std::string& name) {
         BasicWorld<S> world(s), unseen(s);
         build(world), build(unseen);
         for (int k = 0; k < 10; ++k) {
           diagnose(world, 0.01);
           world.step(0.01), unseen.step(0.01);
-          ASSERT_EQ(world.hash(), unseen.hash()) << solver_name << " " << drift_name << " " << name;
+          ASSERT_EQ(world.hash(), unseen.hash()) << name;
         }
-        ++methods;
-      }
+      });
   EXPECT_GE(methods, 12);
 }
 

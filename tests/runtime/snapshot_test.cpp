@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "runtime/methods.hpp"
+#include "tests/methods.hpp"
 #include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {
@@ -124,27 +124,15 @@ void check_runs(const Settings& settings, const std::string& name, Seen& seen) {
   EXPECT_EQ(one.snapshot(), end) << name;
 }
 
-// What a World takes; setup_test.cpp says which combinations it refuses, and how.
-bool runs(const Settings& s) { return wrong_with_methods(s) == nullptr; }
-
 template <class S>
 void check_all_methods() {
   Seen seen;
-  int combinations = 0;
-  for (const auto& [solver_name, solver] : solvers)
-    for (const auto& [drift_name, drift] : drifts)
-      for (const auto& [name, integrator] : integrators)
-        for (double local_error : {0.0, 1e-5}) {
-          Settings s = settings(solver, drift, -9.81);
-          s.integrator = integrator;
-          s.local_error = local_error;
-          s.sleep_after = 0.1;
-          s.substeps = 2;
-          if (!runs(s)) continue;
-          ++combinations;
-          check_runs<S>(s, fmt::format("{} {} {} {}", solver_name, drift_name, name, local_error), seen);
-          if (testing::Test::HasFatalFailure()) return;
-        }
+  Settings base = settings(Solver::direct, Drift::projection, -9.81);
+  base.sleep_after = 0.1;
+  base.substeps = 2;
+  const int combinations = for_each_method(base, [&](const Settings& s, const std::string& name) {
+    if (!testing::Test::HasFatalFailure()) check_runs<S>(s, name, seen);
+  });
   for (const auto& [name, kernels] : kernel_forms) {
     Settings s = settings(Solver::iterative, Drift::projection, -9.81);
     s.kernels = kernels;

@@ -8,8 +8,8 @@
 
 #include "runtime/accuracy_state.hpp"
 #include "runtime/accuracy_sweep.hpp"
-#include "runtime/methods.hpp"
 #include "runtime/run_output.hpp"
+#include "tests/methods.hpp"
 #include "tests/scenes/accuracy_pendulum.hpp"
 #include "tests/scenes/support.hpp"
 
@@ -134,21 +134,6 @@ TEST(Distances, AreSeenAfterEveryStep) {
 
 class Slopes : public testing::TestWithParam<Way> {};
 
-double order_of(const Way& way) {
-  switch (way.integrator) {
-    case Integrator::euler:
-    case Integrator::implicit:
-      return 1;
-    case Integrator::rattle:
-      return 2;
-    case Integrator::rk4:
-      return 4;
-    case Integrator::dop853:
-      break;
-  }
-  return 8;
-}
-
 // As long as the error is small and above round-off, halving the step divides it by 2^order.
 TEST_P(Slopes, AreTheOrder) {
   const Way& way = GetParam();
@@ -163,13 +148,13 @@ TEST_P(Slopes, AreTheOrder) {
     fmt::print("  {} steps: {:.3e}", steps, now);
     if (before > 0 && before < 1e-2 && now > 1e-11) {
       fmt::print(", order {:.2f}", std::log2(before / now));
-      EXPECT_NEAR(std::log2(before / now), order_of(way), order_of(way) > 4 ? 1 : 0.3);
+      EXPECT_NEAR(std::log2(before / now), order_of(way.integrator), order_of(way.integrator) > 4 ? 1 : 0.3);
       ++seen;
     }
     fmt::print("\n");
     before = now;
   }
-  EXPECT_GE(seen, order_of(way) > 4 ? 1 : 3);
+  EXPECT_GE(seen, order_of(way.integrator) > 4 ? 1 : 3);
 }
 
 std::string test_name(const testing::TestParamInfo<Way>& info) {

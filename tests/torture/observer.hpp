@@ -9,11 +9,14 @@
 #include <vector>
 
 #include "runtime/jacobian.hpp"
+#include "tests/methods.hpp"
 #include "tests/torture/invariants.hpp"
 #include "tests/torture/laws.hpp"
 #include "tests/torture/motion.hpp"
 
 namespace cdot::torture {
+
+using test::order_of;
 
 // What C of one is, by row of a joint: |J| of a displacement of the mechanism's size and of a turn of one radian.
 struct RowSizes {
@@ -80,21 +83,6 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
     }
   }
   return gap;
-}
-
-constexpr double order_of(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::euler:
-    case Integrator::implicit:
-      return 1;
-    case Integrator::rattle:
-      return 2;
-    case Integrator::rk4:
-      return 4;
-    case Integrator::dop853:
-      return 8;
-  }
-  return 1;
 }
 
 // See README.md: how far energy and angular momentum may be off after the steps so far.
