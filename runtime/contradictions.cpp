@@ -18,9 +18,9 @@ namespace {
 
 // Below this, and below this share of the largest b, a row that is missed is round-off.
 template <class T>
-constexpr double slight = std::is_same_v<T, double> ? 1e-11 : 1e-5;
+constexpr double least_slight = std::is_same_v<T, double> ? 1e-11 : 1e-5;
 template <class T>
-constexpr double slight_share = std::is_same_v<T, double> ? 1e-9 : 1e-4;
+constexpr double least_share = std::is_same_v<T, double> ? 1e-9 : 1e-4;
 
 constexpr double solved = 1e-24;  // of the square of what was missed at first
 
@@ -50,6 +50,11 @@ void System<S>::expand(const std::vector<double>& y, std::vector<double>& to) {
   for (int r = 0; r < rows_; ++r) to[r] = kept(r) ? -to[r] : y[r];
 }
 
+template <class S>
+double System<S>::slight(double scale) {
+  return std::max(least_slight<T>, least_share<T> * scale);
+}
+
 // What the dropped rows miss, into `missed`. False if that is round-off.
 template <class S>
 bool System<S>::misses_rows(std::vector<double>& missed) {
@@ -63,11 +68,12 @@ bool System<S>::misses_rows(std::vector<double>& missed) {
     missed[r] = b[r] - product_[r] - softness[r] * lambda[r];
     largest = std::max(largest, std::abs(missed[r]));
   }
-  return largest > std::max(slight<T>, slight_share<T> * scale);
+  return largest > slight(scale);
 }
 
 template <class S>
 void System<S>::share_contradictions() {
+  if (softened_) return;
   auto& [missed, step, image, y] = shared_;
   contradicted_ = dependent_ > 0 && misses_rows(missed);
   if (!contradicted_) return;
@@ -94,7 +100,10 @@ void System<S>::share_contradictions() {
     if (kept(r)) lambda[r] -= image[r];
 }
 
-#define CDOT_INSTANTIATE(S) template void System<S>::share_contradictions();
+#define CDOT_INSTANTIATE(S)                                             \
+  template double System<S>::slight(double);                            \
+  template bool System<S>::misses_rows(std::vector<double>&);           \
+  template void System<S>::share_contradictions();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

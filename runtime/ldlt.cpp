@@ -43,6 +43,7 @@ void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int
   noise_.assign(n, 0.0);
   out_.assign(n, 0);
   dependent_.assign(n, 0);
+  definite_.assign(n, 0);
   factored_ = false;
   given_.assign(n, 0.0);
 }
@@ -131,24 +132,36 @@ dense::Numbers Ldlt::numbers(const double* added) {
           noise_.data()};
 }
 
-int Ldlt::factor(const double* added, const char* out) {
+int Ldlt::eliminate_columns(const dense::Numbers& all, const char* out) {
   std::copy(values_.begin(), values_.end(), l_.begin());
   any_out_ = out != nullptr;
   if (out)
     std::copy_n(out, out_.size(), out_.begin());
   else
     std::fill(out_.begin(), out_.end(), 0);
-  for (size_t k = 0; k < noise_.size(); ++k)
-    noise_[k] = dense::pivot_noise * values_[diagonal_[k]];
-  const dense::Numbers all = numbers(added);
   int dependent = 0;
   for (const Column& column : columns_) {
     dependent += column.eliminate(column, all);
     for (int k = column.updates_begin; k < column.updates_end; ++k)
       updates_[k].run(column, updates_[k], all);
   }
+  return dependent;
+}
+
+int Ldlt::factor(const double* added, const char* out) {
+  for (size_t k = 0; k < noise_.size(); ++k)
+    noise_[k] = dense::pivot_noise * values_[diagonal_[k]];
+  const int dependent = eliminate_columns(numbers(added), out);
   factored_ = true;
   return dependent;
+}
+
+void Ldlt::factor_definite(const double* added, const char* out) {
+  std::fill(noise_.begin(), noise_.end(), 0.0);
+  dense::Numbers all = numbers(added);
+  all.share = 0;
+  all.dependent = definite_.data();
+  eliminate_columns(all, out);
 }
 
 void Ldlt::solve(const double* b, double* x) {

@@ -90,8 +90,13 @@ class Ldlt {
   // Factors values() with `added` on the diagonal and the unknowns marked in `out` taken out (their
   // rows become those of the identity); null: none. Returns how many rows depend on others.
   int factor(const double* added, const char* out);
+  // The same where `added` makes K definite, however slightly: no row is dropped, and nothing is learnt about any.
+  void factor_definite(const double* added, const char* out);
   // The last factor() found the row to depend on others.
   bool dependent(int unknown) const { return inverse_[unknown] == 0 && !out_[unknown]; }
+  // What it magnified round-off to was above what a pivot may be of the diagonal: whether the row depends on others
+  // remains unknown.
+  bool blurred(int unknown) const { return noise_[unknown] > share_ * diagonal(unknown); }
   // Of a row that does not depend on others.
   double pivot(int unknown) const { return 1 / inverse_[unknown]; }
   // x = K^-1 b for the last factor(); may be in place.
@@ -113,6 +118,7 @@ class Ldlt {
     dense::Update run;
   };
   dense::Numbers numbers(const double* added);
+  int eliminate_columns(const dense::Numbers& all, const char* out);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(Column& column);
 
@@ -125,7 +131,7 @@ class Ldlt {
   std::vector<double> values_, l_;
   std::vector<double> inverse_, noise_;  // by unknown
   std::vector<char> out_;
-  std::vector<unsigned char> dependent_;
+  std::vector<unsigned char> dependent_, definite_;  // definite_: nobody asks what factor_definite() says there
   bool any_out_ = false, factored_ = false;
   double share_ = pivot_share;
   std::vector<double> unscaled_, given_;

@@ -133,8 +133,8 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_system(System<S>& system, int index, Visitor& visit) {
-    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, built, lawful, any_out, contradicted, rows,
-           dependent, ldlt, products, jacobian, weighted, right_side, product, shared, unmet, out, held] = system;
+    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, built, lawful, any_out, contradicted, softened,
+           rows, dependent, ldlt, products, jacobian, weighted, right_side, product, shared, unmet, out, held] = system;
     visit.item("system.slots", index);
     for (auto& block : blocks) visit(block.slot);
     visit.item("system.lambda", index), visit(lambda);
@@ -144,14 +144,14 @@ struct StateList {
     visit.item("system.unmet", index), visit(unmet);
     visit.item("system.dependent", index), visit(dependent);
     visit.item("system.flags", index);
-    visit(fixed), visit(broken), visit(out), visit(held), visit(any_out), visit(contradicted);
+    visit(fixed), visit(broken), visit(out), visit(held), visit(any_out), visit(contradicted), visit(softened);
     each_of_factor(ldlt, index, visit);
   }
 
   template <class Visitor>
   static void each_of_factor(Ldlt& ldlt, int index, Visitor& visit) {
-    auto& [first, diagonal, column_of, columns, panel_row, updates, values, l, inverse, noise, out, dependent, any_out,
-           factored, share, unscaled, given] = ldlt;
+    auto& [first, diagonal, column_of, columns, panel_row, updates, values, l, inverse, noise, out, dependent, definite,
+           any_out, factored, share, unscaled, given] = ldlt;
     visit.item("factor.K", index), visit(values);
     visit.item("factor.L", index), visit(l);
     visit.item("factor.inverse", index), visit(inverse);

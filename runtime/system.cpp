@@ -41,13 +41,24 @@ int System<S>::factor() {
   char any = 0;
   for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
   any_out_ = any != 0;
+  softened_ = false;
   return dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
 }
 
 template <class S>
 void System<S>::solve() {
-  solve_kept_rows();
+  solve_rows();
   share_contradictions();
+}
+
+template <class S>
+void System<S>::solve_rows() {
+  if (!softened_) {
+    solve_kept_rows();
+    if (!drops_rows_by_round_off()) return;
+    soften();
+  }
+  solve_softly();
 }
 
 template <class S>
@@ -127,7 +138,7 @@ int System<S>::find_active_set() {
   int dependent = 0;
   for (int round = 0; round < fast + slow; ++round) {
     dependent = factor();
-    solve_kept_rows();
+    solve_rows();
     if (revise_active_set(round >= fast)) break;
   }
   return dependent;

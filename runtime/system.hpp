@@ -122,20 +122,28 @@ class System {
   bool revise_active_set(bool one_by_one);
   int find_active_set();
   bool part_contradicting_rows();
+  void solve_rows();
   void solve_kept_rows();
+  static double slight(double scale);
   bool misses_rows(std::vector<double>& missed);
   void share_contradictions();
+  bool drops_rows_by_round_off();
+  void soften();
+  double find_rest(const std::vector<double>& wanted, std::vector<double>& rest);
+  double refine(const std::vector<double>& wanted, double scale);
+  void solve_softly();
   bool kept(int row) const { return !out_[static_cast<size_t>(row)] && !ldlt_.dependent(row); }
   void contract(std::vector<double>& w);
   void expand(const std::vector<double>& y, std::vector<double>& to);
 
   bool built_ = false, lawful_ = false, any_out_ = false, contradicted_ = false;
+  bool softened_ = false;  // the factor is that of K with every row softened
   int rows_ = 0, dependent_ = 0;
   Ldlt ldlt_;
   std::vector<Product> products_;
   std::vector<double> jacobian_, weighted_;
   std::vector<double> right_side_, product_;
-  std::array<std::vector<double>, 4> shared_;  // by row, while contradictions are shared out
+  std::array<std::vector<double>, 4> shared_;  // by row, while contradictions are shared out or rows refined
   std::vector<double> unmet_;                  // by row
   std::vector<char> out_, held_;  // held_: the active set of the last solve_bounded()
 };

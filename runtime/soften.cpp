@@ -1,0 +1,90 @@
+// Systems in which elimination cannot tell whether a row depends on those before it: in large ones with many redundant
+// rows a pivot that is rightly small magnifies the round-off of all that follow, until rows that say something new are
+// dropped. Where a row that may be one of these is left unmet, K is factored once more, slightly softened in every row,
+// so that none has to be dropped, and the softness is taken back by refinement:
+//
+//   lambda <- lambda + (K + eps D)^-1 (b - K lambda),   D the diagonal of K
+//
+// Each round leaves eps / (eps + kappa) of what b has along an eigenvector, K x = kappa D x. What it leaves of rows that
+// contradict each other (kappa = 0) stays: there the motion is that of least squares, each row weighed by 1 / D.
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/spaces.hpp"
+#include "runtime/system.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr double eps = 1e-10;
+constexpr int refinements = 5;
+constexpr double refined = 1e-13;  // of the largest b
+
+}  // namespace
+
+template <class S>
+bool System<S>::drops_rows_by_round_off() {
+  bool any = false;
+  for (int r = 0; dependent_ > 0 && r < rows_; ++r) any |= ldlt_.dependent(r) && ldlt_.blurred(r);
+  return any && misses_rows(shared_[0]);
+}
+
+template <class S>
+void System<S>::soften() {
+  auto& softened = shared_[0];
+  for (int r = 0; r < rows_; ++r) softened[r] = softness[r] + eps * ldlt_.diagonal(r);
+  ldlt_.factor_definite(softened.data(), any_out_ ? out_.data() : nullptr);
+  softened_ = true;
+}
+
+// The largest of what lambda leaves of `wanted` in the rows that are free.
+template <class S>
+double System<S>::find_rest(const std::vector<double>& wanted, std::vector<double>& rest) {
+  ldlt_.multiply(lambda.data(), product_.data());
+  double largest = 0;
+  for (int r = 0; r < rows_; ++r) {
+    rest[r] = out_[r] ? 0.0 : wanted[r] - product_[r] - softness[r] * lambda[r];
+    largest = std::max(largest, std::abs(rest[r]));
+  }
+  return largest;
+}
+
+// Returns the largest of what is left.
+template <class S>
+double System<S>::refine(const std::vector<double>& wanted, double scale) {
+  auto& [rest, change, aim, unused] = shared_;
+  for (int r = 0; r < rows_; ++r)
+    if (!out_[r] || broken[r]) lambda[r] = 0.0;
+  double left = find_rest(wanted, rest);
+  for (int round = 0; round < refinements && left > refined * scale; ++round) {
+    ldlt_.solve(rest.data(), change.data());
+    for (int r = 0; r < rows_; ++r)
+      if (!out_[r]) lambda[r] += change[r];
+    left = find_rest(wanted, rest);
+  }
+  return left;
+}
+
+template <class S>
+void System<S>::solve_softly() {
+  auto& [rest, change, aim, unused] = shared_;
+  double scale = 0;
+  for (int r = 0; r < rows_; ++r)
+    if (!out_[r]) scale = std::max(scale, std::abs(b[r]));
+  contradicted_ = refine(b, scale) > slight(scale);
+  if (!contradicted_) return;
+  unmet_ = rest;
+  for (int r = 0; r < rows_; ++r) aim[r] = b[r] - unmet_[r];
+  refine(aim, scale);
+}
+
+#define CDOT_INSTANTIATE(S)                                                                       \
+  template bool System<S>::drops_rows_by_round_off();                                             \
+  template void System<S>::soften();                                                              \
+  template double System<S>::find_rest(const std::vector<double>&, std::vector<double>&);         \
+  template double System<S>::refine(const std::vector<double>&, double);                          \
+  template void System<S>::solve_softly();
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
