@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace cdot::test {
@@ -246,6 +247,42 @@ TEST(Ldlt, AChainCostsInProportionToItsLength) {
     fmt::print("{} rows a joint: {} multiplications for 100 joints, {} for 200, {} for 400\n", rows,
                cost[0], cost[1], cost[2]);
   }
+}
+
+// Discs in a square, each joined to its right and its lower neighbour, seven of them at the top on the ground. Joints of
+// two rows that share a disc are coupled.
+long multiplications_of_grid(int n) {
+  std::vector<std::vector<int>> joints_at(static_cast<size_t>(n * n));
+  std::vector<int> rows;
+  const auto add_joint = [&](int a, int b) {
+    const auto grounded = [&](int disc) { return disc < n && std::abs(disc - n / 2) <= 3; };
+    if (grounded(a) && grounded(b)) return;
+    for (int disc : {a, b})
+      if (!grounded(disc)) joints_at[disc].push_back(static_cast<int>(rows.size()));
+    rows.push_back(2);
+  };
+  for (int disc = 0; disc < n * n; ++disc) {
+    if (disc % n > 0) add_joint(disc - 1, disc);
+    if (disc >= n) add_joint(disc - n, disc);
+  }
+  std::vector<std::pair<int, int>> pairs;
+  for (const auto& joints : joints_at)
+    for (int i : joints)
+      for (int j : joints)
+        if (j < i) pairs.emplace_back(i, j);
+  Ldlt ldlt;
+  ldlt.analyse(rows, pairs);
+  return ldlt.multiplications();
+}
+
+// By nested dissection a grid of n bodies costs in proportion to n^1.5.
+TEST(Ldlt, AGridCostsLittleMoreThanByDissection) {
+  const long small = multiplications_of_grid(25), middle = multiplications_of_grid(50), large = multiplications_of_grid(100);
+  const auto exponent = [](long few, long many, double bodies) { return std::log(double(many) / few) / std::log(bodies); };
+  fmt::print("25 x 25: {}, 50 x 50: {} (n^{:.2f}), 100 x 100: {} multiplications (n^{:.2f} from 25 x 25)\n", small, middle,
+             exponent(small, middle, 4), large, exponent(small, large, 16));
+  EXPECT_LT(exponent(small, large, 16), 1.6);
+  EXPECT_LT(exponent(middle, large, 4), 1.6);
 }
 
 // From both ends: the middle joint comes last, and its first neighbour is not the one before it in

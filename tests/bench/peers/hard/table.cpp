@@ -48,7 +48,7 @@ const std::vector<std::pair<std::string, std::string>>& not_asked() {
       {"both_immovable", "what is judged is what Cdot says of it"},
       {"changed_while_running", meddled},
       {"gimbal_lock", "adapters know no universal and no six-degree joints"},
-      {"joint_grid", "1200 pins, by far the largest: not asked of the others yet"},
+      {"joint_grid", "1200 pins and more, by far the largest: not asked of the others yet"},
       {"pulley_at_zero_rope", "adapters know no pulleys"},
       {"stiff_and_soft", "adapters know no springs"},
       {"zero_length_distance, length 0", "what is judged is that Cdot refuses it"}};
