@@ -60,6 +60,8 @@ struct BlockOps {
   // with its drift correction.
   void (*add_stiffness)(const Batch<S>&, int begin, int end, const Bodies<S>&, T time,
                         typename S::Stiffness* stiffness);
+  // d(J^T lambda)/dq of one slot, [freedom * bodies] square, with any lambda.
+  void (*stiffness)(const Batch<S>&, int slot, const Bodies<S>&, T time, const T* lambda, T* H);
   // The same block with its rows solved otherwise; null where that is no different.
   const BlockOps *fast, *robust;
 
@@ -92,8 +94,8 @@ struct Guard {
   T gap() const { return lower == T(0) ? off_by : -off_by; }
 };
 
-// No row block has more rows.
-inline constexpr int most_rows = 8;
+// No row block has more rows, nor more bodies.
+inline constexpr int most_rows = 8, most_bodies = 4;
 
 // How rows that are not plainly exact get their bias, softness and bounds: one constant per effect,
 // defined where the effect is. A batch under no law has none of these numbers.

@@ -25,7 +25,7 @@ struct BlockLoops {
   static constexpr int rows = Block::rows;
   static constexpr int width = S::freedom * bodies;
   static constexpr int triangle = rows * (rows + 1) / 2;
-  static_assert(rows <= most_rows);
+  static_assert(rows <= most_rows && bodies <= most_bodies);
   using Turns = TurnCounters<S, Joint, Block>;
 
   // An empty struct (all entries of J known) has size 1 but holds nothing.
@@ -258,28 +258,14 @@ struct BlockLoops {
     }
   }
 
-  // The same numbers in doubles.
-  template <class Exact, class Struct>
-  static Exact exact(const Struct& of) {
-    static_assert(sizeof(Exact) / sizeof(double) == sizeof(Struct) / sizeof(T));
-    Exact to{};
-    if constexpr (std::is_same_v<Exact, Struct>) {
-      to = of;
-    } else if constexpr (!std::is_empty_v<Struct>) {
-      const T* from = reinterpret_cast<const T*>(&of);
-      std::copy_n(from, numbers<Struct>(), reinterpret_cast<double*>(&to));
-    }
-    return to;
-  }
-
   static void dense(const Batch<S>& batch, int slot, const Bodies<S>& all, double* J,
                     double* weighted, double* K, int stride) {
     using Exact = typename S::Exact;
     typename Exact::InverseMass m[bodies];
     for (int k = 0; k < bodies; ++k)
-      m[k] = exact<typename Exact::InverseMass>(
+      m[k] = exact<typename Exact::InverseMass, T>(
           all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
-    const auto entries = exact<typename Block::template Jacobian<double>>(
+    const auto entries = exact<typename Block::template Jacobian<double>, T>(
         as<Jacobian>(batch.jacobian.data(), slot));
     double D[rows][width], W[rows][width], own[triangle];
     Block::dense(entries, D);
@@ -304,16 +290,29 @@ struct BlockLoops {
     for (int k = 0; k < bodies; ++k) impulse[k] = sum[k];
   }
 
+  static void stiffness_of(const Batch<S>& batch, int slot, const Bodies<S>& all, T time,
+                           const T (&lambda)[rows], T (&H)[width][width]) {
+    Pose q[bodies];
+    gather(all.pose, bodies_of(batch, slot), q);
+    Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, H);
+  }
+
+  static void stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, T time,
+                        const T* impulses, T* to) {
+    T lambda[rows], H[width][width];
+    for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
+    stiffness_of(batch, slot, all, time, lambda, H);
+    for (int r = 0; r < width; ++r) std::copy_n(H[r], width, to + r * width);
+  }
+
   static void add_stiffness(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time,
                             typename S::Stiffness* stiffness) {
     for (int slot = begin; slot < end; ++slot) {
       const int* body = bodies_of(batch, slot);
-      Pose q[bodies];
-      gather(all.pose, body, q);
       T lambda[rows], H[width][width];
       for (int r = 0; r < rows; ++r)
         lambda[r] = batch.lambda[slot * rows + r] + batch.correction[slot * rows + r];
-      Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, H);
+      stiffness_of(batch, slot, all, time, lambda, H);
       for (int k = 0; k < bodies; ++k) S::subtract(stiffness[body[k]], H, k);
     }
   }
@@ -347,6 +346,7 @@ struct BlockLoops {
             dense,
             transposed,
             add_stiffness,
+            stiffness,
             nullptr,
             nullptr};
   }

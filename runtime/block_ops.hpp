@@ -28,6 +28,7 @@ constexpr BlockOps<S> ops_without_rows() {
   ops.dense = do_nothing;
   ops.transposed = do_nothing;
   ops.add_stiffness = do_nothing;
+  ops.stiffness = do_nothing;
   return ops;
 }
 

@@ -1,11 +1,27 @@
 // The bodies as arrays. Apart from the joints: an integrator or a force needs nothing else.
 #pragma once
 
+#include <algorithm>
+#include <type_traits>
 #include <vector>
 
 #include "runtime/kernel.hpp"
 
 namespace cdot {
+
+// The same struct of numbers in doubles.
+template <class Exact, class T, class Struct>
+Exact exact(const Struct& of) {
+  static_assert(sizeof(Exact) / sizeof(double) == sizeof(Struct) / sizeof(T));
+  Exact to{};
+  if constexpr (std::is_same_v<Exact, Struct>) {
+    to = of;
+  } else if constexpr (!std::is_empty_v<Struct>) {
+    const T* from = reinterpret_cast<const T*>(&of);
+    std::copy_n(from, sizeof(Struct) / sizeof(T), reinterpret_cast<double*>(&to));
+  }
+  return to;
+}
 
 // S is a space: Planar<double>, Planar<float>.
 template <class S>

@@ -4,22 +4,11 @@
 
 #include <cmath>
 
+#include "runtime/arbitrary.hpp"
 #include "runtime/diagnose.hpp"
 #include "runtime/stages.hpp"
 
 namespace cdot {
-
-// Starts of power iterations: numbers in [0, 1) that no eigenvector is orthogonal to, but by chance.
-class Arbitrary {
- public:
-  double operator()() {
-    state_ = state_ * 1664525u + 1013904223u;
-    return state_ / 4294967296.0;
-  }
-
- private:
-  unsigned state_ = 1;
-};
 
 template <class S>
 class Equations {
@@ -32,9 +21,7 @@ class Equations {
         segments_.push_back(segment);
     evaluate();
     system_.build(segments_, world.bodies);
-    system_.choose([](const Batch<S>& batch, int i) {
-      return batch.kinds[i % batch.ops->rows] != RowKind::inequality || batch.C[i] <= slight;
-    });
+    system_.choose(takes_part);
     joints_.resize(static_cast<size_t>(system_.rows()));
     C_.resize(joints_.size());
     system_.each_row([&](int row, const Batch<S>& batch, int i) {
@@ -48,6 +35,10 @@ class Equations {
 
   // [m, rad]: joints that miss each other by less are not said to contradict.
   static constexpr T slight = std::is_same_v<T, double> ? T(1e-9) : T(1e-5);
+
+  static bool takes_part(const Batch<S>& batch, int i) {
+    return is_joint(batch) && (batch.kinds[i % batch.ops->rows] != RowKind::inequality || batch.C[i] <= slight);
+  }
 
   const std::vector<Segment<S>>& segments() const { return segments_; }
   int rows() const { return rows_; }

@@ -47,6 +47,11 @@ class Motion {
     equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]) * h; });
     stiffen_bodies(world_, island_, h);
     equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]); });
+    solves_as_step_ = world_.settings.integrator == Integrator::implicit && world_.settings.solver == Solver::direct;
+    if (!solves_as_step_) return;
+    island_.system.choose(Equations<S>::takes_part);
+    island_.system.assemble(world_.bodies);
+    island_.system.factor();
   }
 
   // P M^-1 G w, at a distance that C's curvature bears and round-off does not disturb.
@@ -66,13 +71,11 @@ class Motion {
       Batch<S>& batch = *segment.batch;
       batch.ops->velocity(batch, segment.begin, segment.end, change.data(), batch.scratch.data());
     }
-    std::vector<double> b(equations_.size());
-    equations_.each_row([&](int row, Batch<S>& batch, int i) { b[row] = -double(batch.scratch[i]); });
-    const std::vector<double> impulse = equations_.solve(b);
-    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.correction[i] = T(impulse[row]); });
+    find_corrections(change);
     for (const Segment<S>& segment : equations_.segments())
       segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world_.bodies,
                                 segment.batch->correction.data(), change.data());
+    if (solves_as_step_) island_.system.pull(world_.bodies, change.data());
     return change;
   }
 
@@ -97,6 +100,21 @@ class Motion {
     double square = 0;
     for (int i : island_.bodies) square = std::max(square, product(w[i], w[i]));
     return std::sqrt(square);
+  }
+
+  // -K^-1 J change, J change being in the scratch.
+  void find_corrections(const Velocities& change) {
+    if (solves_as_step_) {
+      island_.system.load([](const Batch<S>& batch, int i) { return -double(batch.scratch[i]); });
+      island_.system.load_tensions(change.data());
+      island_.system.solve();
+      island_.system.store([](Batch<S>& batch, int i, double lambda) { batch.correction[i] = T(lambda); });
+      return;
+    }
+    std::vector<double> b(equations_.size());
+    equations_.each_row([&](int row, Batch<S>& batch, int i) { b[row] = -double(batch.scratch[i]); });
+    const std::vector<double> impulse = equations_.solve(b);
+    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.correction[i] = T(impulse[row]); });
   }
 
   Velocities rates(const Velocities& w, T e, bool tension, bool springs) {
@@ -130,6 +148,7 @@ class Motion {
   Equations<S>& equations_;
   std::vector<Segment<S>> coordinate_springs_;
   const std::vector<typename S::Pose> pose_;
+  bool solves_as_step_ = false;  // by the system of the linearly implicit step, what tension stiffens included
 };
 
 template <class S>

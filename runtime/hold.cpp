@@ -230,6 +230,7 @@ void apply_solution(WorldState<S>& world, Island<S>& island, typename S::Velocit
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, segment.batch->scratch.data(),
                               to);
+  island.system.pull(world.bodies, to);
 }
 
 template <class S>

@@ -10,6 +10,7 @@
 #include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
 #include "runtime/sweep_order.hpp"
+#include "runtime/tension.hpp"
 
 namespace cdot {
 namespace {
@@ -152,6 +153,14 @@ void give_out_forces(WorldState<S>& world) {
           static_cast<int>(i));
 }
 
+template <class S>
+void build_systems(const WorldState<S>& world, Island<S>& island) {
+  const std::vector<int> tensions = tension_rows(world, island);
+  const bool always = world.settings.integrator == Integrator::implicit;
+  island.system.build(island.segments, world.bodies, always ? tensions : std::vector<int>{});
+  if (!always && !tensions.empty()) island.rescue.build(island.segments, world.bodies, tensions);
+}
+
 }  // namespace
 
 template <class S>
@@ -169,7 +178,7 @@ void prepare_topology(WorldState<S>& world) {
     Island<S>& island = world.islands[i];
     measure_size(world, island);
     if (world.settings.solver == Solver::direct || world.on_failure == OnFailure::retry)
-      island.system.build(island.segments, world.bodies);
+      build_systems(world, island);
     island.flow.pose.resize(island.bodies.size());
     island.flow.velocity.resize(island.bodies.size());
     if (world.settings.integrator == Integrator::rattle)

@@ -127,6 +127,7 @@ void put_state_back(WorldState<S>& world) {
   for (int index : world.awake) {
     Island<S>& island = world.islands[index];
     copy_island<false>(world, island);
+    island.system.slacken();
     island.trouble = StepProblem::none;
     island.flow.forget();
   }

@@ -44,8 +44,13 @@ void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int
   out_.assign(n, 0);
   dependent_.assign(n, 0);
   definite_.assign(n, 0);
-  factored_ = false;
   given_.assign(n, 0.0);
+  forget();
+}
+
+void Ldlt::forget() {
+  std::fill(dependent_.begin(), dependent_.end(), 0);
+  factored_ = false;
 }
 
 void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order) {

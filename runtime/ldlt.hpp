@@ -92,6 +92,8 @@ class Ldlt {
   int factor(const double* added, const char* out);
   // The same where `added` makes K definite, however slightly: no row is dropped, and nothing is learnt about any.
   void factor_definite(const double* added, const char* out);
+  // The next factor() is the first.
+  void forget();
   // The last factor() found the row to depend on others.
   bool dependent(int unknown) const { return inverse_[unknown] == 0 && !out_[unknown]; }
   // What it magnified round-off to was above what a pivot may be of the diagonal: whether the row depends on others

@@ -3,6 +3,7 @@
 
 #include "runtime/spaces.hpp"
 #include "runtime/stages.hpp"
+#include "runtime/tension.hpp"
 
 namespace cdot {
 
@@ -15,6 +16,7 @@ void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar 
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all,
                                       T(world.time), all.stiffness.data());
+  tighten_tensions(world, island, h);
   // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq, an implicit Euler step of the
   // turning forces: v starts as (M + h G)^-1 M v.
   for (int i : island.bodies) {

@@ -98,7 +98,7 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool direct, Visitor& visit) {
-    auto& [bodies, segments, springs, drags, gyroscopes, system, redundant_rows, size, scale, restless, residual, evaluated,
+    auto& [bodies, segments, springs, drags, gyroscopes, system, rescue, redundant_rows, size, scale, restless, residual, evaluated,
            factored, continuous, flow, asleep, rested, kept, trouble] = island;
     visit.item("island.flags", index);
     visit(evaluated), visit(factored), visit(continuous), visit(asleep);
@@ -133,10 +133,12 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_system(System<S>& system, int index, Visitor& visit) {
-    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, built, lawful, any_out, contradicted, softened,
-           rows, dependent, ldlt, products, jacobian, weighted, right_side, product, shared, unmet, out, held] = system;
+    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, tensions, built, lawful, taut, any_out, contradicted,
+           softened, rows, dependent, ldlt, products, jacobian, weighted, right_side, product, shared, unmet, tension_of,
+           out, held] = system;
     visit.item("system.slots", index);
     for (auto& block : blocks) visit(block.slot);
+    for (auto& tension : tensions) visit(tension.slot);  // whose rows are slack between steps
     visit.item("system.lambda", index), visit(lambda);
     visit.item("system.softness", index), visit(softness);
     visit.item("system.lower", index), visit(lower);

@@ -16,6 +16,7 @@ void solve_direct(WorldState<S>& world, Island<S>& island) {
                                  segment.batch->scratch.data());
   // K lambda = -(J v + bias)
   system.load([](const Batch<S>& batch, int i) { return -(batch.scratch[i] + batch.bias[i]); });
+  system.load_tensions(all.velocity.data());
   if (!island.factored) system.assemble(all);
   if (system.lawful()) {
     system.load_laws();
@@ -28,6 +29,7 @@ void solve_direct(WorldState<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all,
                               segment.batch->lambda.data(), all.velocity.data());
+  system.pull(all, all.velocity.data());
 }
 
 #define CDOT_INSTANTIATE(S) template void solve_direct(WorldState<S>&, Island<S>&);

@@ -17,6 +17,7 @@ void step_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
     solve_iterative(world, island, world.last_step > 0 ? h / typename S::Scalar(world.last_step) : 0);
   integrate(world, island, h);
   correct_drift(world, island, h);
+  island.system.slacken();  // what follows between steps is no motion of this one
 }
 
 #define CDOT_INSTANTIATE(S) template void step_euler(WorldState<S>&, Island<S>&, S::Scalar);

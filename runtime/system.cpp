@@ -14,6 +14,10 @@ void System<S>::exchange(const Batch<S>* batch, int slot, int last, int marked, 
     if (block.slot == marked) std::fill_n(broken.begin() + block.first, block.rows, value);
     block.slot = block.slot == slot ? last : slot;
   }
+  for (Block& tension : tensions) {
+    if (tension.batch != batch || (tension.slot != slot && tension.slot != last)) continue;
+    tension.slot = tension.slot == slot ? last : slot;
+  }
 }
 
 template <class S>
@@ -42,7 +46,10 @@ int System<S>::factor() {
   for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
   any_out_ = any != 0;
   softened_ = false;
-  return dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
+  dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
+  if (taut_ && dependent_ > 0)
+    each_tension_row([&](const Block&, int, int row) { dependent_ -= ldlt_.dependent(row); });
+  return dependent_;
 }
 
 template <class S>

@@ -15,8 +15,10 @@ class System {
  public:
   using T = typename S::Scalar;
 
-  // Analyses the pattern. Slots are told apart by their position in `segments`.
-  void build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies);
+  // Analyses the pattern. Slots are told apart by their position in `segments`. tension_rows: how many each of
+  // them has; none if empty.
+  void build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies,
+             const std::vector<int>& tension_rows = {});
   bool built() const { return built_; }
   int rows() const { return rows_; }
 
@@ -36,6 +38,7 @@ class System {
   template <class F>
   void load(F value) {
     each_row([&](int row, const Batch<S>& batch, int i) { b[row] = value(batch, i); });
+    if (taut_) load_tensions(nullptr);
   }
   // Softness and bounds of the rows under a law.
   void load_laws();
@@ -101,7 +104,19 @@ class System {
     int jacobian;     // into jacobian_ and weighted_
     Ldlt::Place own;  // its square in K
   };
-  std::vector<Block> blocks;
+  std::vector<Block> blocks, tensions;
+
+  // Rows that the tension of a slot adds (runtime/tension.hpp): the impulse -stiffness W v along W^T, as soft rows. They
+  // are no joint's, so each_row() leaves them out, and their b is 0 but after load_tensions(). Slack until tightened.
+  void slacken();
+  // Takes over from the system of the same blocks without tensions what changed since both were built, and forgets the
+  // rest.
+  void follow(const System& other);
+  void tighten(const Block& tension, int row, const double* w, double stiffness);
+  // b = -W velocity
+  void load_tensions(const typename S::Velocity* velocity);
+  // to += M^-1 W^T lambda
+  void pull(const Bodies<S>& bodies, typename S::Velocity* to) const;
 
   // J of one block times the weighted J of another over one body that they share.
   struct Product {
@@ -116,6 +131,12 @@ class System {
   friend struct StateList;  // runtime/snapshot_list.hpp
   // Of a batch: what is said of one slot is said of the other; `broken` of the marked one becomes `value`.
   void exchange(const Batch<S>* batch, int slot, int last, int marked, char value);
+  template <class F>
+  void each_tension_row(F f) const {
+    for (const Block& tension : tensions)
+      for (int r = 0; r < tension.rows; ++r) f(tension, r, tension.first + r);
+  }
+  void assemble_tensions(const Bodies<S>& bodies);
   void order_rows(const Bodies<S>& bodies);
   void list_products(const Bodies<S>& bodies);
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
@@ -136,7 +157,7 @@ class System {
   void contract(std::vector<double>& w);
   void expand(const std::vector<double>& y, std::vector<double>& to);
 
-  bool built_ = false, lawful_ = false, any_out_ = false, contradicted_ = false;
+  bool built_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
   bool softened_ = false;  // the factor is that of K with every row softened
   int rows_ = 0, dependent_ = 0;
   Ldlt ldlt_;
@@ -145,6 +166,7 @@ class System {
   std::vector<double> right_side_, product_;
   std::array<std::vector<double>, 4> shared_;  // by row, while contradictions are shared out or rows refined
   std::vector<double> unmet_;                  // by row
+  std::vector<int> tension_of_;  // which of `blocks`
   std::vector<char> out_, held_;  // held_: the active set of the last solve_bounded()
 };
 

@@ -51,19 +51,28 @@ constexpr auto products = all_products<S>(dense::Sizes{});
 }  // namespace
 
 template <class S>
-void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies) {
+void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies,
+                      const std::vector<int>& tension_rows) {
   blocks.clear();
+  tensions.clear();
   rows_ = 0;
-  lawful_ = false;
+  lawful_ = taut_ = false;
   int numbers = 0;
+  const auto add = [&](std::vector<Block>& to, Batch<S>* batch, int slot, int rows) {
+    to.push_back({batch, slot, 0, rows, numbers, {}});
+    rows_ += rows;
+    numbers += rows * S::freedom * batch->ops->bodies;
+  };
   for (const Segment<S>& segment : segments) {
     lawful_ |= segment.batch->law != nullptr;
-    const int rows = segment.batch->ops->rows, width = S::freedom * segment.batch->ops->bodies;
-    for (int slot = segment.begin; rows > 0 && slot < segment.end; ++slot) {
-      blocks.push_back({segment.batch, slot, 0, rows, numbers, {}});
-      rows_ += rows;
-      numbers += rows * width;
-    }
+    const int rows = segment.batch->ops->rows;
+    for (int slot = segment.begin; rows > 0 && slot < segment.end; ++slot) add(blocks, segment.batch, slot, rows);
+  }
+  tension_of_.clear();
+  for (size_t i = 0; i < tension_rows.size(); ++i) {
+    if (tension_rows[i] == 0) continue;
+    add(tensions, blocks[i].batch, blocks[i].slot, tension_rows[i]);
+    tension_of_.push_back(static_cast<int>(i));
   }
   jacobian_.assign(static_cast<size_t>(numbers), 0.0);
   weighted_ = jacobian_;
@@ -75,6 +84,7 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   for (auto* flags : {&fixed, &broken, &out_, &held_}) flags->assign(n, 0);
   order_rows(bodies);
   list_products(bodies);
+  slacken();
   built_ = true;
 }
 
@@ -97,7 +107,7 @@ void System<S>::order_rows(const Bodies<S>& bodies) {
   std::map<std::vector<int>, int> group_over;
   std::map<int, std::vector<int>> groups_at;  // by body
   std::vector<int> rows, group, within;       // rows by group, the others by block
-  for (const Block& block : blocks) {
+  const auto place = [&](const Block& block) {
     const auto over = movable_bodies(block, bodies);
     const auto [found, is_new] = group_over.emplace(over, static_cast<int>(rows.size()));
     if (is_new) {
@@ -107,7 +117,9 @@ void System<S>::order_rows(const Bodies<S>& bodies) {
     group.push_back(found->second);
     within.push_back(rows[found->second]);
     rows[found->second] += block.rows;
-  }
+  };
+  for (const Block& block : blocks) place(block);
+  for (const Block& tension : tensions) place(tension);  // after the rows of their joints, which are not soft
   std::vector<std::pair<int, int>> coupled;
   for (const auto& [body, groups] : groups_at)
     for (int i : groups)
@@ -115,21 +127,26 @@ void System<S>::order_rows(const Bodies<S>& bodies) {
         if (j < i) coupled.emplace_back(i, j);
   ldlt_.analyse(rows, coupled,
                 std::is_same_v<T, double> ? Ldlt::pivot_share : Ldlt::pivot_share_of_floats);
-  for (size_t i = 0; i < blocks.size(); ++i) blocks[i].first = ldlt_.first(group[i]) + within[i];
+  size_t i = 0;
+  for (auto* list : {&blocks, &tensions})
+    for (Block& block : *list) block.first = ldlt_.first(group[i]) + within[i], ++i;
 }
 
 template <class S>
 void System<S>::list_products(const Bodies<S>& bodies) {
   struct Use {
-    int block, position;
+    const Block* block;
+    int position;
   };
   std::map<int, std::vector<Use>> uses;  // by movable body
-  for (int i = 0; i < static_cast<int>(blocks.size()); ++i) {
-    const Batch<S>& batch = *blocks[i].batch;
-    blocks[i].own = ldlt_.place(blocks[i].first, blocks[i].first);
-    for (int k = 0; k < batch.ops->bodies; ++k) {
-      const int body = batch.body[blocks[i].slot * batch.ops->bodies + k];
-      if (!bodies.immovable(body)) uses[body].push_back({i, k});
+  for (auto* list : {&blocks, &tensions}) {
+    for (Block& block : *list) {
+      const Batch<S>& batch = *block.batch;
+      block.own = ldlt_.place(block.first, block.first);
+      for (int k = 0; k < batch.ops->bodies; ++k) {
+        const int body = batch.body[block.slot * batch.ops->bodies + k];
+        if (!bodies.immovable(body)) uses[body].push_back({&block, k});
+      }
     }
   }
   products_.clear();
@@ -137,7 +154,7 @@ void System<S>::list_products(const Bodies<S>& bodies) {
   for (const auto& [body, list] : uses) {
     for (const Use& u : list) {
       for (const Use& v : list) {
-        const Block &row = blocks[u.block], &column = blocks[v.block];
+        const Block &row = *u.block, &column = *v.block;
         if (row.first <= column.first) continue;
         products_.push_back({products<S>[dense::kind(row.rows)][dense::kind(column.rows)],
                              row.jacobian + S::freedom * u.position,
@@ -156,6 +173,7 @@ void System<S>::assemble(const Bodies<S>& bodies) {
     block.batch->ops->dense(*block.batch, block.slot, bodies, jacobian_.data() + block.jacobian,
                             weighted_.data() + block.jacobian, K.data() + block.own.at,
                             block.own.stride);
+  assemble_tensions(bodies);
   for (const Product& product : products_)
     product.add(product, jacobian_.data(), weighted_.data(), K.data());
 }

@@ -104,6 +104,9 @@ struct Island {
   std::vector<Drag<S>> drags;
   std::vector<int> gyroscopes;                      // into WorldState::gyroscopes
   System<S> system;                                 // of the direct solver and of projections
+  // The same with rows of tension, for steps that a method at acceleration level leaves to the linearly implicit one;
+  // built where there are such rows.
+  System<S> rescue;
   int redundant_rows = 0;                           // of the last factorisation
   T size = 1;   // its longest arm or distance between joined bodies [m]
   T scale = 1;  // ten times that, but at most 1: by how much less than for others C must be to be small

@@ -1,0 +1,120 @@
+// What tension stiffens between bodies, in the linearly implicit step: beads on bars, where no body's own turning has a
+// part in it. Closed forms first, then what a heavy load does to a light chain at 1/60 s.
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "tests/runtime/spatial_support.hpp"
+
+namespace cdot::test {
+namespace {
+
+constexpr double g = 9.81, h = 1.0 / 60;
+
+Settings implicit(Drift drift = Drift::projection) {
+  Settings s = settings(Solver::direct, drift, -g);
+  s.integrator = Integrator::implicit;
+  return s;
+}
+
+int bar(World<double>& world, int a, int b, std::vector<double> pa = {0, 0}, std::vector<double> pb = {0, 0}) {
+  return world.add_joint({"distance", {a, b}, {{"pa", pa}, {"pb", pb}}, {}});
+}
+
+// A pendulum at rest pulls with m g. Pushed across, it feels m g / l times the way of the step: v' = v / (1 + h^2 g / l).
+TEST(Tension, OfABarSlowsTheMotionAcrossIt) {
+  for (const double length : {0.5, 2.0}) {
+    World<double> world(implicit(Drift::none));
+    const int bead = world.add_body({.y = -length, .mass = 3});
+    const int joint = bar(world, world.ground(), bead);
+    world.step(h);
+    EXPECT_NEAR(-world.reaction(joint, world.ground()).force_y, 3 * g, 1e-12);
+    world.apply_impulse(bead, {3 * 0.2, 0, 0});
+    world.step(h);
+    EXPECT_NEAR(world.velocity(bead).x, 0.2 / (1 + h * h * g / length), 1e-14);
+    EXPECT_NEAR(world.velocity(bead).y, 0, 1e-14);
+  }
+}
+
+// The same in space, in both directions across, the bar held at an arm of a body that may not turn.
+TEST(Tension, OfABarSlowsTheMotionAcrossItInSpace) {
+  Settings s = implicit(Drift::none);
+  s.gravity_y = 0, s.gravity_z = -g;
+  SpatialWorld<double> world(s);
+  SpatialBodyDefinition d;
+  d.z = -1.5, d.mass = 3, d.inertia = {1, 1, 1}, d.fixed_rotation = true;
+  const int box = world.add_body(d);
+  join(world, "distance", world.ground(), box, {{"pa", {0, 0, 0}}, {"pb", {0, 0, 0.5}}});
+  world.step(h);
+  world.apply_impulse(box, {3 * 0.2, -3 * 0.1, 0, 0, 0, 0});
+  world.step(h);
+  const double slowed = 1 / (1 + h * h * g / 1.0);
+  EXPECT_NEAR(world.velocity(box).x, 0.2 * slowed, 1e-14);
+  EXPECT_NEAR(world.velocity(box).y, -0.1 * slowed, 1e-14);
+}
+
+// A rod of mass m that hangs on a bar of length l by its end, r above its centre: pushed, the step solves the 2 x 2
+// system of the bar's turn and the rod's own,
+//   m (x' - x) = -h^2 m g / l (x' - r w'),   I (w' - w) = h^2 m g r / l (x' - r w') - h^2 m g r w'.
+TEST(Tension, OfABarActsAtItsArm) {
+  const double m = 2, I = 0.3, l = 0.7, r = 0.4, k = h * h * m * g;
+  World<double> world(implicit(Drift::none));
+  const int rod = world.add_body({.y = -l - r, .mass = m, .inertia = I});
+  bar(world, world.ground(), rod, {0, 0}, {0, r});
+  world.step(h);
+  world.apply_impulse(rod, {m * 0.3, 0, I * 0.5});
+  world.step(h);
+  const double xx = m + k / l, xw = -k * r / l, ww = I + k * r * r / l + k * r, det = xx * ww - xw * xw;
+  EXPECT_NEAR(world.velocity(rod).x, (ww * m * 0.3 - xw * I * 0.5) / det, 1e-13);
+  EXPECT_NEAR(world.velocity(rod).w, (xx * I * 0.5 - xw * m * 0.3) / det, 1e-13);
+}
+
+// Ten beads of 1 kg, the last on the load. Returns the load.
+template <class T>
+int add_beads(World<T>& world, double load) {
+  int above = world.ground();
+  for (int i = 1; i <= 11; ++i) {
+    const int bead = world.add_body({.y = -double(i), .mass = i == 11 ? load : 1, .inertia = 0.1});
+    distance(world, above, bead, 1);
+    above = bead;
+  }
+  return above;
+}
+
+// No bar is any stiffer for being there twice, and the second one is no news.
+TEST(Tension, LeavesRedundantRowsToTheJoints) {
+  World<double> once(implicit()), twice(implicit());
+  for (World<double>* world : {&once, &twice}) {
+    const int load = add_beads(*world, 1e3);
+    if (world == &twice) distance(*world, load - 1, load, 1);
+    run(*world, 0.2, h);
+    world->apply_impulse(load, {1e3, 0, 0});
+    run(*world, 2, h);
+  }
+  EXPECT_EQ(once.redundant_rows(), 0);
+  EXPECT_EQ(twice.redundant_rows(), 1);
+  EXPECT_LT(apart(once, twice), 1e-9);
+}
+
+TEST(Tension, HoldsAHeavyLoadOnBeads) {
+  for (const double mass : {1e3, 1e6}) {
+    World<double> world(implicit());
+    const int load = add_beads(world, mass);
+    run(world, 0.2, h);
+    EXPECT_NEAR(-world.reaction(0, world.ground()).force_y / ((10 + mass) * g), 1, 1e-9);
+    world.apply_impulse(load, {mass, 0, 0});
+    const double start = world.energy();
+    double gap = 0, rise = 0;
+    for (int i = 0; i < 600; ++i) {
+      world.step(h);
+      gap = std::max(gap, world.worst_position_error().value);
+      rise = std::max(rise, world.energy() - start);
+    }
+    fmt::print("  {:.0e} kg: gap {:.1e} m, gained {:.1e} of the kick's energy\n", mass, gap, rise / (0.5 * mass));
+    EXPECT_LT(gap, 1e-3);
+    EXPECT_LT(rise, 1e-3 * 0.5 * mass);
+  }
+}
+
+}  // namespace
+}  // namespace cdot::test
