@@ -44,10 +44,11 @@ class Motion {
     equations_.each_row([&](int row, Batch<S>& batch, int i) { b[row] = double(batch.bias[i]) - double(batch.scratch[i]); });
     const std::vector<double> force = equations_.solve(b);
     // stiffen_bodies() wants the impulses of a step.
-    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]) * h; });
-    stiffen_bodies(world_, island_, h);
-    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]); });
+    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]) * h, batch.correction[i] = 0; });
+    world_.last_step = double(h);
     solves_as_step_ = world_.settings.integrator == Integrator::implicit && world_.settings.solver == Solver::direct;
+    if (world_.settings.integrator == Integrator::implicit) stiffen_bodies(world_, island_, h);
+    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]); });
     if (!solves_as_step_) return;
     island_.system.choose(Equations<S>::takes_part);
     island_.system.assemble(world_.bodies);

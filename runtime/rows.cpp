@@ -10,17 +10,18 @@ namespace cdot {
 template <class S>
 void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  if (world.settings.integrator != Integrator::implicit) return;
+  // The impulses at hand are those of the forces over the step before.
+  const T share = world.last_step > 0 ? h * (h / T(world.last_step)) : h;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.stiffness[i] = {};
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all,
                                       T(world.time), all.stiffness.data());
-  tighten_tensions(world, island, h);
+  tighten_tensions(world, island, share);
   // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq, an implicit Euler step of the
   // turning forces: v starts as (M + h G)^-1 M v.
   for (int i : island.bodies) {
-    all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.stiffness[i], h);
+    all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.stiffness[i], share);
     all.velocity[i] =
         S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
   }

@@ -39,8 +39,8 @@ void ask_for_gamma(WorldState<S>& world, Island<S>& island, typename S::Scalar t
 template <class S>
 void accelerate(WorldState<S>& world, Island<S>& island, typename S::Scalar time);
 
-// Adds to the inertias what the tension of the last step's impulses stiffens. Only if the settings
-// ask for it.
+// Adds to the inertias, and to the rows of the direct solver, what the tension of the last step's impulses stiffens:
+// for Integrator::implicit.
 template <class S>
 void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
 

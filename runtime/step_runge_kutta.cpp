@@ -179,11 +179,13 @@ void leave_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar 
   island.flow.forget();
   island.flow.slivers = 0;
   const Integrator own = std::exchange(world.settings.integrator, Integrator::implicit);
+  const double last_step = std::exchange(world.last_step, double(h));
   const bool tense = island.rescue.built();
   if (tense) island.rescue.follow(island.system), std::swap(island.system, island.rescue);
   step_euler(world, island, h);
   if (tense) std::swap(island.system, island.rescue);
   world.settings.integrator = own;
+  world.last_step = last_step;
   for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
   scale_forces(island, 1 / h);
   island.evaluated = island.factored = false;

@@ -15,7 +15,8 @@ namespace cdot {
 template <class S>
 std::vector<int> tension_rows(const WorldState<S>& world, const Island<S>& island);
 
-// W and D from the impulses of the last step; what they take over leaves Bodies::stiffness. Only for the direct solver.
+// W and D from the impulses of the last step, h their share; what they take over leaves Bodies::stiffness. Only for the
+// direct solver.
 template <class S>
 void tighten_tensions(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
 

@@ -1,4 +1,5 @@
-// A light chain stiffened by the weight at its end: 1000 kg, then a million, on ten links of 1 kg.
+// A light chain stiffened by the weight at its end: 1000 kg, then a million, on ten links of 1 kg: rods, which the
+// tension turns, and beads on bars, whose places it couples.
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::hard {
@@ -38,12 +39,18 @@ void finer(Trial& t) {
 
 const Ways exact = only(direct(), {Integrator::dop853}), implicit = only(direct(), {Integrator::implicit});
 
-const Register planar({"heavy_load", "planar", exact, plain<1000>});
-const Register spatial({"heavy_load", "spatial", exact, plain<1000>});
+const Register planar({"heavy_load", "planar", exact + implicit, plain<1000>});
+const Register spatial({"heavy_load", "spatial", exact + implicit, plain<1000>});
 const Register planar_finer({"heavy_load", "planar", implicit, finer<1000>, "8 substeps"});
 const Register spatial_finer({"heavy_load", "spatial", implicit, finer<1000>, "8 substeps"});
+const Register planar_beads({"heavy_load", "planar_beads", implicit, plain<1000>});
+const Register spatial_beads({"heavy_load", "spatial_beads", implicit, plain<1000>});
 const Register planar_million({"heavy_load", "planar", implicit, finer<1'000'000>, "a million kg, 8 substeps"});
 const Register spatial_million({"heavy_load", "spatial", implicit, finer<1'000'000>, "a million kg, 8 substeps"});
+const Register planar_beads_million({"heavy_load", "planar_beads", in_double(implicit), plain<1'000'000>,
+                                     "a million kg"});
+const Register spatial_beads_million({"heavy_load", "spatial_beads", in_double(implicit), plain<1'000'000>,
+                                      "a million kg"});
 
 }  // namespace
 }  // namespace cdot::hard
