@@ -141,7 +141,7 @@ TEST_P(Slopes, AreTheOrder) {
   const ReferenceRun reference = closed_form();
   double before = 0;
   int seen = 0;
-  for (int steps = 1; steps <= 2048; steps *= 2) {
+  for (int steps = 1; steps <= 4096; steps *= 2) {
     const Trajectory trajectory = trajectory_of(scene, way, {steps, 0}, reference.times);
     const Errors errors = errors_of(trajectory, reference, scene);
     const double now = errors.trajectory();
