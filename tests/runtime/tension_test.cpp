@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "tests/runtime/spatial_support.hpp"
 
@@ -114,6 +116,44 @@ TEST(Tension, HoldsAHeavyLoadOnBeads) {
     EXPECT_LT(gap, 1e-3);
     EXPECT_LT(rise, 1e-3 * 0.5 * mass);
   }
+}
+
+// 100 beads on 101 bars between two points, where they hang in equilibrium: the force in bar k is (H, m g (k - 50)), and
+// H is such that they reach from one point to the other.
+TEST(Tension, LeavesAHangingChainWhereItIs) {
+  constexpr int beads = 100;
+  constexpr double length = 0.1, mass = 0.1, span = 6;
+  const auto direction = [&](int bar, double H) {
+    const double V = mass * g * (bar - 0.5 * beads), force = std::hypot(H, V);
+    return std::pair{length * H / force, length * V / force};
+  };
+  double low = 1e-3, high = 1e3;
+  for (int round = 0; round < 200; ++round) {
+    const double middle = 0.5 * (low + high);
+    double reach = 0;
+    for (int bar = 0; bar <= beads; ++bar) reach += direction(bar, middle).first;
+    (reach < span ? low : high) = middle;
+  }
+  World<double> world(implicit());
+  int before = world.ground();
+  double x = 0, y = 0;
+  for (int k = 0; k < beads; ++k) {
+    x += direction(k, low).first, y += direction(k, low).second;
+    const int bead = world.add_body({.x = x, .y = y, .mass = mass, .inertia = 1e-5});
+    distance(world, before, bead, length);
+    before = bead;
+  }
+  world.add_joint({"distance", {before, world.ground()}, {{"pa", {0, 0}}, {"pb", {span, 0}}, {"l", {length}}}, {}});
+  const World<double>& seen = world;
+  std::vector<std::pair<double, double>> start;
+  for (int i = 0; i < world.body_count(); ++i) start.emplace_back(seen.pose(i).x, seen.pose(i).y);
+  run(world, 10, h);
+  double moved = 0;
+  for (int i = 0; i < world.body_count(); ++i)
+    moved = std::max(moved, std::hypot(seen.pose(i).x - start[i].first, seen.pose(i).y - start[i].second));
+  fmt::print("  moved by {:.1e} m in 10 s, H = {:.6f} N\n", moved, low);
+  EXPECT_LT(moved, 1e-6);
+  EXPECT_NEAR(world.reaction(0, world.ground()).force_x / low, 1, 1e-6);
 }
 
 }  // namespace
