@@ -27,12 +27,16 @@ class Stiffness {
       : bodies_(batch.ops->bodies), width_(S::freedom * bodies_) {
     T H[widest * widest];
     batch.ops->stiffness(batch, slot, at, T(time), lambda, H);
-    const int* body = batch.body.data() + slot * bodies_;
+    bool moves[most_bodies];
+    for (int k = 0; k < bodies_; ++k) moves[k] = !all.immovable(batch.body[slot * bodies_ + k]);
     for (int r = 0; r < width_; ++r) {
-      for (int c = 0; c < width_; ++c) {
-        const bool moves = !all.immovable(body[r / S::freedom]) && !all.immovable(body[c / S::freedom]);
-        of_[r][c] = moves ? -0.5 * (double(H[r * width_ + c]) + double(H[c * width_ + r])) : 0.0;
-        largest_ = std::max(largest_, std::abs(of_[r][c]));
+      for (int k = 0; k <= r / S::freedom; ++k) {
+        const bool both = moves[k] && moves[r / S::freedom];
+        for (int c = S::freedom * k; c < S::freedom * (k + 1); ++c) {
+          const double entry = both ? -0.5 * (double(H[r * width_ + c]) + double(H[c * width_ + r])) : 0.0;
+          of_[r][c] = entry;
+          largest_ = std::max(largest_, std::abs(entry));
+        }
       }
     }
   }
@@ -40,17 +44,20 @@ class Stiffness {
   // Eliminates the displacement that is held most: pivot w w^T leaves. False if none is held any more.
   bool eliminate(Row& w, double& pivot, bool any_sign) {
     int held = -1;
-    pivot = slight<T> * largest_;
-    for (int c = 0; c < width_; ++c) {
-      if (c % S::freedom >= S::lengths) continue;
-      const double size = any_sign ? std::abs(of_[c][c]) : of_[c][c];
-      if (size > pivot) pivot = size, held = c;
+    double most = slight<T> * largest_;
+    for (int k = 0; k < bodies_; ++k) {
+      for (int c = S::freedom * k; c < S::freedom * k + S::lengths; ++c) {
+        const double size = any_sign ? std::abs(of_[c][c]) : of_[c][c];
+        if (size > most) most = size, held = c;
+      }
     }
     if (held < 0) return false;
     pivot = of_[held][held];
-    for (int c = 0; c < width_; ++c) w[c] = of_[held][c] / pivot;
-    for (int r = 0; r < width_; ++r)
-      for (int c = 0; c < width_; ++c) of_[r][c] -= pivot * w[r] * w[c];
+    for (int c = 0; c < width_; ++c) w[c] = (c <= held ? of_[held][c] : of_[c][held]) / pivot;
+    for (int r = 0; r < width_; ++r) {
+      const double share = pivot * w[r];
+      for (int c = 0; c <= r; ++c) of_[r][c] -= share * w[c];
+    }
     return true;
   }
 
@@ -58,7 +65,7 @@ class Stiffness {
   bool only_turns() const {
     double left = 0;
     for (int r = 0; r < width_; ++r)
-      for (int c = 0; c < width_; ++c)
+      for (int c = 0; c <= r; ++c)
         if (r / S::freedom != c / S::freedom || r % S::freedom < S::lengths || c % S::freedom < S::lengths)
           left = std::max(left, std::abs(of_[r][c]));
     return left <= slight<T> * largest_;
@@ -66,7 +73,7 @@ class Stiffness {
 
  private:
   int bodies_, width_;
-  double of_[widest][widest];
+  double of_[widest][widest];  // the lower triangle counts
   double largest_ = 0;
 };
 
@@ -102,9 +109,9 @@ int rows_of(const WorldState<S>& world, const Batch<S>& batch, int slot, const B
 // What a row takes over is not the body's own turning.
 template <class S>
 void leave_to_row(typename S::Stiffness& own, const double* w, double pivot) {
-  typename S::Scalar taken[S::freedom][S::freedom];
-  for (int r = 0; r < S::freedom; ++r)
-    for (int c = 0; c < S::freedom; ++c) taken[r][c] = typename S::Scalar(pivot * w[r] * w[c]);
+  typename S::Scalar taken[S::freedom][S::freedom] = {};
+  for (int r = S::lengths; r < S::freedom; ++r)
+    for (int c = S::lengths; c < S::freedom; ++c) taken[r][c] = typename S::Scalar(pivot * w[r] * w[c]);
   S::subtract(own, taken, 0);
 }
 
