@@ -59,8 +59,8 @@ void solve(WorldState<S>& world, Island<S>& island) {
   solve_iterative(world, island, typename S::Scalar(0));
 }
 
-// Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. A motor's force is nothing
-// beside an impulse, unless it has no bound.
+// Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. What has stopped is `held`: by
+// sweeps its rate is not quite 0. A motor's force is nothing beside an impulse, unless it has no bound.
 template <class S>
 void stop_what_hits(WorldState<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
@@ -83,7 +83,9 @@ void stop_what_hits(WorldState<S>& world, Island<S>& island) {
     for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
       segment.batch->correction[i] += segment.batch->lambda[i];
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard) {
-    if (guard.bilateral() || (guard.one_sided() && guard.gap() <= slight<T>)) batch.bias[i] += guard.rate;
+    if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= slight<T>)) return;
+    batch.bias[i] += guard.rate;
+    if (batch.lambda[i] != T(0)) batch.mode[i] = Mode::held;
   });
 }
 
@@ -96,7 +98,7 @@ bool offer_bounds(WorldState<S>& world, Island<S>& island) {
   clear_laws(island);
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard) {
     const T missing = guard.rate - (batch.scratch[i] + batch.bias[i]);
-    const bool slow = std::abs(missing) <= T(4) * slight<T>;
+    const bool slow = std::abs(missing) <= T(4) * slight<T> || batch.mode[i] == Mode::held;
     batch.mode[i] = Mode::held;
     batch.lower[i] = guard.lower;
     batch.upper[i] = guard.upper;

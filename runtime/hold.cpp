@@ -94,6 +94,20 @@ typename S::Scalar errors_met(const Island<S>& island) {
   return worst;
 }
 
+// In continuous time only where a row is held: one that is out of reach must be seen to pass.
+template <class S>
+void sweep_lawful_poses(WorldState<S>& world, const Island<S>& island, const Segment<S>& segment,
+                        typename S::Scalar time) {
+  Batch<S>& batch = *segment.batch;
+  if (!batch.law->error) return;
+  if (!island.continuous) return batch.ops->correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
+  for (int slot = segment.begin; slot < segment.end; ++slot) {
+    const auto mode = batch.mode.begin() + slot * batch.ops->rows;
+    if (std::find(mode, mode + batch.ops->rows, Mode::held) != mode + batch.ops->rows)
+      batch.ops->correct_bounded(batch, slot, slot + 1, world.bodies, time);
+  }
+}
+
 // Where a sweep meets larger errors than the one before, the directions of the step's J mislead:
 // they are renewed.
 template <class S>
@@ -105,8 +119,8 @@ void sweep_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar tim
       Batch<S>& batch = *segment.batch;
       if (!batch.law)
         batch.ops->correct(batch, segment.begin, segment.end, world.bodies, time);
-      else if (batch.law->error)
-        batch.ops->correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
+      else
+        sweep_lawful_poses(world, island, segment, time);
     }
     const T met = errors_met(island);
     if (sweep == 0) first = met;
