@@ -38,6 +38,8 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
   const int index = find_batch(world, ops, law, kinds);
   Batch<S>& batch = *world.batches[index];
   JointRecord& record = world.joints[joint];
+  record.added.add(index), record.added.add(ops->rows), record.added.add(ops->bodies);
+  record.added.bytes(constants.data(), constants.size_bytes());
   record.places.push_back({index, batch.count()});
   batch.joint.push_back(joint);
   batch.body.insert(batch.body.end(), record.bodies.begin(), record.bodies.end());
@@ -61,6 +63,12 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
 }
 
 template <class S>
+void check_joint(const WorldState<S>& world, int joint) {
+  if (joint < 0 || joint >= static_cast<int>(world.joints.size()))
+    throw Error(fmt::format("there is no joint number {}", joint));
+}
+
+template <class S>
 int coordinate_index(int type, std::string_view name) {
   const JointType& joint = joint_types(S::dimension)[static_cast<size_t>(type)];
   std::string known;
@@ -73,23 +81,24 @@ int coordinate_index(int type, std::string_view name) {
 }
 
 template <class S>
-void add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordinate,
-                        const Law<S>* law, std::span<const double> constants) {
-  if (joint < 0 || joint >= static_cast<int>(world.joints.size()))
-    throw Error(fmt::format("there is no joint number {}", joint));
+int add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordinate,
+                       const Law<S>* law, std::span<const double> constants) {
+  check_joint(world, joint);
   JointRecord& record = world.joints[joint];
   const int index = coordinate_index<S>(record.type, coordinate);
-  if (record.places.empty()) return;
+  if (record.places.empty()) return -1;
   const auto& variants = joint_entries<S>()[record.type].coordinates[index];
   add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality},
            constants);
+  return static_cast<int>(record.places.size()) - 1;
 }
 
 #define CDOT_INSTANTIATE(S)                                                              \
   template void add_rows(WorldState<S>&, int, const BlockOps<S>*, const Law<S>*,         \
                          std::vector<RowKind>, std::span<const double>);                 \
-  template void add_coordinate_row(WorldState<S>&, int, std::string_view, const Law<S>*, \
-                                   std::span<const double>);                             \
+  template int add_coordinate_row(WorldState<S>&, int, std::string_view, const Law<S>*,  \
+                                  std::span<const double>);                              \
+  template void check_joint(const WorldState<S>&, int);                                  \
   template int coordinate_index<S>(int, std::string_view);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -1,10 +1,9 @@
 // The breaking load. It needs no row: only a look at the joint's own impulses after each substep,
 // in Worlds that asked.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/add_rows.hpp"
 #include "runtime/effects.hpp"
 #include "runtime/world_state.hpp"
 
@@ -42,24 +41,17 @@ void remove_slot(WorldState<S>& world, Island<S>& island, Batch<S>& batch, int s
 }
 
 template <class S>
-int island_of(const WorldState<S>& world, const JointRecord& record) {
-  int island = -1;
-  for (int body : record.bodies) island = std::max(island, world.island_of[body]);
-  return island;
-}
-
-template <class S>
 void break_joint(WorldState<S>& world, int joint) {
   JointRecord& record = world.joints[joint];
   record.broken = true;
-  const int island = island_of(world, record);
+  Island<S>& island = world.islands[world.island_of[movable_body(world, record)]];
   for (Place& place : record.places) {
     place.before_breaking = place.slot;
-    remove_slot(world, world.islands[island], *world.batches[place.batch], place.slot);
+    remove_slot(world, island, *world.batches[place.batch], place.slot);
   }
   world.broken_in_step.push_back(joint);  // there is room for all
-  world.islands[island].factored = false;
-  world.islands[island].flow.forget();
+  island.factored = false;
+  island.flow.forget();
 }
 
 // The reverse of remove_slot(), of what it was done to last.
@@ -82,7 +74,7 @@ void mend_joints(WorldState<S>& world) {
   for (auto joint = world.broken_in_step.rbegin(); joint != world.broken_in_step.rend(); ++joint) {
     JointRecord& record = world.joints[*joint];
     record.broken = false;
-    Island<S>& island = world.islands[island_of(world, record)];
+    Island<S>& island = world.islands[world.island_of[movable_body(world, record)]];
     for (auto place = record.places.rbegin(); place != record.places.rend(); ++place)
       put_slot_back(world, island, *world.batches[place->batch], place->before_breaking, place->slot);
   }
@@ -115,8 +107,7 @@ void break_overloaded(WorldState<S>& world, typename S::Scalar h) {
 template <class S>
 void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
   auto& state = world.state();
-  if (joint < 0 || joint >= world.joint_count())
-    throw Error(fmt::format("there is no joint number {}", joint));
+  check_joint(state, joint);
   if (!(load > 0)) throw Error("a breaking load must be > 0");
   if (state.joints[joint].places.empty()) return;
   if (state.breaking_loads.empty()) state.after_substep.push_back({break_overloaded<S>, mend_joints<S>});

@@ -4,10 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "runtime/add_rows.hpp"
 #include "runtime/laws.hpp"
+#include "runtime/stages.hpp"
 #include "runtime/world_state.hpp"
 
 namespace cdot {
@@ -132,51 +135,116 @@ template <class S>
 constexpr Law<S> spring_law{4,       false, fill_spring<S>, nullptr, energy_spring<S>, force_of_spring<S>,
                             nullptr};
 
+// The numbers of an effect, as its law keeps them; throw Error where they make no sense.
+
+std::array<double, 2> constants_of(const Limit& limit) {
+  const double lower = limit.lower.value_or(-unlimited), upper = limit.upper.value_or(unlimited);
+  if (!(lower <= upper))
+    throw Error(fmt::format("a limit's lower end {} must not lie above its upper end {}", lower, upper));
+  if (!limit.lower && !limit.upper) throw Error("a limit needs a lower or an upper end");
+  return {lower, upper};
+}
+
+std::array<double, 2> constants_of(const Motor& motor) {
+  if (!std::isfinite(motor.speed)) throw Error("a motor's speed must be finite");
+  if (!(motor.max_force >= 0)) throw Error("a motor's largest force must be >= 0");
+  return {motor.speed, motor.max_force};
+}
+
+std::array<double, 4> constants_of(const CoordinateSpring& spring) {
+  std::array<double, 4> constants;
+  spring_constants(spring.softness, constants.data());
+  if (!std::isfinite(spring.rest)) throw Error("a spring's rest position must be finite");
+  constants[3] = spring.rest;
+  return constants;
+}
+
+std::array<double, 2> constants_of(const DryFriction& friction) {
+  if (!(friction.max_force >= 0)) throw Error("the largest force of dry friction must be >= 0");
+  return {0, friction.max_force};
+}
+
+// The constants of an effect that add_...() made under this law.
+template <class S>
+void set_constants(BasicWorld<S>& world, int joint, int effect, const Law<S>& law, const char* name,
+                   std::span<const double> constants) {
+  WorldState<S>& state = world.state();
+  check_joint(state, joint);
+  const JointRecord& record = state.joints[joint];
+  if (record.places.empty()) return;
+  const auto place = static_cast<size_t>(effect);
+  if (effect < 1 || place >= record.places.size())
+    throw Error(fmt::format("joint number {} has no effect number {}", joint, effect));
+  Batch<S>& batch = *state.batches[record.places[place].batch];
+  if (batch.law != &law) throw Error(fmt::format("effect number {} of joint number {} is no {}", effect, joint, name));
+  for (size_t k = 0; k < constants.size(); ++k)
+    batch.constants[record.places[place].slot * constants.size() + k] = typename S::Scalar(constants[k]);
+  const int body = movable_body(state, record);
+  if (law.error)  // of where the bodies shall be
+    wake(state, body);
+  else
+    wake_pushed(state, body);
+}
+
 }  // namespace
 
 template <class S>
-void add_limit(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit) {
-  const double constants[] = {limit.lower.value_or(-unlimited), limit.upper.value_or(unlimited)};
-  if (!(constants[0] <= constants[1]))
-    throw Error(fmt::format("a limit's lower end {} must not lie above its upper end {}",
-                            constants[0], constants[1]));
-  if (!limit.lower && !limit.upper) throw Error("a limit needs a lower or an upper end");
+int add_limit(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit) {
+  const auto constants = constants_of(limit);
   if (constants[0] == constants[1])
-    return add_coordinate_row(world.state(), joint, coordinate, &lock_law<S>, constants);
-  add_coordinate_row(world.state(), joint, coordinate, &limit_law<S>, constants);
+    return add_coordinate_row(world.state(), joint, coordinate, &lock_law<S>, std::span(constants).first(1));
+  return add_coordinate_row(world.state(), joint, coordinate, &limit_law<S>, constants);
 }
 
 template <class S>
-void add_motor(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor) {
-  if (!std::isfinite(motor.speed)) throw Error("a motor's speed must be finite");
-  if (!(motor.max_force >= 0)) throw Error("a motor's largest force must be >= 0");
-  const double constants[] = {motor.speed, motor.max_force};
-  add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants);
+int add_motor(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor) {
+  return add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants_of(motor));
 }
 
 template <class S>
-void add_spring(BasicWorld<S>& world, int joint, std::string_view coordinate,
-                const CoordinateSpring& spring) {
-  double constants[4];
-  spring_constants(spring.softness, constants);
-  if (!std::isfinite(spring.rest)) throw Error("a spring's rest position must be finite");
-  constants[3] = spring.rest;
-  add_coordinate_row(world.state(), joint, coordinate, &spring_law<S>, constants);
+int add_spring(BasicWorld<S>& world, int joint, std::string_view coordinate, const CoordinateSpring& spring) {
+  return add_coordinate_row(world.state(), joint, coordinate, &spring_law<S>, constants_of(spring));
 }
 
 template <class S>
-void add_friction(BasicWorld<S>& world, int joint, std::string_view coordinate,
-                  const DryFriction& friction) {
-  if (!(friction.max_force >= 0)) throw Error("the largest force of dry friction must be >= 0");
-  const double constants[] = {0, friction.max_force};
-  add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants);
+int add_friction(BasicWorld<S>& world, int joint, std::string_view coordinate, const DryFriction& friction) {
+  return add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants_of(friction));
 }
 
-#define CDOT_INSTANTIATE(S)                                                                 \
-  template void add_limit(BasicWorld<S>&, int, std::string_view, const Limit&);             \
-  template void add_motor(BasicWorld<S>&, int, std::string_view, const Motor&);             \
-  template void add_spring(BasicWorld<S>&, int, std::string_view, const CoordinateSpring&); \
-  template void add_friction(BasicWorld<S>&, int, std::string_view, const DryFriction&);
+template <class S>
+void set_limit(BasicWorld<S>& world, int joint, int effect, const Limit& limit) {
+  const auto constants = constants_of(limit);
+  if (constants[0] == constants[1])
+    set_constants(world, joint, effect, lock_law<S>, "lock (a limit that was added with equal ends)",
+                  std::span(constants).first(1));
+  else
+    set_constants(world, joint, effect, limit_law<S>, "limit with two ends", constants);
+}
+
+template <class S>
+void set_motor(BasicWorld<S>& world, int joint, int effect, const Motor& motor) {
+  set_constants(world, joint, effect, motor_law<S>, "motor", constants_of(motor));
+}
+
+template <class S>
+void set_spring(BasicWorld<S>& world, int joint, int effect, const CoordinateSpring& spring) {
+  set_constants(world, joint, effect, spring_law<S>, "spring", constants_of(spring));
+}
+
+template <class S>
+void set_friction(BasicWorld<S>& world, int joint, int effect, const DryFriction& friction) {
+  set_constants(world, joint, effect, motor_law<S>, "dry friction", constants_of(friction));
+}
+
+#define CDOT_INSTANTIATE(S)                                                                \
+  template int add_limit(BasicWorld<S>&, int, std::string_view, const Limit&);             \
+  template int add_motor(BasicWorld<S>&, int, std::string_view, const Motor&);             \
+  template int add_spring(BasicWorld<S>&, int, std::string_view, const CoordinateSpring&); \
+  template int add_friction(BasicWorld<S>&, int, std::string_view, const DryFriction&);    \
+  template void set_limit(BasicWorld<S>&, int, int, const Limit&);                         \
+  template void set_motor(BasicWorld<S>&, int, int, const Motor&);                         \
+  template void set_spring(BasicWorld<S>&, int, int, const CoordinateSpring&);             \
+  template void set_friction(BasicWorld<S>&, int, int, const DryFriction&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -32,16 +32,28 @@ struct DryFriction {
   double max_force = 0;  // [N] or [N m]
 };
 
+// Each returns the effect's number among those of its joint; -1 where the joint connects only immovable bodies.
 template <class S>
-void add_limit(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit);
+int add_limit(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit);
 template <class S>
-void add_motor(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor);
+int add_motor(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor);
 template <class S>
-void add_spring(BasicWorld<S>& world, int joint, std::string_view coordinate,
-                const CoordinateSpring& spring);
+int add_spring(BasicWorld<S>& world, int joint, std::string_view coordinate, const CoordinateSpring& spring);
 template <class S>
-void add_friction(BasicWorld<S>& world, int joint, std::string_view coordinate,
-                  const DryFriction& friction);
+int add_friction(BasicWorld<S>& world, int joint, std::string_view coordinate, const DryFriction& friction);
+
+// While a World runs: other numbers for the effect of that number, from the next step on. Wakes the joint's island. A
+// motor whose largest force is 0 is switched off, and so is a limit from -unlimited to unlimited; a limit with two ends
+// and a locked coordinate do not become each other.
+template <class S>
+void set_limit(BasicWorld<S>& world, int joint, int effect, const Limit& limit);
+template <class S>
+void set_motor(BasicWorld<S>& world, int joint, int effect, const Motor& motor);
+template <class S>
+void set_spring(BasicWorld<S>& world, int joint, int effect, const CoordinateSpring& spring);
+template <class S>
+void set_friction(BasicWorld<S>& world, int joint, int effect, const DryFriction& friction);
+
 // The joint disappears after the first step in which the norm of its row forces exceeds the load
 // [N, N m].
 template <class S>

@@ -78,14 +78,8 @@ void make_directions(const JointType& type, const ParameterInfo& info, double* n
     normalise(type, info, numbers, info.size);
 }
 
-}  // namespace
-
-template <class S>
-std::vector<double> parameter_numbers(int type_index, const std::vector<NamedValue>& given,
-                                      const typename S::Pose* poses, double time) {
-  const JointType& type = joint_types(S::dimension)[static_cast<size_t>(type_index)];
-  const auto& entry = joint_entries<S>()[static_cast<size_t>(type_index)];
-  std::vector<double> numbers(static_cast<size_t>(type.parameter_size), 0.0);
+// The value given for each parameter of the type; null: none.
+std::vector<const NamedValue*> match(const JointType& type, const std::vector<NamedValue>& given) {
   std::vector<const NamedValue*> value_of(type.parameters.size(), nullptr);
   for (const NamedValue& value : given) {
     const ParameterInfo& info = find_parameter(type, value.name);
@@ -95,13 +89,29 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
     check_numbers(type, info, value);
     slot = &value;
   }
+  return value_of;
+}
+
+void take(const JointType& type, const ParameterInfo& info, const NamedValue& value, double* at) {
+  std::copy(value.numbers.begin(), value.numbers.end(), at);
+  make_directions(type, info, at, value.numbers.size());
+}
+
+}  // namespace
+
+template <class S>
+std::vector<double> parameter_numbers(int type_index, const std::vector<NamedValue>& given,
+                                      const typename S::Pose* poses, double time) {
+  const JointType& type = joint_types(S::dimension)[static_cast<size_t>(type_index)];
+  const auto& entry = joint_entries<S>()[static_cast<size_t>(type_index)];
+  std::vector<double> numbers(static_cast<size_t>(type.parameter_size), 0.0);
+  const std::vector<const NamedValue*> value_of = match(type, given);
   // In order of declaration, since a default may use the parameters before it.
   for (size_t i = 0; i < type.parameters.size(); ++i) {
     const ParameterInfo& info = type.parameters[i];
     double* at = numbers.data() + info.offset;
     if (value_of[i]) {
-      std::copy(value_of[i]->numbers.begin(), value_of[i]->numbers.end(), at);
-      make_directions(type, info, at, value_of[i]->numbers.size());
+      take(type, info, *value_of[i], at);
     } else if (info.has_default) {
       entry.default_value(static_cast<int>(i), poses, numbers.data(), time);
     } else {
@@ -114,6 +124,19 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
                                 info.name, type.name));
   }
   return numbers;
+}
+
+std::vector<const ParameterInfo*> change_parameters(const JointType& type, const std::vector<NamedValue>& given,
+                                                    std::vector<double>& numbers) {
+  std::vector<const ParameterInfo*> changed;
+  const std::vector<const NamedValue*> value_of = match(type, given);
+  for (size_t i = 0; i < value_of.size(); ++i) {
+    if (!value_of[i]) continue;
+    const ParameterInfo& info = type.parameters[i];
+    take(type, info, *value_of[i], numbers.data() + info.offset);
+    changed.push_back(&info);
+  }
+  return changed;
 }
 
 template std::vector<double> parameter_numbers<Planar<double>>(int, const std::vector<NamedValue>&,

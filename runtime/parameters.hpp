@@ -15,6 +15,10 @@ template <class S>
 std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given,
                                       const typename S::Pose* poses, double time);
 
+// Those given take the place of what stood in `numbers`; the others stay. Returns those given. Throws Error.
+std::vector<const ParameterInfo*> change_parameters(const JointType& type, const std::vector<NamedValue>& given,
+                                                    std::vector<double>& numbers);
+
 // Moves the points that such a joint has in the world: those that its spec has on the world, and those on bodies for
 // which fixed_in_world(body) holds.
 template <class Fixed>

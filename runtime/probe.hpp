@@ -2,6 +2,8 @@
 // what every question about a World is answered from.
 #pragma once
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -140,6 +142,30 @@ std::vector<typename S::Scalar> total_impulse(const WorldState<S>& world,
     lambda[r] = batch.lambda[i] + batch.correction[i];
   }
   return lambda;
+}
+
+template <class S>
+bool is_soft(const WorldState<S>& world, const JointRecord& joint) {
+  if (joint.places.empty()) return false;
+  const Law<S>* law = world.batches[joint.places[0].batch]->law;
+  return law && !law->reported;
+}
+
+// Refuses rows that have no direction where they hold. A velocity row has no C, a soft one is a
+// spring: both may.
+template <class S>
+void check_directions(const WorldState<S>& world, const JointRecord& record) {
+  const JointType& type = joint_types(S::dimension)[record.type];
+  Probe<S> probe(world);
+  for (size_t r = 0; r < type.row_kinds.size(); ++r) {
+    if (type.row_kinds[r] == RowKind::velocity) continue;
+    probe.look_at(record);
+    if (probe.at_kink(static_cast<int>(r)))
+      throw Error(
+          fmt::format("row {} of joint `{}` has no direction here: C = 0 at its kink, as a distance of length 0. Hold "
+                      "the points together with a `revolute`",
+                      r + 1, type.name));
+  }
 }
 
 }  // namespace cdot

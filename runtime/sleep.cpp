@@ -18,6 +18,20 @@ void wake_island(WorldState<S>& world, int index) {
   world.awake.insert(std::lower_bound(world.awake.begin(), world.awake.end(), index), index);
 }
 
+// Wakes it and tells it by `forget` what happened. What touches an immovable body may touch every island: rare enough
+// not to look up which.
+template <class S, class F>
+void for_each_island_of(WorldState<S>& world, int body, F forget) {
+  if (!world.prepared) return;
+  const int island = world.island_of[body];
+  const int first = island < 0 ? 0 : island;
+  const int last = island < 0 ? static_cast<int>(world.islands.size()) - 1 : island;
+  for (int i = first; i <= last; ++i) {
+    wake_island(world, i);
+    forget(world.islands[i]);
+  }
+}
+
 }  // namespace
 
 template <class S>
@@ -40,23 +54,23 @@ void put_to_sleep(WorldState<S>& world, double h) {
                     world.awake.end());
 }
 
-// What touches an immovable body may touch every island: rare enough not to look up which.
+template <class S>
+void wake_pushed(WorldState<S>& world, int body) {
+  for_each_island_of(world, body, [&](Island<S>& island) { island.flow.forget(); });
+}
+
 template <class S>
 void wake(WorldState<S>& world, int body) {
-  if (!world.prepared) return;
-  const int island = world.island_of[body];
-  const int first = island < 0 ? 0 : island;
-  const int last = island < 0 ? static_cast<int>(world.islands.size()) - 1 : island;
-  for (int i = first; i <= last; ++i) {
-    wake_island(world, i);
-    world.islands[i].evaluated = world.islands[i].factored = false;
-    world.islands[i].flow.forget();
-    world.islands[i].residual = std::numeric_limits<typename S::Scalar>::infinity();
-  }
+  for_each_island_of(world, body, [](Island<S>& island) {
+    island.evaluated = island.factored = false;
+    island.flow.forget();
+    island.residual = std::numeric_limits<typename S::Scalar>::infinity();
+  });
 }
 
 #define CDOT_INSTANTIATE(S)                           \
   template void put_to_sleep(WorldState<S>&, double); \
+  template void wake_pushed(WorldState<S>&, int);     \
   template void wake(WorldState<S>&, int);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

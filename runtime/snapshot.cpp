@@ -6,6 +6,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "runtime/hash.hpp"
 #include "runtime/methods.hpp"
 #include "runtime/snapshot_list.hpp"
 #include "runtime/stages.hpp"
@@ -94,24 +95,6 @@ struct Copy : Visitor<T, Copy<T, save>> {
   bool all() const { return fits && left == 0 && next == items.size(); }
 };
 
-// FNV-1a.
-struct Hash {
-  std::uint64_t value = 14695981039346656037ull;
-  void bytes(const void* from, std::size_t count) {
-    const auto* byte = static_cast<const unsigned char*>(from);
-    for (std::size_t i = 0; i < count; ++i) value = (value ^ byte[i]) * 1099511628211ull;
-  }
-  template <class Number>
-  void add(const Number& number) {
-    bytes(&number, sizeof number);
-  }
-  template <class Number>
-  void add(const std::vector<Number>& numbers) {
-    add(numbers.size());
-    bytes(numbers.data(), numbers.size() * sizeof(Number));
-  }
-};
-
 // Masses, and inertias in the bodies' frames: where those turn with the bodies, the ones in world axes are state.
 template <class S>
 std::uint64_t hash_of_bodies(const WorldState<S>& world) {
@@ -124,24 +107,11 @@ std::uint64_t hash_of_bodies(const WorldState<S>& world) {
   return hash.value;
 }
 
-template <class S>
-void add_row_block(Hash& hash, const WorldState<S>& world, const Place& place) {
-  const Batch<S>& batch = *world.batches[place.batch];
-  hash.add(place.batch), hash.add(batch.ops->rows), hash.add(batch.ops->bodies);
-  if (!batch.law) return;
-  const auto constants = static_cast<std::size_t>(batch.law->constants);
-  hash.bytes(batch.constants.data() + constants * static_cast<std::size_t>(place.slot),
-             constants * sizeof(typename S::Scalar));
-}
-
-// Joints with their parameters and effects, springs, drags, gravity.
+// Joints and effects as they were added, springs, drags, gravity. What they have been changed to since is state.
 template <class S>
 std::uint64_t hash_of_joints(const WorldState<S>& world) {
   Hash hash;
-  for (const JointRecord& joint : world.joints) {
-    hash.add(joint.type), hash.add(joint.bodies), hash.add(joint.parameters);
-    for (const Place& place : joint.places) add_row_block(hash, world, place);
-  }
+  for (const JointRecord& joint : world.joints) hash.add(joint.added);
   hash.add(world.springs);
   for (const Drag<S>& drag : world.drags) hash.add(drag.body), hash.add(drag.linear), hash.add(drag.angular);
   for (const auto& [joint, load] : world.breaking_loads) hash.add(joint), hash.add(load);

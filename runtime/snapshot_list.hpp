@@ -41,9 +41,11 @@ struct StateList {
     for (JointRecord& record : records) visit(record.broken);
     visit.item("joints.slots", -1);  // those of broken joints have changed places
     for (JointRecord& record : records) {
-      auto& [type, bodies, parameters, places, broken] = record;
+      auto& [type, bodies, parameters, places, broken, added] = record;
       for (Place& place : places) visit(place.slot);
     }
+    visit.item("joints.parameters", -1);
+    for (JointRecord& record : records) visit(record.parameters);
   }
 
   template <class Visitor>

@@ -88,6 +88,10 @@ void step_runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scala
 // Islands that have rested long enough fall asleep.
 template <class S>
 void put_to_sleep(WorldState<S>& world, double h);
+// For whoever changes a force on a body: its island wakes, and goes on from where it is.
+template <class S>
+void wake_pushed(WorldState<S>& world, int body);
+// For whoever changes where it is, how it moves, or what holds it: nothing that was computed for its island holds.
 template <class S>
 void wake(WorldState<S>& world, int body);
 

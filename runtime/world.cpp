@@ -111,23 +111,6 @@ void check_joint_bodies(const WorldState<S>& world, const JointType& type,
   }
 }
 
-// Refuses rows that have no direction where they hold. A velocity row has no C, a soft one is a
-// spring: both may.
-template <class S>
-void check_directions(const WorldState<S>& world, const JointRecord& record) {
-  const JointType& type = joint_types(S::dimension)[record.type];
-  Probe<S> probe(world);
-  for (size_t r = 0; r < type.row_kinds.size(); ++r) {
-    if (type.row_kinds[r] == RowKind::velocity) continue;
-    probe.look_at(record);
-    if (probe.at_kink(static_cast<int>(r)))
-      throw Error(
-          fmt::format("row {} of joint `{}` has no direction here: C = 0 at its kink, as a "
-                      "distance of length 0. Hold the points together with a `revolute`",
-                      r + 1, type.name));
-  }
-}
-
 template <class S>
 void set_acceleration(WorldState<S>& world, int body) {
   using T = typename S::Scalar;
@@ -212,6 +195,8 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   double spring[spring_constants_count] = {};
   if (definition.soft) spring_constants(*definition.soft, spring);
 
+  record.added.add(record.type), record.added.add(record.bodies), record.added.add(record.parameters);
+
   if (!definition.soft) check_directions(*state_, record);
   const int joint = joint_count();
   state_->joints.push_back(record);
@@ -255,7 +240,7 @@ void BasicWorld<S>::set_force(int body, const Wrench& force) {
   check_finite<S>(S::components(force), "every number of a force must be finite");
   state_->bodies.force[body] = S::components(force);
   set_acceleration(*state_, body);
-  wake(*state_, body);
+  wake_pushed(*state_, body);
 }
 
 template <class S>

@@ -89,6 +89,14 @@ class BasicWorld {
   // A step that fails leaves the World as it was before it (but for what is computed from that anew) and says so.
   StepResult step(double h);
 
+  // What it held together is free of it from the next step on, which analyses islands anew. Its number stays taken.
+  void remove_joint(int joint);
+  // These parameters of a joint get other numbers, the rest keeps its own: from the next step on, which moves the bodies
+  // to where C = 0 now is and leaves their velocities, but for what J v = 0 takes of them. A length that shall change
+  // with a velocity belongs into the joint's spec, as a function of t. Throws cdot::Error and changes nothing where
+  // add_joint() would not take them.
+  void set_parameters(int joint, const std::vector<NamedValue>& parameters);
+
   // Each of these wakes the body's island.
   void set_pose(int body, const Place& place);
   void set_velocity(int body, const typename S::Exact::Velocity& velocity);
@@ -123,7 +131,7 @@ class BasicWorld {
   // All numbers of Parameters<T>, given or defaulted, units normalised, laid out by
   // ParameterInfo::offset.
   std::vector<double> joint_parameters(int joint) const;
-  bool broken(int joint) const;
+  bool broken(int joint) const;  // or removed
   std::vector<double> position_error(int joint) const;  // C
   std::vector<double> velocity_error(int joint) const;  // Cdot = J v + dC/dt
   std::vector<double> impulse(int joint) const;         // lambda of the last (sub)step [N s, N m s]

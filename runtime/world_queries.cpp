@@ -14,13 +14,6 @@ namespace {
 // sound.
 bool beats(double value, double worst) { return !std::isnan(worst) && !(value <= worst); }
 
-template <class S>
-bool is_soft(const WorldState<S>& world, const JointRecord& joint) {
-  if (joint.places.empty()) return false;
-  const Law<S>* law = world.batches[joint.places[0].batch]->law;
-  return law && !law->reported;
-}
-
 // value(probe, row, kind) over all joints that constrain.
 template <class S, class F>
 WorstError worst_of(const WorldState<S>& world, F value) {

@@ -2,6 +2,7 @@
 // runtime/ includes this.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "runtime/bodies.hpp"
 #include "runtime/broyden.hpp"
 #include "runtime/gyroscope.hpp"
+#include "runtime/hash.hpp"
 #include "runtime/settings.hpp"
 #include "runtime/step_counts.hpp"
 #include "runtime/step_result.hpp"
@@ -32,7 +34,8 @@ struct JointRecord {
   std::vector<double> parameters;
   std::vector<Place>
       places;  // its own rows first, then its effects; none if all its bodies are immovable
-  bool broken = false;
+  bool broken = false;  // or removed
+  Hash added{};         // of what it was added as, with its effects
 };
 
 template <class S>
@@ -159,6 +162,14 @@ struct WorldState {
   std::vector<int> island_of;  // by body; -1: immovable
   std::vector<int> awake;      // islands, in order
 };
+
+// One of a joint's bodies that can move, in whose island it is; -1: none can.
+template <class S>
+int movable_body(const WorldState<S>& world, const JointRecord& record) {
+  const auto body = std::find_if_not(record.bodies.begin(), record.bodies.end(),
+                                     [&](int body) { return world.bodies.immovable(body); });
+  return body == record.bodies.end() ? -1 : *body;
+}
 
 // `place` counted from the origin (sign -1), or back in the world (1).
 template <class Place>

@@ -7,23 +7,6 @@ namespace {
 
 using spatial::Vector;
 
-// Some value for every parameter that has no default.
-std::vector<NamedValue> some_values(const JointType& type) {
-  std::vector<NamedValue> values;
-  for (const ParameterInfo& info : type.parameters) {
-    if (info.has_default) continue;
-    std::vector<double> numbers;
-    if (info.kind == ParameterKind::scalar)
-      numbers = {0.7};
-    else if (info.kind == ParameterKind::point)
-      numbers = {0.4, 0.1 * info.offset / 3.0, 0.2};
-    else
-      numbers = {0.3, -0.2 + 0.05 * info.offset, 1};
-    values.push_back({std::string(info.name), numbers});
-  }
-  return values;
-}
-
 bool holds_the_world(const JointType& type) {
   for (const ParameterInfo& info : type.parameters)
     if (info.body < 0 && info.kind != ParameterKind::scalar) return true;
