@@ -67,6 +67,9 @@ void on_stiffness(const Diagnosis::Island& island, const Settings& settings, dou
   const bool tension = island.stiffest.tension > 0.5 * island.stiffest.square;
   std::string fix = fmt::format("substeps = {:.0f} or more", std::ceil(radians / 0.5) * settings.substeps);
   if (tension && settings.integrator != Integrator::implicit) fix += ", integrator = \"implicit\"";
+  // Between bodies it is rows of the direct solver.
+  if (tension && settings.integrator == Integrator::implicit && settings.solver == Solver::iterative)
+    fix += ", solver = \"direct\"";
   fix += ", or integrator = \"dop853\" with local_error = 1e-6";
   concerns.push_back({true,
                     fmt::format("{} makes {} swing with {:.3g} rad/s, {:.2g} rad per substep: {} {}",

@@ -41,8 +41,8 @@ class Stiffness {
     }
   }
 
-  // Eliminates the displacement that is held most: pivot w w^T leaves. False if none is held any more.
-  bool eliminate(Row& w, double& pivot, bool any_sign) {
+  // The row of the displacement that is held most, over its pivot. False if none is held any more.
+  bool find_row(Row& w, double& pivot, bool any_sign) const {
     int held = -1;
     double most = slight<T> * largest_;
     for (int k = 0; k < bodies_; ++k) {
@@ -53,12 +53,15 @@ class Stiffness {
     }
     if (held < 0) return false;
     pivot = of_[held][held];
-    for (int c = 0; c < width_; ++c) w[c] = (c <= held ? of_[held][c] : of_[c][held]) / pivot;
+    const double scale = 1 / pivot;
+    for (int c = 0; c < width_; ++c) w[c] = (c <= held ? of_[held][c] : of_[c][held]) * scale;
+    return true;
+  }
+  void eliminate(const Row& w, double pivot) {
     for (int r = 0; r < width_; ++r) {
       const double share = pivot * w[r];
       for (int c = 0; c <= r; ++c) of_[r][c] -= share * w[c];
     }
-    return true;
   }
 
   // Nothing is left but what bodies' own turnings have.
@@ -102,7 +105,7 @@ int rows_of(const WorldState<S>& world, const Batch<S>& batch, int slot, const B
   typename Stiffness<S>::Row w;
   double pivot;
   int rows = 0;
-  while (stiffness.eliminate(w, pivot, true)) ++rows;
+  for (; stiffness.find_row(w, pivot, true); ++rows) stiffness.eliminate(w, pivot);
   return stiffness.only_turns() ? rows : 0;
 }
 
@@ -145,7 +148,8 @@ void tighten_tensions(WorldState<S>& world, Island<S>& island, typename S::Scala
     typename Stiffness<S>::Row w;
     double pivot;
     const int bodies = batch.ops->bodies;
-    for (int r = 0; r < tension.rows && stiffness.eliminate(w, pivot, false); ++r) {
+    for (int r = 0; r < tension.rows && stiffness.find_row(w, pivot, false); ++r) {
+      if (r + 1 < tension.rows) stiffness.eliminate(w, pivot);
       system.tighten(tension, r, w.data(), pivot * double(h));
       for (int k = 0; k < bodies; ++k)
         leave_to_row<S>(world.bodies.stiffness[batch.body[tension.slot * bodies + k]], w.data() + S::freedom * k, pivot);

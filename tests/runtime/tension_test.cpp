@@ -36,6 +36,8 @@ TEST(Tension, OfABarSlowsTheMotionAcrossIt) {
     world.step(h);
     EXPECT_NEAR(world.velocity(bead).x, 0.2 / (1 + h * h * g / length), 1e-14);
     EXPECT_NEAR(world.velocity(bead).y, 0, 1e-14);
+    // What changed the momentum is the bar's force in the direction that it has by now.
+    EXPECT_NEAR(-world.reaction(joint, world.ground()).force_x, 3 * (world.velocity(bead).x - 0.2) / h, 1e-4);
   }
 }
 
