@@ -73,7 +73,7 @@ bool System<S>::misses_rows(std::vector<double>& missed) {
 
 template <class S>
 void System<S>::share_contradictions() {
-  if (softened_) return;
+  if (softened_ != Softened::no) return;
   auto& [missed, step, image, y] = shared_;
   contradicted_ = dependent_ > 0 && misses_rows(missed);
   if (!contradicted_) return;

@@ -5,10 +5,12 @@
 //
 //   lambda <- lambda + (K + eps D)^-1 (b - K lambda),   D the diagonal of K
 //
-// Each round leaves eps / (eps + kappa) of what b has along an eigenvector, K x = kappa D x. What it leaves of rows that
-// contradict each other (kappa = 0) stays: there the motion is that of least squares, each row weighed by 1 / D.
+// Each round leaves eps / (eps + kappa) of what b has along an eigenvector, K x = kappa D x. Of rows that contradict each
+// other (kappa = 0) all is left. That adds 1 / eps of itself to lambda in every round, and as much round-off to the rest:
+// for such rows eps is larger, and D the same for all, which makes the motion that of least squares.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/spaces.hpp"
 #include "runtime/system.hpp"
@@ -19,8 +21,11 @@ namespace {
 // In small systems round-off is magnified as much only close to poses that lose a row, and there what is dropped is
 // best left dropped.
 constexpr int least_rows = 500;
-constexpr double eps = 1e-10;
-constexpr int refinements = 5;
+struct Level {
+  double eps;
+  int rounds;
+};
+constexpr Level slightly{1e-10, 5}, plainly{1e-7, 12};
 constexpr double refined = 1e-13;  // of the largest b
 
 }  // namespace
@@ -34,11 +39,19 @@ bool System<S>::drops_rows_by_round_off() {
 }
 
 template <class S>
-void System<S>::soften() {
+void System<S>::soften(Softened how) {
   auto& softened = shared_[0];
-  for (int r = 0; r < rows_; ++r) softened[r] = softness[r] + eps * ldlt_.diagonal(r);
+  double least = std::numeric_limits<double>::infinity(), most = 0;
+  for (int r = 0; r < rows_; ++r) {
+    softened[r] = ldlt_.diagonal(r);
+    if (out_[r]) continue;
+    least = std::min(least, softened[r]), most = std::max(most, softened[r]);
+  }
+  if (how == Softened::plainly) std::fill(softened.begin(), softened.end(), std::sqrt(least * most));
+  const double eps = how == Softened::plainly ? plainly.eps : slightly.eps;
+  for (int r = 0; r < rows_; ++r) softened[r] = softness[r] + eps * softened[r];
   ldlt_.factor_definite(softened.data(), any_out_ ? out_.data() : nullptr);
-  softened_ = true;
+  softened_ = how;
 }
 
 // The largest of what lambda leaves of `wanted` in the rows that are free.
@@ -59,8 +72,9 @@ double System<S>::refine(const std::vector<double>& wanted, double scale) {
   auto& [rest, change, aim, unused] = shared_;
   for (int r = 0; r < rows_; ++r)
     if (!out_[r] || broken[r]) lambda[r] = 0.0;
+  const int rounds = softened_ == Softened::plainly ? plainly.rounds : slightly.rounds;
   double left = find_rest(wanted, rest);
-  for (int round = 0; round < refinements && left > refined * scale; ++round) {
+  for (int round = 0; round < rounds && left > refined * scale; ++round) {
     ldlt_.solve(rest.data(), change.data());
     for (int r = 0; r < rows_; ++r)
       if (!out_[r]) lambda[r] += change[r];
@@ -77,6 +91,10 @@ void System<S>::solve_softly() {
     if (!out_[r]) scale = std::max(scale, std::abs(b[r]));
   contradicted_ = refine(b, scale) > slight(scale);
   if (!contradicted_) return;
+  if (softened_ == Softened::slightly) {
+    soften(Softened::plainly);
+    refine(b, scale);
+  }
   unmet_ = rest;
   for (int r = 0; r < rows_; ++r) aim[r] = b[r] - unmet_[r];
   refine(aim, scale);
@@ -84,7 +102,7 @@ void System<S>::solve_softly() {
 
 #define CDOT_INSTANTIATE(S)                                                                       \
   template bool System<S>::drops_rows_by_round_off();                                             \
-  template void System<S>::soften();                                                              \
+  template void System<S>::soften(Softened);                                                      \
   template double System<S>::find_rest(const std::vector<double>&, std::vector<double>&);         \
   template double System<S>::refine(const std::vector<double>&, double);                          \
   template void System<S>::solve_softly();

@@ -45,7 +45,7 @@ int System<S>::factor() {
   char any = 0;
   for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
   any_out_ = any != 0;
-  softened_ = false;
+  softened_ = Softened::no;
   dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
   if (taut_ && dependent_ > 0)
     each_tension_row([&](const Block&, int, int row) { dependent_ -= ldlt_.dependent(row); });
@@ -60,10 +60,10 @@ void System<S>::solve() {
 
 template <class S>
 void System<S>::solve_rows() {
-  if (!softened_) {
+  if (softened_ == Softened::no) {
     solve_kept_rows();
     if (!drops_rows_by_round_off()) return;
-    soften();
+    soften(Softened::slightly);
   }
   solve_softly();
 }

@@ -128,6 +128,8 @@ class System {
   };
 
  private:
+  // The factor is that of K with every row softened (runtime/soften.cpp).
+  enum class Softened : char { no, slightly, plainly };
   friend struct StateList;  // runtime/snapshot_list.hpp
   // Of a batch: what is said of one slot is said of the other; `broken` of the marked one becomes `value`.
   void exchange(const Batch<S>* batch, int slot, int last, int marked, char value);
@@ -149,7 +151,7 @@ class System {
   bool misses_rows(std::vector<double>& missed);
   void share_contradictions();
   bool drops_rows_by_round_off();
-  void soften();
+  void soften(Softened how);
   double find_rest(const std::vector<double>& wanted, std::vector<double>& rest);
   double refine(const std::vector<double>& wanted, double scale);
   void solve_softly();
@@ -158,7 +160,7 @@ class System {
   void expand(const std::vector<double>& y, std::vector<double>& to);
 
   bool built_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
-  bool softened_ = false;  // the factor is that of K with every row softened
+  Softened softened_ = Softened::no;
   int rows_ = 0, dependent_ = 0;
   Ldlt ldlt_;
   std::vector<Product> products_;
