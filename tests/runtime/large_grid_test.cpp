@@ -75,7 +75,8 @@ TEST(LargeGrid, WithAWrongPinRestsWhereSquaresAreLeast) {
 }
 
 TEST(LargeGrid, GoesOnFromASnapshotWithTheSameBits) {
-  const Settings s = settings(Solver::direct, Drift::projection, -9.81);
+  Settings s = settings(Solver::direct, Drift::projection, -9.81);
+  s.integrator = Integrator::rattle;  // whose step begins with the factor that the one before ended with
   World<double> one(s), other(s);
   add_grid(one), add_grid(other);
   one.step(h);
