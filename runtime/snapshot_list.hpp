@@ -158,7 +158,7 @@ struct StateList {
            any_out, factored, share, unscaled, given] = ldlt;
     visit.item("factor.K", index), visit(values);
     visit.item("factor.L", index), visit(l);
-    visit.item("factor.inverse", index), visit(inverse);
+    visit.item("factor.inverse", index), visit(inverse), visit(noise);
     visit.item("factor.flags", index);
     visit(out), visit(dependent), visit(any_out), visit(factored);
   }
