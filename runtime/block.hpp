@@ -95,7 +95,7 @@ struct Guard {
 };
 
 // No row block has more rows, nor more bodies.
-inline constexpr int most_rows = 8, most_bodies = 4;
+inline constexpr int most_rows = 8, most_bodies = 8;
 
 // How rows that are not plainly exact get their bias, softness and bounds: one constant per effect,
 // defined where the effect is. A batch under no law has none of these numbers.

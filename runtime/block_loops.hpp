@@ -25,7 +25,8 @@ struct BlockLoops {
   static constexpr int rows = Block::rows;
   static constexpr int width = S::freedom * bodies;
   static constexpr int triangle = rows * (rows + 1) / 2;
-  static_assert(rows <= most_rows && bodies <= most_bodies);
+  static_assert(rows <= most_rows && bodies <= most_bodies,
+                "a joint with more rows or bodies than most_rows, most_bodies of runtime/block.hpp");
   using Turns = TurnCounters<S, Joint, Block>;
 
   // An empty struct (all entries of J known) has size 1 but holds nothing.
