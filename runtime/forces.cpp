@@ -54,7 +54,13 @@ void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h)
     all.velocity[drag.body] =
         S::damped(all.velocity[drag.body], T(1) / (T(1) + h * drag.linear), T(1) / (T(1) + h * drag.angular));
   for (const auto& spring : island.springs) pull(all, spring, h, all.velocity);
-  for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.acceleration[i], h);
+  // What tension stiffens, a torque turns less.
+  const bool stiffened = world.settings.integrator == Integrator::implicit;
+  for (int i : island.bodies) {
+    const auto& rate = all.acceleration[i];
+    all.velocity[i] = S::sum(
+        all.velocity[i], stiffened ? S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], rate)) : rate, h);
+  }
 }
 
 #define CDOT_INSTANTIATE(S)                                     \

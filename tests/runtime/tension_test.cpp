@@ -171,5 +171,18 @@ TEST(Tension, LeavesAHangingChainWhereItIs) {
   EXPECT_NEAR(world.reaction(0, world.ground()).force_x / low, 1, 1e-6);
 }
 
+// A pendulum that a fixed angle holds against a constant torque: what holds it exerts that torque, however much the
+// tension stiffens the body's turning (here by 5.4 times its inertia).
+TEST(Tension, LeavesATorqueAtRestWhatItIs) {
+  World<double> world(implicit());
+  const int body = world.add_body({.y = -2, .mass = 1000, .inertia = 1, .torque = 5});
+  const int pin = revolute(world, world.ground(), body, 0, 0, 0, 2);
+  const int angle = world.add_joint({"angle", {world.ground(), body}, {}, {}});
+  run(world, 10 * h, h);
+  EXPECT_NEAR(world.reaction(angle, body).torque, -5, 1e-9);
+  EXPECT_NEAR(world.reaction(pin, body).force_y, 1000 * g, 1e-6);
+  EXPECT_NEAR(world.velocity(body).w, 0, 1e-12);
+}
+
 }  // namespace
 }  // namespace cdot::test
