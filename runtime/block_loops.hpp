@@ -268,17 +268,12 @@ struct BlockLoops {
           all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
     const auto entries = exact<typename Block::template Jacobian<double>, T>(
         as<Jacobian>(batch.jacobian.data(), slot));
-    double D[rows][width], W[rows][width], own[triangle];
-    Block::dense(entries, D);
-    Block::inverse_mass_jacobian(entries, m, W);
+    double own[triangle];
+    Block::dense(entries, *reinterpret_cast<double (*)[rows][width]>(J));
+    Block::inverse_mass_jacobian(entries, m, *reinterpret_cast<double (*)[rows][width]>(weighted));
     Block::effective_mass(entries, m, own);
-    for (int r = 0; r < rows; ++r) {
-      for (int c = 0; c < width; ++c) {
-        J[r * width + c] = D[r][c];
-        weighted[r * width + c] = W[r][c];
-      }
+    for (int r = 0; r < rows; ++r)
       for (int s = 0; s <= r; ++s) K[r * stride + s] = own[r * (r + 1) / 2 + s];
-    }
   }
 
   static void transposed(const Batch<S>& batch, int slot, const T* impulses, Velocity* impulse) {

@@ -20,17 +20,6 @@ struct Gyroscope {
   Vector<T> lent;  // w, while the mean spin of a step stands in for it
 };
 
-// The solution d of (I - b x) d = I r: never singular, since its determinant is det I + b . I b.
-template <class T>
-Vector<T> newton_step(const Symmetric<T>& I, const Vector<T>& b, const Vector<T>& r) {
-  const Vector<T> first = {I.xx, I.xy - b.z, I.xz + b.y}, second = {I.xy + b.z, I.yy, I.yz - b.x},
-                  third = {I.xz - b.y, I.yz + b.x, I.zz}, right = I * r;
-  const Vector<T> across = cross(second, third);
-  const T scale = T(1) / dot(first, across);
-  return scale * Vector<T>{dot(right, across), dot(right, cross(third, first)),
-                           dot(right, cross(first, second))};
-}
-
 // The angular velocity about which a free body turns during a step of h, in world axes: Simo &
 // Wong's algorithm C1 (Int. J. Numer. Methods Eng. 31, 1991). In the body's frame
 //   theta = h (W0 + W1) / 2,   I W1 = exp(-theta) I W0
@@ -39,28 +28,6 @@ Vector<T> newton_step(const Symmetric<T>& I, const Vector<T>& b, const Vector<T>
 // (h |W| beyond a radian, far from a principal axis) the momentum is still kept, the energy
 // bounded.
 template <class T>
-Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vector<T>& w, T h) {
-  const Vector<T> before = to_body(q, w), momentum = gyroscope.inertia * before;
-  Vector<T> after = before;
-  T smallest_residual = std::numeric_limits<T>::infinity();
-  Vector<T> best = before;
-  for (int round = 0; round < 12; ++round) {
-    const Vector<T> mean = T(0.5) * (before + after);
-    // exp(-theta) L by Rodrigues: L - sinc theta x L + (1 - cos) / angle^2 theta x (theta x L)
-    const Vector<T> theta = h * mean;
-    const T angle = norm(theta), s = half_sinc(angle);
-    const T sinc = T(2) * s * std::cos(angle / 2), half_versine = T(2) * s * s;
-    const Vector<T> across = cross(theta, momentum);
-    const Vector<T> turned = momentum - sinc * across + half_versine * cross(theta, across);
-    const Vector<T> residual = after - gyroscope.inverse * turned;
-    const T size = norm(residual);
-    if (size < smallest_residual) best = mean;
-    if (!(size < T(0.5) * smallest_residual)) break;  // round-off, or no convergence
-    smallest_residual = size;
-    // d(exp(-theta) L) = turned x (T dtheta), T -> E for small steps; dtheta = h/2 dW
-    after = after - newton_step(gyroscope.inertia, T(0.5) * h * turned, residual);
-  }
-  return to_world(q, best);
-}
+Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vector<T>& w, T h);
 
 }  // namespace cdot::spatial
