@@ -16,6 +16,7 @@ class Broyden {
   void reserve(size_t unknowns) {
     n_ = unknowns;
     steps_.assign(n_ * (most_steps + 1), 0.0);
+    sizes_.assign(most_steps + 1, 0.0);
     weights_.assign(n_, 1.0);
   }
   // weight(i): of unknown i in the products of steps, such that unknowns of different units compare.
@@ -32,15 +33,16 @@ class Broyden {
     double lengthen = 1;
     for (int j = 0; j < count_; ++j) {
       const double* step = steps_.data() + static_cast<size_t>(j) * n_;
-      const double size = product(step, step), share = size > 0 ? product(step, z) / size : 0;
+      const double size = sizes_[static_cast<size_t>(j)], share = size > 0 ? product(step, z) / size : 0;
       if (j + 1 < count_)
         for (size_t i = 0; i < n_; ++i) z[i] += step[n_ + i] * share;
       else
         lengthen = 1 / (1 - share);
     }
     if (!(std::abs(lengthen) < longest)) return false;
-    double* step = steps_.data() + static_cast<size_t>(count_++) * n_;
+    double* step = steps_.data() + static_cast<size_t>(count_) * n_;
     for (size_t i = 0; i < n_; ++i) step[i] = z[i] *= lengthen;
+    sizes_[static_cast<size_t>(count_++)] = product(step, step);
     return true;
   }
 
@@ -55,7 +57,7 @@ class Broyden {
 
   size_t n_ = 0;
   int count_ = 0;
-  std::vector<double> steps_, weights_;
+  std::vector<double> steps_, sizes_, weights_;  // sizes_: <s_j, s_j>
 };
 
 }  // namespace cdot

@@ -34,23 +34,35 @@ void combine(Flow<S>& flow, const double* weights, int count, typename S::Scalar
   for (size_t k = 0; k < n; ++k) flow.now[k] = flow.start[k] + h * flow.now[k];
 }
 
-// The largest of the embedded estimates, number by number in units of unit(k).
+// The largest of an embedded estimate, number by number in units of unit(k).
+template <class S, class F>
+double largest_error(const Flow<S>& flow, const RungeKutta& method, int estimate, typename S::Scalar h, F unit) {
+  const size_t n = flow.now.size();
+  double weights[most_stages];
+  const typename S::Scalar* rates[most_stages];
+  int terms = 0;
+  for (int j = 0; j <= method.stages; ++j) {
+    if (method.error[estimate][j] == 0) continue;
+    weights[terms] = method.error[estimate][j];
+    rates[terms++] = flow.rates.data() + static_cast<size_t>(j) * n;
+  }
+  if (terms == 0) return 0;
+  double worst = 0;
+  for (size_t k = 0; k < n; ++k) {
+    double sum = 0;
+    for (int j = 0; j < terms; ++j) sum += weights[j] * double(rates[j][k]);
+    const double error = std::abs(double(h) * sum) / unit(k);
+    if (!(error <= worst)) worst = error;
+  }
+  return worst;
+}
+
+// Both estimates as one.
 template <class S, class F>
 double estimated_error(const Flow<S>& flow, const RungeKutta& method, typename S::Scalar h, F unit) {
-  const size_t n = flow.now.size();
-  double worst[2] = {0, 0};
-  for (size_t k = 0; k < n; ++k) {
-    for (int estimate = 0; estimate < 2; ++estimate) {
-      double sum = 0;
-      for (int j = 0; j <= method.stages; ++j)
-        if (method.error[estimate][j] != 0)
-          sum += method.error[estimate][j] * double(flow.rates[static_cast<size_t>(j) * n + k]);
-      const double error = std::abs(double(h) * sum) / unit(k);
-      if (!(error <= worst[estimate])) worst[estimate] = error;
-    }
-  }
-  if (worst[1] == 0) return worst[0];
-  return worst[0] * worst[0] / std::sqrt(worst[0] * worst[0] + 0.01 * worst[1] * worst[1]);
+  const double first = largest_error(flow, method, 0, h, unit), second = largest_error(flow, method, 1, h, unit);
+  if (second == 0) return first;
+  return first * first / std::sqrt(first * first + 0.01 * second * second);
 }
 
 }  // namespace

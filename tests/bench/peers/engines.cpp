@@ -24,21 +24,22 @@ Registration::Registration(Engine engine) {
 
 const std::vector<Engine>& engines() { return registered(); }
 
-std::vector<double> steps(const Problem& problem) {
-  const double interval = problem.duration / double(problem.times.size());
-  std::vector<double> all;
-  for (int halvings = 0; halvings <= 14; ++halvings)
-    all.push_back(interval / std::ldexp(std::ceil(interval * 60), halvings));
-  return all;
-}
+namespace {
 
-std::vector<double> fine_steps(const Problem& problem) {
+// The whole number of `coarsest` steps per interval between samples, half as many more, twice as many, and so on.
+std::vector<double> two_per_halving(const Problem& problem, double steps_per_second) {
   const double interval = problem.duration / double(problem.times.size());
-  const double coarsest = 2 * std::ceil(interval * 7.5);  // even, so that half as many more is whole too
+  const double coarsest = 2 * std::ceil(interval * steps_per_second / 2);  // even, so that half as many more is whole too
   std::vector<double> all{interval / coarsest};
   for (int halvings = 0; halvings <= 14; ++halvings)
     for (const double part : {1.5, 2.0}) all.push_back(interval / std::ldexp(part * coarsest, halvings));
   return all;
 }
+
+}  // namespace
+
+std::vector<double> steps(const Problem& problem) { return two_per_halving(problem, 60); }
+
+std::vector<double> fine_steps(const Problem& problem) { return two_per_halving(problem, 15); }
 
 }  // namespace cdot::peers

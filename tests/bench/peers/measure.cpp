@@ -45,15 +45,18 @@ bool beaten(const std::vector<Point>& points, const Point& point) {
   });
 }
 
-// Whether finer knobs stopped to help: three in a row that bring nothing.
+// Knobs in a row that bring nothing, before a series ends: three halvings of a step.
+constexpr int most_in_vain = 6;
+
+// Whether finer knobs stopped to help.
 bool stalled(const std::vector<double>& errors) {
-  if (errors.size() < 6) return false;
-  const double before = *std::min_element(errors.begin(), errors.end() - 3);
-  return std::isfinite(before) && *std::min_element(errors.end() - 3, errors.end()) > 0.8 * before;
+  if (errors.size() < 2 * most_in_vain) return false;
+  const double before = *std::min_element(errors.begin(), errors.end() - most_in_vain);
+  return std::isfinite(before) && *std::min_element(errors.end() - most_in_vain, errors.end()) > 0.8 * before;
 }
 
 // Adds the runs of one series, from coarse to fine, until they take too long, stop to help, or are beaten by what the
-// engine did before four times in a row (large errors say nothing yet).
+// engine did before again and again (large errors say nothing yet).
 void probe(const Problem& problem, const Options& options, const Engine& engine, const Series& series,
            std::vector<Point>& points) {
   std::vector<double> errors;
@@ -67,7 +70,7 @@ void probe(const Problem& problem, const Options& options, const Engine& engine,
     errors.push_back(point.error);
     beaten_before = point.error < 0.03 && beaten(points, point) ? beaten_before + 1 : 0;
     points.push_back(point);
-    if (point.probe > options.longest || stalled(errors) || beaten_before == 4) return;
+    if (point.probe > options.longest || stalled(errors) || beaten_before == most_in_vain) return;
   }
 }
 

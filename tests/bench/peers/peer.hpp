@@ -124,9 +124,9 @@ struct Registration {
   explicit Registration(Engine engine);
 };
 
-// Steps that divide the time between samples, about 1/60 s and halved again and again.
+// Steps that divide the time between samples, from about 1/60 s on, two sizes per halving.
 std::vector<double> steps(const Problem& problem);
-// For methods of higher order: from 1/15 s on, two sizes per halving.
+// For methods of higher order: from 1/15 s on.
 std::vector<double> fine_steps(const Problem& problem);
 
 }  // namespace cdot::peers

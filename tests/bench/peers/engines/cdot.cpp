@@ -193,6 +193,18 @@ const std::vector<Way>& ways() {
        "solver = iterative, iterations = 3, drift = baumgarte",
        Way::coarse,
        {.solver = Solver::iterative, .drift = Drift::baumgarte, .iterations = 3}},
+      {"Euler, iterative, 1 iteration, Baumgarte",
+       "solver = iterative, iterations = 1, drift = baumgarte",
+       Way::coarse,
+       {.solver = Solver::iterative, .drift = Drift::baumgarte, .iterations = 1}},
+      {"Euler, Baumgarte 0.8",
+       "drift = baumgarte, baumgarte = 0.8",
+       Way::coarse,
+       {.drift = Drift::baumgarte, .baumgarte = 0.8}},
+      {"Euler, iterative, 2 iterations, all the error per step",
+       "solver = iterative, iterations = 2, drift = baumgarte, baumgarte = 1",
+       Way::coarse,
+       {.solver = Solver::iterative, .drift = Drift::baumgarte, .iterations = 2, .baumgarte = 1}},
   };
   return all;
 }
