@@ -1,6 +1,7 @@
 #include "runtime/keep.hpp"
 
 #include <algorithm>
+#include <cstring>
 
 #include "runtime/snapshot_list.hpp"
 #include "runtime/spaces.hpp"
@@ -9,12 +10,12 @@
 namespace cdot {
 namespace {
 
-// One list for both directions, to and from what is kept. A call of memmove costs more than a few numbers.
+// One list for both directions, to and from what is kept. A call of memcpy costs more than a few numbers.
 template <bool keep, class Number>
-Number* copy(Number* here, Number* kept, int count) {
-  Number *to = keep ? kept : here, *from = keep ? here : kept;
-  if (count * sizeof(Number) > 128)
-    std::copy_n(from, count, to);
+inline Number* copy(Number* here, Number* kept, int count) {
+  Number *__restrict to = keep ? kept : here, *__restrict from = keep ? here : kept;
+  if (static_cast<size_t>(count) * sizeof(Number) > 48)
+    std::memcpy(to, from, static_cast<size_t>(count) * sizeof(Number));
   else
     for (int k = 0; k < count; ++k) to[k] = from[k];
   return kept + count;

@@ -55,8 +55,9 @@ void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h
       batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
     } else if (world.settings.drift == Drift::baumgarte) {
       const int rows = batch.ops->rows;
-      for (int i = segment.begin * rows; i < segment.end * rows; ++i)
-        batch.bias[i] += share * batch.C[i];
+      const T* const C = batch.C.data();
+      T* const bias = batch.bias.data();
+      for (int i = segment.begin * rows; i < segment.end * rows; ++i) bias[i] += share * C[i];
     }
   }
 }

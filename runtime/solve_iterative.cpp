@@ -8,12 +8,14 @@ namespace cdot {
 
 template <class S>
 void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar share) {
+  using T = typename S::Scalar;
   const bool warm = world.settings.warm_start;
   if (!warm) share = 0;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int rows = batch.ops->rows;
-    for (int i = segment.begin * rows; i < segment.end * rows; ++i) batch.lambda[i] *= share;
+    T* const lambda = batch.lambda.data();
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i) lambda[i] *= share;
     if (warm)
       batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.lambda.data(),
                        world.bodies.velocity.data());
