@@ -35,7 +35,7 @@ struct BlockOps {
   void (*position)(Slots, int begin, int end, const Bodies<S>&, T time);
   // gamma = -Jdot v - d/dt(dC/dt) at the present poses and velocities.
   void (*gamma)(const Batch<S>&, int begin, int end, const Bodies<S>&, T time, T* gamma);
-  // K from J, one triangle, into `factor`; and in its place its factorisation.
+  // K from J, one triangle, into `factor`; or in its place its factorisation.
   void (*effective_mass)(Slots, int begin, int end, const Bodies<S>&);
   void (*factorize)(Slots, int begin, int end, const Bodies<S>&);
   // J velocity.

@@ -124,16 +124,19 @@ struct BlockLoops {
 
   static void factorize(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {
     for (int slot = begin; slot < end; ++slot) {
-      T K[triangle], F[triangle];
-      for (int k = 0; k < triangle; ++k) K[k] = batch.factor[slot * triangle + k];
+      const auto& J = as<Jacobian>(batch.jacobian.data(), slot);
+      InverseMass m[bodies];
+      gather(all.effective_mass, bodies_of(batch, slot), m);
+      T F[triangle];
       if constexpr (kernels == Kernels::robust) {
-        InverseMass m[bodies];
-        gather(all.effective_mass, bodies_of(batch, slot), m);
-        factor_by_rows<Block, width>(as<Jacobian>(batch.jacobian.data(), slot), m, F);
-      } else if constexpr (kernels == Kernels::fast) {
-        invert(K, F);
+        factor_by_rows<Block, width>(J, m, F);
       } else {
-        Block::factor(K, F);
+        T K[triangle];
+        Block::effective_mass(J, m, K);
+        if constexpr (kernels == Kernels::fast)
+          invert(K, F);
+        else
+          Block::factor(K, F);
       }
       for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = F[k];
     }

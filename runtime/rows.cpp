@@ -34,8 +34,8 @@ void factorize_rows(WorldState<S>& world, Island<S>& island) {
     Batch<S>& batch = *segment.batch;
     // The direct solver builds its own K; a law looks at K's diagonal whatever the solver.
     if (!batch.law && world.settings.solver == Solver::direct) continue;
-    batch.ops->effective_mass(batch, segment.begin, segment.end, world.bodies);
-    if (!batch.law) batch.ops->factorize(batch, segment.begin, segment.end, world.bodies);
+    const auto fill = batch.law ? batch.ops->effective_mass : batch.ops->factorize;
+    fill(batch, segment.begin, segment.end, world.bodies);
   }
 }
 
