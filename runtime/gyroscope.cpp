@@ -30,10 +30,12 @@ Rodrigues<T> rodrigues(T square) {
 }
 
 // The solution d of (I - b x T) d = I r. T(theta) = E - versine theta x + (theta x)^2 (1 - sinc) / a^2 says how a small
-// addition d to theta turns what exp(-theta) turned: about T d. The last factor only near 0: Newton needs no more.
+// addition d to theta turns what exp(-theta) turned: about T d.
 template <class T>
-Vector<T> newton_step(const Symmetric<T>& I, const Vector<T>& b, const Vector<T>& theta, T versine, const Vector<T>& r) {
-  const T along = dot(b, theta), last = T(1) / T(6) - dot(theta, theta) / T(120);
+Vector<T> newton_step(const Symmetric<T>& I, const Vector<T>& b, const Vector<T>& theta, T sinc, T versine,
+                      const Vector<T>& r) {
+  const T square = dot(theta, theta), along = dot(b, theta);
+  const T last = square < T(0.25) ? T(1) / T(6) - square / T(120) : (T(1) - sinc) / square;
   // b x T = v x + diagonal - theta u^T
   const Vector<T> v = b - (last * along) * theta, u = versine * b - last * cross(b, theta);
   const T diagonal = versine * along;
@@ -79,7 +81,7 @@ Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vecto
     if (size < smallest_residual) best = mean, smallest_residual = size;
     if (!converges || size <= round_off) break;
     // d(exp(-theta) L) = turned x (T dtheta); dtheta = h/2 dW
-    const Vector<T> step = newton_step(gyroscope.inertia, (T(0.5) * h) * turned, theta, versine, residual);
+    const Vector<T> step = newton_step(gyroscope.inertia, (T(0.5) * h) * turned, theta, sinc, versine, residual);
     after = after - step;
     if (curvature * dot(step, step) <= round_off) {
       best = T(0.5) * (before + after);
