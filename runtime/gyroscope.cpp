@@ -1,4 +1,4 @@
-// How a free body turns during a step: Newton for its mean spin. Apart from gyroscope.hpp, which all joints see.
+// How a free body turns during a step: in closed form if it is symmetric, else Newton for its mean spin. Apart from gyroscope.hpp, which all joints see.
 #include "runtime/gyroscope.hpp"
 
 #include <cmath>
@@ -57,12 +57,41 @@ Vector<T> expected_spin(const Gyroscope<T>& gyroscope, const Vector<T>& W, const
   return W + h * (rate + (T(0.5) * h) * bend);
 }
 
+// The axis of the frame about which the body is symmetric: the moments about the others are equal. Zero if there is none.
+template <class T>
+Vector<T> symmetry_axis(const Symmetric<T>& I) {
+  const T slight = T(8) * std::numeric_limits<T>::epsilon() * (I.xx + I.yy + I.zz);
+  if (std::abs(I.xy) + std::abs(I.xz) + std::abs(I.yz) > slight) return {0, 0, 0};
+  const auto equal = [&](T a, T b) { return std::abs(a - b) <= slight; };
+  return equal(I.xx, I.yy) ? Vector<T>{0, 0, 1} : equal(I.yy, I.zz) ? Vector<T>{1, 0, 0}
+         : equal(I.xx, I.zz)                    ? Vector<T>{0, 1, 0} : Vector<T>{0, 0, 0};
+}
+
+// Of a symmetric body in closed form: it goes round L at the rate L / I1, and about its axis e at what its spin has
+// beyond that, (W . e) (1 - I3 / I1). Both turns as quaternions; the spin is the turn that they make together, over h.
+template <class T>
+Vector<T> symmetric_spin(const Vector<T>& e, const Vector<T>& W, const Vector<T>& momentum, T I1, T h) {
+  const Vector<T> round = (h / I1) * momentum, rest = (h * dot(W, e) - dot(round, e)) * e;
+  const auto half_turn = [](const Vector<T>& turn) { return std::cos(T(0.5) * norm(turn)); };
+  const Vector<T> a = half_sinc(norm(round)) * round, b = half_sinc(norm(rest)) * rest;
+  const T a0 = half_turn(round), b0 = half_turn(rest);
+  const Vector<T> c = b0 * a + a0 * b + cross(a, b);
+  const T sine = norm(c);
+  return sine > T(0) ? (T(2) * std::atan2(sine, a0 * b0 - dot(a, b)) / (h * sine)) * c : W;
+}
+
 }  // namespace
 
 template <class T>
 Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vector<T>& w, T h) {
+  const Symmetric<T>& I = gyroscope.inertia;
   const Symmetric<T>& inverse = gyroscope.inverse;
-  const Vector<T> before = to_body(q, w), momentum = gyroscope.inertia * before;
+  const Vector<T> before = to_body(q, w), momentum = I * before;
+  const Vector<T> axis = symmetry_axis(I);
+  if (dot(axis, axis) > T(0)) {
+    const T across = T(0.5) * (I.xx + I.yy + I.zz - dot(axis, I * axis));
+    return to_world(q, symmetric_spin(axis, before, momentum, across, h));
+  }
   const T round_off = std::numeric_limits<T>::epsilon() * norm(before);
   // What Newton leaves of an error d is below this times d^2: h^2 / 8 d x (d x I W), weighed by I^-1.
   const T curvature = T(0.125) * h * h * (inverse.xx + inverse.yy + inverse.zz) * norm(momentum);
