@@ -1,4 +1,5 @@
-// How a free body turns during a step: in closed form if it is symmetric, else Newton for its mean spin. Apart from gyroscope.hpp, which all joints see.
+// How a free body turns during a step: in closed form if it is symmetric, else Newton for its mean spin. Apart from
+// gyroscope.hpp, which all joints see.
 #include "runtime/gyroscope.hpp"
 
 #include <cmath>

@@ -100,8 +100,8 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool direct, Visitor& visit) {
-    auto& [bodies, segments, springs, drags, gyroscopes, system, rescue, redundant_rows, size, scale, restless, residual, evaluated,
-           factored, continuous, flow, asleep, rested, kept, trouble] = island;
+    auto& [bodies, segments, springs, drags, gyroscopes, system, rescue, redundant_rows, size, scale, restless, residual,
+           evaluated, factored, continuous, flow, asleep, rested, kept, trouble] = island;
     visit.item("island.flags", index);
     visit(evaluated), visit(factored), visit(continuous), visit(asleep);
     visit.item("island.rows", index);
