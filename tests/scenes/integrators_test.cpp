@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "runtime/effects.hpp"
 #include "runtime/methods.hpp"
+#include "tests/scenes/heavy_load.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {
@@ -141,26 +141,6 @@ TEST_P(LongRun, TheEnergyOfRattleDoesNotDrift) {
 INSTANTIATE_TEST_SUITE_P(OfAMillionSteps, LongRun, testing::Values("crank_rocker", "four_bar"),
                          [](const auto& info) { return std::string(info.param); });
 
-// Of such a chain: rods on pins, or beads on bars. Returns the last.
-int add_rods(World<double>& world, int links) {
-  int above = world.ground();
-  for (int link = 0; link < links; ++link) {
-    const int rod = world.add_body({.y = -0.5 - link, .angle = -std::numbers::pi / 2, .mass = 1, .inertia = 1.0 / 12});
-    world.add_joint({"revolute", {above, rod}, {{"pa", {link ? 0.5 : 0.0, 0}}, {"pb", {-0.5, 0}}}, {}});
-    above = rod;
-  }
-  return above;
-}
-int add_beads(World<double>& world, int links) {
-  int above = world.ground();
-  for (int link = 1; link < links; ++link) {
-    const int bead = world.add_body({.y = -double(link), .mass = 1, .inertia = 0.01});
-    world.add_joint({"distance", {above, bead}, {{"pa", {0, 0}}, {"pb", {0, 0}}}, {}});
-    above = bead;
-  }
-  return above;
-}
-
 // A chain of ten links of 1 kg with a load of a thousand or a million times that at its end, kicked aside: the linearly
 // implicit step, which keeps it quiet at 1/60 s (tests/hard_cases/heavy_load), converges at first order.
 void converges(bool beads) {
@@ -168,10 +148,7 @@ void converges(bool beads) {
     double x[4];
     for (int k = 0; k < 4; ++k) {
       World<double> world({.integrator = Integrator::implicit, .gravity_y = -9.81});
-      const int above = beads ? add_beads(world, 10) : add_rods(world, 10);
-      const int end = world.add_body({.y = -10, .vx = 1, .mass = load});
-      const char* hook = beads ? "distance" : "revolute";
-      world.add_joint({hook, {above, end}, {{"pa", {beads ? 0 : 0.5, 0}}, {"pb", {0, 0}}}, {}});
+      const int end = hang_load(world, beads, load);
       for (int step = 0; step < 2 * (60 << k); ++step) world.step(1.0 / (60 << k));
       x[k] = world.pose(end).x;
     }
