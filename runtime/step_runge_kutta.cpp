@@ -21,6 +21,8 @@ constexpr int most_rejections = 30;  // in a row
 // In units of the mechanism's size, and [rad]: a step whose error is estimated above this has nothing to do with the
 // motion, as where tension makes a chain stiffer than the step can follow.
 constexpr double absurd = 0.3;
+// Of a fixed step: shorter parts than this share of it are not tried before the rest of it is left to Euler's.
+constexpr double smallest_part = 1.0 / 16;
 template <class S>
 constexpr auto slight_displacement = typename S::Scalar(1e-6);  // of its size, and [rad]
 constexpr int most_searches = 60;    // for one event
@@ -102,29 +104,49 @@ bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S
   return !bends_the_path(world, island, double(h));
 }
 
-// One step as long as the error allows, but within `reach`. Returns its length; Flow::margins are those of its end. 0 if
-// none is short enough: the state then is none.
+// A step of h, at its end on the constraints. Returns its error, as error_now() tells it in units of what is allowed:
+// above 1 (or no number) the state is none.
+template <class S, class F>
+double try_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
+                typename S::Scalar h, F error_now) {
+  take_stages(world, island, method, time, h);
+  double error = method.error_at_end ? 0 : error_now();
+  if (!(error <= 1)) return error;
+  settle_end(world, island, method, time + h);
+  if (method.error_at_end) error = error_now();
+  return went_astray(world, island, h) ? std::numeric_limits<double>::infinity() : error;
+}
+
+// Of a fixed step of `whole` what is `left`, or the largest of its halves, quarters ... whose error is not absurd: those
+// of all parts of the step add up. Returns its length; Flow::margins are those of its end. 0 if none is short enough.
 template <class S>
-typename S::Scalar take_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
-                             typename S::Scalar left, typename S::Scalar reach) {
+typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method,
+                                   typename S::Scalar time, typename S::Scalar left, typename S::Scalar whole) {
+  using T = typename S::Scalar;
+  T h = left;
+  do {
+    const double allowed = absurd * double(h / whole);
+    if (try_step(world, island, method, time, h, [&] { return share_of_size(island, method, h) / allowed; }) <= 1)
+      return h;
+    ++world.counts.rejected;
+    go_back(world, island);
+    h /= 2;
+  } while (h >= T(smallest_part) * whole);
+  return T(0);
+}
+
+// A step as long as the error allows, but within `reach`. Returns as take_fixed_step() does.
+template <class S>
+typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method,
+                                      typename S::Scalar time, typename S::Scalar left, typename S::Scalar reach) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  const bool adaptive = world.settings.local_error > 0;
   const T proposed = flow.next_step;
-  T h = adaptive ? length_of_step(proposed, left, reach) : left;
-  const auto error_now = [&] {
-    return adaptive ? error_of_step(island, method, h) / world.settings.local_error
-                    : share_of_size(island, method, h) / absurd;
-  };
+  T h = length_of_step(proposed, left, reach);
   for (int attempt = 0; attempt <= most_rejections; ++attempt) {
-    take_stages(world, island, method, time, h);
-    double error = method.error_at_end ? 0 : error_now();
-    if (error <= 1) {
-      settle_end(world, island, method, time + h);
-      if (method.error_at_end) error = error_now();
-      if (went_astray(world, island, h)) error = std::numeric_limits<double>::infinity();
-    }
-    if (!adaptive) return error <= 1 ? h : T(0);
+    const double error = try_step(world, island, method, time, h, [&] {
+      return error_of_step(island, method, h) / world.settings.local_error;
+    });
     // 0.9 of the step that would just do; a NaN shrinks like the worst.
     const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
@@ -205,8 +227,6 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
                               typename S::Scalar done, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  // Whoever looks at the loads after every step may change what follows.
-  const bool looked_at = !world.after_substep.empty();
   for (int events = 0; done < h;) {
     const T time = T(world.time) + done, left = h - done;
     if (events > most_events || flow.slivers > most_slivers) {
@@ -217,9 +237,12 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
     keep_start(world, island);
     flow.margins_at_start = flow.margins;
     flow.end_kept = false;
-    flow.length = take_step(world, island, method, time, left, looked_at ? left : furthest_reach * h);
+    // Whoever looks at the loads after every step may change what follows.
+    const T reach = world.after_substep.empty() ? furthest_reach * h : left;
+    flow.length = world.settings.local_error > 0
+                      ? take_adaptive_step(world, island, method, time, left, reach)
+                      : take_fixed_step(world, island, method, time, left, h);
     if (!(flow.length > T(0))) {
-      go_back(world, island);
       leave_to_euler(world, island, time, left);
       return h;
     }
