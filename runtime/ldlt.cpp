@@ -134,6 +134,7 @@ dense::Numbers Ldlt::numbers(const double* added) {
           dependent_.data(),
           factored_ ? 1 : dense::lasting_count,
           share_,
+          std::max(share_, pivot_share_of_soft),
           noise_.data()};
 }
 
@@ -164,7 +165,7 @@ int Ldlt::factor(const double* added, const char* out) {
 void Ldlt::factor_definite(const double* added, const char* out) {
   std::fill(noise_.begin(), noise_.end(), 0.0);
   dense::Numbers all = numbers(added);
-  all.share = 0;
+  all.share = all.soft_share = 0;
   all.dependent = definite_.data();
   eliminate_columns(all, out);
 }

@@ -50,8 +50,8 @@ struct Numbers {
   const int* panel_row;  // unknown of each row of each panel
   unsigned char* dependent;  // in how many factorisations on end, by unknown
   int counts;                // for how many this one counts
-  double share;
-  double* noise;  // of each pivot to come
+  double share, soft_share;  // Ldlt's; soft_share: of rows with something added
+  double* noise;             // of each pivot to come
 };
 
 using Eliminate = int (*)(const Column&, const Numbers&);
@@ -62,12 +62,18 @@ using Sweep = void (*)(const Column&, const Numbers&, double* x);
 
 class Ldlt {
  public:
-  // Below this share of its original diagonal, or below what the pivots before it have magnified
-  // round-off to, a pivot says nothing: its row depends on those before it, and its unknown is 0.
-  // Loops with redundant rows leave 1e-14 there; a mechanism 1e-5 rad from a pose in which it loses
-  // a row leaves 1e-10, and magnifies the round-off in rows after it by as much. K from floats is
-  // further off.
-  static constexpr double pivot_share = 1e-10, pivot_share_of_floats = 1e-7;
+  // Below this share of its original diagonal, or below what the pivots before it have magnified round-off to, a pivot
+  // says nothing: its row depends on those before it, and its unknown is 0.
+  //
+  // With y = K_II^-1 k_i, what row i has of the rows I before it, round-off eps sqrt(K_aa K_bb) in every entry ab moves
+  // its pivot by eps (sqrt(K_ii) + sum |y_a| sqrt(K_aa))^2 at most, which is at most (m + 1) eps (K_ii + sum y_a^2 K_aa)
+  // where m rows take part. The second factor is what dense::pivot_noise follows from row to row; the share is m + 1 = 10
+  // times it, as many rows as a loop too many has. More is no round-off: a body 1e10 times lighter than the two that it
+  // joins leaves 1e-10 of the second joint's rows, and they are as good as any. K from floats is further off.
+  static constexpr double pivot_share = 10 * dense::pivot_noise, pivot_share_of_floats = 1e-7;
+  // Of a soft row: below it the softness is not told from none. Dropped, the row is rigid beside those that it depends
+  // on, 1e-10 stiffer than it is; kept, its force would be off by pivot_noise over its pivot, 1e-4 and more.
+  static constexpr double pivot_share_of_soft = 1e-10;
 
   // rows: of each block. coupled: pairs of blocks between which K may be nonzero; repetitions do no
   // harm.

@@ -91,7 +91,7 @@ int factor_square(const Column& column, const Numbers& numbers) {
     inverse[i] = 0.0;
     if (numbers.out[column.first + i]) return;
     unsigned char& before = numbers.dependent[column.first + i];
-    const double share = before >= lasting_count && added == 0 ? lasting_share : numbers.share;
+    const double share = added != 0 ? numbers.soft_share : before >= lasting_count ? lasting_share : numbers.share;
     if (pivot > std::max(share * (K[i * a + i] + added), noise[i])) {
       inverse[i] = 1.0 / pivot;
       before = 0;
