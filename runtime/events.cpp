@@ -167,7 +167,7 @@ void count_guarded_rows(Island<S>& island) {
   for (const Segment<S>& segment : island.segments)
     if (segment.batch->law && segment.batch->law->guard)
       flow.guarded += (segment.end - segment.begin) * segment.batch->ops->rows;
-  for (auto* margins : {&flow.row_rates, &flow.margins, &flow.margins_at_start, &flow.low, &flow.high})
+  for (auto* margins : {&flow.row_rates, &flow.margins, &flow.margins_chosen, &flow.low, &flow.high})
     margins->assign(static_cast<size_t>(flow.guarded), infinite<T>);
 }
 
@@ -185,6 +185,7 @@ void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar ti
   note_rates(world, island);
   accelerate(world, island, time);
   measure_margins(island);
+  island.flow.margins_chosen = island.flow.margins;
 }
 
 template <class S>

@@ -116,10 +116,10 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_flow(Flow<S>& flow, int index, Visitor& visit) {
-    auto& [pose, velocity, search, start, now, rates, guarded, row_rates, margins, margins_at_start, low, high,
+    auto& [pose, velocity, search, start, now, rates, guarded, row_rates, margins, margins_chosen, low, high,
            next_step, longest, slivers, known, ahead, length, end_kept, end, end_forces, further_terms] = flow;
     visit.item("flow.row_rates", index), visit(row_rates);
-    visit.item("flow.margins", index), visit(margins);
+    visit.item("flow.margins", index), visit(margins), visit(margins_chosen);
     visit.item("flow.lengths", index);
     visit(next_step), visit(longest), visit(ahead), visit(length);
     visit.item("flow.slivers", index), visit(slivers);

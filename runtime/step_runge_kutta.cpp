@@ -28,13 +28,14 @@ constexpr auto slight_displacement = typename S::Scalar(1e-6);  // of its size, 
 constexpr int most_searches = 60;    // for one event
 constexpr int furthest_reach = 64;   // of a step of its own length, in step()s
 
-// In units of what is not told apart, from where a row stood: an event is behind us, and just behind us.
+// In units of what is not told apart, from where a row stood when its mode was chosen, which is steps ago for one that
+// creeps: an event is behind us, and just behind us.
 constexpr double passed = -1, just_passed = -3;
 
 template <class T>
-double furthest(const std::vector<T>& start, const std::vector<T>& now) {
+double furthest(const std::vector<T>& chosen, const std::vector<T>& now) {
   double worst = 0;
-  for (size_t k = 0; k < now.size(); ++k) worst = std::min(worst, double(now[k]) - std::min(double(start[k]), 0.0));
+  for (size_t k = 0; k < now.size(); ++k) worst = std::min(worst, double(now[k]) - std::min(double(chosen[k]), 0.0));
   return worst;
 }
 
@@ -44,7 +45,7 @@ double first_event(const Flow<S>& flow) {
   const double aim = 0.5 * (passed + just_passed);
   double first = 1;
   for (size_t k = 0; k < flow.high.size(); ++k) {
-    const double base = std::min(double(flow.margins_at_start[k]), 0.0) + aim;
+    const double base = std::min(double(flow.margins_chosen[k]), 0.0) + aim;
     const double low = double(flow.low[k]) - base, high = double(flow.high[k]) - base;
     if (high < 0 && low > high) first = std::min(first, low / (low - high));
   }
@@ -57,7 +58,6 @@ typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const Ru
                                typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  flow.low = flow.margins_at_start;
   flow.high = flow.margins;
   T low = 0, high = h;
   for (int search = 0; search < most_searches; ++search) {
@@ -68,7 +68,7 @@ typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const Ru
     go_back(world, island);
     take_stages(world, island, method, time, at);
     settle_end(world, island, method, time + at);
-    const double margin = furthest(flow.margins_at_start, flow.margins);
+    const double margin = furthest(flow.margins_chosen, flow.margins);
     if (margin < passed) {
       high = at;
       flow.high = flow.margins;
@@ -235,7 +235,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
     }
     begin(world, island, time);
     keep_start(world, island);
-    flow.margins_at_start = flow.margins;
+    flow.low = flow.margins;
     flow.end_kept = false;
     // Whoever looks at the loads after every step may change what follows.
     const T reach = world.after_substep.empty() ? furthest_reach * h : left;
@@ -248,7 +248,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
     }
     flow.longest = std::max(flow.longest, flow.length);
     flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
-    if (flow.guarded > 0 && furthest(flow.margins_at_start, flow.margins) < passed) {
+    if (flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts.events;
       ++events;
