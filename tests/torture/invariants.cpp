@@ -199,7 +199,7 @@ std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
     return verdict(Outcome::broken, "finite", "a pose, a velocity or the energy is no number", 0, 0, k);
   const Gap gap = gap_now(world);
   const Motion now = motion_of(world);
-  accounts_->step(now, frame.energy, operations_, world.step_counts().taken);
+  accounts_->step(now, spring_rows(world), frame.energy, operations_, world.step_counts().taken);
   if (scene_->settings.drift == Drift::projection && scene_->settings.solver == Solver::direct &&
       !(gap.share <= held_tolerance<T>))
     return verdict(excuse(world) ? Outcome::limited : Outcome::broken, excuse(world) ? excuse(world) : "C",
@@ -213,7 +213,7 @@ template <class S>
 Verdict Trial<S>::watch(BasicWorld<S>& world) {
   start_ = motion_of(world);
   start_energy_ = world.energy();
-  accounts_.emplace(start_, start_energy_, *scene_, std::numeric_limits<T>::epsilon());
+  accounts_.emplace(start_, spring_rows(world), start_energy_, *scene_, std::numeric_limits<T>::epsilon());
   Verdict first;
   for (int k = 1; k <= steps_; ++k) {
     places_.clear();

@@ -23,27 +23,6 @@ double pushed_by_forces(const Scene& scene) {
   return scene.step / s.substeps * std::sqrt(sum);
 }
 
-// The same of springs between points, stretched at most as far as their bodies are apart.
-double pushed_by_springs(const Scene& scene, const Motion& now) {
-  const auto place = [&](int body) -> std::array<double, 3> {
-    if (body == world_body) return {};
-    const SceneBody& b = scene.bodies[static_cast<std::size_t>(body)];
-    if (b.is_static && scene.dimension == Dimension::planar) return {b.definition.x, b.definition.y, 0};
-    if (b.is_static) return {b.spatial.x, b.spatial.y, b.spatial.z};
-    const auto before = std::count_if(scene.bodies.begin(), scene.bodies.begin() + body,
-                                      [](const SceneBody& other) { return !other.is_static; });
-    return now.bodies[static_cast<std::size_t>(before)].x;
-  };
-  double sum = 0;
-  for (const SpringDefinition& s : scene.springs) {
-    const double arms = std::hypot(s.ax, s.ay, s.az) + std::hypot(s.bx, s.by, s.bz);
-    const auto a = place(s.body_a), b = place(s.body_b);
-    const double stretch = std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]) + arms + s.rest_length;
-    sum += s.stiffness * stretch * std::sqrt(lightness(scene, {s.body_a, s.body_b}, arms));
-  }
-  return scene.step / scene.settings.substeps * sum;
-}
-
 // D with turns counted by a length, each row as 1.
 Eigen::MatrixXd unit_rows(const SystemMatrix& system, double length) {
   const int lengths = system.freedom == 3 ? 2 : 3;
@@ -83,23 +62,27 @@ double turned(const SystemMatrix& before, const SystemMatrix& after, double leng
   return (unit_rows(after, length) - unit_rows(before, length)).rowwise().norm().maxCoeff();
 }
 
-Accounts::Accounts(const Motion& start, double energy, const Scene& scene, double epsilon)
-    : scene_(&scene),
-      order_(order_of(scene.settings.integrator)),
+Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene,
+                   double epsilon)
+    : order_(order_of(scene.settings.integrator)),
       epsilon_(epsilon),
       start_energy_(energy),
       local_error_(scene.settings.local_error),
       constant_(pushed_by_forces(scene)),
       pushed_(constant_),
       step_(scene.step),
+      substep_(scene.step / scene.settings.substeps),
+      springs_(std::move(springs)),
       last_(start) {}
 
-// Per step: |dv| (|dv| + |h F|) rho^(p-1), rho being how much the acceleration changes within a step, against the
+// Per step: (|dv| (|dv| + |h F|) + what springs miss) rho^(p-1), rho being how much the acceleration changes within a step, against the
 // largest so far.
-void Accounts::step(const Motion& now, double energy, double operations, long long taken) {
+void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations,
+                    long long taken) {
   const VelocityChange d = change(last_, now);
-  pushed_ = std::max(pushed_, constant_ + pushed_by_springs(*scene_, now));
-  const double size = std::sqrt(square(now, d)), first_order = size * (size + pushed_);
+  pushed_ = std::max(pushed_, constant_ + push_of(springs, substep_));
+  const double size = std::sqrt(square(now, d));
+  const double first_order = size * (size + pushed_) + missed_work(springs_, springs, step_, size);
   largest_change_ = std::max(largest_change_, size);
   largest_speed_ = std::max(largest_speed_, std::sqrt(2 * now.kinetic));
   largest_energy_ = std::max({largest_energy_, now.kinetic, std::abs(energy - start_energy_)});
@@ -128,6 +111,7 @@ void Accounts::step(const Motion& now, double energy, double operations, long lo
   momentum_ += operations * epsilon_ * now.linear_size;
   angular_ += operations * epsilon_ * now.angular_size;
   change_ = d;
+  springs_ = std::move(springs);
   last_ = now;
   taken_ = taken;
 }

@@ -13,6 +13,7 @@
 #include "tests/torture/invariants.hpp"
 #include "tests/torture/laws.hpp"
 #include "tests/torture/motion.hpp"
+#include "tests/torture/springs.hpp"
 
 namespace cdot::torture {
 
@@ -88,10 +89,10 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
 // See README.md: how far energy and angular momentum may be off after the steps so far.
 class Accounts {
  public:
-  Accounts(const Motion& start, double energy, const Scene& scene, double epsilon);
+  Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene, double epsilon);
 
   // `taken`: steps of an integrator that chooses its own, so far.
-  void step(const Motion& now, double energy, double operations, long long taken);
+  void step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations, long long taken);
 
   // Of RATTLE, whose steps keep another energy that is h^2 (v'V''v / 12 - F'M^-1 F / 24) away, that way as well.
   double order_error() const {  // [J]
@@ -105,11 +106,11 @@ class Accounts {
   double angular_order_error() const { return angular_order_; }
 
  private:
-  const Scene* scene_;
   double order_, epsilon_, start_energy_, local_error_;
   double constant_, pushed_;  // what the constant forces, and springs as well, add to the velocities in a step, in the
                               // metric of the masses
-  double step_;
+  double step_, substep_;
+  std::vector<SpringRow> springs_;
   double farthest_ = 0;  // from the origin [m]
   long long taken_ = 0;
   Motion last_;

@@ -1,0 +1,96 @@
+// What pushes as a spring does (springs between points, those on coordinates, the rows of soft joints): what the bound
+// of the energy asks of it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "runtime/world.hpp"
+#include "runtime/world_state.hpp"
+
+namespace cdot::torture {
+
+struct SpringRow {
+  int joint = -1;          // -1: of none
+  double c = 0, rate = 0;  // its stretch, from anywhere, and how fast that grows
+  double force = 0;        // without damping
+  double stiffness = 0;
+  double mass = 0;  // 0: broken. K of the row: |M^-1 J'| of a unit force in the metric of the masses, squared
+};
+
+// Rows of batches that a law pushes, at the present poses.
+template <class S>
+void add_spring_rows(const WorldState<S>& state, const Batch<S>& batch, std::vector<SpringRow>& springs) {
+  using T = typename S::Scalar;
+  Batch<S> rows = batch;  // the next step may start from the World's own as they are
+  const int count = rows.ops->rows;
+  const std::vector<T> no_rate(static_cast<std::size_t>(count));
+  std::vector<T> force(no_rate), further(no_rate);
+  rows.ops->evaluate(rows, 0, rows.count(), state.bodies, T(state.time));
+  rows.ops->effective_mass(rows, 0, rows.count(), state.bodies);
+  rows.ops->velocity(rows, 0, rows.count(), state.bodies.velocity.data(), rows.scratch.data());
+  for (int slot = 0; slot < rows.count(); ++slot) {
+    const int joint = rows.joint[static_cast<std::size_t>(slot)];
+    const double whole = state.joints[static_cast<std::size_t>(joint)].broken ? 0 : 1;
+    rows.law->force(rows, slot, no_rate.data(), force.data());
+    for (int r = 0; r < count; ++r) rows.C[static_cast<std::size_t>(slot * count + r)] -= 1;
+    rows.law->force(rows, slot, no_rate.data(), further.data());
+    for (int r = 0; r < count; ++r) {
+      const auto of_row = static_cast<std::size_t>(r);
+      const auto i = static_cast<std::size_t>(slot * count + r);
+      const auto k = static_cast<std::size_t>(slot * rows.triangle() + r * (r + 1) / 2 + r);
+      springs.push_back({joint, double(rows.C[i]), double(rows.scratch[i]), whole * double(force[of_row]),
+                         double(further[of_row] - force[of_row]), whole * double(rows.factor[k])});
+    }
+  }
+}
+
+template <class S>
+std::vector<SpringRow> spring_rows(BasicWorld<S>& world) {
+  const WorldState<S>& state = world.state();
+  std::vector<SpringRow> springs;
+  for (const auto& batch : state.batches)
+    if (batch->law && batch->law->force) add_spring_rows(state, *batch, springs);
+  for (auto spring : state.springs) {
+    const auto a = static_cast<std::size_t>(spring.body_a), b = static_cast<std::size_t>(spring.body_b);
+    const auto stretch = S::stretch(spring, state.bodies.pose[a], state.bodies.pose[b]);
+    const auto on_a = S::pull_on_a(stretch, 1), on_b = S::pull_on_b(stretch, 1);
+    spring.damping = 0;
+    SpringRow row{-1, double(stretch.length), 0, -double(S::tension(spring, stretch, {}, {})), spring.stiffness, 0};
+    spring.stiffness = 0, spring.damping = 1;
+    row.rate = S::tension(spring, stretch, state.bodies.velocity[a], state.bodies.velocity[b]);
+    row.mass = S::dot(on_a, S::weighted(state.bodies.inverse_mass[a], on_a)) +
+               S::dot(on_b, S::weighted(state.bodies.inverse_mass[b], on_b));
+    springs.push_back(row);
+  }
+  // Slots change places when a joint breaks.
+  std::stable_sort(springs.begin(), springs.end(),
+                   [](const SpringRow& a, const SpringRow& b) { return a.joint < b.joint; });
+  return springs;
+}
+
+// |h F| of all of them, in the metric of the masses, at most.
+inline double push_of(const std::vector<SpringRow>& springs, double h) {
+  double sum = 0;
+  for (const SpringRow& s : springs) sum += h * std::abs(s.force) * std::sqrt(s.mass);
+  return sum;
+}
+
+// What a first-order step may miss of a spring's work. c goes from c0 to c1 by h J v + beta, J being that of the start,
+// under one force f, which is f0 or, implicitly, f1 + k beta:
+//   h J v f - (f0 + f1) (c1 - c0) / 2, at most |c1 - c0| |f1 - f0| / 2 + |beta| (|f0| + 2 |f1| + k |beta|),
+//   beta = (c1 - c0) - h J v0 - h J dv, |J dv| <= sqrt(K) |dv|.
+inline double missed_work(const std::vector<SpringRow>& before, const std::vector<SpringRow>& now, double h, double dv) {
+  double sum = 0;
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    const SpringRow &s = before[k], &e = now[k];
+    if (e.mass == 0) continue;
+    const double way = e.c - s.c, beta = std::abs(way - h * s.rate) + h * std::sqrt(s.mass) * dv;
+    sum += std::abs(way * (e.force - s.force)) / 2 +
+           beta * (std::abs(s.force) + 2 * std::abs(e.force) + std::abs(e.stiffness) * beta);
+  }
+  return sum;
+}
+
+}  // namespace cdot::torture
