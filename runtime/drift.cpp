@@ -9,15 +9,6 @@
 #include "runtime/spaces.hpp"
 
 namespace cdot {
-namespace {
-
-// C of this size at the start of a step came from outside (a pose that was set, joints that
-// contradict each other), not from the motion of the last step: correcting it must not change
-// velocities.
-template <class T>
-constexpr T foreign = std::is_same_v<T, double> ? T(1e-8) : T(1e-4);
-
-}  // namespace
 
 template <class S>
 void settle_poses(WorldState<S>& world, Island<S>& island) {

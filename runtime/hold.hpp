@@ -10,6 +10,11 @@ namespace cdot {
 template <class T>
 inline constexpr T converged = std::is_same_v<T, double> ? T(1e-13) : T(1e-6);
 
+// C of this size came from outside (a pose that was set, joints that contradict each other), not from the motion of the
+// last step: correcting it must not change velocities. Times Island::scale.
+template <class T>
+inline constexpr T foreign = std::is_same_v<T, double> ? T(1e-8) : T(1e-4);
+
 // Displacements and their impulses start at 0.
 template <class S>
 void clear_correction(WorldState<S>& world, Island<S>& island);

@@ -59,6 +59,7 @@ struct Flow {
   std::vector<T> row_rates;   // [guarded] J v + dC/dt
   std::vector<T> margins, margins_chosen;  // [guarded] how far from their next event; when their modes were chosen
   std::vector<T> low, high;                // the same at the start of a step, then on both sides of an event
+  T residual = 0;             // of C where the step starts
   T next_step = 0;            // [s] that the error control proposes; 0: none yet
   T longest = 0;              // [s] of the steps so far
   int slivers = 0;            // steps in a row that were far shorter
