@@ -4,6 +4,7 @@
 
 #include <thread>
 
+#include "runtime/ldlt.hpp"
 #include "runtime/run_frame.hpp"
 #include "tests/torture/observer.hpp"
 #include "tests/torture/scene_text.hpp"
@@ -28,10 +29,10 @@ constexpr double just_passed = std::is_same_v<T, double> ? 3e-9 : 3e-4;
 constexpr double turns_round = 0.5;   // of unit rows, in a step
 constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
 
-// Pivots of K are told from round-off down to 64 epsilon of their row: bodies so much lighter than others are lost in
-// it.
+// Of its row's diagonal: what a pivot of K must be to be told from round-off, and from what joints that are a little open
+// leave of a row too many.
 template <class T>
-constexpr double told_apart = 1 / (64.0 * std::numeric_limits<T>::epsilon());
+constexpr double told_apart = std::is_same_v<T, double> ? Ldlt::pivot_share : Ldlt::pivot_share_of_floats;
 
 double heaviest_over_lightest(const Scene& scene) {
   double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -73,6 +74,8 @@ class Trial {
       : scene_(&scene), asked_(&asked), steps_(steps_of(scene)), operations_(operations_of(scene)) {}
 
   Verdict run();
+  // The most that a row turns in one of the steps.
+  double most_turned() const;
 
  private:
   using T = typename S::Scalar;
@@ -181,13 +184,16 @@ Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
 template <class S>
 const char* Trial<S>::excuse(BasicWorld<S>& world) const {
   if (laws_.may_contradict) return "a prescribed motion, or a rolling one, meets what may stop it";
-  if (heaviest_over_lightest(*scene_) > told_apart<T>)
+  if (heaviest_over_lightest(*scene_) * told_apart<T> > 1)  // rows of effects as well
     return "masses further apart than pivots are told from round-off";
-  if (independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon()) < nearly_lost * independence_)
+  const SystemMatrix now = system_matrix(world);
+  if (independence(now, 8 * std::numeric_limits<double>::epsilon()) < std::sqrt(told_apart<T>))
+    return "rows so near to dependent that pivots are not told from round-off";
+  if (independence(now, 8 * std::numeric_limits<T>::epsilon()) < nearly_lost * independence_)
     return "near a pose where the joints lose a row";
   BasicWorld<S> before = build_world_in<S>(*scene_);
   for (std::size_t k = 0; k < places_.size(); ++k) before.set_pose(static_cast<int>(k), places_[k]);
-  if (turned(system_matrix(before), system_matrix(world), sizes_.length) > turns_round)
+  if (turned(system_matrix(before), now, sizes_.length) > turns_round)
     return "a joint's directions turn round within a step";
   return nullptr;
 }
@@ -291,6 +297,20 @@ Verdict Trial<S>::run() {
 }
 
 template <class S>
+double Trial<S>::most_turned() const {
+  BasicWorld<S> world = started();
+  const double length = row_sizes(world).length;
+  SystemMatrix before = system_matrix(world);
+  double most = 0;
+  for (int k = 1; k <= steps_ && step(world, k); ++k) {
+    SystemMatrix now = system_matrix(world);
+    most = std::max(most, turned(before, now, length));
+    before = std::move(now);
+  }
+  return most;
+}
+
+template <class S>
 Verdict judge_in(const Scene& scene, const Asked& asked) {
   try {
     return Trial<S>(scene, asked).run();
@@ -303,10 +323,19 @@ Verdict judge_in(const Scene& scene, const Asked& asked) {
   }
 }
 
+// f(S{}), S being the space that the scene is in.
+template <class F>
+auto in_space_of(const Scene& scene, F f) {
+  if (scene.dimension == Dimension::planar) return scene.single ? f(Planar<float>{}) : f(Planar<double>{});
+  return scene.single ? f(Spatial<float>{}) : f(Spatial<double>{});
+}
+
 Verdict judge_once(const Scene& scene, const Asked& asked) {
-  if (scene.dimension == Dimension::planar)
-    return scene.single ? judge_in<Planar<float>>(scene, asked) : judge_in<Planar<double>>(scene, asked);
-  return scene.single ? judge_in<Spatial<float>>(scene, asked) : judge_in<Spatial<double>>(scene, asked);
+  return in_space_of(scene, [&](auto space) { return judge_in<decltype(space)>(scene, asked); });
+}
+
+double most_turned(const Scene& scene, const Asked& asked) {
+  return in_space_of(scene, [&](auto space) { return Trial<decltype(space)>(scene, asked).most_turned(); });
 }
 
 // Bits are kept by any step, and linear momentum, as long as what is added up does not grow beyond it; the rest only by
@@ -340,6 +369,9 @@ Verdict judge(const Scene& scene, const Asked& asked) {
   if (as_forces && stiff(scene, finer.step, seen.length))
     return verdict(Outcome::limited, fmt::format("a spring too stiff for a force at any step tried: {}", seen.what), "",
                    seen.value, seen.bound, seen.step);
+  if (judged_by_order(seen.what) && most_turned(finer, without_bits) > turns_round)
+    return verdict(Outcome::limited, fmt::format("no step tried resolves how a joint's directions turn: {}", seen.what),
+                   "", seen.value, seen.bound, seen.step);
   const bool unresolved = again.roughest > resolved && again.what != "C" && again.what != "finite";
   if (unresolved && !laws_of(scene).smooth)
     return verdict(Outcome::limited, fmt::format("no step tried resolves the motion: {}", seen.what), "", seen.value,
