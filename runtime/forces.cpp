@@ -13,10 +13,13 @@ void pull(const Bodies<S>& all, const typename S::PointSpring& spring, typename 
   const auto a = static_cast<size_t>(spring.body_a), b = static_cast<size_t>(spring.body_b);
   const auto stretch = S::stretch(spring, all.pose[a], all.pose[b]);
   const T impulse = h * S::tension(spring, stretch, all.velocity[a], all.velocity[b]);
-  const auto on_a = S::weighted(all.effective_mass[a], S::pull_on_a(stretch, impulse));
-  const auto on_b = S::weighted(all.effective_mass[b], S::pull_on_b(stretch, impulse));
-  to[a] = S::sum(to[a], on_a, T(1));
-  to[b] = S::sum(to[b], on_b, T(1));
+  // Of what never moves not even 0 times a force: where a stage goes astray that is infinite.
+  const auto push = [&](size_t body, const auto& on_body) {
+    if (!all.immovable(static_cast<int>(body)))
+      to[body] = S::sum(to[body], S::weighted(all.effective_mass[body], on_body), T(1));
+  };
+  push(a, S::pull_on_a(stretch, impulse));
+  push(b, S::pull_on_b(stretch, impulse));
 }
 
 }  // namespace
