@@ -18,6 +18,9 @@ namespace {
 constexpr int most_events = 32, most_slivers = 1000;
 constexpr double sliver = 1e-4;  // of the longest step so far
 constexpr int most_rejections = 30;  // in a row
+// The same of attempts that do not end on the joints, or only where these undo the motion: at steps hundreds of times
+// shorter too. Then no length is to blame, but velocities that contradict each other, as a motor's and a bar's.
+constexpr int most_astray = 5;
 // In units of the mechanism's size, and [rad]: a step whose error is estimated above this has nothing to do with the
 // motion, as where tension makes a chain stiffer than the step can follow.
 constexpr double absurd = 0.3;
@@ -153,7 +156,8 @@ typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, c
   Flow<S>& flow = island.flow;
   const T proposed = flow.next_step;
   T h = length_of_step(proposed, left, reach);
-  for (int attempt = 0; attempt <= most_rejections; ++attempt) {
+  int astray = 0;
+  for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
     const double error = try_step(world, island, method, time, h, [&] {
       return error_of_step(island, method, h) / world.settings.local_error;
     });
@@ -168,9 +172,11 @@ typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, c
       return h;
     }
     ++world.counts.rejected;
+    astray = std::isinf(error) ? astray + 1 : 0;
     h = length_of_step(flow.next_step, left, reach);
     go_back(world, island);
   }
+  flow.next_step = proposed;
   return T(0);
 }
 

@@ -57,6 +57,26 @@ TEST_P(Rescue, ARopeJamsInItsPulley) {
   EXPECT_LT(counts.taken, 100'000);
 }
 
+// A motor of any force turns a rod that a bar to the ground does not let turn: no step is short enough for both. Each is
+// left to Euler's after a few attempts, not taken in the thousands that are too short to be told from rest.
+TEST_P(Rescue, AMotorTurnsAgainstABar) {
+  const auto& [integrator, local_error] = GetParam();
+  World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
+  const int rod = world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
+  const int hinge = world.add_joint({"revolute", {world.ground(), rod}, {{"pa", {0, 0}}, {"pb", {-1, 0}}}, {}});
+  world.add_joint({"distance", {world.ground(), rod}, {{"pa", {2, -1}}, {"pb", {1, 0}}, {"l", {1}}}, {}});
+  add_motor(world, hinge, "angle", {.speed = 1});
+  constexpr int steps = 60;
+  for (int k = 0; k < steps; ++k) world.step(1.0 / 60);
+  const StepCounts& counts = world.step_counts();
+  const double gap = world.worst_position_error().value;
+  fmt::print("  gap {:.1e} m, {} evaluations, {} of {} steps left to Euler\n", gap, counts.evaluations, counts.rescued,
+             steps);
+  EXPECT_EQ(counts.rescued, steps);
+  EXPECT_LT(counts.evaluations, 100 * steps);
+  EXPECT_LT(gap, 1e-10);
+}
+
 // A bead of 1 g on two bars between the ground and a load of 1 kg that flies away: they come taut within less time than a
 // fixed step. One that would end beyond their reach, off its joints, is none, and the counts say so.
 TEST_P(Rescue, ALightBeadIsDrawnTaut) {

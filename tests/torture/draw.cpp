@@ -206,8 +206,7 @@ Softness random_softness(Random& random, const Scales& scales, bool turns) {
 }
 
 // One effect, or two, on a coordinate that stands at `now`.
-SceneEffects random_effects(Random& random, const Scales& scales, const CoordinateInfo& info, double now,
-                            bool may_be_unlimited) {
+SceneEffects random_effects(Random& random, const Scales& scales, const CoordinateInfo& info, double now) {
   SceneEffects effects;
   effects.coordinate = info.name;
   const bool turns = info.unit == "rad";
@@ -220,7 +219,7 @@ SceneEffects random_effects(Random& random, const Scales& scales, const Coordina
   }
   if (kind == 1) {
     effects.motor = Motor{random.between(-1, 1) * scales.rate * unit, unlimited};
-    if (random.chance(0.8) || !may_be_unlimited) effects.motor->max_force = force;
+    if (random.chance(0.8)) effects.motor->max_force = force;
   }
   if (kind == 2 || random.chance(0.1)) effects.springs.push_back({random_softness(random, scales, turns), now});
   if (kind == 3) effects.springs.push_back({{.by_frequency = false, .damping = force / (scales.rate * unit)}, 0.0});
@@ -281,8 +280,7 @@ void add_effects(Random& random, const Scales& scales, Scene& scene) {
     for (const CoordinateInfo& coordinate : type.coordinates)
       if (random.chance(0.4) && has_value<S>(scene, static_cast<int>(j), coordinate.name))
         joint.effects.push_back(random_effects(random, scales, coordinate,
-                                               world.coordinate(static_cast<int>(j), coordinate.name),
-                                               scene.settings.local_error == 0));
+                                               world.coordinate(static_cast<int>(j), coordinate.name)));
     if (random.chance(0.1)) joint.definition.soft = random_softness(random, scales, false);
     if (random.chance(0.05))
       joint.breaking = scales.mass * scales.length * scales.rate * scales.rate * random.log_between(1, 100);
