@@ -34,7 +34,7 @@ double force_norm(const spatial::Wrench& w) { return std::hypot(w.force_x, w.for
 
 }  // namespace
 
-std::function<Mover(const Scene&, AnyWorld&)> another_engine;
+std::function<std::unique_ptr<Mover>(const Scene&, AnyWorld&)> another_engine;
 
 bool Finding::held() const { return std::isfinite(value) && value <= bound; }
 
@@ -59,7 +59,7 @@ void Trial::start() {
 }
 
 void Trial::step(double by) {
-  if (mover_) return mover_(by);
+  if (mover_) return mover_->step(by);
   diagnose(by);
   const StepResult result = std::visit([&](auto& world) { return world.step(by); }, *world_);
   if (!result) say(in_words(result, "", ""));
@@ -125,11 +125,15 @@ double Trial::gap() const {
   return one_sided ? worst.value : norm_of_error(worst.joint);  // C > 0 is slack
 }
 double Trial::force(int joint) const {
-  if (mover_) return std::numeric_limits<double>::quiet_NaN();
+  if (mover_) return mover_->force(joint);
   return ask([&](const auto& world) { return force_norm(world.reaction(joint, world.joint_bodies(joint).back())); });
 }
 double Trial::coordinate(int joint, const char* name) const {
   return ask([&](const auto& world) { return double(world.coordinate(joint, name)); });
+}
+int Trial::sleeping_islands() const {
+  if (mover_) return mover_->sleeping_islands();
+  return ask([](const auto& world) { return world.sleeping_islands(); });
 }
 bool Trial::finite() const { return cdot::finite(frame()); }
 

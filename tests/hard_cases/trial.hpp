@@ -41,11 +41,17 @@ struct Watch {
 using AnyWorld = std::variant<World<double>, World<float>, SpatialWorld<double>, SpatialWorld<float>>;
 
 // Moves the bodies of a trial, and puts into its World where they went.
-using Mover = std::function<void(double by)>;
+class Mover {
+ public:
+  virtual ~Mover() = default;
+  virtual void step(double by) = 0;
+  virtual double force(int joint) const = 0;  // as Trial::force()
+  virtual int sleeping_islands() const = 0;
+};
 
-// Who moves the bodies of all trials, if not their Worlds: another engine. Its World is one of doubles, measures poses
-// and velocities, and knows no forces.
-extern std::function<Mover(const Scene&, AnyWorld&)> another_engine;
+// Who moves the bodies of all trials, if not their Worlds: another engine. Its World is one of doubles and measures
+// poses and velocities.
+extern std::function<std::unique_ptr<Mover>(const Scene&, AnyWorld&)> another_engine;
 
 class Trial {
  public:
@@ -69,6 +75,7 @@ class Trial {
   double norm_of_error(int joint) const;
   double force(int joint) const;  // the norm of what the joint exerts on its last body [N]; NaN if nobody knows
   double coordinate(int joint, const char* name) const;
+  int sleeping_islands() const;
   bool finite() const;
   int joint_named(const std::string& name) const;
   int body_named(const std::string& name) const;
@@ -102,7 +109,7 @@ class Trial {
   void say(const std::string& what);
 
   std::unique_ptr<AnyWorld> world_;
-  Mover mover_;
+  std::unique_ptr<Mover> mover_;
   std::vector<Finding> findings_;
   bool listening_ = false;
   long steps_ = 0, next_diagnosis_ = 1;

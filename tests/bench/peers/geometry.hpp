@@ -38,15 +38,14 @@ inline Vec3 local_direction(const Problem& problem, int body, const Vec3& u) {
   return turned(conjugate(problem.bodies[std::size_t(body)].start.q), u);
 }
 
-// For adapters that cannot hold an orientation.
-inline void need_all_turn(const Problem& problem) {
-  for (const Body& body : problem.bodies)
-    if (!body.turns) throw CannotSay("no body that cannot turn");
-}
-// For those with hinges that nothing drives or stops.
-inline void need_free_hinges(const Problem& problem) {
-  for (const Joint& joint : problem.joints)
-    if (joint.motor || joint.stops) throw CannotSay("no motor that has a speed and a greatest torque");
+// The force and the torque that damp a body's motion.
+struct Push {
+  Vec3 force{}, torque{};
+};
+inline Push damping(const Body& body, const State& s) {
+  Vec3 spin = turned(conjugate(s.q), s.w);
+  for (std::size_t k = 0; k < 3; ++k) spin[k] *= body.inertia[k];
+  return {(-body.damping * body.mass) * s.v, -body.damping * turned(s.q, spin)};
 }
 
 // Of planar poses.

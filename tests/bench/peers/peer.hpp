@@ -27,11 +27,15 @@ struct Body {
   double mass = 0;
   Vec3 inertia{};  // about the axes of the body's frame, which are principal
   State start;
-  bool turns = true;  // its orientation is not held
+  bool turns = true;   // its orientation is not held
+  Vec3 torque{};       // constant [N m]
+  double damping = 0;  // force = -mass * damping * velocity, and likewise for its spin [1/s]
+  int number = 0;      // in the scene
 };
 
-// `distance` keeps two points apart, `max_distance` is a string.
-enum class JointKind { revolute, prismatic, spherical, fixed, distance, max_distance };
+// `distance` keeps two points apart, `max_distance` is a string, `orientation` keeps two bodies from turning against
+// each other.
+enum class JointKind { revolute, prismatic, spherical, fixed, distance, max_distance, orientation };
 
 // What drives a hinge from a to b, and what stops it; in the plane an angle is zero where both bodies' are equal.
 struct Motor {
@@ -40,6 +44,10 @@ struct Motor {
 struct Stops {
   double lower = 0, upper = 0;  // [rad]
 };
+// A damper has no stiffness.
+struct Spring {
+  double stiffness = 0, damping = 0;  // [N/m, N m/rad], [N s/m, N m s/rad]
+};
 
 inline constexpr int world = -1;
 
@@ -47,11 +55,14 @@ struct Joint {
   JointKind kind = JointKind::revolute;
   int a = 0, b = 0;  // indices of bodies, or `world`
   Vec3 anchor{};     // of a, at the start, in world axes
-  Vec3 axis{};       // likewise: what it turns about or slides along
+  Vec3 axis{};       // likewise: what it turns about or slides along, of any length but 0
   Vec3 anchor_b{};   // of b: elsewhere where a joint starts open
   double length = 0;
   std::optional<Motor> motor;
   std::optional<Stops> stops;
+  std::optional<Spring> spring;  // of a hinge or a slider, at rest where it starts
+  std::optional<Spring> soft;    // how it holds, if not for good
+  int number = 0;                // in the scene
 };
 
 // What an engine has no words for.
@@ -69,6 +80,7 @@ struct Problem {
   std::string name, title, scene;
   bool planar = false;  // all in the plane of x and y; inertias about x and y are free then
   Vec3 gravity{};
+  double sleep_after = 0;  // [s] that bodies rest before they sleep; 0: they never do
   double duration = 0;
   Measure measure = Measure::place;
   std::vector<Body> bodies;
@@ -83,6 +95,18 @@ class Run {
   virtual void advance(double to) = 0;  // may throw if the engine gives up
   virtual void step(double by) = 0;     // likewise
   virtual State state(int body) const = 0;
+
+  // Between two steps: bodies by their place in the problem, joints by their numbers. What acts on a body's centre:
+  virtual void strike(int, const Vec3& /*impulse*/) { throw CannotSay("no impulse on a body"); }
+  // `now` is the problem with the bodies' present states as its start. False where the engine has no words for it, and
+  // has to be made anew.
+  virtual bool add(const Problem& /*now*/, const Joint&) { return false; }
+  virtual bool remove(int /*joint*/) { return false; }
+  virtual bool change(const Problem& now, const Joint& joint) { return remove(joint.number) && add(now, joint); }
+
+  // What a joint carried in the last step [N].
+  virtual double force(int /*joint*/) const { throw CannotSay("it does not tell what a joint carries"); }
+  virtual bool asleep(int /*body*/) const { throw CannotSay("nothing sleeps in it"); }
 };
 
 // A run in equal steps.

@@ -19,23 +19,45 @@ namespace {
 
 constexpr int samples = 4;
 
-Body body_of(const SceneBody& source, const planar::Place& q, const planar::Velocity<double>& v) {
-  const BodyDefinition& d = source.definition;
-  return {source.name,
-          d.mass,
-          {d.inertia, d.inertia, d.inertia},
-          {{q.x, q.y, 0}, about_z(q.angle), {v.x, v.y, 0}, {0, 0, v.w}}};
+State state_of(const planar::Place& q, const planar::Velocity<double>& v) {
+  return {{q.x, q.y, 0}, about_z(q.angle), {v.x, v.y, 0}, {0, 0, v.w}};
+}
+State state_of(const spatial::Place& q, const spatial::Velocity<double>& v) {
+  return {{q.x, q.y, q.z}, {q.e0, q.e1, q.e2, q.e3}, {v.x, v.y, v.z}, {v.wx, v.wy, v.wz}};
 }
 
-Body body_of(const SceneBody& source, const spatial::Place& q, const spatial::Velocity<double>& v) {
-  const SpatialBodyDefinition& d = source.spatial;
+void take(const BodyDefinition& d, Body& body) {
+  body.mass = d.mass;
+  body.inertia = {d.inertia, d.inertia, d.inertia};
+  body.torque = {0, 0, d.torque};
+}
+void take(const SpatialBodyDefinition& d, Body& body) {
   const Inertia& I = d.inertia;
   if (I.xy != 0 || I.xz != 0 || I.yz != 0)
-    throw std::runtime_error(source.name + ": the axes of the body are not principal axes");
-  return {source.name,
-          d.mass,
-          {I.xx, I.yy, I.zz},
-          {{q.x, q.y, q.z}, {q.e0, q.e1, q.e2, q.e3}, {v.x, v.y, v.z}, {v.wx, v.wy, v.wz}}};
+    throw std::runtime_error(body.name + ": the axes of the body are not principal axes");
+  body.mass = d.mass;
+  body.inertia = {I.xx, I.yy, I.zz};
+  body.torque = {d.torque_x, d.torque_y, d.torque_z};
+}
+
+const BodyDefinition& definition(const SceneBody& source, const Planar<double>*) { return source.definition; }
+const SpatialBodyDefinition& definition(const SceneBody& source, const Spatial<double>*) { return source.spatial; }
+
+double force_on(const BodyDefinition& d) { return std::hypot(d.force_x, d.force_y); }
+double force_on(const SpatialBodyDefinition& d) { return std::hypot(d.force_x, d.force_y, d.force_z); }
+
+template <class S>
+Body body_of(const BasicWorld<S>& built, const SceneBody& source, int number) {
+  const auto& d = definition(source, static_cast<const S*>(nullptr));
+  Body body;
+  body.name = source.name;
+  body.number = number;
+  body.start = state_of(built.place(number), built.velocity(number));
+  take(d, body);
+  if (force_on(d) != 0) throw CannotSay(source.name + ": no adapter knows a force on a body");
+  if (d.linear_damping != d.angular_damping) throw CannotSay(source.name + ": no adapter knows two dampings of a body");
+  body.damping = d.linear_damping;
+  return body;
 }
 
 // The numbers of one of the joint's parameters.
@@ -52,71 +74,91 @@ Vec3 parameter(const BasicWorld<S>& built, int joint, std::string_view name) {
   throw std::runtime_error(fmt::format("no parameter {}", name));
 }
 
-// What is fixed in a body, in world axes.
-Vec3 world_direction(const Problem& problem, int body, const Vec3& u) {
-  return body == world ? u : turned(problem.bodies[std::size_t(body)].start.q, u);
+// What is fixed in a body of the World, in world axes.
+template <class S>
+Vec3 world_direction(const BasicWorld<S>& built, int body, const Vec3& u) {
+  return turned(state_of(built.place(body), built.velocity(body)).q, u);
 }
 
 template <class S>
-Vec3 anchor_of(const Problem& problem, const BasicWorld<S>& built, int joint, int body, const char* name) {
-  const Vec3 p = world_direction(problem, body, parameter(built, joint, name));
-  return body == world ? p : p + problem.bodies[std::size_t(body)].start.x;
+Vec3 anchor_of(const BasicWorld<S>& built, int joint, int body, const char* name) {
+  const State s = state_of(built.place(body), built.velocity(body));
+  return s.x + turned(s.q, parameter(built, joint, name));
 }
 
-JointKind kind_of(const SceneJoint& source, Dimension dimension) {
-  static const std::map<std::string, JointKind> kinds{
+JointKind kind_of(std::string_view type, Dimension dimension) {
+  static const std::map<std::string_view, JointKind> kinds{
       {"revolute", JointKind::revolute},   {"hinge", JointKind::revolute},
       {"prismatic", JointKind::prismatic}, {"spherical", JointKind::spherical},
       {"weld", JointKind::fixed},          {"fixed", JointKind::fixed},
-      {"distance", JointKind::distance},   {"max_distance", JointKind::max_distance}};
-  const auto found = kinds.find(source.definition.type);
+      {"distance", JointKind::distance},   {"max_distance", JointKind::max_distance},
+      {"angle", JointKind::orientation},   {"relative_orientation", JointKind::orientation}};
+  const auto found = kinds.find(type);
   if (found == kinds.end() || (found->second == JointKind::spherical && dimension == Dimension::planar))
-    throw CannotSay(source.definition.type + ": no adapter knows this joint");
-  if (source.breaking || source.definition.soft)
-    throw CannotSay(source.name + ": no adapter knows soft or breaking joints");
+    throw CannotSay(fmt::format("{}: no adapter knows this joint", type));
   return found->second;
 }
 
-// Of a hinge; motors of any strength are not comparable.
-void take_effects(const SceneJoint& source, Joint& joint) {
+Spring spring_of(const SceneJoint& source, const Softness& softness) {
+  if (softness.by_frequency) throw CannotSay(source.name + ": no adapter knows a spring by its frequency");
+  return {softness.stiffness, softness.damping};
+}
+
+// How long a direction is as it was given, where the World has it with length 1.
+double given_length(const SceneJoint& source) {
+  for (const NamedValue& value : source.definition.parameters)
+    if (value.name == "t" || value.name == "fa")
+      return std::hypot(value.numbers[0], value.numbers[1], value.numbers.size() > 2 ? value.numbers[2] : 0);
+  return 1;
+}
+
+// What the World does not tell of a joint, as the scene has it.
+void take_given(const SceneJoint& source, Joint& joint) {
+  joint.axis = given_length(source) * joint.axis;
+  if (source.definition.soft) joint.soft = spring_of(source, *source.definition.soft);
   for (const SceneEffects& effects : source.effects) {
-    const bool strong = effects.motor && !std::isfinite(effects.motor->max_force);
-    if (joint.kind != JointKind::revolute || !effects.springs.empty() || effects.friction || strong)
-      throw CannotSay(source.name + ": no adapter knows its spring, friction, or motor of any strength");
+    const bool turns = joint.kind == JointKind::revolute;
+    if (effects.friction || (!turns && (effects.motor || effects.limit)) || effects.springs.size() > 1)
+      throw CannotSay(source.name + ": no adapter knows friction, two springs at once, motors or stops of a slider");
     if (effects.motor) joint.motor = {effects.motor->speed, effects.motor->max_force};
     if (effects.limit) joint.stops = {effects.limit->lower.value(), effects.limit->upper.value()};
+    for (const SceneSpring& spring : effects.springs) joint.spring = spring_of(source, spring.softness);
   }
+}
+
+// An immovable body is the world.
+int index_of(const Problem& problem, int number) {
+  const auto at = std::lower_bound(problem.bodies.begin(), problem.bodies.end(), number,
+                                   [](const Body& body, int wanted) { return body.number < wanted; });
+  return at != problem.bodies.end() && at->number == number ? int(at - problem.bodies.begin()) : world;
 }
 
 template <class S>
-Joint joint_of(const Problem& problem, const BasicWorld<S>& built, const SceneJoint& source, int index) {
+Joint joint_of(const Problem& problem, const BasicWorld<S>& built, int number) {
   const bool planar = S::dimension == Dimension::planar;
-  const int a = source.definition.bodies[0], b = source.definition.bodies[1];
+  const std::vector<int> bodies = built.joint_bodies(number);
+  const int a = bodies.at(0), b = bodies.at(1);
   Joint joint;
-  joint.kind = kind_of(source, S::dimension);
-  joint.a = a;
-  joint.b = b;
-  joint.anchor = anchor_of(problem, built, index, a, "pa");
-  joint.anchor_b = anchor_of(problem, built, index, b, "pb");
+  joint.number = number;
+  joint.kind = kind_of(built.joint_type(number).name, S::dimension);
+  joint.a = index_of(problem, a);
+  joint.b = index_of(problem, b);
+  if (joint.kind == JointKind::orientation) return joint;
+  joint.anchor = anchor_of(built, number, a, "pa");
+  joint.anchor_b = anchor_of(built, number, b, "pb");
   if (joint.kind == JointKind::prismatic) joint.anchor_b = joint.anchor;  // apart by what it has slid
-  take_effects(source, joint);
   if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
-    joint.length = parameter(built, index, "l")[0];
+    joint.length = parameter(built, number, "l")[0];
   if (planar) {
     joint.axis = {0, 0, 1};
     if (joint.kind == JointKind::prismatic) {
-      const Vec3 normal = world_direction(problem, b, parameter(built, index, "t"));
+      const Vec3 normal = world_direction(built, b, parameter(built, number, "t"));
       joint.axis = {normal[1], -normal[0], 0};
     }
   } else if (joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic) {
-    joint.axis = world_direction(problem, a, parameter(built, index, "fa"));
+    joint.axis = world_direction(built, a, parameter(built, number, "fa"));
   }
   return joint;
-}
-
-bool pushed(const BodyDefinition& d) { return d.force_x != 0 || d.force_y != 0 || d.torque != 0; }
-bool pushed(const SpatialBodyDefinition& d) {
-  return norm({d.force_x, d.force_y, d.force_z}) + norm({d.torque_x, d.torque_y, d.torque_z}) > 0;
 }
 
 // Whether all that holds it goes through its centre, so that nothing turns it.
@@ -128,15 +170,11 @@ bool held_at_centre(const Problem& problem, int body) {
   });
 }
 
-// A body that cannot turn: where nothing turns it, one with any inertia moves the same.
-template <class Definition>
-void check(const SceneBody& source, const Definition& d, Problem& problem, int body) {
-  if (source.is_static) throw CannotSay(source.name + ": no adapter knows a body that is static");
-  if (pushed(d)) throw CannotSay(source.name + ": no adapter knows a force on a body");
-  if (!d.fixed_rotation) return;
+// Where nothing turns it, a body with any inertia moves the same.
+void hold_orientation(Problem& problem, int body) {
   Body& made = problem.bodies[std::size_t(body)];
   made.turns = held_at_centre(problem, body);
-  made.inertia = {d.mass, d.mass, d.mass};
+  made.inertia = {made.mass, made.mass, made.mass};
 }
 
 Vec3 vec3(const nlohmann::json& from, std::size_t at) { return {from[at], from[at + 1], from[at + 2]}; }
@@ -165,16 +203,20 @@ Problem problem_of(const Scene& scene, const BasicWorld<S>& built) {
   Problem problem;
   problem.planar = S::dimension == Dimension::planar;
   problem.gravity = {scene.settings.gravity_x, scene.settings.gravity_y, scene.settings.gravity_z};
+  problem.sleep_after = scene.settings.sleep_after;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k)
-    problem.bodies.push_back(body_of(scene.bodies[k], built.place(int(k)), built.velocity(int(k))));
-  if (!scene.springs.empty()) throw CannotSay("no adapter knows springs");
-  for (std::size_t k = 0; k < scene.joints.size(); ++k)
-    problem.joints.push_back(joint_of(problem, built, scene.joints[k], int(k)));
-  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
-    if constexpr (S::dimension == Dimension::planar)
-      check(scene.bodies[k], scene.bodies[k].definition, problem, int(k));
-    else
-      check(scene.bodies[k], scene.bodies[k].spatial, problem, int(k));
+    if (!scene.bodies[k].is_static) problem.bodies.push_back(body_of(built, scene.bodies[k], int(k)));
+  if (!scene.springs.empty()) throw CannotSay("no adapter knows springs between points");
+  for (int k = 0; k < built.joint_count(); ++k) {
+    if (built.broken(k)) continue;
+    const Joint joint = joint_of(problem, built, k);
+    if (joint.a == world && joint.b == world) continue;  // it does nothing
+    problem.joints.push_back(joint);
+    if (k < int(scene.joints.size())) take_given(scene.joints[std::size_t(k)], problem.joints.back());
+  }
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k) {
+    const SceneBody& source = scene.bodies[std::size_t(problem.bodies[k].number)];
+    if (definition(source, static_cast<const S*>(nullptr)).fixed_rotation) hold_orientation(problem, int(k));
   }
   return problem;
 }

@@ -14,6 +14,7 @@ const State& state(const Problem& problem, int body) {
 void check_closed(const Problem& problem, const Joint& joint) {
   if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
     throw CannotSay("no joint that keeps a distance");
+  if (joint.kind == JointKind::orientation) throw CannotSay("no joint that keeps an orientation alone");
   double reach = 0;
   for (const int body : {joint.a, joint.b})
     if (body != world) reach += norm(local_point(problem, body, body == joint.a ? joint.anchor : joint.anchor_b));
@@ -25,7 +26,9 @@ Vec3 velocity_at(const State& s, const Vec3& point) { return s.v + cross(s.w, po
 
 }  // namespace
 
-Tree tree_of(const Problem& problem) {
+namespace {
+
+Tree spanning(const Problem& problem) {
   Tree tree;
   std::vector<bool> reached(problem.bodies.size(), false), used(problem.joints.size(), false);
   const auto grow = [&](int parent) {
@@ -34,7 +37,6 @@ Tree tree_of(const Problem& problem) {
       if (joint.a != parent && joint.b != parent) continue;
       const int child = joint.a == parent ? joint.b : joint.a;
       if (child == world || reached[std::size_t(child)]) continue;
-      check_closed(problem, joint);
       reached[std::size_t(child)] = used[std::size_t(k)] = true;
       tree.branches.push_back({child, parent, k});
     }
@@ -56,11 +58,61 @@ Tree tree_of(const Problem& problem) {
   return tree;
 }
 
+}  // namespace
+
+Tree tree_of(const Problem& problem) {
+  Tree tree = spanning(problem);
+  for (const Branch& branch : tree.branches)
+    if (branch.joint >= 0) check_closed(problem, problem.joints[std::size_t(branch.joint)]);
+  for (const int loop : tree.loops) {
+    const Joint& joint = problem.joints[std::size_t(loop)];
+    if (joint.motor || joint.stops || joint.spring || joint.soft)
+      throw CannotSay("no motors, stops or springs of a joint that closes a loop");
+  }
+  return tree;
+}
+
+void close_tree(Problem& problem) {
+  for (const Branch& branch : spanning(problem).branches) {
+    if (branch.joint < 0) continue;
+    const Joint& joint = problem.joints[std::size_t(branch.joint)];
+    const Vec3 by = sense(problem, branch) * (joint.anchor - joint.anchor_b);
+    State& start = problem.bodies[std::size_t(branch.body)].start;
+    start.x = start.x + by;
+    for (Joint& other : problem.joints) {
+      if (other.a == branch.body) other.anchor = other.anchor + by;
+      if (other.b == branch.body) other.anchor_b = other.anchor_b + by;
+    }
+  }
+}
+
+const Branch& hinge_between(const Problem& problem, const Tree& tree, int a, int b) {
+  for (const Branch& branch : tree.branches) {
+    if (branch.joint < 0 || problem.joints[std::size_t(branch.joint)].kind != JointKind::revolute) continue;
+    if ((branch.body == a && branch.parent == b) || (branch.body == b && branch.parent == a)) return branch;
+  }
+  throw CannotSay("keeps the orientation only of bodies that a hinge connects");
+}
+
+double sense(const Problem& problem, const Branch& branch) {
+  return problem.joints[std::size_t(branch.joint)].b == branch.body ? 1 : -1;
+}
+
+Stops stops_from_start(const Problem& problem, const Branch& branch) {
+  const Joint& joint = problem.joints[std::size_t(branch.joint)];
+  if (!problem.planar && angle_between(state(problem, joint.a).q, state(problem, joint.b).q) > 1e-9)
+    throw CannotSay("the adapter counts angles in the plane only");
+  const double start = problem.planar ? angle(state(problem, joint.b).q) - angle(state(problem, joint.a).q) : 0;
+  const double lower = joint.stops->lower - start, upper = joint.stops->upper - start;
+  return sense(problem, branch) > 0 ? Stops{lower, upper} : Stops{-upper, -lower};
+}
+
 double rate(const Problem& problem, const Branch& branch) {
   const Joint& joint = problem.joints[std::size_t(branch.joint)];
   const State &parent = state(problem, branch.parent), &child = state(problem, branch.body);
-  if (joint.kind == JointKind::revolute) return dot(child.w - parent.w, joint.axis);
-  return dot(velocity_at(child, joint.anchor_b) - velocity_at(parent, joint.anchor), joint.axis);
+  const Vec3 along = (1 / norm(joint.axis)) * joint.axis;
+  if (joint.kind == JointKind::revolute) return dot(child.w - parent.w, along);
+  return dot(velocity_at(child, joint.anchor_b) - velocity_at(parent, joint.anchor), along);
 }
 
 Vec3 spin(const Problem& problem, const Branch& branch) {

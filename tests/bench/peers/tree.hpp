@@ -21,6 +21,16 @@ struct Tree {
 // Throws CannotSay where a joint of the tree starts open.
 Tree tree_of(const Problem& problem);
 
+// Moves bodies until the joints of the tree meet.
+void close_tree(Problem& problem);
+
+// The branch of the tree by which a hinge holds one of two bodies to the other; throws CannotSay if there is none.
+const Branch& hinge_between(const Problem& problem, const Tree& tree, int a, int b);
+// The stops of its hinge, for the angle that it has turned since the start, of the child against its parent.
+Stops stops_from_start(const Problem& problem, const Branch& branch);
+// 1, or -1 if the tree has its joint the other way round.
+double sense(const Problem& problem, const Branch& branch);
+
 // How fast the joint of a branch moves at the start: child against parent, along or about the axis.
 double rate(const Problem& problem, const Branch& branch);
 // The same for a ball joint, in world axes.

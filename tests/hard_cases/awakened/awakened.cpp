@@ -22,7 +22,7 @@ void strike(Trial& t) {
     trial->start();
     trial->run(1);
   }
-  asleep = t.ask([](const auto& world) { return double(world.sleeping_islands()); });
+  asleep = t.sleeping_islands();
   for (Trial* trial : {&t, &restless})
     trial->change([](auto& world) {
       decltype(exact(world.velocity(0))) impulse{};

@@ -1,10 +1,12 @@
 // Box2D 2.4: planar, single precision, sequential impulses and a pass over positions.
 #include <box2d/box2d.h>
 
+#include <map>
 #include <string>
 #include <utility>
 
 #include "tests/bench/peers/geometry.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -17,13 +19,23 @@ class Box2dRun final : public SteppedRun {
       : SteppedRun(h),
         world_(vec(problem.gravity)),
         velocity_iterations_(velocity_iterations),
-        position_iterations_(position_iterations) {
-    world_.SetAllowSleeping(false);
+        position_iterations_(position_iterations),
+        last_(h) {
+    check(problem, {.held_orientations = true,
+                    .motors = true,
+                    .stops = true,
+                    .springs = true,
+                    .soft_joints = true,
+                    .damping = true,
+                    .sleep = true});
+    world_.SetAllowSleeping(problem.sleep_after > 0);
     world_.SetContinuousPhysics(false);
     const b2BodyDef ground;
     ground_ = world_.CreateBody(&ground);
     for (const Body& body : problem.bodies) add(body);
     for (const Joint& joint : problem.joints) add(problem, joint);
+    for (std::size_t k = 0; k < problem.bodies.size(); ++k)
+      if (problem.bodies[k].torque[2] != 0) torques_.emplace_back(bodies_[k], float(problem.bodies[k].torque[2]));
   }
 
   State state(int body) const override {
@@ -31,7 +43,35 @@ class Box2dRun final : public SteppedRun {
     const b2Vec2 x = b.GetWorldCenter(), v = b.GetLinearVelocity();
     return {{x.x, x.y, 0}, about_z(b.GetAngle()), {v.x, v.y, 0}, {0, 0, b.GetAngularVelocity()}};
   }
-  void step(double h) override { world_.Step(float(h), velocity_iterations_, position_iterations_); }
+  void step(double h) override {
+    for (const auto& [body, torque] : torques_) body->ApplyTorque(torque, true);
+    for (const auto& [hinge, damping] : dampers_) {
+      const float torque = damping * hinge->GetJointSpeed();
+      hinge->GetBodyA()->ApplyTorque(torque, true);
+      hinge->GetBodyB()->ApplyTorque(-torque, true);
+    }
+    world_.Step(float(h), velocity_iterations_, position_iterations_);
+    last_ = h;
+  }
+
+  void strike(int body, const Vec3& impulse) override {
+    bodies_[std::size_t(body)]->ApplyLinearImpulseToCenter(vec(impulse), true);
+  }
+  bool remove(int joint) override {
+    for (b2Joint* made : joints_[joint]) world_.DestroyJoint(made);
+    joints_[joint].clear();
+    return true;
+  }
+  double force(int joint) const override {
+    return double(joints_.at(joint).front()->GetReactionForce(float(1 / last_)).Length());
+  }
+  bool asleep(int body) const override { return !bodies_[std::size_t(body)]->IsAwake(); }
+
+  bool add(const Problem& problem, const Joint& joint) override {
+    made_ = &joints_[joint.number];
+    connect(problem, joint);
+    return true;
+  }
 
  private:
   void add(const Body& body) {
@@ -42,6 +82,7 @@ class Box2dRun final : public SteppedRun {
     def.linearVelocity = vec(body.start.v);
     def.angularVelocity = float(body.start.w[2]);
     def.fixedRotation = !body.turns;
+    def.linearDamping = def.angularDamping = float(body.damping);
     b2Body* made = world_.CreateBody(&def);
     b2MassData mass;
     mass.mass = float(body.mass);
@@ -54,47 +95,97 @@ class Box2dRun final : public SteppedRun {
   b2Body* body(int index) const { return index == peers::world ? ground_ : bodies_[std::size_t(index)]; }
 
   template <class Def>
-  void add(Def& def, const Problem& problem, const Joint& joint) {
+  b2Joint* make(const Def& def) {
+    return made_->emplace_back(world_.CreateJoint(&def));
+  }
+  template <class Def>
+  b2Joint* make(Def& def, const Problem& problem, const Joint& joint) {
     def.localAnchorB = vec(local_point(problem, joint.b, joint.anchor_b));
-    world_.CreateJoint(&def);
+    return make(def);
   }
 
-  void add(const Problem& problem, const Joint& joint) {
+  void connect(const Problem& problem, const Joint& joint) {
     b2Body *a = body(joint.a), *b = body(joint.b);
     const b2Vec2 at = vec(joint.anchor);
-    if (joint.kind == JointKind::prismatic) {
+    if (joint.soft) {
+      hold_softly(joint);
+    } else if (joint.kind == JointKind::prismatic) {
       b2PrismaticJointDef def;
       def.Initialize(a, b, at, vec(joint.axis));
-      add(def, problem, joint);
+      make(def, problem, joint);
+      if (joint.spring) add_spring(joint);
     } else if (joint.kind == JointKind::revolute) {
-      b2RevoluteJointDef def;
-      def.Initialize(a, b, at);
-      if ((def.enableMotor = joint.motor.has_value())) {
-        def.motorSpeed = float(joint.motor->speed);
-        def.maxMotorTorque = float(joint.motor->most);
-      }
-      if ((def.enableLimit = joint.stops.has_value())) {
-        def.lowerAngle = float(joint.stops->lower) - def.referenceAngle;
-        def.upperAngle = float(joint.stops->upper) - def.referenceAngle;
-      }
-      add(def, problem, joint);
+      add_hinge(problem, joint);
     } else if (joint.kind == JointKind::fixed) {
       b2WeldJointDef def;
       def.Initialize(a, b, at);
-      add(def, problem, joint);
+      make(def, problem, joint);
+    } else if (joint.kind == JointKind::orientation) {
+      b2MotorJointDef def;
+      def.Initialize(a, b);
+      def.maxForce = 0;
+      def.maxTorque = b2_maxFloat;
+      make(def);
     } else {
       b2DistanceJointDef def;
       def.Initialize(a, b, at, vec(joint.anchor_b));
       def.length = def.maxLength = float(joint.length);
       def.minLength = joint.kind == JointKind::distance ? def.length : 0;
-      add(def, problem, joint);
+      make(def, problem, joint);
     }
+  }
+
+  void add_hinge(const Problem& problem, const Joint& joint) {
+    b2RevoluteJointDef def;
+    def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor));
+    if ((def.enableMotor = joint.motor.has_value())) {
+      def.motorSpeed = float(joint.motor->speed);
+      def.maxMotorTorque = float(joint.motor->most);
+    }
+    if ((def.enableLimit = joint.stops.has_value())) {
+      def.lowerAngle = float(joint.stops->lower) - def.referenceAngle;
+      def.upperAngle = float(joint.stops->upper) - def.referenceAngle;
+    }
+    b2Joint* hinge = make(def, problem, joint);
+    if (!joint.spring) return;
+    if (joint.spring->stiffness != 0) throw CannotSay("no spring of a hinge");
+    dampers_.emplace_back(static_cast<b2RevoluteJoint*>(hinge), float(joint.spring->damping));
+  }
+
+  // Of a slider: a distance joint that gives, from down its axis.
+  void add_spring(const Joint& joint) {
+    b2DistanceJointDef def;
+    def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor - joint.axis), vec(joint.anchor));
+    def.minLength = 0;
+    def.maxLength = b2_maxFloat;
+    def.stiffness = float(joint.spring->stiffness);
+    def.damping = float(joint.spring->damping);
+    make(def);
+  }
+
+  // A mouse joint to the world.
+  void hold_softly(const Joint& joint) {
+    if (joint.kind != JointKind::revolute || joint.a != peers::world)
+      throw CannotSay("no joint that gives like a spring but a mouse joint's pin to the world");
+    b2MouseJointDef def;
+    def.bodyA = ground_;
+    def.bodyB = body(joint.b);
+    def.target = vec(joint.anchor);
+    def.maxForce = b2_maxFloat;
+    def.stiffness = float(joint.soft->stiffness);
+    def.damping = float(joint.soft->damping);
+    make(def);
   }
 
   b2World world_;
   int velocity_iterations_, position_iterations_;
   b2Body* ground_ = nullptr;
+  double last_;  // step
   std::vector<b2Body*> bodies_;
+  std::map<int, std::vector<b2Joint*>> joints_;  // by number; the first is that which holds
+  std::vector<b2Joint*>* made_ = nullptr;        // of the joint that is being added
+  std::vector<std::pair<b2Body*, float>> torques_;
+  std::vector<std::pair<b2RevoluteJoint*, float>> dampers_;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -111,7 +202,10 @@ std::vector<Series> series(const Problem& problem) {
 
 // The library calls itself 2.4.0 still.
 const Registration registration{
-    {"Box2D", "2.4.1", "float", "#1f6feb", "no shapes; sleeping and continuous collision off", series}};
+    {"Box2D", "2.4.1", "float", "#1f6feb",
+     "no shapes; continuous collision off; sleeps where the case does; a damper of a hinge is a torque put on "
+     "before each step, a spring of a slider a distance joint, a soft pin a mouse joint",
+     series}};
 
 }  // namespace
 }  // namespace cdot::peers

@@ -2,9 +2,12 @@
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
 
+#include <cmath>
+#include <map>
 #include <string>
 
 #include "tests/bench/peers/engines/bullet_world.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -24,6 +27,14 @@ class BulletRun final : public SteppedRun {
         dantzig_solver_(&dantzig_),
         world_(&parts_.dispatcher, &parts_.broadphase,
                way.sweeps > 0 ? static_cast<btConstraintSolver*>(&sweeps_) : &dantzig_solver_, &parts_.configuration) {
+    check(problem, {.held_orientations = true,
+                    .motors = true,
+                    .stops = true,
+                    .springs = true,
+                    .soft_joints = true,
+                    .damping = true,
+                    .sleep = true});
+    if (problem.sleep_after > 0) gDeactivationTime = problem.sleep_after;
     world_.setGravity(bt(problem.gravity));
     btContactSolverInfo& info = world_.getSolverInfo();
     info.m_erp = way.erp;
@@ -31,11 +42,11 @@ class BulletRun final : public SteppedRun {
       info.m_numIterations = way.sweeps;
     else
       info.m_minimumSolverBatchSize = 1;
-    for (const Body& body : problem.bodies) add(body, way);
+    for (const Body& body : problem.bodies) add(body, way, problem.sleep_after > 0);
     for (const Joint& joint : problem.joints) add(problem, joint);
   }
   ~BulletRun() override {
-    for (const auto& joint : joints_) world_.removeConstraint(joint.get());
+    for (const auto& [number, made] : joints_) drop(made);
     for (const auto& body : bodies_) world_.removeRigidBody(body.get());
   }
   BulletRun(const BulletRun&) = delete;
@@ -48,11 +59,46 @@ class BulletRun final : public SteppedRun {
   }
   void step(double h) override {
     for (const auto& [hinge, motor] : motors_) hinge->enableAngularMotor(true, -motor.speed, motor.most * h);
+    for (const auto& [body, torque] : torques_) body->applyTorque(torque);
+    for (const auto& [hinge, damping] : dampers_) damp(*hinge, damping);
     world_.stepSimulation(h, 0, h);
   }
 
+  void strike(int body, const Vec3& impulse) override {
+    bodies_[std::size_t(body)]->activate(true);
+    bodies_[std::size_t(body)]->applyCentralImpulse(bt(impulse));
+  }
+  bool remove(int joint) override {
+    drop(joints_.at(joint));
+    joints_.erase(joint);
+    return true;
+  }
+  bool add(const Problem& problem, const Joint& joint) override {
+    made_ = &joints_[joint.number];
+    connect(problem, joint);
+    return true;
+  }
+  bool change(const Problem& now, const Joint& joint) override {
+    if (joint.kind != JointKind::revolute) return SteppedRun::change(now, joint);
+    auto& hinge = static_cast<btHingeConstraint&>(*joints_.at(joint.number).constraints.front());
+    hinge.getAFrame().setOrigin(bt(local_point(now, joint.a, joint.anchor)));
+    hinge.getBFrame().setOrigin(bt(local_point(now, joint.b, joint.anchor_b)));
+    return true;
+  }
+  double force(int joint) const override { return joints_.at(joint).felt->m_appliedForceBodyB.length(); }
+  bool asleep(int body) const override { return !bodies_[std::size_t(body)]->isActive(); }
+
  private:
-  void add(const Body& body, const Way& way) {
+  struct Made {
+    std::vector<std::unique_ptr<btTypedConstraint>> constraints;  // the first is that which holds
+    std::unique_ptr<btJointFeedback> felt = std::make_unique<btJointFeedback>();
+  };
+
+  void drop(const Made& made) {
+    for (const auto& constraint : made.constraints) world_.removeConstraint(constraint.get());
+  }
+
+  void add(const Body& body, const Way& way, bool sleeps) {
     const State& s = body.start;
     const btVector3 inertia = body.turns ? bt(body.inertia) : btVector3(0, 0, 0);  // 0: it cannot turn
     btRigidBody::btRigidBodyConstructionInfo info(body.mass, nullptr, &parts_.shape, inertia);
@@ -61,14 +107,16 @@ class BulletRun final : public SteppedRun {
     btRigidBody& made = *bodies_.back();
     made.setLinearVelocity(bt(s.v));
     made.setAngularVelocity(bt(s.w));
-    made.setActivationState(DISABLE_DEACTIVATION);
+    made.setDamping(1 - std::exp(-body.damping), 1 - std::exp(-body.damping));
+    if (!sleeps) made.setActivationState(DISABLE_DEACTIVATION);
+    if (norm(body.torque) > 0) torques_.emplace_back(&made, bt(body.torque));
     if (way.gyroscope_in_world) made.setFlags(BT_ENABLE_GYROSCOPIC_FORCE_IMPLICIT_WORLD);
     world_.addRigidBody(&made);
   }
 
-  // The frame of a slider at the start, its x along the axis, in a body's own.
+  // The frame of a joint at the start, its x along the axis, in a body's own.
   static btTransform frame(const Problem& problem, const Joint& joint, int body, const Vec3& anchor) {
-    const btVector3 x = joint.kind == JointKind::fixed ? btVector3(1, 0, 0) : bt(joint.axis).normalized();
+    const btVector3 x = norm(joint.axis) == 0 ? btVector3(1, 0, 0) : bt(joint.axis).normalized();
     btVector3 y, z;
     btPlaneSpace1(x, y, z);
     const btMatrix3x3 axes(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z());
@@ -81,35 +129,78 @@ class BulletRun final : public SteppedRun {
     return index == peers::world ? btTypedConstraint::getFixedBody() : *bodies_[std::size_t(index)];
   }
 
-  // Its motor counts from b to a, its limits from a to b.
+  static void damp(btHingeConstraint& hinge, double damping) {
+    btRigidBody &a = hinge.getRigidBodyA(), &b = hinge.getRigidBodyB();
+    const btVector3 axis = a.getWorldTransform().getBasis() * hinge.getAFrame().getBasis().getColumn(2);
+    const btVector3 torque = damping * axis.dot(b.getAngularVelocity() - a.getAngularVelocity()) * axis;
+    a.applyTorque(torque);
+    b.applyTorque(-torque);
+  }
+
+  // It counts from b to a.
   std::unique_ptr<btTypedConstraint> hinge(const Problem& problem, const Joint& joint, btRigidBody& a, btRigidBody& b) {
     auto made = std::make_unique<btHingeConstraint>(
         a, b, bt(local_point(problem, joint.a, joint.anchor)), bt(local_point(problem, joint.b, joint.anchor_b)),
         bt(local_direction(problem, joint.a, joint.axis)), bt(local_direction(problem, joint.b, joint.axis)));
     if (joint.motor) motors_.emplace_back(made.get(), *joint.motor);
-    if (joint.stops) made->setLimit(joint.stops->lower, joint.stops->upper);
+    if (joint.stops) made->setLimit(-joint.stops->upper, -joint.stops->lower, 0.9, 0.3, 0);  // without bouncing
+    if (!joint.spring) return made;
+    if (joint.spring->stiffness != 0) throw CannotSay("no spring of a hinge");
+    dampers_.emplace_back(made.get(), joint.spring->damping);
     return made;
   }
 
-  void add(const Problem& problem, const Joint& joint) {
+  // Six degrees of freedom: turns about the axis are free, the rest of them held; slides are free.
+  std::unique_ptr<btGeneric6DofSpring2Constraint> six(const Problem& problem, const Joint& joint) {
+    auto made = std::make_unique<btGeneric6DofSpring2Constraint>(body(joint.a), body(joint.b),
+                                                                 frame(problem, joint, joint.a, joint.anchor),
+                                                                 frame(problem, joint, joint.b, joint.anchor_b));
+    for (int k = 0; k < 3; ++k) made->setLimit(k, 1, -1);
+    made->setLimit(3, 1, -1);
+    for (int k = 4; k < 6; ++k) made->setLimit(k, 0, 0);
+    return made;
+  }
+  static void add_spring(btGeneric6DofSpring2Constraint& made, int coordinate, const Spring& spring) {
+    made.enableSpring(coordinate, true);
+    made.setStiffness(coordinate, spring.stiffness);
+    made.setDamping(coordinate, spring.damping);
+    made.setEquilibriumPoint(coordinate, 0);
+  }
+
+  std::unique_ptr<btTypedConstraint> holding(const Problem& problem, const Joint& joint) {
     btRigidBody &a = body(joint.a), &b = body(joint.b);
-    const btVector3 pa = bt(local_point(problem, joint.a, joint.anchor)),
-                    pb = bt(local_point(problem, joint.b, joint.anchor_b));
-    std::unique_ptr<btTypedConstraint> made;
+    const btTransform in_a = frame(problem, joint, joint.a, joint.anchor),
+                      in_b = frame(problem, joint, joint.b, joint.anchor_b);
+    if (joint.soft) {
+      if (joint.kind != JointKind::revolute) throw CannotSay("the adapter makes hinges soft only");
+      auto made = six(problem, joint);
+      for (int k = 0; k < 3; ++k) add_spring(*made, k, *joint.soft);
+      return made;
+    }
+    if (joint.kind == JointKind::orientation) {
+      auto made = six(problem, joint);
+      made->setLimit(3, 0, 0);
+      return made;
+    }
     if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
       throw CannotSay("no joint that keeps a distance");
     if (joint.kind == JointKind::spherical)
-      made = std::make_unique<btPoint2PointConstraint>(a, b, pa, pb);
-    else if (joint.kind == JointKind::revolute)
-      made = hinge(problem, joint, a, b);
-    else if (joint.kind == JointKind::fixed)
-      made = std::make_unique<btFixedConstraint>(a, b, frame(problem, joint, joint.a, joint.anchor),
-                                                 frame(problem, joint, joint.b, joint.anchor_b));
-    else
-      made = std::make_unique<btSliderConstraint>(a, b, frame(problem, joint, joint.a, joint.anchor),
-                                                  frame(problem, joint, joint.b, joint.anchor_b), true);
-    world_.addConstraint(made.get(), true);
-    joints_.push_back(std::move(made));
+      return std::make_unique<btPoint2PointConstraint>(a, b, in_a.getOrigin(), in_b.getOrigin());
+    if (joint.kind == JointKind::revolute) return hinge(problem, joint, a, b);
+    if (joint.kind == JointKind::fixed) return std::make_unique<btFixedConstraint>(a, b, in_a, in_b);
+    return std::make_unique<btSliderConstraint>(a, b, in_a, in_b, true);
+  }
+
+  void connect(const Problem& problem, const Joint& joint) {
+    made_->constraints.push_back(holding(problem, joint));
+    made_->constraints.back()->setJointFeedback(made_->felt.get());
+    if (joint.spring && joint.kind == JointKind::prismatic) {
+      auto free = six(problem, joint);
+      for (int k = 4; k < 6; ++k) free->setLimit(k, 1, -1);
+      add_spring(*free, 0, *joint.spring);
+      made_->constraints.push_back(std::move(free));
+    }
+    for (const auto& constraint : made_->constraints) world_.addConstraint(constraint.get(), true);
   }
 
   BulletParts parts_;
@@ -118,8 +209,11 @@ class BulletRun final : public SteppedRun {
   btMLCPSolver dantzig_solver_;
   Untouched<btDiscreteDynamicsWorld> world_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
-  std::vector<std::unique_ptr<btTypedConstraint>> joints_;
+  std::map<int, Made> joints_;  // by number
+  Made* made_ = nullptr;        // of the joint that is being added
+  std::vector<std::pair<btRigidBody*, btVector3>> torques_;
   std::vector<std::pair<btHingeConstraint*, Motor>> motors_;
+  std::vector<std::pair<btHingeConstraint*, double>> dampers_;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -138,7 +232,11 @@ std::vector<Series> series(const Problem& problem) {
 }
 
 const Registration registration{
-    {"Bullet", "3.24", "double", "#57606a", "the build in doubles; collision detection skipped; no sleep", series}};
+    {"Bullet", "3.24", "double", "#57606a",
+     "the build in doubles; collision detection skipped; springs and soft joints are "
+     "btGeneric6DofSpring2Constraint, a damper of a hinge a torque put on before each step; a stop's relaxation 0; "
+     "sleeps where the case does",
+     series}};
 
 }  // namespace
 }  // namespace cdot::peers

@@ -2,14 +2,19 @@
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
+#include <BulletDynamics/Featherstone/btMultiBodyJointFeedback.h>
+#include <BulletDynamics/Featherstone/btMultiBodyJointLimitConstraint.h>
+#include <BulletDynamics/Featherstone/btMultiBodyJointMotor.h>
 #include <BulletDynamics/Featherstone/btMultiBodyLinkCollider.h>
 #include <BulletDynamics/Featherstone/btMultiBodyPoint2Point.h>
 
-#include <algorithm>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "tests/bench/peers/engines/bullet_world.hpp"
 #include "tests/bench/peers/tree.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -24,79 +29,133 @@ class MultibodyRun final : public SteppedRun {
  public:
   MultibodyRun(const Problem& problem, const Way& way, double h)
       : SteppedRun(h),
+        problem_(problem),
         world_(&parts_.dispatcher, &parts_.broadphase, &solver_, &parts_.configuration),
-        link_of_(problem.bodies.size(), -1) {
+        places_(problem.bodies.size()),
+        h_(h) {
+    check(problem, {.motors = true, .stops = true, .damping = true, .sleep = true});
     world_.setGravity(bt(problem.gravity));
     world_.getSolverInfo().m_erp = way.erp;
-    need_all_turn(problem);
-    need_free_hinges(problem);
+    world_.getSolverInfo().m_jointFeedbackInWorldSpace = true;
     const Tree tree = tree_of(problem);
     make(problem, tree);
-    multibody_->setLinearDamping(0);
-    multibody_->setAngularDamping(0);
-    multibody_->setUseGyroTerm(true);
-    multibody_->setMaxCoordinateVelocity(1e9);
-    multibody_->setMaxAppliedImpulse(1e9);
-    multibody_->useRK4Integration(way.rk4);
-    world_.addMultiBody(multibody_.get());
-    // Without colliders the constraint would do nothing, and say nothing.
-    for (int link = -1; link < multibody_->getNumLinks() && !tree.loops.empty(); ++link) collide(link);
-    for (const int loop : tree.loops) close(problem, problem.joints[std::size_t(loop)]);
+    for (const auto& made : multibodies_) {
+      made->setLinearDamping(0);
+      made->setAngularDamping(0);
+      made->setUseGyroTerm(true);
+      made->setMaxCoordinateVelocity(1e9);
+      made->setMaxAppliedImpulse(1e9);
+      made->useRK4Integration(way.rk4);
+      made->setCanSleep(problem.sleep_after > 0);
+      made->setSleepTimeout(problem.sleep_after);
+      world_.addMultiBody(made.get());
+    }
+    for (const int loop : tree.loops) close(problem, tree, problem.joints[std::size_t(loop)]);
+    for (const Branch& branch : tree.branches) drive(problem, branch);
+    // Without colliders constraints and sleep would do nothing, and say nothing.
+    if (!constraints_.empty() || problem.sleep_after > 0) collide();
   }
   ~MultibodyRun() override {
-    for (const auto& loop : loops_) world_.removeMultiBodyConstraint(loop.get());
+    for (const auto& constraint : constraints_) world_.removeMultiBodyConstraint(constraint.get());
     for (const auto& collider : colliders_) world_.removeCollisionObject(collider.get());
-    world_.removeMultiBody(multibody_.get());
+    for (const auto& made : multibodies_) world_.removeMultiBody(made.get());
   }
   MultibodyRun(const MultibodyRun&) = delete;
   MultibodyRun& operator=(const MultibodyRun&) = delete;
 
-  void step(double h) override { world_.stepSimulation(h, 0, h); }
+  void step(double h) override {
+    for (std::size_t k = 0; k < places_.size(); ++k) {
+      const Body& body = problem_.bodies[k];
+      push(places_[k], {Vec3{}, body.torque});
+      if (body.damping > 0) push(places_[k], damping(body, state(int(k))));
+    }
+    for (const auto& [at, impulse] : struck_) push(at, {(1 / h) * impulse, Vec3{}});
+    struck_.clear();
+    world_.stepSimulation(h, 0, h);
+  }
   State state(int body) const override {
-    const int link = link_of_[std::size_t(body)];
-    const btMultiBody& m = *multibody_;
-    if (link < 0)
+    const Place at = places_[std::size_t(body)];
+    const btMultiBody& m = *at.multibody;
+    if (at.link < 0)
       return {from(m.getBasePos()), from(m.getWorldToBaseRot().inverse()), from(m.getBaseVel()),
               from(m.getBaseOmega())};
     std::vector<btVector3> w(std::size_t(m.getNumLinks()) + 1), v(w.size());
     m.compTreeLinkVelocities(w.data(), v.data());
-    const btMatrix3x3 R = m.localFrameToWorld(link, btMatrix3x3::getIdentity());
+    const btMatrix3x3 R = m.localFrameToWorld(at.link, btMatrix3x3::getIdentity());
     btQuaternion q;
     R.getRotation(q);
-    return {from(m.localPosToWorld(link, btVector3(0, 0, 0))), from(q), from(R * v[std::size_t(link) + 1]),
-            from(R * w[std::size_t(link) + 1])};
+    return {from(m.localPosToWorld(at.link, btVector3(0, 0, 0))), from(q), from(R * v[std::size_t(at.link) + 1]),
+            from(R * w[std::size_t(at.link) + 1])};
+  }
+
+  // As a force during the next step.
+  void strike(int body, const Vec3& impulse) override {
+    places_[std::size_t(body)].multibody->wakeUp();
+    for (const auto& collider : colliders_) collider->activate(true);
+    struck_.emplace_back(places_[std::size_t(body)], impulse);
+  }
+  bool asleep(int body) const override { return !places_[std::size_t(body)].multibody->isAwake(); }
+
+  double force(int joint) const override {
+    const auto felt = felt_.find(joint);
+    if (felt == felt_.end()) throw CannotSay("the adapter does not read what a loop carries");
+    return felt->second.m_reactionForces.m_topVec.length();
   }
 
  private:
-  // The world is the base, or the one body that nothing holds.
-  void make(const Problem& problem, const Tree& tree) {
-    const bool rootless =
-        std::any_of(tree.branches.begin(), tree.branches.end(), [](const Branch& branch) { return branch.joint < 0; });
-    if (rootless && problem.bodies.size() > 1)
-      throw CannotSay("the adapter makes one tree that hangs from the world, or one free body");
-    if (problem.joints.empty()) {
-      const Body& body = problem.bodies.at(0);
-      multibody_ = std::make_unique<btMultiBody>(0, body.mass, bt(body.inertia), false, false);
-      multibody_->finalizeMultiDof();
-      multibody_->setBasePos(bt(body.start.x));
-      multibody_->setWorldToBaseRot(bt(body.start.q).inverse());
-      multibody_->setBaseVel(bt(body.start.v));
-      multibody_->setBaseOmega(bt(body.start.w));
-      return;
+  struct Place {
+    btMultiBody* multibody = nullptr;
+    int link = -1;  // the base
+  };
+
+  static void push(const Place& at, const Push& by) {
+    if (at.link < 0) {
+      at.multibody->addBaseForce(bt(by.force));
+      at.multibody->addBaseTorque(bt(by.torque));
+    } else {
+      at.multibody->addLinkForce(at.link, bt(by.force));
+      at.multibody->addLinkTorque(at.link, bt(by.torque));
     }
-    const int links = int(tree.branches.size());
-    multibody_ = std::make_unique<btMultiBody>(links, 0, btVector3(0, 0, 0), true, false);
-    for (int link = 0; link < links; ++link) {
-      link_of_[std::size_t(tree.branches[std::size_t(link)].body)] = link;
-      setup(problem, tree.branches[std::size_t(link)], link);
-    }
-    multibody_->finalizeMultiDof();
-    for (int link = 0; link < links; ++link) set_velocity(problem, tree.branches[std::size_t(link)], link);
   }
 
-  int link_of(int body) const { return body == peers::world ? -1 : link_of_[std::size_t(body)]; }
+  // One for what hangs from the world, one for each body that nothing holds with what hangs from it.
+  void make(const Problem& problem, const Tree& tree) {
+    std::vector<int> links{0}, group(problem.bodies.size(), 0);
+    for (const Branch& branch : tree.branches) {
+      int& mine = group[std::size_t(branch.body)];
+      if (branch.joint < 0) {
+        mine = int(links.size());
+        links.push_back(0);
+        continue;
+      }
+      mine = branch.parent == peers::world ? 0 : group[std::size_t(branch.parent)];
+      places_[std::size_t(branch.body)].link = links[std::size_t(mine)]++;
+    }
+    multibodies_.resize(links.size());
+    if (links[0] > 0) multibodies_[0] = std::make_unique<btMultiBody>(links[0], 0, btVector3(0, 0, 0), true, false);
+    ground_.multibody = multibodies_[0].get();
+    for (const Branch& branch : tree.branches) {
+      const int mine = group[std::size_t(branch.body)];
+      if (branch.joint < 0) multibodies_[std::size_t(mine)] = base(problem, branch, links[std::size_t(mine)]);
+      places_[std::size_t(branch.body)].multibody = multibodies_[std::size_t(mine)].get();
+      if (branch.joint >= 0) setup(problem, branch, places_[std::size_t(branch.body)]);
+    }
+    std::erase(multibodies_, nullptr);
+    for (const auto& made : multibodies_) made->finalizeMultiDof();
+    for (const Branch& branch : tree.branches) set_velocity(problem, branch, places_[std::size_t(branch.body)]);
+  }
 
-  void setup(const Problem& problem, const Branch& branch, int link) {
+  static std::unique_ptr<btMultiBody> base(const Problem& problem, const Branch& branch, int links) {
+    const Body& body = problem.bodies[std::size_t(branch.body)];
+    auto made = std::make_unique<btMultiBody>(links, body.mass, bt(body.inertia), false, false);
+    made->setBasePos(bt(body.start.x));
+    made->setWorldToBaseRot(bt(body.start.q).inverse());
+    return made;
+  }
+
+  Place place(int body) const { return body == peers::world ? ground_ : places_[std::size_t(body)]; }
+
+  void setup(const Problem& problem, const Branch& branch, const Place& at) {
     const Body& body = problem.bodies[std::size_t(branch.body)];
     const Joint& joint = problem.joints[std::size_t(branch.joint)];
     const Quaternion parent =
@@ -105,53 +164,89 @@ class MultibodyRun final : public SteppedRun {
     const btVector3 in = bt(local_point(problem, branch.parent, joint.anchor)),
                     out = -bt(local_point(problem, branch.body, joint.anchor)),
                     axis = bt(local_direction(problem, branch.body, joint.axis)), inertia = bt(body.inertia);
-    const int above = link_of(branch.parent);
+    const int above = place(branch.parent).link, link = at.link;
+    btMultiBody& made = *at.multibody;
     if (joint.kind == JointKind::fixed)
-      multibody_->setupFixed(link, body.mass, inertia, above, turn, in, out, true);
+      made.setupFixed(link, body.mass, inertia, above, turn, in, out, true);
     else if (joint.kind == JointKind::spherical)
-      multibody_->setupSpherical(link, body.mass, inertia, above, turn, in, out, true);
+      made.setupSpherical(link, body.mass, inertia, above, turn, in, out, true);
     else if (joint.kind == JointKind::revolute)
-      multibody_->setupRevolute(link, body.mass, inertia, above, turn, axis, in, out, true);
+      made.setupRevolute(link, body.mass, inertia, above, turn, axis, in, out, true);
     else
-      multibody_->setupPrismatic(link, body.mass, inertia, above, turn, axis, in, out, true);
+      made.setupPrismatic(link, body.mass, inertia, above, turn, axis, in, out, true);
+    made.getLink(link).m_jointFeedback = &felt_[joint.number];
   }
 
-  void set_velocity(const Problem& problem, const Branch& branch, int link) {
-    if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
-      const Quaternion& q = problem.bodies[std::size_t(branch.body)].start.q;
-      const Vec3 w = turned(conjugate(q), spin(problem, branch));
-      multibody_->setJointVelMultiDof(link, w.data());
+  static void set_velocity(const Problem& problem, const Branch& branch, const Place& at) {
+    const State& start = problem.bodies[std::size_t(branch.body)].start;
+    if (branch.joint < 0) {
+      at.multibody->setBaseVel(bt(start.v));
+      at.multibody->setBaseOmega(bt(start.w));
+    } else if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
+      const Vec3 w = turned(conjugate(start.q), spin(problem, branch));
+      at.multibody->setJointVelMultiDof(at.link, w.data());
     } else if (problem.joints[std::size_t(branch.joint)].kind != JointKind::fixed) {
-      multibody_->setJointVel(link, rate(problem, branch));
+      // A slider moves by its coordinate times its axis.
+      at.multibody->setJointVel(at.link, rate(problem, branch) / norm(problem.joints[std::size_t(branch.joint)].axis));
     }
   }
 
-  void collide(int link) {
-    colliders_.push_back(std::make_unique<btMultiBodyLinkCollider>(multibody_.get(), link));
-    btMultiBodyLinkCollider* made = colliders_.back().get();
-    made->setCollisionShape(&parts_.shape);
-    world_.addCollisionObject(made);
-    if (link < 0)
-      multibody_->setBaseCollider(made);
-    else
-      multibody_->getLink(link).m_collider = made;
+  void collide() {
+    for (const auto& made : multibodies_)
+      for (int link = -1; link < made->getNumLinks(); ++link) {
+        colliders_.push_back(std::make_unique<btMultiBodyLinkCollider>(made.get(), link));
+        btMultiBodyLinkCollider* collider = colliders_.back().get();
+        collider->setCollisionShape(&parts_.shape);
+        world_.addCollisionObject(collider);
+        if (link < 0)
+          made->setBaseCollider(collider);
+        else
+          made->getLink(link).m_collider = collider;
+      }
+    for (const auto& constraint : constraints_) world_.addMultiBodyConstraint(constraint.get());
   }
 
-  void close(const Problem& problem, const Joint& joint) {
-    loops_.push_back(std::make_unique<btMultiBodyPoint2Point>(
-        multibody_.get(), link_of(joint.a), multibody_.get(), link_of(joint.b),
-        bt(local_point(problem, joint.a, joint.anchor)), bt(local_point(problem, joint.b, joint.anchor_b))));
-    loops_.back()->setMaxAppliedImpulse(1e9);
-    world_.addMultiBodyConstraint(loops_.back().get());
+  void add(std::unique_ptr<btMultiBodyConstraint> made) {
+    made->setMaxAppliedImpulse(1e9);
+    constraints_.push_back(std::move(made));
   }
 
+  void close(const Problem& problem, const Tree& tree, const Joint& joint) {
+    if (joint.kind == JointKind::orientation) {
+      const Place at = place(hinge_between(problem, tree, joint.a, joint.b).body);
+      return add(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, 0, 0));
+    }
+    const Place a = place(joint.a), b = place(joint.b);
+    add(std::make_unique<btMultiBodyPoint2Point>(a.multibody, a.link, b.multibody, b.link,
+                                                 bt(local_point(problem, joint.a, joint.anchor)),
+                                                 bt(local_point(problem, joint.b, joint.anchor_b))));
+  }
+
+  void drive(const Problem& problem, const Branch& branch) {
+    if (branch.joint < 0) return;
+    const Joint& joint = problem.joints[std::size_t(branch.joint)];
+    const Place at = place(branch.body);
+    if (joint.stops) {
+      const Stops stops = stops_from_start(problem, branch);
+      add(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, stops.lower, stops.upper));
+    }
+    if (!joint.motor) return;
+    constraints_.push_back(std::make_unique<btMultiBodyJointMotor>(
+        at.multibody, at.link, sense(problem, branch) * joint.motor->speed, joint.motor->most * h_));
+  }
+
+  const Problem& problem_;
   BulletParts parts_;
   btMultiBodyConstraintSolver solver_;
   Untouched<btMultiBodyDynamicsWorld> world_;
-  std::vector<int> link_of_;
-  std::unique_ptr<btMultiBody> multibody_;
+  std::map<int, btMultiBodyJointFeedback> felt_;  // by the joint's number
+  std::vector<std::unique_ptr<btMultiBody>> multibodies_;
+  Place ground_;
+  std::vector<Place> places_;  // of bodies
+  std::vector<std::pair<Place, Vec3>> struck_;
+  double h_;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
-  std::vector<std::unique_ptr<btMultiBodyConstraint>> loops_;
+  std::vector<std::unique_ptr<btMultiBodyConstraint>> constraints_;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -167,7 +262,8 @@ std::vector<Series> series(const Problem& problem) {
 const Registration registration{
     {"Bullet multibody", "3.24", "double", "#bf3989",
      "the build in doubles; a tree of links, loops closed by btMultiBodyPoint2Point; link damping 0; greatest "
-     "coordinate velocity and impulse raised; collision detection skipped; no sleep",
+     "coordinate velocity and impulse raised; collision detection skipped; damping a force put on before each step; "
+     "sleeps where the case does; made anew where joints come or go",
      series}};
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 
 #include "runtime/effects.hpp"
@@ -24,7 +25,10 @@ BodyDefinition definition(const Planar<double>*, const Body& body) {
           .w = s.w[2],
           .mass = body.mass,
           .inertia = body.inertia[2],
-          .fixed_rotation = !body.turns};
+          .fixed_rotation = !body.turns,
+          .torque = body.torque[2],
+          .linear_damping = body.damping,
+          .angular_damping = body.damping};
 }
 
 SpatialBodyDefinition definition(const Spatial<double>*, const Body& body) {
@@ -44,7 +48,12 @@ SpatialBodyDefinition definition(const Spatial<double>*, const Body& body) {
           .wz = s.w[2],
           .mass = body.mass,
           .inertia = {.xx = body.inertia[0], .yy = body.inertia[1], .zz = body.inertia[2]},
-          .fixed_rotation = !body.turns};
+          .fixed_rotation = !body.turns,
+          .torque_x = body.torque[0],
+          .torque_y = body.torque[1],
+          .torque_z = body.torque[2],
+          .linear_damping = body.damping,
+          .angular_damping = body.damping};
 }
 
 NamedValue planar_value(const char* name, const Vec3& u) { return {name, {u[0], u[1]}}; }
@@ -59,6 +68,7 @@ JointDefinition definition(const Planar<double>*, const Problem& problem, const 
   JointDefinition d;
   d.parameters = {planar_value("pa", local_point(problem, joint.a, joint.anchor)),
                   planar_value("pb", local_point(problem, joint.b, joint.anchor_b))};
+  if (joint.kind == JointKind::orientation) return {"angle", {}, {}, {}};
   d.type = joint.kind == JointKind::prismatic  ? "prismatic"
            : joint.kind == JointKind::fixed    ? "weld"
            : joint.kind == JointKind::revolute ? "revolute"
@@ -74,10 +84,12 @@ JointDefinition definition(const Spatial<double>*, const Problem& problem, const
   JointDefinition d;
   d.parameters = {spatial_value("pa", local_point(problem, joint.a, joint.anchor)),
                   spatial_value("pb", local_point(problem, joint.b, joint.anchor_b))};
-  d.type = joint.kind == JointKind::prismatic   ? "prismatic"
+  if (joint.kind == JointKind::orientation) return {"relative_orientation", {}, {spatial_value("fa", {1, 0, 0})}, {}};
+  const bool acted_on = joint.motor || joint.stops || joint.spring;
+  d.type = joint.kind == JointKind::prismatic   ? (acted_on ? "slider" : "prismatic")
            : joint.kind == JointKind::spherical ? "spherical"
            : joint.kind == JointKind::fixed     ? "fixed"
-           : joint.kind == JointKind::revolute  ? (joint.motor || joint.stops ? "hinge" : "revolute")
+           : joint.kind == JointKind::revolute  ? (acted_on ? "hinge" : "revolute")
                                                 : with_length(joint, d);
   if (joint.kind == JointKind::fixed) d.parameters.push_back(spatial_value("fa", {1, 0, 0}));
   if (joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic)
@@ -103,21 +115,29 @@ void choose_origin(const Problem& problem, BasicWorld<S>& world) {
 }
 
 template <class S>
+void add(BasicWorld<S>& made, const Problem& problem, const Joint& joint) {
+  JointDefinition d = definition(static_cast<const S*>(nullptr), problem, joint);
+  for (const int body : {joint.a, joint.b}) d.bodies.push_back(body == world ? made.ground() : body);
+  if (joint.soft) d.soft = Softness{false, 0, 0, joint.soft->stiffness, joint.soft->damping};
+  const int index = made.add_joint(d);
+  const char* coordinate = joint.kind == JointKind::prismatic ? "slide" : "angle";
+  if (joint.stops) add_limit(made, index, coordinate, {joint.stops->lower, joint.stops->upper});
+  if (joint.motor) add_motor(made, index, coordinate, {joint.motor->speed, joint.motor->most});
+  if (!joint.spring) return;
+  const Softness softness{false, 0, 0, joint.spring->stiffness, joint.spring->damping};
+  add_spring(made, index, coordinate, {softness, double(made.coordinate(index, coordinate))});
+}
+
+template <class S>
 BasicWorld<S> build(const Problem& problem, Settings settings) {
-  constexpr const S* space = nullptr;
   settings.gravity_x = problem.gravity[0];
   settings.gravity_y = problem.gravity[1];
   settings.gravity_z = problem.gravity[2];
+  settings.sleep_after = problem.sleep_after;
   BasicWorld<S> made(settings);
   choose_origin(problem, made);
-  for (const Body& body : problem.bodies) made.add_body(definition(space, body));
-  for (const Joint& joint : problem.joints) {
-    JointDefinition d = definition(space, problem, joint);
-    for (const int body : {joint.a, joint.b}) d.bodies.push_back(body == world ? made.ground() : body);
-    const int index = made.add_joint(d);
-    if (joint.stops) add_limit(made, index, "angle", {joint.stops->lower, joint.stops->upper});
-    if (joint.motor) add_motor(made, index, "angle", {joint.motor->speed, joint.motor->most});
-  }
+  for (const Body& body : problem.bodies) made.add_body(definition(static_cast<const S*>(nullptr), body));
+  for (const Joint& joint : problem.joints) add(made, problem, joint);
   made.prepare();
   return made;
 }
@@ -129,42 +149,73 @@ void check(const StepResult& result, const Problem& problem) {
   throw std::runtime_error(in_words(result, body, fmt::format("joint {}", result.joint + 1)));
 }
 
-template <class S>
-class CdotRun final : public SteppedRun {
+double norm(const planar::Wrench& w) { return std::hypot(w.force_x, w.force_y); }
+double norm(const spatial::Wrench& w) { return std::hypot(w.force_x, w.force_y, w.force_z); }
+void put(planar::Velocity<double>& to, const Vec3& u) { to.x = u[0], to.y = u[1]; }
+void put(spatial::Velocity<double>& to, const Vec3& u) { to.x = u[0], to.y = u[1], to.z = u[2]; }
+
+template <class S, class Base>
+class WorldRun : public Base {
  public:
-  CdotRun(const Problem& problem, const Settings& settings, double h)
-      : SteppedRun(h), problem_(problem), world_(build<S>(problem, settings)) {}
+  template <class... Arguments>
+  WorldRun(const Problem& problem, const Settings& settings, const Arguments&... arguments)
+      : Base(arguments...), problem_(problem), world_(build<S>(problem, settings)) {
+    for (const Joint& joint : problem.joints) index_.emplace(joint.number, int(index_.size()));
+  }
+  void step(double by) override { peers::check(world_.step(by), problem_); }
   State state(int body) const override { return state_of(world_.place(body), world_.velocity(body)); }
 
-  void step(double h) override { check(world_.step(h), problem_); }
+  void strike(int body, const Vec3& impulse) override {
+    typename S::Exact::Velocity all{};
+    put(all, impulse);
+    world_.apply_impulse(body, all);
+  }
+  bool add(const Problem& now, const Joint& joint) override {
+    peers::add(world_, now, joint);
+    index_[joint.number] = world_.joint_count() - 1;
+    return true;
+  }
+  bool remove(int joint) override {
+    world_.remove_joint(index_.at(joint));
+    return true;
+  }
+  bool change(const Problem& now, const Joint& joint) override {
+    world_.set_parameters(index_.at(joint.number), definition(static_cast<const S*>(nullptr), now, joint).parameters);
+    return true;
+  }
+  double force(int joint) const override {
+    const int index = index_.at(joint);
+    return norm(world_.reaction(index, world_.joint_bodies(index).back()));
+  }
+  bool asleep(int body) const override { return world_.asleep(body); }
 
  private:
   const Problem& problem_;
   BasicWorld<S> world_;
+  std::map<int, int> index_;  // of joints in the World, by their numbers
 };
+
+template <class S>
+using CdotRun = WorldRun<S, SteppedRun>;
 
 // Its steps are chosen by the error that each may have.
-template <class S>
-class AdaptiveRun final : public Run {
+class Adaptive : public Run {
  public:
-  AdaptiveRun(const Problem& problem, Settings settings, double local_error)
-      : problem_(problem), world_(build<S>(problem, with(settings, local_error))) {}
-  void advance(double to) override { step(to - now_); }
-  void step(double by) override {
-    check(world_.step(by), problem_);
-    now_ += by;
+  void advance(double to) final {
+    step(to - now_);
+    now_ = to;
   }
-  State state(int body) const override { return state_of(world_.place(body), world_.velocity(body)); }
 
  private:
-  static Settings with(Settings settings, double local_error) {
-    settings.local_error = local_error;
-    return settings;
-  }
-  const Problem& problem_;
-  BasicWorld<S> world_;
   double now_ = 0;
 };
+template <class S>
+using AdaptiveRun = WorldRun<S, Adaptive>;
+
+Settings with(Settings settings, double local_error) {
+  settings.local_error = local_error;
+  return settings;
+}
 
 // One row per way to use the runtime, with what differs from a scene that says nothing.
 struct Way {
@@ -224,7 +275,7 @@ std::vector<Series> series_in(const Problem& problem) {
     if (way.steps == Way::adaptive) {
       series.knob = "local error";
       series.knobs = local_errors();
-      series.start = [&](double knob) { return std::make_unique<AdaptiveRun<S>>(problem, way.settings, knob); };
+      series.start = [&](double knob) { return std::make_unique<AdaptiveRun<S>>(problem, with(way.settings, knob)); };
     }
     all.push_back(series);
   }

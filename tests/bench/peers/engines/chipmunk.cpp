@@ -2,9 +2,12 @@
 #include <chipmunk/chipmunk.h>
 
 #include <cmath>
+#include <map>
 #include <string>
+#include <utility>
 
 #include "tests/bench/peers/geometry.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -18,20 +21,24 @@ class ChipmunkRun final : public SteppedRun {
  public:
   // left_per_step < 0: the default errorBias
   ChipmunkRun(const Problem& problem, int iterations, double left_per_step, double h)
-      : SteppedRun(h), space_(cpSpaceNew()) {
+      : SteppedRun(h), space_(cpSpaceNew()), last_(h) {
+    check(problem, {.held_orientations = true,
+                    .motors = true,
+                    .stops = true,
+                    .springs = true,
+                    .soft_joints = true,
+                    .damping = true,
+                    .sleep = true});
+    if (left_per_step >= 0) left_after_a_second_ = left_after_a_second(left_per_step, h);
     cpSpaceSetIterations(space_, iterations);
     cpSpaceSetGravity(space_, vec(problem.gravity));
+    cpSpaceSetDamping(space_, std::exp(-damping(problem)));
+    if (problem.sleep_after > 0) cpSpaceSetSleepTimeThreshold(space_, problem.sleep_after);
     for (const Body& body : problem.bodies) add(body);
     for (const Joint& joint : problem.joints) add(problem, joint);
-    if (left_per_step < 0) return;
-    for (cpConstraint* constraint : constraints_)
-      cpConstraintSetErrorBias(constraint, left_after_a_second(left_per_step, h));
   }
   ~ChipmunkRun() override {
-    for (cpConstraint* constraint : constraints_) {
-      cpSpaceRemoveConstraint(space_, constraint);
-      cpConstraintFree(constraint);
-    }
+    for (const auto& [number, made] : joints_) drop(made);
     for (cpBody* body : bodies_) {
       cpSpaceRemoveBody(space_, body);
       cpBodyFree(body);
@@ -41,14 +48,55 @@ class ChipmunkRun final : public SteppedRun {
   ChipmunkRun(const ChipmunkRun&) = delete;
   ChipmunkRun& operator=(const ChipmunkRun&) = delete;
 
-  void step(double h) override { cpSpaceStep(space_, h); }
+  void step(double h) override {
+    for (const auto& [body, torque] : torques_) cpBodySetTorque(body, torque);
+    cpSpaceStep(space_, h);
+    last_ = h;
+  }
   State state(int body) const override {
     const cpBody* b = bodies_[std::size_t(body)];
     const cpVect x = cpBodyGetPosition(b), v = cpBodyGetVelocity(b);
     return {{x.x, x.y, 0}, about_z(cpBodyGetAngle(b)), {v.x, v.y, 0}, {0, 0, cpBodyGetAngularVelocity(b)}};
   }
 
+  void strike(int body, const Vec3& impulse) override {
+    cpBody* b = bodies_[std::size_t(body)];
+    cpBodyApplyImpulseAtWorldPoint(b, vec(impulse), cpBodyGetPosition(b));
+  }
+  bool remove(int joint) override {
+    drop(joints_.at(joint));
+    joints_.erase(joint);
+    return true;
+  }
+  bool add(const Problem& problem, const Joint& joint) override {
+    made_ = &joints_[joint.number];
+    connect(problem, joint);
+    return true;
+  }
+  bool change(const Problem& now, const Joint& joint) override {
+    if (joint.kind != JointKind::revolute) return SteppedRun::change(now, joint);
+    cpPivotJointSetAnchorA(joints_.at(joint.number).front(), vec(local_point(now, joint.a, joint.anchor)));
+    cpPivotJointSetAnchorB(joints_.at(joint.number).front(), vec(local_point(now, joint.b, joint.anchor_b)));
+    return true;
+  }
+  double force(int joint) const override { return cpConstraintGetImpulse(joints_.at(joint).front()) / last_; }
+  bool asleep(int body) const override { return cpBodyIsSleeping(bodies_[std::size_t(body)]); }
+
  private:
+  // It has one for all bodies.
+  static double damping(const Problem& problem) {
+    for (const Body& body : problem.bodies)
+      if (body.damping != problem.bodies[0].damping) throw CannotSay("one damping for all bodies only");
+    return problem.bodies[0].damping;
+  }
+
+  void drop(const std::vector<cpConstraint*>& made) {
+    for (cpConstraint* constraint : made) {
+      cpSpaceRemoveConstraint(space_, constraint);
+      cpConstraintFree(constraint);
+    }
+  }
+
   void add(const Body& body) {
     cpBody* b = cpBodyNew(body.mass, body.turns ? body.inertia[2] : INFINITY);
     cpBodySetPosition(b, vec(body.start.x));
@@ -56,45 +104,70 @@ class ChipmunkRun final : public SteppedRun {
     cpBodySetVelocity(b, vec(body.start.v));
     cpBodySetAngularVelocity(b, body.start.w[2]);
     bodies_.push_back(cpSpaceAddBody(space_, b));
+    if (body.torque[2] != 0) torques_.emplace_back(b, body.torque[2]);
   }
 
   cpBody* body(int index) const {
     return index == peers::world ? cpSpaceGetStaticBody(space_) : bodies_[std::size_t(index)];
   }
 
-  void add(cpConstraint* constraint) { constraints_.push_back(cpSpaceAddConstraint(space_, constraint)); }
+  void make(cpConstraint* constraint) {
+    made_->push_back(cpSpaceAddConstraint(space_, constraint));
+    if (left_after_a_second_ >= 0) cpConstraintSetErrorBias(constraint, left_after_a_second_);
+  }
 
-  void add(const Problem& problem, const Joint& joint) {
+  void connect(const Problem& problem, const Joint& joint) {
     cpBody *a = body(joint.a), *b = body(joint.b);
     const cpVect pa = vec(local_point(problem, joint.a, joint.anchor)),
                  pb = vec(local_point(problem, joint.b, joint.anchor_b));
+    if (joint.soft) {
+      if (joint.kind != JointKind::revolute) throw CannotSay("no joint that gives like a spring but a spring");
+      return make(cpDampedSpringNew(a, b, pa, pb, 0, joint.soft->stiffness, joint.soft->damping));
+    }
     if (joint.kind == JointKind::distance) {
       cpConstraint* rod = cpPinJointNew(a, b, pa, pb);
       cpPinJointSetDist(rod, joint.length);
-      return add(rod);
+      return make(rod);
     }
-    if (joint.kind == JointKind::max_distance) return add(cpSlideJointNew(a, b, pa, pb, 0, joint.length));
+    if (joint.kind == JointKind::max_distance) return make(cpSlideJointNew(a, b, pa, pb, 0, joint.length));
     if (joint.kind == JointKind::prismatic)
-      add(cpGrooveJointNew(a, b, end(problem, joint, -1), end(problem, joint, 1), pb));
-    else
-      add(cpPivotJointNew2(a, b, pa, pb));
-    if (joint.kind == JointKind::prismatic || joint.kind == JointKind::fixed)
-      add(cpGearJointNew(a, b, cpBodyGetAngle(b) - cpBodyGetAngle(a), 1));
-    if (joint.stops) add(cpRotaryLimitJointNew(a, b, joint.stops->lower, joint.stops->upper));
+      make(cpGrooveJointNew(a, b, end(problem, joint, -1), end(problem, joint, 1), pb));
+    else if (joint.kind != JointKind::orientation)
+      make(cpPivotJointNew2(a, b, pa, pb));
+    if (joint.kind == JointKind::prismatic || joint.kind == JointKind::fixed || joint.kind == JointKind::orientation)
+      make(cpGearJointNew(a, b, cpBodyGetAngle(b) - cpBodyGetAngle(a), 1));
+    if (joint.spring) add_spring(problem, joint);
+    if (joint.stops) make(cpRotaryLimitJointNew(a, b, joint.stops->lower, joint.stops->upper));
     if (!joint.motor) return;
-    add(cpSimpleMotorNew(a, b, -joint.motor->speed));
-    cpConstraintSetMaxForce(constraints_.back(), joint.motor->most);
+    make(cpSimpleMotorNew(a, b, -joint.motor->speed));
+    cpConstraintSetMaxForce(made_->back(), joint.motor->most);
+  }
+
+  // Of a slider: from down its axis.
+  void add_spring(const Problem& problem, const Joint& joint) {
+    cpBody *a = body(joint.a), *b = body(joint.b);
+    const Spring& spring = *joint.spring;
+    if (joint.kind == JointKind::revolute)
+      return make(
+          cpDampedRotarySpringNew(a, b, cpBodyGetAngle(b) - cpBodyGetAngle(a), spring.stiffness, spring.damping));
+    make(cpDampedSpringNew(a, b, vec(local_point(problem, joint.a, joint.anchor - joint.axis)),
+                           vec(local_point(problem, joint.b, joint.anchor_b)), norm(joint.axis), spring.stiffness,
+                           spring.damping));
   }
 
   // Of a groove that is long enough on both sides.
   static cpVect end(const Problem& problem, const Joint& joint, double side) {
     const double half = 10;
-    return vec(local_point(problem, joint.a, joint.anchor + (side * half) * joint.axis));
+    return vec(local_point(problem, joint.a, joint.anchor + (side * half / norm(joint.axis)) * joint.axis));
   }
 
   cpSpace* space_;
   std::vector<cpBody*> bodies_;
-  std::vector<cpConstraint*> constraints_;
+  std::map<int, std::vector<cpConstraint*>> joints_;  // by number; the first is that which holds
+  std::vector<cpConstraint*>* made_ = nullptr;        // of the joint that is being added
+  std::vector<std::pair<cpBody*, double>> torques_;
+  double left_after_a_second_ = -1;  // of a joint's error; below 0: the default
+  double last_;                      // step
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -118,8 +191,11 @@ std::vector<Series> series(const Problem& problem) {
   return all;
 }
 
-const Registration registration{{"Chipmunk", cpVersionString, "double", "#8250df",
-                                 "no shapes; a slider is a groove and a gear, a weld a pivot and a gear", series}};
+const Registration registration{
+    {"Chipmunk", cpVersionString, "double", "#8250df",
+     "no shapes; a slider is a groove and a gear, a weld a pivot and a gear, a soft pin a damped spring; sleeps "
+     "where the case does",
+     series}};
 
 }  // namespace
 }  // namespace cdot::peers

@@ -3,10 +3,13 @@
 #include <mujoco/mujoco.h>
 
 #include <cstring>
+#include <map>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "tests/bench/peers/tree.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -16,18 +19,46 @@ std::string text(const Quaternion& q) { return fmt::format("{} {} {} {}", q[0], 
 
 std::string name_of(int body) { return body == peers::world ? "world" : fmt::format("b{}", body); }
 
+std::string text(const Spring& spring) {
+  return fmt::format(" stiffness='{}' damping='{}'", spring.stiffness, spring.damping);
+}
+
+// Slides across in all directions, which give: before the hinge turns.
+std::string soft_text(const Problem& problem, const Branch& branch, const Spring& soft) {
+  std::string out;
+  for (const Vec3& axis : {Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
+    out +=
+        fmt::format("<joint type='slide' axis='{}'{}/>", text(local_direction(problem, branch.body, axis)), text(soft));
+  return out;
+}
+
 std::string joint_text(const Problem& problem, const Branch& branch) {
   if (branch.joint < 0) return "<freejoint/>";
   const Joint& joint = problem.joints[std::size_t(branch.joint)];
   if (joint.kind == JointKind::fixed) return "";  // part of its parent
+  if (joint.soft && joint.kind != JointKind::revolute) throw CannotSay("the adapter makes hinges soft only");
   const char* type = joint.kind == JointKind::revolute    ? "hinge"
                      : joint.kind == JointKind::prismatic ? "slide"
                                                           : "ball";
-  std::string out =
-      fmt::format("<joint type='{}' pos='{}'", type, text(local_point(problem, branch.body, joint.anchor)));
+  std::string out = joint.soft ? soft_text(problem, branch, *joint.soft) : "";
+  out += fmt::format("<joint name='j{}' type='{}' pos='{}'", branch.joint, type,
+                     text(local_point(problem, branch.body, joint.anchor)));
   if (joint.kind != JointKind::spherical)
     out += fmt::format(" axis='{}'", text(local_direction(problem, branch.body, joint.axis)));
+  if (joint.spring) out += text(*joint.spring);
+  if (joint.stops) {
+    const Stops stops = stops_from_start(problem, branch);
+    out += fmt::format(" limited='true' range='{} {}'", stops.lower, stops.upper);
+  }
   return out + "/>";
+}
+
+std::string loop_text(const Problem& problem, const Tree& tree, const Joint& joint) {
+  if (joint.kind == JointKind::orientation)
+    return fmt::format("<joint joint1='j{}' polycoef='0 0 0 0 0'/>",
+                       hinge_between(problem, tree, joint.a, joint.b).joint);
+  return fmt::format("<connect body1='{}' body2='{}' anchor='{}'/>", name_of(joint.a), name_of(joint.b),
+                     text(local_point(problem, joint.a, joint.anchor)));
 }
 
 std::string body_text(const Problem& problem, const Tree& tree, const Branch& branch) {
@@ -45,17 +76,13 @@ std::string body_text(const Problem& problem, const Tree& tree, const Branch& br
 
 std::string model_text(const Problem& problem, const Tree& tree) {
   std::string out = fmt::format(
-      "<mujoco><compiler inertiafromgeom='false'/><option gravity='{}'><flag contact='disable'/>"
+      "<mujoco><compiler inertiafromgeom='false' angle='radian'/><option gravity='{}'><flag contact='disable'/>"
       "</option><worldbody>",
       text(problem.gravity));
   for (const Branch& branch : tree.branches)
     if (branch.parent == world) out += body_text(problem, tree, branch);
   out += "</worldbody><equality>";
-  for (const int loop : tree.loops) {
-    const Joint& joint = problem.joints[std::size_t(loop)];
-    out += fmt::format("<connect body1='{}' body2='{}' anchor='{}'/>", name_of(joint.a), name_of(joint.b),
-                       text(local_point(problem, joint.a, joint.anchor)));
-  }
+  for (const int loop : tree.loops) out += loop_text(problem, tree, problem.joints[std::size_t(loop)]);
   return out + "</equality></mujoco>";
 }
 
@@ -64,8 +91,7 @@ using Model = std::shared_ptr<mjModel>;
 Model model_of(const Problem& problem) {
   mju_user_warning = [](const char*) {};
   mju_user_error = [](const char* message) { throw std::runtime_error(message); };
-  need_all_turn(problem);
-  need_free_hinges(problem);
+  check(problem, {.stops = true, .springs = true, .soft_joints = true, .damping = true});
   const std::string xml = model_text(problem, tree_of(problem));
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());
@@ -87,7 +113,7 @@ struct Way {
 class MujocoRun final : public SteppedRun {
  public:
   MujocoRun(const Problem& problem, const mjModel& model, const Way& way, double h)
-      : SteppedRun(h), model_(mj_copyModel(nullptr, &model)), data_(mj_makeData(model_)) {
+      : SteppedRun(h), problem_(problem), model_(mj_copyModel(nullptr, &model)), data_(mj_makeData(model_)) {
     model_->opt.timestep = h;
     model_->opt.integrator = way.integrator;
     if (way.solref > 0) {
@@ -104,8 +130,11 @@ class MujocoRun final : public SteppedRun {
       bodies_.push_back(0);
       set_velocity(problem, branch);
     }
-    for (std::size_t k = 0; k < bodies_.size(); ++k)
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
       bodies_[k] = mj_name2id(model_, mjOBJ_BODY, name_of(int(k)).c_str());
+    }
+    for (const Branch& branch : tree.branches)
+      if (branch.joint >= 0) held_by_[problem.joints[std::size_t(branch.joint)].number] = branch.body;
   }
   ~MujocoRun() override {
     mj_deleteData(data_);
@@ -125,10 +154,21 @@ class MujocoRun final : public SteppedRun {
     return {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
   }
 
+  // As a force during the next step.
+  void strike(int body, const Vec3& impulse) override { struck_.emplace_back(body, impulse); }
+
+  double force(int joint) const override {
+    const auto held = held_by_.find(joint);
+    if (held == held_by_.end()) throw CannotSay("the adapter does not read what a loop carries");
+    mj_rnePostConstraint(model_, data_);
+    const double* f = data_->cfrc_int + 6 * bodies_[std::size_t(held->second)];  // torque, then force
+    return norm({f[3], f[4], f[5]});
+  }
+
  private:
   // A loop that starts open: the compiler takes its second point for where the first is.
   void open(const Problem& problem, const Joint& joint, int loop) {
-    if (norm(joint.anchor_b - joint.anchor) == 0) return;
+    if (joint.kind == JointKind::orientation || norm(joint.anchor_b - joint.anchor) == 0) return;
     const Vec3 at = local_point(problem, joint.b, joint.anchor_b);
     std::copy(at.begin(), at.end(), model_->eq_data + mjNEQDATA * loop + 3);
   }
@@ -145,20 +185,42 @@ class MujocoRun final : public SteppedRun {
     } else if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
       put(qvel, turned(conjugate(s.q), spin(problem, branch)));
     } else {
-      qvel[0] = rate(problem, branch);
+      qvel[model_->body_dofnum[b] - 1] = rate(problem, branch);  // behind what makes it soft
+    }
+  }
+
+  // What acts during the next step.
+  void push(double h) {
+    std::vector<Push> all;
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      const Body& body = problem_.bodies[k];
+      all.push_back(body.damping > 0 ? damping(body, state(int(k))) : Push{});
+      all.back().torque = all.back().torque + body.torque;
+    }
+    for (const auto& [body, impulse] : struck_)
+      all[std::size_t(body)].force = all[std::size_t(body)].force + (1 / h) * impulse;
+    struck_.clear();
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      double* to = data_->xfrc_applied + 6 * bodies_[k];
+      std::copy(all[k].force.begin(), all[k].force.end(), to);
+      std::copy(all[k].torque.begin(), all[k].torque.end(), to + 3);
     }
   }
 
   void step(double h) override {
     model_->opt.timestep = h;
+    push(h);
     mj_step(model_, data_);
     for (const int bad : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC})
       if (data_->warning[bad].number > 0) throw std::runtime_error("MuJoCo: the run is no number");
   }
 
+  const Problem& problem_;
   mjModel* model_;
   mjData* data_;
   std::vector<int> bodies_;
+  std::map<int, int> held_by_;  // bodies, by the numbers of the joints that they hang from
+  std::vector<std::pair<int, Vec3>> struck_;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -179,8 +241,11 @@ std::vector<Series> series(const Problem& problem) {
   return all;
 }
 
-const Registration registration{{"MuJoCo", mj_versionString(), "double", "#1a7f37",
-                                 "a tree of joints, loops closed by connect; contacts disabled", series}};
+const Registration registration{
+    {"MuJoCo", mj_versionString(), "double", "#1a7f37",
+     "a tree of joints, loops closed by connect; contacts disabled; a soft pin is three sprung slides and a "
+     "hinge; damping a force put on before each step; made anew where joints come or go",
+     series}};
 
 }  // namespace
 }  // namespace cdot::peers

@@ -2,12 +2,15 @@
 // (QuickStep); joint errors are fed back.
 #include <ode/ode.h>
 
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <map>
 #include <stdexcept>
 #include <string>
 
 #include "tests/bench/peers/geometry.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -31,20 +34,24 @@ void ignore(int, const char*, va_list) {}
 
 class OdeRun final : public SteppedRun {
  public:
-  OdeRun(const Problem& problem, const Way& way, double h) : SteppedRun(h), world_(made()), sweeps_(way.sweeps) {
-    need_all_turn(problem);
+  OdeRun(const Problem& problem, const Way& way, double h) : SteppedRun(h), world_(made()), sweeps_(way.sweeps), h_(h) {
+    check(problem,
+          {.motors = true, .stops = true, .springs = true, .soft_joints = true, .damping = true, .sleep = true});
+    dWorldSetAutoDisableFlag(world_, problem.sleep_after > 0);
+    dWorldSetAutoDisableTime(world_, problem.sleep_after);
     dWorldSetGravity(world_, problem.gravity[0], problem.gravity[1], problem.gravity[2]);
     dWorldSetERP(world_, way.erp);
     dWorldSetCFM(world_, way.cfm);
     if (sweeps_ > 0) dWorldSetQuickStepNumIterations(world_, sweeps_);
     for (const Body& body : problem.bodies) add(body, way.finite_rotation);
-    for (const Joint& joint : problem.joints) add(joint);
+    for (const Joint& joint : problem.joints) add(problem, joint);
   }
   ~OdeRun() override { dWorldDestroy(world_); }
   OdeRun(const OdeRun&) = delete;
   OdeRun& operator=(const OdeRun&) = delete;
 
   void step(double h) override {
+    for (const auto& [body, torque] : torques_) dBodyAddTorque(body, torque[0], torque[1], torque[2]);
     if (sweeps_ > 0)
       dWorldQuickStep(world_, h);
     else
@@ -57,7 +64,39 @@ class OdeRun final : public SteppedRun {
     return {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}, {v[0], v[1], v[2]}, {w[0], w[1], w[2]}};
   }
 
+  void strike(int body, const Vec3& impulse) override {
+    const dBodyID b = bodies_[std::size_t(body)];
+    dMass mass;
+    dBodyGetMass(b, &mass);
+    const dReal* v = dBodyGetLinearVel(b);
+    dBodyEnable(b);
+    dBodySetLinearVel(b, v[0] + impulse[0] / mass.mass, v[1] + impulse[1] / mass.mass, v[2] + impulse[2] / mass.mass);
+  }
+  bool remove(int joint) override {
+    for (const dJointID id : joints_.at(joint).ids) dJointDestroy(id);
+    joints_.erase(joint);
+    return true;
+  }
+  // A joint is told where it is, once for both bodies: one that starts open is made with the second where it would fit.
+  bool add(const Problem&, const Joint& joint) override {
+    const Vec3 gap = joint.kind == JointKind::orientation ? Vec3{} : joint.anchor_b - joint.anchor;
+    Made& made = joints_[joint.number];
+    move(body(joint.b), -1.0 * gap);
+    made.ids = {connect(joint)};
+    move(body(joint.b), gap);
+    dJointSetFeedback(made.ids[0], made.felt.get());
+    if (joint.kind == JointKind::revolute && joint.spring) made.ids.push_back(damper(joint));
+    return true;
+  }
+  double force(int joint) const override { return dCalcVectorLength3(joints_.at(joint).felt->f1); }
+  bool asleep(int body) const override { return !dBodyIsEnabled(bodies_[std::size_t(body)]); }
+
  private:
+  struct Made {
+    std::vector<dJointID> ids;  // the first is that which holds
+    std::unique_ptr<dJointFeedback> felt = std::make_unique<dJointFeedback>();
+  };
+
   static dWorldID made() {
     [[maybe_unused]] static const int once = [] {
       dSetErrorHandler(give_up);
@@ -79,18 +118,15 @@ class OdeRun final : public SteppedRun {
     dBodySetLinearVel(b, s.v[0], s.v[1], s.v[2]);
     dBodySetAngularVel(b, s.w[0], s.w[1], s.w[2]);
     dBodySetFiniteRotationMode(b, finite_rotation);
+    dBodySetLinearDampingThreshold(b, 0);
+    dBodySetAngularDampingThreshold(b, 0);
+    dBodySetLinearDamping(b, 1 - std::exp(-body.damping * h_));
+    dBodySetAngularDamping(b, 1 - std::exp(-body.damping * h_));
+    if (norm(body.torque) > 0) torques_.emplace_back(b, body.torque);
     bodies_.push_back(b);
   }
 
   dBodyID body(int index) const { return index == peers::world ? nullptr : bodies_[std::size_t(index)]; }
-
-  // A joint is told where it is, once for both bodies: one that starts open is made with the second where it would fit.
-  void add(const Joint& joint) {
-    const Vec3 gap = joint.anchor_b - joint.anchor;
-    move(body(joint.b), -1.0 * gap);
-    connect(joint);
-    move(body(joint.b), gap);
-  }
 
   // Its angle counts from b to a, but from the world to b where the world is a.
   static void drive(dJointID hinge, const Joint& joint) {
@@ -105,41 +141,90 @@ class OdeRun final : public SteppedRun {
     }
   }
 
+  // An angular motor that wants to stand, and gives like a damper.
+  dJointID damper(const Joint& joint) {
+    if (joint.spring->stiffness != 0) throw CannotSay("no spring of a hinge");
+    const dJointID made = dJointCreateAMotor(world_, nullptr);
+    dJointAttach(made, body(joint.a), body(joint.b));
+    dJointSetAMotorNumAxes(made, 1);
+    dJointSetAMotorAxis(made, 0, joint.a == peers::world ? 2 : 1, joint.axis[0], joint.axis[1], joint.axis[2]);
+    dJointSetAMotorParam(made, dParamFMax, dInfinity);
+    dJointSetAMotorParam(made, dParamCFM, 1 / joint.spring->damping);
+    return made;
+  }
+
+  // As its manual has it: what is stopped at both sides gives like a spring.
+  double erp(const Spring& spring) const { return h_ * spring.stiffness / (h_ * spring.stiffness + spring.damping); }
+  double cfm(const Spring& spring) const { return 1 / (h_ * spring.stiffness + spring.damping); }
+
+  dJointID ball(const Joint& joint) {
+    const dJointID made = dJointCreateBall(world_, nullptr);
+    dJointAttach(made, body(joint.a), body(joint.b));
+    dJointSetBallAnchor(made, joint.anchor[0], joint.anchor[1], joint.anchor[2]);
+    if (joint.soft) dJointSetBallParam(made, dParamERP, erp(*joint.soft));
+    if (joint.soft) dJointSetBallParam(made, dParamCFM, cfm(*joint.soft));
+    return made;
+  }
+
+  dJointID hinge(const Joint& joint) {
+    const dJointID made = dJointCreateHinge(world_, nullptr);
+    dJointAttach(made, body(joint.a), body(joint.b));
+    dJointSetHingeAnchor(made, joint.anchor[0], joint.anchor[1], joint.anchor[2]);
+    dJointSetHingeAxis(made, joint.axis[0], joint.axis[1], joint.axis[2]);
+    drive(made, joint);
+    return made;
+  }
+
+  dJointID slider(const Joint& joint) {
+    const dJointID made = dJointCreateSlider(world_, nullptr);
+    dJointAttach(made, body(joint.a), body(joint.b));
+    dJointSetSliderAxis(made, joint.axis[0], joint.axis[1], joint.axis[2]);
+    if (!joint.spring) return made;
+    dJointSetSliderParam(made, dParamLoStop, 0);
+    dJointSetSliderParam(made, dParamHiStop, 0);
+    dJointSetSliderParam(made, dParamStopERP, erp(*joint.spring));
+    dJointSetSliderParam(made, dParamStopCFM, cfm(*joint.spring));
+    return made;
+  }
+
+  // An angular motor whose three angles are stopped where they are.
+  dJointID orientation(const Joint& joint) {
+    const dJointID made = dJointCreateAMotor(world_, nullptr);
+    dJointAttach(made, body(joint.a), body(joint.b));
+    dJointSetAMotorMode(made, dAMotorEuler);
+    dJointSetAMotorAxis(made, 0, 1, 1, 0, 0);
+    dJointSetAMotorAxis(made, 2, 2, 0, 0, 1);
+    for (const int group : {dParamGroup1, dParamGroup2, dParamGroup3})
+      for (const int stop : {dParamLoStop, dParamHiStop}) dJointSetAMotorParam(made, group + stop, 0);
+    return made;
+  }
+
   static void move(dBodyID b, const Vec3& by) {
     if (b == nullptr || norm(by) == 0) return;
     const dReal* x = dBodyGetPosition(b);
     dBodySetPosition(b, x[0] + by[0], x[1] + by[1], x[2] + by[2]);
   }
 
-  void connect(const Joint& joint) {
-    const Vec3 &p = joint.anchor, &n = joint.axis;
-    const dBodyID a = body(joint.a), b = body(joint.b);
-    if (joint.kind == JointKind::spherical) {
-      const dJointID made = dJointCreateBall(world_, nullptr);
-      dJointAttach(made, a, b);
-      dJointSetBallAnchor(made, p[0], p[1], p[2]);
-    } else if (joint.kind == JointKind::revolute) {
-      const dJointID made = dJointCreateHinge(world_, nullptr);
-      dJointAttach(made, a, b);
-      dJointSetHingeAnchor(made, p[0], p[1], p[2]);
-      dJointSetHingeAxis(made, n[0], n[1], n[2]);
-      drive(made, joint);
-    } else if (joint.kind == JointKind::fixed) {
-      const dJointID made = dJointCreateFixed(world_, nullptr);
-      dJointAttach(made, a, b);
-      dJointSetFixed(made);
-    } else if (joint.kind == JointKind::prismatic) {
-      const dJointID made = dJointCreateSlider(world_, nullptr);
-      dJointAttach(made, a, b);
-      dJointSetSliderAxis(made, n[0], n[1], n[2]);
-    } else {
-      throw CannotSay("no joint that keeps a distance");
-    }
+  // A soft hinge is a soft ball: hinges themselves do not give.
+  dJointID connect(const Joint& joint) {
+    if (joint.soft && joint.kind != JointKind::revolute) throw CannotSay("no soft joint but a ball");
+    if (joint.kind == JointKind::spherical || joint.soft) return ball(joint);
+    if (joint.kind == JointKind::revolute) return hinge(joint);
+    if (joint.kind == JointKind::prismatic) return slider(joint);
+    if (joint.kind == JointKind::orientation) return orientation(joint);
+    if (joint.kind != JointKind::fixed) throw CannotSay("no joint that keeps a distance");
+    const dJointID made = dJointCreateFixed(world_, nullptr);
+    dJointAttach(made, body(joint.a), body(joint.b));
+    dJointSetFixed(made);
+    return made;
   }
 
   dWorldID world_;
   int sweeps_;
+  double h_;
   std::vector<dBodyID> bodies_;
+  std::map<int, Made> joints_;  // by number
+  std::vector<std::pair<dBodyID, Vec3>> torques_;
 };
 
 std::vector<Series> series(const Problem& problem) {
@@ -158,7 +243,10 @@ std::vector<Series> series(const Problem& problem) {
 }
 
 const Registration registration{
-    {"ODE", "0.16.2", "double", "#0a7ea4", "CFM 1e-10 is its default; no geometry", series}};
+    {"ODE", "0.16.2", "double", "#0a7ea4",
+     "CFM 1e-10 is its default; no geometry; springs and dampers by ERP and CFM, a soft pin is a soft ball; sleeps "
+     "where the case does",
+     series}};
 
 }  // namespace
 }  // namespace cdot::peers

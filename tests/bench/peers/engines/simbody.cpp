@@ -3,17 +3,21 @@
 #include <Simbody.h>
 #include <fmt/format.h>
 
+#include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
+#include "tests/bench/peers/engines/simbody_damper.hpp"
 #include "tests/bench/peers/tree.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
 
-SimTK::Vec3 vec(const Vec3& a) { return {a[0], a[1], a[2]}; }
-Vec3 vec(const SimTK::Vec3& a) { return {a[0], a[1], a[2]}; }
 SimTK::Rotation rotation(const Quaternion& q) { return SimTK::Rotation(SimTK::Quaternion(q[0], q[1], q[2], q[3])); }
+
+constexpr double stop_stiffness = 1e6, stop_dissipation = 100;  // [N m/rad], [s/rad]
 
 // Of its own choice, in one that it is asked for; fewer where that would take hours.
 int most_steps(const Problem& problem) { return problem.bodies.size() > 50 ? 100 : 1000; }
@@ -31,17 +35,22 @@ class SimbodyRun final : public Run {
         gravity_(forces_, matter_, vec(problem.gravity)),
         bodies_(problem.bodies.size()),
         most_steps_(most_steps(problem)) {
-    need_all_turn(problem);
-    need_free_hinges(problem);
+    Words known;
+    known.motors = known.stops = known.springs = known.soft_joints = known.damping = true;
+    check(problem, known);
     const Tree tree = tree_of(problem);
-    for (const Branch& branch : tree.branches) add(problem, branch);
-    for (const int loop : tree.loops) close(problem, problem.joints[std::size_t(loop)]);
+    for (const Branch& branch : tree.branches) {
+      add(problem, branch);
+      add_forces(problem, branch);
+    }
+    for (const int loop : tree.loops) close(problem, tree, problem.joints[std::size_t(loop)]);
     SimTK::State state = system_.realizeTopology();
     system_.realizeModel(state);
     for (const Branch& branch : tree.branches) {
       system_.realize(state, SimTK::Stage::Position);
       set_velocity(problem, branch, state);
     }
+    make_compatible(state);
     choose(way, knob);
     integrator_->setAllowInterpolation(false);
     integrator_->initialize(state);
@@ -55,6 +64,7 @@ class SimbodyRun final : public Run {
 
   void step(double by) override {
     integrator_->setInternalStepLimit(most_steps_);
+    start_motors();
     advance(integrator_->getTime() + by);
   }
 
@@ -67,6 +77,28 @@ class SimbodyRun final : public Run {
             {q[0], q[1], q[2], q[3]},
             vec(b.getBodyOriginVelocity(s)),
             vec(b.getBodyAngularVelocity(s))};
+  }
+
+  // Velocities jump by the mass matrix: M^-1 J^T impulse.
+  void strike(int body, const Vec3& impulse) override {
+    SimTK::State& s = integrator_->updAdvancedState();
+    system_.realize(s, SimTK::Stage::Velocity);
+    SimTK::Vector generalised, jump;
+    matter_.multiplyByStationJacobianTranspose(s, bodies_[std::size_t(body)].getMobilizedBodyIndex(), SimTK::Vec3(0),
+                                               vec(impulse), generalised);
+    matter_.multiplyByMInv(s, generalised, jump);
+    s.updU() += jump;
+    integrator_->reinitialize(SimTK::Stage::Velocity, false);
+  }
+
+  double force(int joint) const override {
+    const auto held = held_by_.find(joint);
+    if (held == held_by_.end()) throw CannotSay("the adapter does not read what a loop carries");
+    const SimTK::State& s = integrator_->getState();
+    system_.realize(s, SimTK::Stage::Acceleration);
+    SimTK::Vector_<SimTK::SpatialVec> all;
+    matter_.calcMobilizerReactionForces(s, all);
+    return all[bodies_[std::size_t(held->second)].getMobilizedBodyIndex()][1].norm();
   }
 
  private:
@@ -91,6 +123,7 @@ class SimbodyRun final : public Run {
       return;
     }
     const Joint& joint = problem.joints[std::size_t(branch.joint)];
+    held_by_[joint.number] = branch.body;
     const auto both = [&](const SimTK::Rotation& axes) {
       return std::pair{frame(problem, branch.parent, axes, joint.anchor),
                        frame(problem, branch.body, axes, joint.anchor)};
@@ -101,6 +134,10 @@ class SimbodyRun final : public Run {
     } else if (joint.kind == JointKind::spherical) {
       const auto [in, out] = both(SimTK::Rotation());
       made = SimTK::MobilizedBody::Ball(parent, in, rigid, out);
+    } else if (joint.soft) {
+      if (joint.kind != JointKind::revolute || !problem.planar) throw CannotSay("the adapter makes pins soft only");
+      const auto [in, out] = both(SimTK::Rotation());
+      made = SimTK::MobilizedBody::Planar(parent, in, rigid, out);
     } else if (joint.kind == JointKind::revolute) {
       const auto [in, out] = both(SimTK::Rotation(SimTK::UnitVec3(vec(joint.axis)), SimTK::ZAxis));
       made = SimTK::MobilizedBody::Pin(parent, in, rigid, out);
@@ -110,8 +147,45 @@ class SimbodyRun final : public Run {
     }
   }
 
+  // What acts in the joint of a branch, whose coordinates are zero at the start.
+  void add_forces(const Problem& problem, const Branch& branch) {
+    const SimTK::MobilizedBody& made = bodies_[std::size_t(branch.body)];
+    const Body& body = problem.bodies[std::size_t(branch.body)];
+    if (norm(body.torque) > 0) SimTK::Force::ConstantTorque(forces_, made, vec(body.torque));
+    if (body.damping > 0) SimTK::Force::Custom(forces_, new BodyDamper(made, body));
+    if (branch.joint < 0) return;
+    const Joint& joint = problem.joints[std::size_t(branch.joint)];
+    const auto add_spring = [&](int coordinate, const Spring& spring) {
+      SimTK::Force::MobilityLinearSpring(forces_, made, coordinate, spring.stiffness, 0);
+      SimTK::Force::MobilityLinearDamper(forces_, made, coordinate, spring.damping);
+    };
+    if (joint.spring) add_spring(0, *joint.spring);
+    if (joint.soft) add_spring(1, *joint.soft);  // behind the angle
+    if (joint.soft) add_spring(2, *joint.soft);
+    if (joint.stops) {
+      const Stops stops = stops_from_start(problem, branch);
+      SimTK::Force::MobilityLinearStop(forces_, made, SimTK::MobilizerQIndex(0), stop_stiffness, stop_dissipation,
+                                       stops.lower, stops.upper);
+    }
+    if (!joint.motor) return;
+    if (std::isfinite(joint.motor->most)) throw CannotSay("no motor that has a speed and a greatest torque");
+    motors_.emplace_back(bodies_[std::size_t(branch.body)], sense(problem, branch) * joint.motor->speed);
+    motors_.back().setDisabledByDefault(true);
+  }
+
+  // One right angle, between a direction of one body and one of the other, across the hinge that holds the rest.
+  void keep_angle(const Problem& problem, const Tree& tree, const Joint& joint) {
+    const Branch& hinge = hinge_between(problem, tree, joint.a, joint.b);
+    const SimTK::UnitVec3 axis(vec(problem.joints[std::size_t(hinge.joint)].axis)), across = axis.perp();
+    const SimTK::Vec3 side = SimTK::cross(axis, across);
+    SimTK::Constraint::ConstantAngle(
+        mobile(joint.a), SimTK::UnitVec3(vec(local_direction(problem, joint.a, vec(SimTK::Vec3(across))))),
+        mobile(joint.b), SimTK::UnitVec3(vec(local_direction(problem, joint.b, vec(side)))));
+  }
+
   // The tree keeps the plane, so that a pin which closes a loop is two rows.
-  void close(const Problem& problem, const Joint& joint) {
+  void close(const Problem& problem, const Tree& tree, const Joint& joint) {
+    if (joint.kind == JointKind::orientation) return keep_angle(problem, tree, joint);
     if (joint.kind == JointKind::prismatic) throw CannotSay("the adapter closes no loop by a slider");
     if (!problem.planar) return close_in_space(problem, joint);
     for (const Vec3& side : {Vec3{1, 0, 0}, Vec3{0, 1, 0}}) {
@@ -147,6 +221,27 @@ class SimbodyRun final : public Run {
     }
   }
 
+  // What is added to a mechanism that moves takes velocities away by the least impulse.
+  void make_compatible(SimTK::State& state) {
+    system_.realize(state, SimTK::Stage::Velocity);
+    if (state.getNUErr() == 0 || state.getUErr().norm() < 1e-9) return;
+    SimTK::Vector impulse, generalised, jump;
+    matter_.solveForConstraintImpulses(state, -state.getUErr(), impulse);
+    matter_.multiplyByGTranspose(state, impulse, generalised);
+    matter_.multiplyByMInv(state, generalised, jump);
+    state.updU() += jump;
+  }
+
+  // With the first step, before which the start is as it was told.
+  void start_motors() {
+    if (motors_.empty()) return;
+    SimTK::State state = integrator_->getState();
+    for (const SimTK::Constraint::ConstantSpeed& motor : motors_) motor.enable(state);
+    system_.realizeModel(state);
+    integrator_->initialize(state);
+    motors_.clear();
+  }
+
   void choose(const Way& way, double knob) {
     if (way.kind == Way::merson)
       integrator_ = std::make_unique<SimTK::RungeKuttaMersonIntegrator>(system_);
@@ -166,6 +261,8 @@ class SimbodyRun final : public Run {
   SimTK::GeneralForceSubsystem forces_;
   SimTK::Force::UniformGravity gravity_;
   std::vector<SimTK::MobilizedBody> bodies_;
+  std::vector<SimTK::Constraint::ConstantSpeed> motors_;  // that do not run yet
+  std::map<int, int> held_by_;                            // bodies, by the numbers of the joints that they hang from
   int most_steps_;
   std::unique_ptr<SimTK::Integrator> integrator_;
 };
@@ -186,7 +283,9 @@ std::vector<Series> series(const Problem& problem) {
 
 const Registration registration{
     {"Simbody", "3.7", "double", "#bf8700",
-     "mobilizers; a planar loop is closed by two PointInPlane; no interpolation between steps", series}};
+     "mobilizers; a planar loop is closed by two PointInPlane; no interpolation between steps; a soft pin is a sprung "
+     "Planar; stops of 1e6 N m/rad; made anew where joints come or go",
+     series}};
 
 }  // namespace
 }  // namespace cdot::peers

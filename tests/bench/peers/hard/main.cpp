@@ -13,6 +13,16 @@ namespace hard = cdot::hard;
 
 constexpr int finer_parts = 100;         // of a step, where no setting holds a case
 constexpr std::size_t many_bodies = 50;  // more would take hours
+constexpr std::size_t too_many_bodies = 150;
+constexpr int longest_of_them = 20;  // CPU seconds of a run
+
+std::size_t bodies_of(const hard::Case& hard_case) {
+  try {
+    return problem_of(hard_case).bodies.size();
+  } catch (const CannotSay&) {
+    return 0;
+  }
+}
 
 Cell ask(const Question& question, bool slow) {
   Cell cell;
@@ -22,15 +32,16 @@ Cell ask(const Question& question, bool slow) {
     cell.settings[0].message = "knows the plane only";
     return cell;
   }
-  const auto large = [&] { return problem_of(*question.hard_case).bodies.size() > many_bodies; };
-  const auto enough = [&](const Outcome& plain) { return plain.kind == Outcome::survives || large(); };
+  const std::size_t bodies = bodies_of(*question.hard_case);
+  const bool large = bodies > many_bodies, too_large = bodies > too_many_bodies;
+  if (too_large) asked.longest = longest_of_them;
   for (Outcome outcome; judge(*question.hard_case, asked, outcome); ++asked.setting) {
     cell.settings.push_back(outcome);
-    if (outcome.kind == Outcome::cannot_say || (slow && enough(outcome))) return cell;
+    const bool holds = outcome.kind == Outcome::survives;
+    if (outcome.kind == Outcome::cannot_say || (slow && (holds || large)) || (too_large && holds)) return cell;
   }
   const int best = int(cell.best());
-  if (cell.settings[cell.best()].kind == Outcome::survives) return cell;
-  if (large()) return cell;
+  if (large || cell.settings[cell.best()].kind == Outcome::survives) return cell;
   asked.finer = finer_parts;
   for (const int setting : {best, 0}) {
     Outcome outcome;

@@ -4,12 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <limits>
 
 #include "runtime/spatial.hpp"
 #include "runtime/world_state.hpp"
 #include "tests/bench/peers/geometry.hpp"
 #include "tests/bench/peers/measure.hpp"
 #include "tests/bench/peers/problem.hpp"
+#include "tests/bench/peers/tree.hpp"
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::peers {
@@ -66,56 +69,142 @@ Problem posed(const Scene& scene, const BasicWorld<S>& world) {
 
 // Of one trial. The run starts with the first step, whose length some engines have to know.
 template <class S>
-class Stand {
+class Stand final : public hard::Mover {
  public:
   Stand(const Asked& asked, Told& told, const Scene& scene, BasicWorld<S>& world)
       : asked_(asked),
         told_(&told),
-        problem_(std::make_unique<Problem>(posed(scene, world))),
+        scene_(&scene),
+        problems_{posed(scene, world)},
         world_(&world),
         parts_(scene.settings.substeps * asked.finer),
-        reach_(beyond_measure * size_of(*problem_)) {
-    std::vector<Setting> all = settings(*asked.engine, *problem_);
+        reach_(beyond_measure * size_of(problem())) {
+    const std::vector<Setting> all = settings(*asked.engine, problem());
     if (all.empty()) throw CannotSay("knows the plane only");
     if (asked.setting >= int(all.size())) throw NoSuchSetting();
     setting_ = all[std::size_t(asked.setting)];
     say(told.setting, setting_.series.name);
     say(told.changed, setting_.series.changed);
+    for (const Body& body : problem().bodies) velocities_.push_back(world.velocity(body.number));
+    remember_joints();
   }
 
-  void operator()(double by) {
-    if (!run_) {
-      run_ = setting_.series.start(setting_.knob > 0 ? setting_.knob : by / parts_);
-      check_start(*problem_, *run_, asked_.engine->number == "float");
+  void step(double by) override {
+    if (run_) {
+      follow(by / parts_);
+    } else {
+      begin(by / parts_);
+      check_start(problem(), *run_, asked_.engine->number == "float");
     }
     for (int part = 0; part < parts_; ++part) run_->step(by / parts_);
     WorldState<S>& state = world_->state();
     told_->time = state.time += by;
-    for (std::size_t k = 0; k < problem_->bodies.size(); ++k) take(int(k), by);
+    for (std::size_t k = 0; k < problem().bodies.size(); ++k) take(int(k), by);
+    for (const auto& [joint, load] : state.breaking_loads)
+      if (!world_->broken(joint) && run_->force(joint) > load) world_->remove_joint(joint);
+  }
+
+  double force(int joint) const override {
+    try {
+      return run_->force(joint);
+    } catch (const CannotSay&) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+
+  int sleeping_islands() const override {  // all at once, in one island
+    if (problem().sleep_after == 0) return 0;
+    for (std::size_t k = 0; k < problem().bodies.size(); ++k)
+      if (!run_->asleep(int(k))) return 0;
+    return 1;
   }
 
  private:
+  const Problem& problem() const { return problems_.back(); }
+  using Velocity = typename S::Velocity;
+
+  void begin(double step) { run_ = setting_.series.start(setting_.knob > 0 ? setting_.knob : step); }
+
+  // What was done to the World since the last step is done to the run.
+  void follow(double step) {
+    if (joints_changed()) {
+      problems_.push_back(posed(*scene_, *world_));
+      const bool told = tell_joints(problems_[problems_.size() - 2], problem());
+      remember_joints();
+      if (!told) return start_anew(step);
+    }
+    for (std::size_t k = 0; k < velocities_.size(); ++k) {
+      const Body& body = problem().bodies[k];
+      const Vec3 more = linear(world_->velocity(body.number)) - linear(velocities_[k]);
+      if (norm(more) > 0) run_->strike(int(k), body.mass * more);
+    }
+  }
+
+  bool joints_changed() const {
+    if (world_->joint_count() != int(parameters_.size())) return true;
+    for (const Joint& joint : problem().joints)
+      if (world_->broken(joint.number) ||
+          world_->joint_parameters(joint.number) != parameters_[std::size_t(joint.number)])
+        return true;
+    return false;
+  }
+
+  // False if the run has no words for it.
+  bool tell_joints(const Problem& before, const Problem& now) {
+    for (const Joint& joint : before.joints)
+      if (world_->broken(joint.number) && !run_->remove(joint.number)) return false;
+    for (const Joint& joint : now.joints) {
+      if (joint.number >= int(parameters_.size())) {
+        if (!run_->add(now, joint)) return false;
+      } else if (world_->joint_parameters(joint.number) != parameters_[std::size_t(joint.number)]) {
+        if (!run_->change(now, joint)) return false;
+      }
+    }
+    return true;
+  }
+
+  // As all are that need this, in the coordinates of a tree.
+  void start_anew(double step) {
+    close_tree(problems_.back());
+    for (const Setting& setting : settings(*asked_.engine, problem()))
+      if (setting.series.name == setting_.series.name) setting_.series.start = setting.series.start;
+    begin(step);
+  }
+
+  void remember_joints() {
+    parameters_.clear();
+    for (int k = 0; k < world_->joint_count(); ++k) parameters_.push_back(world_->joint_parameters(k));
+  }
+
+  static Vec3 linear(const planar::Velocity<double>& v) { return {v.x, v.y, 0}; }
+  static Vec3 linear(const spatial::Velocity<double>& v) { return {v.x, v.y, v.z}; }
+
   void take(int body, double by) {
     const State s = run_->state(body);
-    const double gone = norm(s.x - problem_->bodies[std::size_t(body)].start.x);
+    const double gone = norm(s.x - problem().bodies[std::size_t(body)].start.x);
     const double all = gone + norm(s.v) + norm(s.w) + std::fabs(s.q[0] + s.q[1] + s.q[2] + s.q[3]);
     if (!std::isfinite(all) || gone > reach_) throw Exploded{told_->time};
-    put(*world_, body, s, by);
+    const int number = problem().bodies[std::size_t(body)].number;
+    put(*world_, number, s, by);
+    velocities_[std::size_t(body)] = world_->velocity(number);
   }
 
   Asked asked_;
   Told* told_;
-  std::unique_ptr<Problem> problem_;
+  const Scene* scene_;
+  std::deque<Problem> problems_;  // as it changes; runs and series refer to them
   BasicWorld<S>* world_;
   int parts_;
   double reach_;
   Setting setting_;
-  std::shared_ptr<Run> run_;
+  std::unique_ptr<Run> run_;
+  std::vector<Velocity> velocities_;             // of its bodies, as they were put
+  std::vector<std::vector<double>> parameters_;  // of the World's joints, as they were told
 };
 
 template <class S>
-hard::Mover stand(const Asked& asked, Told& told, const Scene& scene, BasicWorld<S>& world) {
-  return [stand = std::make_shared<Stand<S>>(asked, told, scene, world)](double by) { (*stand)(by); };
+std::unique_ptr<hard::Mover> stand(const Asked& asked, Told& told, const Scene& scene, BasicWorld<S>& world) {
+  return std::make_unique<Stand<S>>(asked, told, scene, world);
 }
 
 }  // namespace
@@ -142,7 +231,7 @@ std::vector<Setting> settings(const Engine& engine, const Problem& problem) {
 Problem problem_of(const hard::Case& hard_case) {
   Problem problem;
   struct Started {};
-  hard::another_engine = [&](const Scene& scene, hard::AnyWorld& world) -> hard::Mover {
+  hard::another_engine = [&](const Scene& scene, hard::AnyWorld& world) -> std::unique_ptr<hard::Mover> {
     problem = scene.dimension == Dimension::planar ? posed(scene, std::get<World<double>>(world))
                                                    : posed(scene, std::get<SpatialWorld<double>>(world));
     throw Started();

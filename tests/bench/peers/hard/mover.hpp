@@ -11,6 +11,7 @@ struct Asked {
   const Engine* engine;
   int setting = 0;
   int finer = 1;
+  int longest = 900;  // CPU seconds of the run
 };
 
 // Plain memory, which a parent process can share.

@@ -16,10 +16,10 @@
 namespace cdot::peers {
 namespace {
 
-constexpr rlim_t longest = 900;  // CPU seconds of one run: only for one that would not end
+constexpr rlim_t most_memory = rlim_t{4} << 30;  // of a run [bytes]
 
-constexpr std::array<const char*, 7> kinds{"survives", "wrong", "explodes",  "gives up",
-                                           "aborts",   "hangs", "cannot say"};
+constexpr std::array<const char*, 7> kinds{"survives", "wrong",    "explodes",  "gives up",
+                                           "aborts",   "too slow", "cannot say"};
 
 // Forces are not read from engines: what joints carry is not judged.
 bool of_motion(const hard::Finding& found) {
@@ -99,13 +99,17 @@ std::string last_line(int file) {
   return at == std::string::npos ? all : all.substr(at + 1);
 }
 
+void limit(int what, rlim_t to) {
+  const rlimit both{to, to};
+  setrlimit(what, &both);
+}
+
 [[noreturn]] void child(const hard::Case& hard_case, const Asked& asked, int output) {
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
-  const rlimit limit{longest, longest};
-  setrlimit(RLIMIT_CPU, &limit);
-  const rlimit no_core{0, 0};
-  setrlimit(RLIMIT_CORE, &no_core);
+  limit(RLIMIT_CPU, rlim_t(asked.longest));
+  limit(RLIMIT_AS, most_memory);
+  limit(RLIMIT_CORE, 0);
   try {
     const std::string text = json_of(judged(hard_case, asked, shared().told)).dump();
     shared().size = std::min(text.size(), sizeof shared().json);
@@ -194,7 +198,7 @@ bool judge(const hard::Case& hard_case, const Asked& asked, Outcome& outcome) {
   outcome.parts = asked.finer;
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU || signal == SIGKILL)
-    failed(outcome, Outcome::hangs, fmt::format("no end within {} s of CPU time", longest));
+    failed(outcome, Outcome::too_slow, fmt::format("no end within {} s of CPU time", asked.longest));
   else
     failed(outcome, Outcome::aborts, fmt::format("{}{}{}", strsignal(signal), said.empty() ? "" : ": ", said));
   return true;

@@ -12,7 +12,7 @@ namespace cdot::peers {
 
 struct Outcome {
   // Ordered from good to bad; "" is no outcome.
-  enum Kind { survives, wrong, explodes, gives_up, aborts, hangs, cannot_say } kind = cannot_say;
+  enum Kind { survives, wrong, explodes, gives_up, aborts, too_slow, cannot_say } kind = cannot_say;
   std::string setting, changed, message;
   double time = 0;  // that was reached [s]
   int parts = 1;    // of each step

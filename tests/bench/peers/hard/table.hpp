@@ -14,7 +14,7 @@ struct Column {
   const char* engine;
   const char* lifted;  // asked in its place where the case has a planar scene only
   bool planar;
-  bool slow = false;  // asked until a setting holds, and with its defaults only in chains of 100 links
+  bool slow = false;  // asked until a setting holds, and with its defaults only where there are more than 50 bodies
 };
 const std::vector<Column>& columns();
 
