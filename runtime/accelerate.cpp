@@ -26,7 +26,7 @@ void solve_for_forces(WorldState<S>& world, Island<S>& island) {
   if (!island.factored) island.redundant_rows = system.factor();
   island.factored = true;
   system.solve();
-  system.store([](Batch<S>& batch, int i, double lambda) { batch.lambda[i] = T(lambda); });
+  system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = T(lambda); });
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, segment.batch->lambda.data(),
                               rate);

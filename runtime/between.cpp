@@ -21,7 +21,7 @@ void each_run_of_forces(Island<S>& island, F f) {
 
 // f_i = h sum_j between_ij k_j
 template <class S>
-void find_further_terms(Flow<S>& flow, const RungeKutta& method) {
+void find_further_terms(Flow<S>& flow, const RungeKuttaOf<S>& method) {
   using T = typename S::Scalar;
   const size_t n = flow.now.size();
   std::fill(flow.further_terms.begin(), flow.further_terms.end(), T(0));
@@ -36,7 +36,7 @@ void find_further_terms(Flow<S>& flow, const RungeKutta& method) {
 }
 
 template <class S>
-void keep_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time) {
+void keep_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   Flow<S>& flow = island.flow;
   read_numbers(world, island, flow.end.data());
   each_run_of_forces(island, [](auto* lambda, auto* forces, int count) { std::copy_n(lambda, count, forces); });
@@ -48,7 +48,7 @@ void keep_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method,
 
 // The formula above RungeKutta::between.
 template <class S>
-void interpolate(Flow<S>& flow, const RungeKutta& method) {
+void interpolate(Flow<S>& flow, const RungeKuttaOf<S>& method) {
   using T = typename S::Scalar;
   const size_t n = flow.now.size();
   const T h = flow.length, theta = T(1) - flow.ahead / h;
@@ -66,7 +66,7 @@ void interpolate(Flow<S>& flow, const RungeKutta& method) {
 }  // namespace
 
 template <class S>
-void go_between(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time) {
+void go_between(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   Flow<S>& flow = island.flow;
   if (!flow.end_kept) keep_end(world, island, method, time);
   interpolate(flow, method);
@@ -75,7 +75,7 @@ void go_between(WorldState<S>& world, Island<S>& island, const RungeKutta& metho
 }
 
 template <class S>
-void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time) {
+void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   Flow<S>& flow = island.flow;
   set_numbers(world, island, flow.end.data());
   evaluate_anew(world, island, time);
@@ -89,8 +89,8 @@ void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method
 }
 
 #define CDOT_INSTANTIATE(S)                                                           \
-  template void go_between(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar); \
-  template void go_to_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);
+  template void go_between(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar); \
+  template void go_to_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -19,6 +19,7 @@ struct Batch;
 template <class S>
 struct BlockOps {
   using T = typename S::Scalar;
+  using Real = ExactNumber<T>;
   using Velocity = typename S::Velocity;
   using Slots = Batch<S>&;
 
@@ -51,9 +52,8 @@ struct BlockOps {
   void (*correct)(Slots, int begin, int end, Bodies<S>&, T time);
   void (*correct_bounded)(Slots, int begin, int end, Bodies<S>&, T time);
   // J and (M^-1 J^T)^T of one slot, [rows][freedom * bodies], and the lower triangle of K, row by
-  // row `stride` apart, all computed in doubles.
-  void (*dense)(const Batch<S>&, int slot, const Bodies<S>&, double* J, double* weighted, double* K,
-                int stride);
+  // row `stride` apart, all computed in what K is formed in.
+  void (*dense)(const Batch<S>&, int slot, const Bodies<S>&, Real* J, Real* weighted, Real* K, int stride);
   // J^T lambda of one slot: the impulse by body.
   void (*transposed)(const Batch<S>&, int slot, const T* lambda, Velocity* impulse);
   // stiffness -= what d(J^T lambda)/dq says of each body's own turning, lambda from the last step

@@ -16,6 +16,7 @@ namespace cdot {
 template <class S, class Joint, class Block, Kernels kernels = Kernels::balanced>
 struct BlockLoops {
   using T = typename S::Scalar;
+  using Real = ExactNumber<T>;
   using Pose = typename S::Pose;
   using Velocity = typename S::Velocity;
   using InverseMass = typename S::InverseMass;
@@ -262,18 +263,18 @@ struct BlockLoops {
     }
   }
 
-  static void dense(const Batch<S>& batch, int slot, const Bodies<S>& all, double* J,
-                    double* weighted, double* K, int stride) {
+  static void dense(const Batch<S>& batch, int slot, const Bodies<S>& all, Real* J, Real* weighted, Real* K,
+                    int stride) {
     using Exact = typename S::Exact;
     typename Exact::InverseMass m[bodies];
     for (int k = 0; k < bodies; ++k)
       m[k] = exact<typename Exact::InverseMass, T>(
           all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
-    const auto entries = exact<typename Block::template Jacobian<double>, T>(
+    const auto entries = exact<typename Block::template Jacobian<Real>, T>(
         as<Jacobian>(batch.jacobian.data(), slot));
-    double own[triangle];
-    Block::dense(entries, *reinterpret_cast<double (*)[rows][width]>(J));
-    Block::inverse_mass_jacobian(entries, m, *reinterpret_cast<double (*)[rows][width]>(weighted));
+    Real own[triangle];
+    Block::dense(entries, *reinterpret_cast<Real (*)[rows][width]>(J));
+    Block::inverse_mass_jacobian(entries, m, *reinterpret_cast<Real (*)[rows][width]>(weighted));
     Block::effective_mass(entries, m, own);
     for (int r = 0; r < rows; ++r)
       for (int s = 0; s <= r; ++s) K[r * stride + s] = own[r * (r + 1) / 2 + s];

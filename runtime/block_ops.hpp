@@ -54,8 +54,9 @@ constexpr BlockOps<S> make_block_ops() {
     return ops_without_rows<S, Joint>();
   } else {
     BlockOps<S> ops = BlockLoops<S, Joint, Block>::ops();
-    if constexpr (Block::rows == 2) ops.fast = &other_ops<S, Joint, Block, Kernels::fast>;
-    if constexpr (Block::rows > 1) ops.robust = &other_ops<S, Joint, Block, Kernels::robust>;
+    constexpr int forms = is_extended<typename S::Scalar> ? 1 : Block::rows;  // there one form is enough
+    if constexpr (forms == 2) ops.fast = &other_ops<S, Joint, Block, Kernels::fast>;
+    if constexpr (forms > 1) ops.robust = &other_ops<S, Joint, Block, Kernels::robust>;
     return ops;
   }
 }

@@ -6,19 +6,21 @@
 #include <vector>
 
 #include "runtime/kernel.hpp"
+#include "runtime/precision.hpp"
 
 namespace cdot {
 
-// The same struct of numbers in doubles.
+// The same struct of numbers as K is formed of.
 template <class Exact, class T, class Struct>
 Exact exact(const Struct& of) {
-  static_assert(sizeof(Exact) / sizeof(double) == sizeof(Struct) / sizeof(T));
+  using Real = ExactNumber<T>;
+  static_assert(sizeof(Exact) / sizeof(Real) == sizeof(Struct) / sizeof(T));
   Exact to{};
   if constexpr (std::is_same_v<Exact, Struct>) {
     to = of;
   } else if constexpr (!std::is_empty_v<Struct>) {
     const T* from = reinterpret_cast<const T*>(&of);
-    std::copy_n(from, sizeof(Struct) / sizeof(T), reinterpret_cast<double*>(&to));
+    std::copy_n(from, sizeof(Struct) / sizeof(T), reinterpret_cast<Real*>(&to));
   }
   return to;
 }

@@ -9,13 +9,14 @@
 
 namespace cdot {
 
+template <class Real>
 class Broyden {
  public:
   static constexpr int most_steps = 24;
 
   void reserve(size_t unknowns) {
     n_ = unknowns;
-    steps_.assign(n_ * (most_steps + 1), 0.0);
+    steps_.assign(n_ * (most_steps + 1), Real(0));
     sizes_.assign(most_steps + 1, 0.0);
     weights_.assign(n_, 1.0);
   }
@@ -28,19 +29,19 @@ class Broyden {
 
   // z = -B^-1 F at the present point, B being that factor; becomes the step from there. False if none is known.
   //   z += s_j+1 <s_j, z> / <s_j, s_j> for the steps s_j so far, then s = z / (1 - <s_n, z> / <s_n, s_n>)
-  bool next(double* z) {
+  bool next(Real* z) {
     if (count_ > most_steps) return false;
-    double lengthen = 1;
+    Real lengthen = 1;
     for (int j = 0; j < count_; ++j) {
-      const double* step = steps_.data() + static_cast<size_t>(j) * n_;
-      const double size = sizes_[static_cast<size_t>(j)], share = size > 0 ? product(step, z) / size : 0;
+      const Real* step = steps_.data() + static_cast<size_t>(j) * n_;
+      const Real size = sizes_[static_cast<size_t>(j)], share = size > 0 ? product(step, z) / size : Real(0);
       if (j + 1 < count_)
         for (size_t i = 0; i < n_; ++i) z[i] += step[n_ + i] * share;
       else
         lengthen = 1 / (1 - share);
     }
     if (!(std::abs(lengthen) < longest)) return false;
-    double* step = steps_.data() + static_cast<size_t>(count_) * n_;
+    Real* step = steps_.data() + static_cast<size_t>(count_) * n_;
     for (size_t i = 0; i < n_; ++i) step[i] = z[i] *= lengthen;
     sizes_[static_cast<size_t>(count_++)] = product(step, step);
     return true;
@@ -49,15 +50,15 @@ class Broyden {
  private:
   static constexpr double longest = 1e6;
 
-  double product(const double* x, const double* y) const {
-    double sum = 0;
+  Real product(const Real* x, const Real* y) const {
+    Real sum = 0;
     for (size_t i = 0; i < n_; ++i) sum += weights_[i] * x[i] * y[i];
     return sum;
   }
 
   size_t n_ = 0;
   int count_ = 0;
-  std::vector<double> steps_, sizes_, weights_;  // sizes_: <s_j, s_j>
+  std::vector<Real> steps_, sizes_, weights_;  // sizes_: <s_j, s_j>
 };
 
 }  // namespace cdot

@@ -18,14 +18,15 @@ namespace {
 
 // Below this, and below this share of the largest b, a row that is missed is round-off.
 template <class T>
-constexpr double least_slight = std::is_same_v<T, double> ? 1e-11 : 1e-5;
+constexpr double least_slight = by_precision<T>(1e-5, 1e-11);
 template <class T>
-constexpr double least_share = std::is_same_v<T, double> ? 1e-9 : 1e-4;
+constexpr double least_share = by_precision<T>(1e-4, 1e-9);
 
 constexpr double solved = 1e-24;  // of the square of what was missed at first
 
-double product(const std::vector<double>& x, const std::vector<double>& y) {
-  double sum = 0;
+template <class Real>
+Real product(const std::vector<Real>& x, const std::vector<Real>& y) {
+  Real sum = 0;
   for (size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
   return sum;
 }
@@ -34,32 +35,32 @@ double product(const std::vector<double>& x, const std::vector<double>& y) {
 
 // w becomes Z^T w, in the places of the dropped rows; 0 elsewhere.
 template <class S>
-void System<S>::contract(std::vector<double>& w) {
-  for (int r = 0; r < rows_; ++r) right_side_[r] = kept(r) ? w[r] : 0.0;
+void System<S>::contract(std::vector<Real>& w) {
+  for (int r = 0; r < rows_; ++r) right_side_[r] = kept(r) ? w[r] : Real(0);
   ldlt_.solve(right_side_.data(), right_side_.data());
   ldlt_.multiply(right_side_.data(), product_.data());
-  for (int r = 0; r < rows_; ++r) w[r] = ldlt_.dependent(r) ? w[r] - product_[r] : 0.0;
+  for (int r = 0; r < rows_; ++r) w[r] = ldlt_.dependent(r) ? w[r] - product_[r] : Real(0);
 }
 
 // to = Z y, y in the places of the dropped rows.
 template <class S>
-void System<S>::expand(const std::vector<double>& y, std::vector<double>& to) {
+void System<S>::expand(const std::vector<Real>& y, std::vector<Real>& to) {
   ldlt_.multiply(y.data(), product_.data());
-  for (int r = 0; r < rows_; ++r) to[r] = kept(r) ? product_[r] : 0.0;
+  for (int r = 0; r < rows_; ++r) to[r] = kept(r) ? product_[r] : Real(0);
   ldlt_.solve(to.data(), to.data());
   for (int r = 0; r < rows_; ++r) to[r] = kept(r) ? -to[r] : y[r];
 }
 
 template <class S>
-double System<S>::slight(double scale) {
-  return std::max(least_slight<T>, least_share<T> * scale);
+typename System<S>::Real System<S>::slight(Real scale) {
+  return std::max(Real(least_slight<T>), least_share<T> * scale);
 }
 
 // What the dropped rows miss, into `missed`. False if that is round-off.
 template <class S>
-bool System<S>::misses_rows(std::vector<double>& missed) {
+bool System<S>::misses_rows(std::vector<Real>& missed) {
   ldlt_.multiply(lambda.data(), product_.data());
-  double largest = 0, scale = 0;
+  Real largest = 0, scale = 0;
   for (int r = 0; r < rows_; ++r) {
     missed[r] = 0;
     if (out_[r]) continue;
@@ -79,30 +80,30 @@ void System<S>::share_contradictions() {
   if (!contradicted_) return;
   std::fill(y.begin(), y.end(), 0.0);
   step = missed;
-  double left = product(missed, missed);
-  const double enough = solved * left;
+  Real left = product(missed, missed);
+  const Real enough = solved * left;
   for (int round = 0; round < rows_ && left > enough; ++round) {
     expand(step, image);
     contract(image);
-    const double share = left / product(step, image);
+    const Real share = left / product(step, image);
     for (int r = 0; r < rows_; ++r) {
       y[r] += share * step[r];
       missed[r] -= share * image[r];
     }
-    const double before = left;
+    const Real before = left;
     left = product(missed, missed);
     for (int r = 0; r < rows_; ++r) step[r] = missed[r] + left / before * step[r];
   }
   expand(y, unmet_);
-  for (int r = 0; r < rows_; ++r) image[r] = kept(r) ? unmet_[r] : 0.0;
+  for (int r = 0; r < rows_; ++r) image[r] = kept(r) ? unmet_[r] : Real(0);
   ldlt_.solve(image.data(), image.data());
   for (int r = 0; r < rows_; ++r)
     if (kept(r)) lambda[r] -= image[r];
 }
 
-#define CDOT_INSTANTIATE(S)                                             \
-  template double System<S>::slight(double);                            \
-  template bool System<S>::misses_rows(std::vector<double>&);           \
+#define CDOT_INSTANTIATE(S)                                 \
+  template System<S>::Real System<S>::slight(Real);         \
+  template bool System<S>::misses_rows(std::vector<Real>&); \
   template void System<S>::share_contradictions();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

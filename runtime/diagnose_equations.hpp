@@ -34,7 +34,7 @@ class Equations {
   }
 
   // [m, rad]: joints that miss each other by less are not said to contradict.
-  static constexpr T slight = std::is_same_v<T, double> ? T(1e-9) : T(1e-5);
+  static constexpr T slight = T(by_precision<T>(1e-5, 1e-9));
 
   static bool takes_part(const Batch<S>& batch, int i) {
     return is_joint(batch) && (batch.kinds[i % batch.ops->rows] != RowKind::inequality || batch.C[i] <= slight);

@@ -12,7 +12,7 @@ namespace {
 
 // Of C [m, rad] and of rates [m/s, rad/s]: what is not told apart. Forces: this share of their size.
 template <class T>
-constexpr T slight = std::is_same_v<T, double> ? T(1e-9) : T(1e-4);
+constexpr T slight = T(by_precision<T>(1e-4, 1e-9));
 template <class T>
 constexpr T infinite = std::numeric_limits<T>::infinity();
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/spaces.hpp"
+
 namespace cdot::spatial {
 namespace {
 
@@ -122,7 +124,8 @@ Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vecto
   return to_world(q, smallest_residual < T(0.5) * norm(before) ? best : before);
 }
 
-template Vector<double> mean_spin(const Gyroscope<double>&, const Pose<double>&, const Vector<double>&, double);
-template Vector<float> mean_spin(const Gyroscope<float>&, const Pose<float>&, const Vector<float>&, float);
+#define CDOT_INSTANTIATE(T) template Vector<T> mean_spin(const Gyroscope<T>&, const Pose<T>&, const Vector<T>&, T);
+CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 
 }  // namespace cdot::spatial

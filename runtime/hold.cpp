@@ -43,7 +43,7 @@ template <class S>
 void move_by_newton(WorldState<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
-  island.system.load([](const Batch<S>& batch, int i) { return -double(batch.scratch[i]); });
+  island.system.load([](const Batch<S>& batch, int i) { return -batch.scratch[i]; });
   island.system.solve();
   apply_solution(world, island, all.increment.data());
   for (int i : island.bodies) {
@@ -228,7 +228,7 @@ typename S::Scalar find_errors(WorldState<S>& world, Island<S>& island, typename
 
 template <class S>
 void solve_errors(Island<S>& island, typename S::Scalar share) {
-  island.system.load([&](const Batch<S>& batch, int i) { return double(share * batch.scratch[i]); });
+  island.system.load([&](const Batch<S>& batch, int i) { return share * batch.scratch[i]; });
   if (island.system.lawful()) factor_rows_with_errors(island);
   island.system.solve();
 }
@@ -237,7 +237,7 @@ void solve_errors(Island<S>& island, typename S::Scalar share) {
 template <class S>
 void apply_solution(WorldState<S>& world, Island<S>& island, typename S::Velocity* to) {
   using T = typename S::Scalar;
-  island.system.store([&](Batch<S>& batch, int i, double lambda) {
+  island.system.store([&](Batch<S>& batch, int i, auto lambda) {
     batch.scratch[i] = T(lambda);
     if (!island.continuous) batch.correction[i] += T(lambda);
   });

@@ -8,12 +8,12 @@ namespace cdot {
 
 // C this small is left alone, in metres and radians, times Island::scale.
 template <class T>
-inline constexpr T converged = std::is_same_v<T, double> ? T(1e-13) : T(1e-6);
+inline constexpr T converged = T(by_precision<T>(1e-6, 1e-13));
 
 // C of this size came from outside (a pose that was set, joints that contradict each other), not from the motion of the
 // last step: correcting it must not change velocities. Times Island::scale.
 template <class T>
-inline constexpr T foreign = std::is_same_v<T, double> ? T(1e-8) : T(1e-4);
+inline constexpr T foreign = T(by_precision<T>(1e-4, 1e-8));
 
 // Displacements and their impulses start at 0.
 template <class S>

@@ -44,10 +44,11 @@ void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   island.evaluated = island.factored = false;
 }
 
-template void turn_inertias(WorldState<Spatial<double>>&, Island<Spatial<double>>&);
-template void turn_inertias(WorldState<Spatial<float>>&, Island<Spatial<float>>&);
-template void set_inertias(WorldState<Spatial<double>>&, Island<Spatial<double>>&);
-template void set_inertias(WorldState<Spatial<float>>&, Island<Spatial<float>>&);
+#define CDOT_INSTANTIATE(T)                                                      \
+  template void turn_inertias(WorldState<Spatial<T>>&, Island<Spatial<T>>&); \
+  template void set_inertias(WorldState<Spatial<T>>&, Island<Spatial<T>>&);
+CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
 #define CDOT_INSTANTIATE(S) template void integrate(WorldState<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

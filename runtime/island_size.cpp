@@ -23,17 +23,18 @@ double distance(const typename S::Pose& a, const typename S::Pose& b) {
 template <class S>
 double longest_arm(const Batch<S>& batch, int slot, const Bodies<S>& all) {
   const int bodies = batch.ops->bodies, width = S::freedom * bodies;
-  std::vector<double> J(static_cast<size_t>(batch.ops->rows * width)), weighted(J);
-  double K[most_rows * most_rows];
+  using Real = ExactNumber<typename S::Scalar>;
+  std::vector<Real> J(static_cast<size_t>(batch.ops->rows * width)), weighted(J);
+  Real K[most_rows * most_rows];
   batch.ops->dense(batch, slot, all, J.data(), weighted.data(), K, most_rows);
   double longest = 0;
   for (int r = 0; r < batch.ops->rows; ++r) {
     for (int k = 0; k < bodies; ++k) {
       if (all.immovable(batch.body[slot * bodies + k])) continue;
-      const double* row = J.data() + r * width + S::freedom * k;
-      double straight = 0, turning = 0;
+      const Real* row = J.data() + r * width + S::freedom * k;
+      Real straight = 0, turning = 0;
       for (int c = 0; c < S::freedom; ++c) (c < S::lengths ? straight : turning) += row[c] * row[c];
-      if (straight > 0) longest = std::max(longest, std::sqrt(turning / straight));
+      if (straight > 0) longest = std::max(longest, double(std::sqrt(turning / straight)));
     }
   }
   return longest;

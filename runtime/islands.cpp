@@ -184,7 +184,7 @@ void prepare_topology(WorldState<S>& world) {
     if (world.settings.integrator == Integrator::rattle)
       island.flow.search.reserve(static_cast<size_t>(island.system.rows()));
     if (works_on_accelerations(world.settings.integrator))
-      prepare_flow(island, runge_kutta(world.settings.integrator));
+      prepare_flow(island, runge_kutta<S>(world.settings.integrator));
     prepare_to_keep(world, island);
     world.awake.push_back(i);
   }

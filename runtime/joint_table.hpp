@@ -15,7 +15,7 @@
 namespace cdot {
 
 // A row block for general bodies, and those in which one body is immovable: (index of that body,
-// its loops).
+// its loops). Extended precision, where nobody counts instructions, does without the latter.
 template <class S>
 struct BlockVariants {
   const BlockOps<S>* general;
@@ -54,7 +54,7 @@ BlockVariants<S> block_variants() {
   const auto add = [&]<class Variant>(std::type_identity<Variant>) {
     variants.immovable.emplace_back(Variant::immovable_body, &block_ops<S, Joint, Variant>);
   };
-  if constexpr (requires { typename Block::Immovable; }) {
+  if constexpr (requires { typename Block::Immovable; } && !is_extended<typename S::Scalar>) {
     [&]<class... Variants>(std::type_identity<std::tuple<Variants...>>) {
       (add(std::type_identity<Variants>{}), ...);
     }(std::type_identity<typename Block::Immovable>{});

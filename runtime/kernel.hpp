@@ -84,6 +84,7 @@ struct ParameterInfo {
 
 inline float abs(float x) { return std::fabs(x); }
 inline double abs(double x) { return std::fabs(x); }
+inline long double abs(long double x) { return std::fabs(x); }
 
 // The number type inside T: T itself, or the lane type of a pack (which specialises this).
 template <class T>

@@ -94,18 +94,6 @@ double energy_soft(const Batch<S>& batch, int slot) {
 
 }  // namespace
 
-void spring_constants(const Softness& softness, double* constants) {
-  const double strength = softness.by_frequency ? softness.frequency : softness.stiffness;
-  const double damping = softness.by_frequency ? softness.damping_ratio : softness.damping;
-  if (!(strength >= 0 && damping >= 0) || !std::isfinite(strength) || !std::isfinite(damping))
-    throw Error("a spring needs a frequency or stiffness and a damping that are finite and >= 0");
-  if (strength == 0 && (softness.by_frequency || damping == 0))
-    throw Error("a spring of zero stiffness without damping does nothing; leave it out");
-  constants[0] = softness.by_frequency ? 1 : 0;
-  constants[1] = strength;
-  constants[2] = damping;
-}
-
 template <class S>
 const Law<S>& unilateral_law() {
   static constexpr Law<S> law{0,       true,    fill_unilateral<S>, error_unilateral<S>,

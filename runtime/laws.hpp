@@ -2,6 +2,8 @@
 // The laws of effects on coordinates are in effects.cpp.
 #pragma once
 
+#include <cmath>
+
 #include "runtime/block.hpp"
 
 namespace cdot {
@@ -17,7 +19,17 @@ const Law<S>& soft_law();
 inline constexpr int spring_constants_count = 3;
 
 // {by_frequency, frequency or stiffness, damping ratio or damping}. Throws Error.
-void spring_constants(const Softness& softness, double* constants);
+inline void spring_constants(const Softness& softness, double* constants) {
+  const double strength = softness.by_frequency ? softness.frequency : softness.stiffness;
+  const double damping = softness.by_frequency ? softness.damping_ratio : softness.damping;
+  if (!(strength >= 0 && damping >= 0) || !std::isfinite(strength) || !std::isfinite(damping))
+    throw Error("a spring needs a frequency or stiffness and a damping that are finite and >= 0");
+  if (strength == 0 && (softness.by_frequency || damping == 0))
+    throw Error("a spring of zero stiffness without damping does nothing; leave it out");
+  constants[0] = softness.by_frequency ? 1 : 0;
+  constants[1] = strength;
+  constants[2] = damping;
+}
 
 // Stiffness k and damping d of a spring on one row; from the effective mass if it is told by its frequency: k = (2 pi
 // f)^2 / K, d = 2 zeta 2 pi f / K.
@@ -28,7 +40,7 @@ struct SpringNumbers {
 template <class T>
 SpringNumbers<T> spring_numbers(T K, const T* constants) {
   if (constants[0] == T(0)) return {constants[1], constants[2]};
-  const T w = T(6.283185307179586476925) * constants[1], mass = inverse(K);
+  const T w = T(6.283185307179586476925L) * constants[1], mass = inverse(K);
   return {mass * w * w, mass * T(2) * constants[2] * w};
 }
 

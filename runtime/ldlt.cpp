@@ -3,15 +3,21 @@
 #include <algorithm>
 
 #include "runtime/ldlt_kernels.hpp"
+#include "runtime/spaces.hpp"
 
 namespace cdot {
 namespace {
 
-constexpr auto eliminate = dense::all_eliminate(dense::Sizes{});
-constexpr auto forward = dense::all_forward(dense::Sizes{});
-constexpr auto backward = dense::all_backward(dense::Sizes{});
-constexpr auto update = dense::all_update<false>(dense::Sizes{});
-constexpr auto update_of_square = dense::all_update<true>(dense::Sizes{});
+template <class Real>
+constexpr auto eliminate = dense::all_eliminate<Real>(dense::Sizes{});
+template <class Real>
+constexpr auto forward = dense::all_forward<Real>(dense::Sizes{});
+template <class Real>
+constexpr auto backward = dense::all_backward<Real>(dense::Sizes{});
+template <class Real>
+constexpr auto update = dense::all_update<Real, false>(dense::Sizes{});
+template <class Real>
+constexpr auto update_of_square = dense::all_update<Real, true>(dense::Sizes{});
 
 std::vector<std::vector<int>> neighbours_of(int count,
                                             const std::vector<std::pair<int, int>>& coupled) {
@@ -30,7 +36,8 @@ std::vector<std::vector<int>> neighbours_of(int count,
 
 }  // namespace
 
-void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
+template <class Real>
+void BasicLdlt<Real>::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
                    double share) {
   share_ = share;
   const auto neighbours = neighbours_of(static_cast<int>(rows.size()), coupled);
@@ -38,7 +45,7 @@ void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int
   updates_.clear();
   for (Column& column : columns_) list_updates(column);
   const size_t n = diagonal_.size();
-  l_.assign(values_.size(), 0.0);
+  l_.assign(values_.size(), Real(0));
   inverse_.assign(n, 0.0);
   noise_.assign(n, 0.0);
   out_.assign(n, 0);
@@ -48,12 +55,14 @@ void Ldlt::analyse(const std::vector<int>& rows, const std::vector<std::pair<int
   forget();
 }
 
-void Ldlt::forget() {
+template <class Real>
+void BasicLdlt<Real>::forget() {
   std::fill(dependent_.begin(), dependent_.end(), 0);
   factored_ = false;
 }
 
-void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order) {
+template <class Real>
+void BasicLdlt<Real>::lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order) {
   columns_.clear();
   diagonal_.clear();
   column_of_.clear();
@@ -69,9 +78,9 @@ void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>&
     for (int neighbour : one.neighbours) column.height += rows[neighbour];
     const int width = column.width = unknowns - column.first, kind = dense::kind(width);
     column.panel = numbers + width * width;
-    column.eliminate = eliminate[kind];
-    column.forward = forward[kind];
-    column.backward = backward[kind];
+    column.eliminate = eliminate<Real>[kind];
+    column.forward = forward<Real>[kind];
+    column.backward = backward<Real>[kind];
     for (int r = 0; r < width; ++r) {
       diagonal_.push_back(numbers + r * (width + 1));
       column_of_.push_back(static_cast<int>(columns_.size()));
@@ -90,7 +99,8 @@ void Ldlt::lay_out(const std::vector<int>& rows, const std::vector<Elimination>&
 }
 
 // Of each pair of runs of the panel's rows: a run's unknowns follow each other within one column.
-void Ldlt::list_updates(Column& column) {
+template <class Real>
+void BasicLdlt<Real>::list_updates(Column& column) {
   const int* row = panel_row_.data() + column.rows;
   std::vector<std::pair<int, int>> runs;  // from row to row of the panel
   for (int h = 0; h < column.height; ++h) {
@@ -105,7 +115,7 @@ void Ldlt::list_updates(Column& column) {
       const auto [left, left_end] = runs[i];
       const auto [above, above_end] = runs[j];
       const Place target = place(row[left], row[above]);
-      const auto& table = i == j ? update_of_square : update;
+      const auto& table = i == j ? update_of_square<Real> : update<Real>;
       updates_.push_back({{left, left_end - left, above, above_end - above, target.at, target.stride},
                           table[dense::kind(column.width)][dense::kind(above_end - above)]});
     }
@@ -113,7 +123,8 @@ void Ldlt::list_updates(Column& column) {
   column.updates_end = static_cast<int>(updates_.size());
 }
 
-Ldlt::Place Ldlt::place(int row, int column) const {
+template <class Real>
+typename BasicLdlt<Real>::Place BasicLdlt<Real>::place(int row, int column) const {
   const Column& of = columns_[column_of_[column]];
   const int within = column - of.first;
   if (column_of_[row] == column_of_[column])
@@ -123,7 +134,8 @@ Ldlt::Place Ldlt::place(int row, int column) const {
   return {of.panel + static_cast<int>(below) * of.width + within, of.width};
 }
 
-dense::Numbers Ldlt::numbers(const double* added) {
+template <class Real>
+dense::Numbers<Real> BasicLdlt<Real>::numbers(const Real* added) {
   return {l_.data(),
           values_.data(),
           added,
@@ -138,7 +150,8 @@ dense::Numbers Ldlt::numbers(const double* added) {
           noise_.data()};
 }
 
-int Ldlt::eliminate_columns(const dense::Numbers& all, const char* out) {
+template <class Real>
+int BasicLdlt<Real>::eliminate_columns(const dense::Numbers<Real>& all, const char* out) {
   std::copy(values_.begin(), values_.end(), l_.begin());
   any_out_ = out != nullptr;
   if (out)
@@ -154,27 +167,30 @@ int Ldlt::eliminate_columns(const dense::Numbers& all, const char* out) {
   return dependent;
 }
 
-int Ldlt::factor(const double* added, const char* out) {
+template <class Real>
+int BasicLdlt<Real>::factor(const Real* added, const char* out) {
   for (size_t k = 0; k < noise_.size(); ++k)
-    noise_[k] = dense::pivot_noise * values_[diagonal_[k]];
+    noise_[k] = dense::pivot_noise<Real> * values_[diagonal_[k]];
   const int dependent = eliminate_columns(numbers(added), out);
   factored_ = true;
   return dependent;
 }
 
-void Ldlt::factor_definite(const double* added, const char* out) {
+template <class Real>
+void BasicLdlt<Real>::factor_definite(const Real* added, const char* out) {
   std::fill(noise_.begin(), noise_.end(), 0.0);
-  dense::Numbers all = numbers(added);
+  dense::Numbers<Real> all = numbers(added);
   all.share = all.soft_share = 0;
   all.dependent = definite_.data();
   eliminate_columns(all, out);
 }
 
-void Ldlt::solve(const double* b, double* x) {
+template <class Real>
+void BasicLdlt<Real>::solve(const Real* b, Real* x) {
   const size_t n = diagonal_.size();
   if (any_out_) std::copy_n(b, n, given_.begin());
   if (x != b) std::copy_n(b, n, x);
-  const dense::Numbers all = numbers(nullptr);
+  const dense::Numbers<Real> all = numbers(nullptr);
   for (const Column& column : columns_) column.forward(column, all, x);
   for (auto column = columns_.rbegin(); column != columns_.rend(); ++column)
     column->backward(*column, all, x);
@@ -183,13 +199,14 @@ void Ldlt::solve(const double* b, double* x) {
     if (out_[k]) x[k] = given_[k];
 }
 
-void Ldlt::multiply(const double* x, double* y) const {
+template <class Real>
+void BasicLdlt<Real>::multiply(const Real* x, Real* y) const {
   std::fill_n(y, diagonal_.size(), 0.0);
   for (const Column& column : columns_) {
-    const double* square = values_.data() + column.square;
-    const double* panel = values_.data() + column.panel;
-    const double* own = x + column.first;
-    double* to = y + column.first;
+    const Real* square = values_.data() + column.square;
+    const Real* panel = values_.data() + column.panel;
+    const Real* own = x + column.first;
+    Real* to = y + column.first;
     for (int i = 0; i < column.width; ++i) {
       for (int j = 0; j < i; ++j) {
         to[i] += square[i * column.width + j] * own[j];
@@ -207,7 +224,8 @@ void Ldlt::multiply(const double* x, double* y) const {
   }
 }
 
-long Ldlt::multiplications() const {
+template <class Real>
+long BasicLdlt<Real>::multiplications() const {
   long sum = 0;
   for (const Column& column : columns_) {
     const long a = column.width, h = column.height;
@@ -218,5 +236,7 @@ long Ldlt::multiplications() const {
   }
   return sum;
 }
+
+template class BasicLdlt<CDOT_EXACT_NUMBER>;
 
 }  // namespace cdot

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "runtime/elimination_order.hpp"
+#include "runtime/precision.hpp"
 
 namespace cdot {
 
@@ -22,7 +23,8 @@ inline constexpr int lasting_count = 100;
 
 // Round-off of a pivot beside what its row began with; delta(pivot_i) = L_ij^2 delta(pivot_j) says
 // what becomes of it in the rows that follow.
-inline constexpr double pivot_noise = 1e-14;
+template <class Real>
+inline constexpr double pivot_noise = by_precision<Real>(1e-14);
 
 // A column of L: a square on the diagonal and, below it, the panel of all rows that it is coupled
 // with, both row by row.
@@ -40,27 +42,33 @@ struct Part {
   int target, stride;
 };
 
+template <class Real>
 struct Numbers {
-  double* l;             // K; in its place L
-  const double* K;       // as it was before any elimination
-  const double* added;   // on K's diagonal, by unknown
+  Real* l;               // K; in its place L
+  const Real* K;         // as it was before any elimination
+  const Real* added;     // on K's diagonal, by unknown
   const char* out;       // unknowns that do not take part
-  double* inverse;       // D^-1 by unknown; 0 where it is out or its row depends on others
-  double* unscaled;      // L D of the panel at hand, column by column
+  Real* inverse;         // D^-1 by unknown; 0 where it is out or its row depends on others
+  Real* unscaled;        // L D of the panel at hand, column by column
   const int* panel_row;  // unknown of each row of each panel
   unsigned char* dependent;  // in how many factorisations on end, by unknown
   int counts;                // for how many this one counts
   double share, soft_share;  // Ldlt's; soft_share: of rows with something added
-  double* noise;             // of each pivot to come
+  Real* noise;               // of each pivot to come
 };
 
-using Eliminate = int (*)(const Column&, const Numbers&);
-using Update = void (*)(const Column&, const Part&, const Numbers&);
-using Sweep = void (*)(const Column&, const Numbers&, double* x);
+template <class Real>
+using Eliminate = int (*)(const Column&, const Numbers<Real>&);
+template <class Real>
+using Update = void (*)(const Column&, const Part&, const Numbers<Real>&);
+template <class Real>
+using Sweep = void (*)(const Column&, const Numbers<Real>&, Real* x);
 
 }  // namespace dense
 
-class Ldlt {
+// Real is what K is formed in.
+template <class Real>
+class BasicLdlt {
  public:
   // Below this share of its original diagonal, or below what the pivots before it have magnified round-off to, a pivot
   // says nothing: its row depends on those before it, and its unknown is 0.
@@ -69,16 +77,18 @@ class Ldlt {
   // its pivot by eps (sqrt(K_ii) + sum |y_a| sqrt(K_aa))^2 at most, which is at most (m + 1) eps (K_ii + sum y_a^2 K_aa)
   // where m rows take part. The second factor is what dense::pivot_noise follows from row to row; the share is m + 1 = 10
   // times it, as many rows as a loop too many has. More is no round-off: a body 1e10 times lighter than the two that it
-  // joins leaves 1e-10 of the second joint's rows, and they are as good as any. K from floats is further off.
-  static constexpr double pivot_share = 10 * dense::pivot_noise, pivot_share_of_floats = 1e-7;
+  // joins leaves 1e-10 of the second joint's rows, and they are as good as any. K from floats is further off. T
+  // is what J and the masses are in.
+  template <class T>
+  static constexpr double pivot_share = std::is_same_v<T, float> ? 1e-7 : 10 * dense::pivot_noise<T>;
   // Of a soft row: below it the softness is not told from none. Dropped, the row is rigid beside those that it depends
   // on, 1e-10 stiffer than it is; kept, its force would be off by pivot_noise over its pivot, 1e-4 and more.
-  static constexpr double pivot_share_of_soft = 1e-10;
+  static constexpr double pivot_share_of_soft = by_precision<Real>(1e-10);
 
   // rows: of each block. coupled: pairs of blocks between which K may be nonzero; repetitions do no
   // harm.
   void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
-               double share = pivot_share);
+               double share = pivot_share<Real>);
   int size() const { return static_cast<int>(diagonal_.size()); }
   // Unknowns are numbered in the order of elimination. A block's first one:
   int first(int block) const { return first_[block]; }
@@ -90,14 +100,14 @@ class Ldlt {
     int at, stride;
   };
   Place place(int row, int column) const;
-  std::vector<double>& values() { return values_; }
-  double diagonal(int unknown) const { return values_[diagonal_[unknown]]; }
+  std::vector<Real>& values() { return values_; }
+  Real diagonal(int unknown) const { return values_[diagonal_[unknown]]; }
 
   // Factors values() with `added` on the diagonal and the unknowns marked in `out` taken out (their
   // rows become those of the identity); null: none. Returns how many rows depend on others.
-  int factor(const double* added, const char* out);
+  int factor(const Real* added, const char* out);
   // The same where `added` makes K definite, however slightly: no row is dropped, and nothing is learnt about any.
-  void factor_definite(const double* added, const char* out);
+  void factor_definite(const Real* added, const char* out);
   // The next factor() is the first.
   void forget();
   // The last factor() found the row to depend on others.
@@ -106,11 +116,11 @@ class Ldlt {
   // remains unknown.
   bool blurred(int unknown) const { return noise_[unknown] > share_ * diagonal(unknown); }
   // Of a row that does not depend on others.
-  double pivot(int unknown) const { return 1 / inverse_[unknown]; }
+  Real pivot(int unknown) const { return 1 / inverse_[unknown]; }
   // x = K^-1 b for the last factor(); may be in place.
-  void solve(const double* b, double* x);
+  void solve(const Real* b, Real* x);
   // y = K x, with values() alone.
-  void multiply(const double* x, double* y) const;
+  void multiply(const Real* x, Real* y) const;
 
   // Of one factor() and one solve(): what the order of elimination costs.
   long multiplications() const;
@@ -119,14 +129,14 @@ class Ldlt {
   friend struct StateList;  // runtime/snapshot_list.hpp
   struct Column : dense::Column {
     int updates_begin, updates_end;
-    dense::Eliminate eliminate;
-    dense::Sweep forward, backward;
+    dense::Eliminate<Real> eliminate;
+    dense::Sweep<Real> forward, backward;
   };
   struct Update : dense::Part {
-    dense::Update run;
+    dense::Update<Real> run;
   };
-  dense::Numbers numbers(const double* added);
-  int eliminate_columns(const dense::Numbers& all, const char* out);
+  dense::Numbers<Real> numbers(const Real* added);
+  int eliminate_columns(const dense::Numbers<Real>& all, const char* out);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(Column& column);
 
@@ -136,13 +146,15 @@ class Ldlt {
   std::vector<Column> columns_;
   std::vector<int> panel_row_;  // unknown of each row of a panel
   std::vector<Update> updates_;
-  std::vector<double> values_, l_;
-  std::vector<double> inverse_, noise_;  // by unknown
+  std::vector<Real> values_, l_;
+  std::vector<Real> inverse_, noise_;  // by unknown
   std::vector<char> out_;
   std::vector<unsigned char> dependent_, definite_;  // definite_: nobody asks what factor_definite() says there
   bool any_out_ = false, factored_ = false;
-  double share_ = pivot_share;
-  std::vector<double> unscaled_, given_;
+  double share_ = pivot_share<Real>;
+  std::vector<Real> unscaled_, given_;
 };
+
+using Ldlt = BasicLdlt<double>;
 
 }  // namespace cdot

@@ -41,49 +41,52 @@ inline void times(Known<n>, F f) {
 }
 
 // A few numbers of an array, in registers where their count is known.
-template <int A>
+template <class Real, int A>
 struct Few {
-  double number[A];
-  explicit Few(const double* from) {
+  Real number[A];
+  explicit Few(const Real* from) {
     times(Known<A>{}, [&](auto i) { number[i] = from[i]; });
   }
-  double& operator[](int i) { return number[i]; }
-  void store(double* to) const {
+  Real& operator[](int i) { return number[i]; }
+  void store(Real* to) const {
     times(Known<A>{}, [&](auto i) { to[i] = number[i]; });
   }
 };
-template <>
-struct Few<0> {
-  double* number;
-  explicit Few(double* from) : number(from) {}
-  double& operator[](int i) { return number[i]; }
-  void store(double*) const {}
+template <class Real>
+struct Few<Real, 0> {
+  Real* number;
+  explicit Few(Real* from) : number(from) {}
+  Real& operator[](int i) { return number[i]; }
+  void store(Real*) const {}
 };
 
-template <int n>
-Few<n> few(Known<n>, double* from) {
-  return Few<n>(from);
+template <class Real, int n>
+Few<Real, n> few(Known<n>, Real* from) {
+  return Few<Real, n>(from);
 }
-inline Few<0> few(int, double* from) { return Few<0>(from); }
+template <class Real>
+Few<Real, 0> few(int, Real* from) {
+  return Few<Real, 0>(from);
+}
 
 // --- factor ---
 
 // K = L D L^T of the square, scalar pivot by scalar pivot. Returns how many were round-off.
-template <int A>
-int factor_square(const Column& column, const Numbers& numbers) {
+template <class Real, int A>
+int factor_square(const Column& column, const Numbers<Real>& numbers) {
   const auto a = size<A>(column.width);
-  double* L = numbers.l + column.square;
-  const double* K = numbers.K + column.square;
-  double* inverse = numbers.inverse + column.first;
-  double* noise = numbers.noise + column.first;
+  Real* L = numbers.l + column.square;
+  const Real* K = numbers.K + column.square;
+  Real* inverse = numbers.inverse + column.first;
+  Real* noise = numbers.noise + column.first;
   int dependent = 0;
   times(a, [&](auto i) {
-    double* row = L + i * a;
-    const double added = numbers.added[column.first + i];
+    Real* row = L + i * a;
+    const Real added = numbers.added[column.first + i];
     times(i, [&](auto j) { times(j, [&](auto k) { row[j] -= row[k] * L[j * a + k]; }); });
-    double pivot = row[i] + added;
+    Real pivot = row[i] + added;
     times(i, [&](auto j) {
-      const double unscaled = row[j];
+      const Real unscaled = row[j];
       row[j] *= inverse[j];
       pivot -= unscaled * row[j];
       noise[i] += row[j] * row[j] * noise[j];
@@ -104,17 +107,17 @@ int factor_square(const Column& column, const Numbers& numbers) {
 }
 
 // K = (L D) L_square^T of the panel: L D by forward substitution in every row.
-template <int A>
-void factor_panel(const Column& column, const Numbers& numbers) {
+template <class Real, int A>
+void factor_panel(const Column& column, const Numbers<Real>& numbers) {
   const auto a = size<A>(column.width);
-  const double* L = numbers.l + column.square;
-  const double* inverse = numbers.inverse + column.first;
-  const double* noise = numbers.noise + column.first;
+  const Real* L = numbers.l + column.square;
+  const Real* inverse = numbers.inverse + column.first;
+  const Real* noise = numbers.noise + column.first;
   const int* unknown = numbers.panel_row + column.rows;
   for (int h = 0; h < column.height; ++h) {
-    double* panel = numbers.l + column.panel + h * a;
-    double& blurred = numbers.noise[unknown[h]];
-    Few<A> row(panel);
+    Real* panel = numbers.l + column.panel + h * a;
+    Real& blurred = numbers.noise[unknown[h]];
+    Few<Real, A> row(panel);
     times(a, [&](auto i) { times(i, [&](auto j) { row[i] -= row[j] * L[i * a + j]; }); });
     times(a, [&](auto i) { numbers.unscaled[i * column.height + h] = row[i]; });
     times(a, [&](auto i) {
@@ -124,22 +127,22 @@ void factor_panel(const Column& column, const Numbers& numbers) {
   }
 }
 
-template <int A>
-int eliminate(const Column& column, const Numbers& numbers) {
-  const int dependent = factor_square<A>(column, numbers);
-  factor_panel<A>(column, numbers);
+template <class Real, int A>
+int eliminate(const Column& column, const Numbers<Real>& numbers) {
+  const int dependent = factor_square<Real, A>(column, numbers);
+  factor_panel<Real, A>(column, numbers);
   return dependent;
 }
 
 // target -= L_left (L D)_above^T for some rows of the panel and B others of it. `lower`: they are
 // the same, and only the lower triangle counts.
-template <int A, int B, bool lower>
-void update(const Column& column, const Part& part, const Numbers& numbers) {
+template <class Real, int A, int B, bool lower>
+void update(const Column& column, const Part& part, const Numbers<Real>& numbers) {
   const auto a = size<A>(column.width);
   const auto b = size<B>(part.columns);
-  const double* left = numbers.l + column.panel + part.left * a;
-  const double* above = numbers.unscaled + part.above;
-  double* __restrict target = numbers.l + part.target;
+  const Real* left = numbers.l + column.panel + part.left * a;
+  const Real* above = numbers.unscaled + part.above;
+  Real* __restrict target = numbers.l + part.target;
   const auto subtract = [&](int r, auto count) {
     auto row = few(count, target + r * part.stride);
     times(a, [&](auto k) {
@@ -156,16 +159,16 @@ void update(const Column& column, const Part& part, const Numbers& numbers) {
 // --- solve ---
 
 // x = D^-1 L^-1 x of the column; every row of the panel loses its share.
-template <int A>
-void forward(const Column& column, const Numbers& numbers, double* x) {
+template <class Real, int A>
+void forward(const Column& column, const Numbers<Real>& numbers, Real* x) {
   const auto a = size<A>(column.width);
-  const double* L = numbers.l + column.square;
-  Few<A> own(x + column.first);
+  const Real* L = numbers.l + column.square;
+  Few<Real, A> own(x + column.first);
   times(a, [&](auto i) { times(i, [&](auto j) { own[i] -= L[i * a + j] * own[j]; }); });
-  const double* row = numbers.l + column.panel;
+  const Real* row = numbers.l + column.panel;
   const int* to = numbers.panel_row + column.rows;
   for (int h = 0; h < column.height; ++h, row += a) {
-    double sum = row[0] * own[0];
+    Real sum = row[0] * own[0];
     for (int i = 1; i < a; ++i) sum += row[i] * own[i];
     x[to[h]] -= sum;
   }
@@ -174,15 +177,15 @@ void forward(const Column& column, const Numbers& numbers, double* x) {
 }
 
 // x = L^-T x of the column.
-template <int A>
-void backward(const Column& column, const Numbers& numbers, double* x) {
+template <class Real, int A>
+void backward(const Column& column, const Numbers<Real>& numbers, Real* x) {
   const auto a = size<A>(column.width);
-  const double* L = numbers.l + column.square;
-  Few<A> own(x + column.first);
-  const double* row = numbers.l + column.panel;
+  const Real* L = numbers.l + column.square;
+  Few<Real, A> own(x + column.first);
+  const Real* row = numbers.l + column.panel;
   const int* from = numbers.panel_row + column.rows;
   for (int h = 0; h < column.height; ++h, row += a) {
-    const double known = x[from[h]];
+    const Real known = x[from[h]];
     times(a, [&](auto i) { own[i] -= row[i] * known; });
   }
   for (int i = a - 1; i > 0; --i)
@@ -196,25 +199,25 @@ inline constexpr int largest = 6;  // rows of a joint
 constexpr int kind(int rows) { return rows <= largest ? rows : 0; }
 using Sizes = std::make_integer_sequence<int, largest + 1>;
 
-template <int... A>
-constexpr std::array<Eliminate, sizeof...(A)> all_eliminate(std::integer_sequence<int, A...>) {
-  return {eliminate<A>...};
+template <class Real, int... A>
+constexpr std::array<Eliminate<Real>, sizeof...(A)> all_eliminate(std::integer_sequence<int, A...>) {
+  return {eliminate<Real, A>...};
 }
-template <int... A>
-constexpr std::array<Sweep, sizeof...(A)> all_forward(std::integer_sequence<int, A...>) {
-  return {forward<A>...};
+template <class Real, int... A>
+constexpr std::array<Sweep<Real>, sizeof...(A)> all_forward(std::integer_sequence<int, A...>) {
+  return {forward<Real, A>...};
 }
-template <int... A>
-constexpr std::array<Sweep, sizeof...(A)> all_backward(std::integer_sequence<int, A...>) {
-  return {backward<A>...};
+template <class Real, int... A>
+constexpr std::array<Sweep<Real>, sizeof...(A)> all_backward(std::integer_sequence<int, A...>) {
+  return {backward<Real, A>...};
 }
-template <bool lower, int A, int... B>
-constexpr std::array<Update, sizeof...(B)> all_update_of(std::integer_sequence<int, B...>) {
-  return {update<A, B, lower>...};
+template <class Real, bool lower, int A, int... B>
+constexpr std::array<Update<Real>, sizeof...(B)> all_update_of(std::integer_sequence<int, B...>) {
+  return {update<Real, A, B, lower>...};
 }
-template <bool lower, int... A>
+template <class Real, bool lower, int... A>
 constexpr auto all_update(std::integer_sequence<int, A...> sizes) {
-  return std::array{all_update_of<lower, A>(sizes)...};
+  return std::array{all_update_of<Real, lower, A>(sizes)...};
 }
 
 }  // namespace cdot::dense

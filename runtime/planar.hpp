@@ -7,6 +7,7 @@
 
 #include "runtime/joints.hpp"
 #include "runtime/kernel.hpp"
+#include "runtime/precision.hpp"
 #include "runtime/settings.hpp"
 
 namespace cdot {
@@ -25,7 +26,8 @@ struct Wrench {
 template <class T>
 struct Planar {
   using Scalar = T;
-  using Exact = Planar<double>;
+  using Exact = Planar<ExactNumber<T>>;
+  using InDoubles = Planar<double>;
   using BodyDefinition = cdot::BodyDefinition;
   using Place = planar::Place;
   using Wrench = planar::Wrench;
@@ -41,21 +43,21 @@ struct Planar {
   static Pose pose(T x, T y, T angle) { return {x, y, std::cos(angle), std::sin(angle), angle}; }
 
   static Pose placed(const Place& p) { return pose(T(p.x), T(p.y), T(p.angle)); }
-  static Place place_of(const Pose& q) { return {q.x, q.y, q.angle}; }
+  static Place place_of(const Pose& q) { return {double(q.x), double(q.y), double(q.angle)}; }
   static Place place_of(const BodyDefinition& d) { return {d.x, d.y, d.angle}; }
   static Velocity velocity_of(const BodyDefinition& d) { return {T(d.vx), T(d.vy), T(d.w)}; }
   static Wrench wrench_of(const BodyDefinition& d) { return {d.force_x, d.force_y, d.torque}; }
   static InverseMass inverse_mass_of(const BodyDefinition& d) {
     const bool turns = !d.is_static && !d.fixed_rotation && d.inertia > 0;
-    return {d.is_static ? T(0) : T(1 / d.mass), turns ? T(1 / d.inertia) : T(0)};
+    const ExactNumber<T> one = 1;
+    return {d.is_static ? T(0) : T(one / d.mass), turns ? T(one / d.inertia) : T(0)};
   }
   static Velocity components(const Wrench& f) { return {T(f.force_x), T(f.force_y), T(f.torque)}; }
-  // From doubles.
-  static Velocity rounded(const planar::Velocity<double>& v) { return {T(v.x), T(v.y), T(v.w)}; }
+  static Velocity rounded(const planar::Velocity<ExactNumber<T>>& v) { return {T(v.x), T(v.y), T(v.w)}; }
   static void add(Wrench& sum, const Velocity& impulse, double time) {
-    sum.force_x += impulse.x / time;
-    sum.force_y += impulse.y / time;
-    sum.torque += impulse.w / time;
+    sum.force_x += double(impulse.x / time);
+    sum.force_y += double(impulse.y / time);
+    sum.torque += double(impulse.w / time);
   }
 
   // c and s are recomputed from the angle: composing rotations would let them leave the unit

@@ -46,7 +46,7 @@ class Probe {
   }
 
   int rows() const { return ops_->rows; }
-  double C(int row) const { return batch_.C[row]; }
+  double C(int row) const { return double(batch_.C[row]); }
 
   // J v + dC/dt of every row.
   const std::vector<T>& Cdot() {
@@ -79,8 +79,8 @@ class Probe {
   }
 
   // J and (M^-1 J^T)^T, [rows][freedom * bodies].
-  void dense(double* J, double* weighted) const {
-    std::vector<double> K(static_cast<size_t>(ops_->rows * ops_->rows));
+  void dense(ExactNumber<T>* J, ExactNumber<T>* weighted) const {
+    std::vector<ExactNumber<T>> K(static_cast<size_t>(ops_->rows * ops_->rows));
     ops_->dense(batch_, 0, bodies_, J, weighted, K.data(), ops_->rows);
   }
 

@@ -19,7 +19,7 @@ void solve_and_apply(WorldState<S>& world, Island<S>& island,
   island.system.assemble(world.bodies);
   island.system.factor();
   island.system.solve();
-  island.system.store([](Batch<S>& batch, int i, double lambda) { batch.scratch[i] = T(lambda); });
+  island.system.store([](Batch<S>& batch, int i, auto lambda) { batch.scratch[i] = T(lambda); });
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies,
                               segment.batch->scratch.data(), to.data());
@@ -74,7 +74,7 @@ void project_poses(WorldState<S>& world, Island<S>& island) {
     double worst = 0;
     island.system.load([&](const Batch<S>& batch, int i) {
       worst = std::max(worst, std::abs(double(batch.scratch[i])));
-      return -double(batch.scratch[i]);
+      return -batch.scratch[i];
     });
     // Down to round-off: from there on it does not get smaller.
     if (worst == 0 || (worst < 1e-6 && worst >= before)) return;
@@ -93,7 +93,7 @@ void project_velocities(WorldState<S>& world, Island<S>& island, double toleranc
     segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, all.velocity.data(),
                                  segment.batch->scratch.data());
   const auto rate = [](const Batch<S>& batch, int i) { return batch.scratch[i] + batch.bias[i]; };
-  island.system.load([&](const Batch<S>& batch, int i) { return -double(rate(batch, i)); });
+  island.system.load([&](const Batch<S>& batch, int i) { return -rate(batch, i); });
   island.system.choose([&](const Batch<S>& batch, int i) {
     if (!batch.law) return true;
     if (!batch.law->reported) return false;

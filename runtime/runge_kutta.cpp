@@ -22,7 +22,7 @@ void read_rates(const WorldState<S>& world, Island<S>& island, int stage) {
 
 // now = start + h sum_j weights_j rates_j
 template <class S>
-void combine(Flow<S>& flow, const double* weights, int count, typename S::Scalar h) {
+void combine(Flow<S>& flow, const ExactNumber<typename S::Scalar>* weights, int count, typename S::Scalar h) {
   using T = typename S::Scalar;
   const size_t n = flow.start.size();
   std::fill(flow.now.begin(), flow.now.end(), T(0));
@@ -36,7 +36,7 @@ void combine(Flow<S>& flow, const double* weights, int count, typename S::Scalar
 
 // The largest of an embedded estimate, number by number in units of unit(k).
 template <class S, class F>
-double largest_error(const Flow<S>& flow, const RungeKutta& method, int estimate, typename S::Scalar h, F unit) {
+double largest_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, int estimate, typename S::Scalar h, F unit) {
   const size_t n = flow.now.size();
   double weights[most_stages];
   const typename S::Scalar* rates[most_stages];
@@ -59,7 +59,7 @@ double largest_error(const Flow<S>& flow, const RungeKutta& method, int estimate
 
 // Both estimates as one.
 template <class S, class F>
-double estimated_error(const Flow<S>& flow, const RungeKutta& method, typename S::Scalar h, F unit) {
+double estimated_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h, F unit) {
   const double first = largest_error(flow, method, 0, h, unit), second = largest_error(flow, method, 1, h, unit);
   if (second == 0) return first;
   return first * first / std::sqrt(first * first + 0.01 * second * second);
@@ -86,8 +86,8 @@ void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S
 }
 
 template <class S>
-void take_stage(WorldState<S>& world, Island<S>& island, const RungeKutta& method, int stage, typename S::Scalar time,
-                typename S::Scalar h) {
+void take_stage(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
   combine(island.flow, method.a[stage], stage, h);
   set_numbers(world, island, island.flow.now.data());
@@ -98,7 +98,7 @@ void take_stage(WorldState<S>& world, Island<S>& island, const RungeKutta& metho
 }
 
 template <class S>
-void take_stages(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
+void take_stages(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                  typename S::Scalar h) {
   for (int stage = 1; stage < method.stages; ++stage) take_stage(world, island, method, stage, time, h);
   combine(island.flow, method.a[method.stages], method.stages, h);
@@ -122,14 +122,14 @@ void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bo
 }
 
 template <class S>
-void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time) {
+void settle_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   settle(world, island, time, false);
   measure_margins(island);
   read_rates(world, island, method.stages);
 }
 
 template <class S>
-double error_of_step(const Island<S>& island, const RungeKutta& method, typename S::Scalar h) {
+double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
   return estimated_error(island.flow, method, h, [&](size_t k) {
     const bool velocity = k % numbers_per_body<S> >= S::pose_numbers;
     return velocity ? 1 + std::abs(double(island.flow.start[k])) : 1.0;
@@ -137,7 +137,7 @@ double error_of_step(const Island<S>& island, const RungeKutta& method, typename
 }
 
 template <class S>
-double share_of_size(const Island<S>& island, const RungeKutta& method, typename S::Scalar h) {
+double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
   return estimated_error(island.flow, method, h, [&](size_t k) {
     const int number = static_cast<int>(k % numbers_per_body<S>), of_velocity = number - S::pose_numbers;
     const bool velocity = of_velocity >= 0;
@@ -147,7 +147,7 @@ double share_of_size(const Island<S>& island, const RungeKutta& method, typename
 }
 
 template <class S>
-void prepare_flow(Island<S>& island, const RungeKutta& method) {
+void prepare_flow(Island<S>& island, const RungeKuttaOf<S>& method) {
   Flow<S>& flow = island.flow;
   const size_t n = island.bodies.size() * numbers_per_body<S>;
   flow.start.assign(n, 0);
@@ -178,15 +178,15 @@ void go_back(WorldState<S>& world, Island<S>& island) {
 #define CDOT_INSTANTIATE(S)                                                                           \
   template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                     \
   template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                      \
-  template void take_stage(WorldState<S>&, Island<S>&, const RungeKutta&, int, S::Scalar, S::Scalar); \
+  template void take_stage(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
   template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                                  \
-  template void prepare_flow(Island<S>&, const RungeKutta&);                                          \
+  template void prepare_flow(Island<S>&, const RungeKuttaOf<S>&);                                          \
   template void keep_start(const WorldState<S>&, Island<S>&);                                         \
   template void go_back(WorldState<S>&, Island<S>&);                                                  \
-  template void take_stages(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar, S::Scalar);     \
-  template void settle_end(WorldState<S>&, Island<S>&, const RungeKutta&, S::Scalar);                 \
-  template double error_of_step(const Island<S>&, const RungeKutta&, S::Scalar);                      \
-  template double share_of_size(const Island<S>&, const RungeKutta&, S::Scalar);
+  template void take_stages(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
+  template void settle_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                 \
+  template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                      \
+  template double share_of_size(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

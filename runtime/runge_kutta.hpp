@@ -8,10 +8,18 @@
 
 namespace cdot {
 
-inline const RungeKutta& runge_kutta(Integrator integrator) { return integrator == Integrator::rk4 ? rk4 : dop853; }
+// As exact as what computes with it.
+template <class S>
+using RungeKuttaOf = RungeKutta<ExactNumber<typename S::Scalar>>;
 
 template <class S>
-void prepare_flow(Island<S>& island, const RungeKutta& method);
+const RungeKuttaOf<S>& runge_kutta(Integrator integrator) {
+  using Real = ExactNumber<typename S::Scalar>;
+  return integrator == Integrator::rk4 ? rk4<Real> : dop853<Real>;
+}
+
+template <class S>
+void prepare_flow(Island<S>& island, const RungeKuttaOf<S>& method);
 
 // The present state, with its accelerations, is what the next steps start from; and back to it.
 template <class S>
@@ -31,12 +39,12 @@ void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S
 
 // The k of a stage at start + h sum_j a_stage,j k_j.
 template <class S>
-void take_stage(WorldState<S>& world, Island<S>& island, const RungeKutta& method, int stage, typename S::Scalar time,
-                typename S::Scalar h);
+void take_stage(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                typename S::Scalar time, typename S::Scalar h);
 
 // The stages of a step of h that starts at `time`; leaves its end in the bodies, not yet projected.
 template <class S>
-void take_stages(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
+void take_stages(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                  typename S::Scalar h);
 
 // The present state onto the constraints, with the accelerations there. `fresh`: J is not yet that of the step.
@@ -45,13 +53,13 @@ void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bo
 
 // The same for the end of a step, whose k becomes the last.
 template <class S>
-void settle_end(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time);
+void settle_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 
 // The estimated error of the step [m], [rad], [m/s], [rad/s]; of velocities relative where they exceed 1.
 template <class S>
-double error_of_step(const Island<S>& island, const RungeKutta& method, typename S::Scalar h);
+double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
 // The same in units of Island::size and of a radian, of velocities relative where they exceed that per second.
 template <class S>
-double share_of_size(const Island<S>& island, const RungeKutta& method, typename S::Scalar h);
+double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
 
 }  // namespace cdot

@@ -152,8 +152,8 @@ struct StateList {
     each_of_factor(ldlt, index, visit);
   }
 
-  template <class Visitor>
-  static void each_of_factor(Ldlt& ldlt, int index, Visitor& visit) {
+  template <class Real, class Visitor>
+  static void each_of_factor(BasicLdlt<Real>& ldlt, int index, Visitor& visit) {
     auto& [first, diagonal, column_of, columns, panel_row, updates, values, l, inverse, noise, out, dependent, definite,
            any_out, factored, share, unscaled, given] = ldlt;
     visit.item("factor.K", index), visit(values);

@@ -26,7 +26,8 @@ struct Level {
   int rounds;
 };
 constexpr Level slightly{1e-10, 5}, plainly{1e-7, 12};
-constexpr double refined = 1e-13;  // of the largest b
+template <class Real>
+constexpr double refined = by_precision<Real>(1e-13);  // of the largest b
 
 }  // namespace
 
@@ -41,7 +42,7 @@ bool System<S>::drops_rows_by_round_off() {
 template <class S>
 void System<S>::soften(Softened how) {
   auto& softened = shared_[0];
-  double least = std::numeric_limits<double>::infinity(), most = 0;
+  Real least = std::numeric_limits<Real>::infinity(), most = 0;
   for (int r = 0; r < rows_; ++r) {
     softened[r] = ldlt_.diagonal(r);
     if (out_[r]) continue;
@@ -56,11 +57,11 @@ void System<S>::soften(Softened how) {
 
 // The largest of what lambda leaves of `wanted` in the rows that are free.
 template <class S>
-double System<S>::find_rest(const std::vector<double>& wanted, std::vector<double>& rest) {
+typename System<S>::Real System<S>::find_rest(const std::vector<Real>& wanted, std::vector<Real>& rest) {
   ldlt_.multiply(lambda.data(), product_.data());
-  double largest = 0;
+  Real largest = 0;
   for (int r = 0; r < rows_; ++r) {
-    rest[r] = out_[r] ? 0.0 : wanted[r] - product_[r] - softness[r] * lambda[r];
+    rest[r] = out_[r] ? Real(0) : wanted[r] - product_[r] - softness[r] * lambda[r];
     largest = std::max(largest, std::abs(rest[r]));
   }
   return largest;
@@ -68,13 +69,13 @@ double System<S>::find_rest(const std::vector<double>& wanted, std::vector<doubl
 
 // Returns the largest of what is left.
 template <class S>
-double System<S>::refine(const std::vector<double>& wanted, double scale) {
+typename System<S>::Real System<S>::refine(const std::vector<Real>& wanted, Real scale) {
   auto& [rest, change, aim, unused] = shared_;
   for (int r = 0; r < rows_; ++r)
     if (!out_[r] || broken[r]) lambda[r] = 0.0;
   const int rounds = softened_ == Softened::plainly ? plainly.rounds : slightly.rounds;
-  double left = find_rest(wanted, rest);
-  for (int round = 0; round < rounds && left > refined * scale; ++round) {
+  Real left = find_rest(wanted, rest);
+  for (int round = 0; round < rounds && left > refined<Real> * scale; ++round) {
     ldlt_.solve(rest.data(), change.data());
     for (int r = 0; r < rows_; ++r)
       if (!out_[r]) lambda[r] += change[r];
@@ -86,7 +87,7 @@ double System<S>::refine(const std::vector<double>& wanted, double scale) {
 template <class S>
 void System<S>::solve_softly() {
   auto& [rest, change, aim, unused] = shared_;
-  double scale = 0;
+  Real scale = 0;
   for (int r = 0; r < rows_; ++r)
     if (!out_[r]) scale = std::max(scale, std::abs(b[r]));
   contradicted_ = refine(b, scale) > slight(scale);
@@ -100,11 +101,11 @@ void System<S>::solve_softly() {
   refine(aim, scale);
 }
 
-#define CDOT_INSTANTIATE(S)                                                                       \
-  template bool System<S>::drops_rows_by_round_off();                                             \
-  template void System<S>::soften(Softened);                                                      \
-  template double System<S>::find_rest(const std::vector<double>&, std::vector<double>&);         \
-  template double System<S>::refine(const std::vector<double>&, double);                          \
+#define CDOT_INSTANTIATE(S)                                                                  \
+  template bool System<S>::drops_rows_by_round_off();                                        \
+  template void System<S>::soften(Softened);                                                 \
+  template System<S>::Real System<S>::find_rest(const std::vector<Real>&, std::vector<Real>&); \
+  template System<S>::Real System<S>::refine(const std::vector<Real>&, Real);                \
   template void System<S>::solve_softly();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

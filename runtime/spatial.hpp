@@ -8,6 +8,7 @@
 #include "runtime/gyroscope.hpp"
 #include "runtime/joints.hpp"
 #include "runtime/kernel.hpp"
+#include "runtime/precision.hpp"
 #include "runtime/rotation.hpp"
 #include "runtime/settings.hpp"
 
@@ -27,7 +28,8 @@ struct Wrench {
 template <class T>
 struct Spatial {
   using Scalar = T;
-  using Exact = Spatial<double>;
+  using Exact = Spatial<ExactNumber<T>>;
+  using InDoubles = Spatial<double>;
   using Pose = spatial::Pose<T>;
   using Velocity = spatial::Velocity<T>;  // also a displacement, an acceleration, or an impulse
   using InverseMass = spatial::InverseMass<T>;
@@ -44,7 +46,9 @@ struct Spatial {
   static Pose placed(const Place& p) {
     return spatial::oriented(T(p.x), T(p.y), T(p.z), T(p.e0), T(p.e1), T(p.e2), T(p.e3));
   }
-  static Place place_of(const Pose& q) { return {q.x, q.y, q.z, q.e0, q.e1, q.e2, q.e3}; }
+  static Place place_of(const Pose& q) {
+    return {double(q.x), double(q.y), double(q.z), double(q.e0), double(q.e1), double(q.e2), double(q.e3)};
+  }
   static Place place_of(const BodyDefinition& d) { return {d.x, d.y, d.z, d.e0, d.e1, d.e2, d.e3}; }
   static Velocity velocity_of(const BodyDefinition& d) {
     return {T(d.vx), T(d.vy), T(d.vz), T(d.wx), T(d.wy), T(d.wz)};
@@ -52,7 +56,7 @@ struct Spatial {
   static Wrench wrench_of(const BodyDefinition& d) {
     return {d.force_x, d.force_y, d.force_z, d.torque_x, d.torque_y, d.torque_z};
   }
-  static spatial::Symmetric<double> inertia_of(const BodyDefinition& d) {
+  static spatial::Symmetric<ExactNumber<T>> inertia_of(const BodyDefinition& d) {
     const Inertia& I = d.inertia;
     return {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz};
   }
@@ -63,10 +67,11 @@ struct Spatial {
     return I.xx == I.yy && I.yy == I.zz && I.xy == 0 && I.xz == 0 && I.yz == 0;
   }
   static InverseMass inverse_mass_of(const BodyDefinition& d) {
-    const T m = d.is_static ? T(0) : T(1 / d.mass);
+    const ExactNumber<T> one = 1;
+    const T m = d.is_static ? T(0) : T(one / d.mass);
     if (!turns(d)) return inverse_mass(m, {});
     if (isotropic(d.inertia)) {
-      const T I = T(1 / d.inertia.xx);
+      const T I = T(one / d.inertia.xx);
       return inverse_mass(m, {I, I, I, T(0), T(0), T(0)});
     }
     const Gyroscope gyroscope = gyroscope_of(0, d);
@@ -84,7 +89,7 @@ struct Spatial {
   static bool is_gyroscope(const BodyDefinition& d) { return turns(d) && !isotropic(d.inertia); }
   static Gyroscope gyroscope_of(int body, const BodyDefinition& d) {
     const auto I = inertia_of(d), inverse = spatial::inverse(I);
-    const auto cast = [](const spatial::Symmetric<double>& S) {
+    const auto cast = [](const spatial::Symmetric<ExactNumber<T>>& S) {
       return Symmetric{T(S.xx), T(S.yy), T(S.zz), T(S.xy), T(S.xz), T(S.yz)};
     };
     Gyroscope g{body, cast(I), cast(inverse), {}, {}, {}, {}, {}};
@@ -129,17 +134,16 @@ struct Spatial {
   static Velocity components(const Wrench& f) {
     return {T(f.force_x), T(f.force_y), T(f.force_z), T(f.torque_x), T(f.torque_y), T(f.torque_z)};
   }
-  // From doubles.
-  static Velocity rounded(const spatial::Velocity<double>& v) {
+  static Velocity rounded(const spatial::Velocity<ExactNumber<T>>& v) {
     return {T(v.x), T(v.y), T(v.z), T(v.wx), T(v.wy), T(v.wz)};
   }
   static void add(Wrench& sum, const Velocity& impulse, double time) {
-    sum.force_x += impulse.x / time;
-    sum.force_y += impulse.y / time;
-    sum.force_z += impulse.z / time;
-    sum.torque_x += impulse.wx / time;
-    sum.torque_y += impulse.wy / time;
-    sum.torque_z += impulse.wz / time;
+    sum.force_x += double(impulse.x / time);
+    sum.force_y += double(impulse.y / time);
+    sum.force_z += double(impulse.z / time);
+    sum.torque_x += double(impulse.wx / time);
+    sum.torque_y += double(impulse.wy / time);
+    sum.torque_z += double(impulse.wz / time);
   }
 
   static Pose moved(const Pose& q, const Velocity& d) {

@@ -14,7 +14,7 @@ namespace {
 constexpr int most_in_vain = 4;  // rounds that do not bring the error down
 // As far as Newton goes if it can: what is left of C pushes the velocities by C / h.
 template <class T>
-constexpr T round_off = std::is_same_v<T, double> ? T(1e-15) : T(1e-7);
+constexpr T round_off = T(by_precision<T>(1e-7, 1e-15));
 
 // A state that is not the end of a step: on its joints, with the factor of its exact rows.
 template <class S>

@@ -57,7 +57,7 @@ double first_event(const Flow<S>& flow) {
 
 // The state at the first event of a step of h that was seen to pass one. Returns the time until there.
 template <class S>
-typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const RungeKutta& method,
+typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
@@ -119,7 +119,7 @@ bool left_the_joints(const WorldState<S>& world, const Island<S>& island) {
 // A step of h, at its end on the constraints. Returns its error, as error_now() tells it in units of what is allowed:
 // above 1 (or no number) the state is none.
 template <class S, class F>
-double try_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method, typename S::Scalar time,
+double try_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                 typename S::Scalar h, F error_now) {
   take_stages(world, island, method, time, h);
   double error = method.error_at_end ? 0 : error_now();
@@ -133,7 +133,7 @@ double try_step(WorldState<S>& world, Island<S>& island, const RungeKutta& metho
 // Of a fixed step of `whole` what is `left`, or the largest of its halves, quarters ... whose error is not absurd: those
 // of all parts of the step add up. Returns its length; Flow::margins are those of its end. 0 if none is short enough.
 template <class S>
-typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method,
+typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                    typename S::Scalar time, typename S::Scalar left, typename S::Scalar whole) {
   using T = typename S::Scalar;
   T h = left;
@@ -150,7 +150,7 @@ typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, cons
 
 // A step as long as the error allows, but within `reach`. Returns as take_fixed_step() does.
 template <class S>
-typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, const RungeKutta& method,
+typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                       typename S::Scalar time, typename S::Scalar left, typename S::Scalar reach) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
@@ -239,7 +239,7 @@ void count_step(StepCounts& counts, typename S::Scalar h) {
 
 // From `done` on until h is reached, or passed. Returns the end.
 template <class S>
-typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const RungeKutta& method,
+typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                               typename S::Scalar done, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
@@ -281,7 +281,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
 template <class S>
 void step_runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  const RungeKutta& method = runge_kutta(world.settings.integrator);
+  const RungeKuttaOf<S>& method = runge_kutta<S>(world.settings.integrator);
   Flow<S>& flow = island.flow;
   if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
   clear_correction(world, island);

@@ -74,7 +74,7 @@ void System<S>::solve_kept_rows() {
   bool any_fixed = false;
   for (int r = 0; r < rows_; ++r) {
     if (broken[r]) lambda[r] = 0.0;
-    right_side_[r] = out_[r] ? lambda[r] : 0.0;
+    right_side_[r] = out_[r] ? lambda[r] : Real(0);
     any_fixed |= right_side_[r] != 0.0;
   }
   if (any_fixed) {
@@ -92,9 +92,9 @@ void System<S>::solve_kept_rows() {
 template <class S>
 bool System<S>::revise_active_set(bool one_by_one) {
   ldlt_.multiply(lambda.data(), product_.data());
-  double scale = 0;
+  Real scale = 0;
   for (int r = 0; r < rows_; ++r) scale = std::max(scale, std::abs(b[r]));
-  const double tolerance = 1e-12 * scale;
+  const Real tolerance = by_precision<Real>(1e-12) * scale;
   bool settled = true;
   for (int r = rows_ - 1; r >= 0; --r) {
     if (broken[r]) continue;
@@ -103,7 +103,7 @@ bool System<S>::revise_active_set(bool one_by_one) {
       fixed[r] = lambda[r] < lower[r] ? at_lower : at_upper;
       lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
     } else {
-      const double excess = product_[r] + softness[r] * lambda[r] - b[r];  // J v + bias after it
+      const Real excess = product_[r] + softness[r] * lambda[r] - b[r];  // J v + bias after it
       const bool holds = fixed[r] == at_lower ? excess >= -tolerance : excess <= tolerance;
       if (holds || lower[r] == upper[r]) continue;
       fixed[r] = free;
@@ -115,7 +115,8 @@ bool System<S>::revise_active_set(bool one_by_one) {
 }
 
 // The largest share of b by which a row within its bounds may miss it.
-constexpr double missed = 1e-9;
+template <class Real>
+constexpr double missed = by_precision<Real>(1e-9);
 // Of its own diagonal: what makes a row that depends on others one of its own.
 constexpr double slight_softness = 1e-8;
 
@@ -126,12 +127,12 @@ constexpr double slight_softness = 1e-8;
 template <class S>
 bool System<S>::part_contradicting_rows() {
   const auto bounded = [&](int r) { return std::isfinite(lower[r]) || std::isfinite(upper[r]); };
-  double scale = 0;
+  Real scale = 0;
   for (int r = 0; r < rows_; ++r) scale = std::max(scale, std::abs(b[r]));
   bool any = false;
   for (int r = 0; r < rows_; ++r)
     any |= bounded(r) && !fixed[r] && !broken[r] &&
-           std::abs(product_[r] + softness[r] * lambda[r] - b[r]) > missed * scale;
+           std::abs(product_[r] + softness[r] * lambda[r] - b[r]) > missed<Real> * scale;
   for (int r = 0; any && r < rows_; ++r)
     if (bounded(r)) softness[r] += slight_softness * ldlt_.diagonal(r);
   return any;

@@ -14,6 +14,7 @@ template <class S>
 class System {
  public:
   using T = typename S::Scalar;
+  using Real = ExactNumber<T>;
 
   // Analyses the pattern. Slots are told apart by their position in `segments`. tension_rows: how many each of
   // them has; none if empty.
@@ -70,8 +71,8 @@ class System {
   }
 
   // Vectors over all rows, in the order of the blocks; the caller's to fill between the calls.
-  std::vector<double> b, lambda;
-  std::vector<double> softness, lower, upper;
+  std::vector<Real> b, lambda;
+  std::vector<Real> softness, lower, upper;
   enum Hold : char { free = 0, at_lower = 1, at_upper = 2 };
   std::vector<char> fixed;   // Hold: where not free, lambda stays what it is
   std::vector<char> broken;  // 1: the row is no more: lambda = 0
@@ -83,15 +84,15 @@ class System {
   // met in the sense of least squares.
   void solve();
   // By how much the last solve() had to leave b unmet in a row; 0 where rows do not contradict each other.
-  double unmet(int row) const { return contradicted_ ? unmet_[static_cast<size_t>(row)] : 0.0; }
+  Real unmet(int row) const { return contradicted_ ? unmet_[static_cast<size_t>(row)] : Real(0); }
   // The share that a row has of K by itself: J M^-1 J^T of it alone.
-  double diagonal(int row) const { return ldlt_.diagonal(row); }
+  Real diagonal(int row) const { return ldlt_.diagonal(row); }
   // Of the last factor(): what it left of that; the row depends on others; x = K^-1 x of the rows that do not.
-  double pivot(int row) const { return ldlt_.pivot(row); }
+  Real pivot(int row) const { return ldlt_.pivot(row); }
   bool dependent(int row) const { return ldlt_.dependent(row); }
-  void solve_factored(double* x) { ldlt_.solve(x, x); }
+  void solve_factored(Real* x) { ldlt_.solve(x, x); }
   // y = K x of all rows.
-  void multiply(const double* x, double* y) const { ldlt_.multiply(x, y); }
+  void multiply(const Real* x, Real* y) const { ldlt_.multiply(x, y); }
   // lambda within [lower, upper], by an active set: where a bound holds it back, J v + bias need
   // not vanish. Returns the number of dependent rows of the last factorisation.
   int solve_bounded();
@@ -102,7 +103,7 @@ class System {
     int slot;
     int first, rows;
     int jacobian;     // into jacobian_ and weighted_
-    Ldlt::Place own;  // its square in K
+    typename BasicLdlt<Real>::Place own;  // its square in K
   };
   std::vector<Block> blocks, tensions;
 
@@ -120,11 +121,11 @@ class System {
 
   // J of one block times the weighted J of another over one body that they share.
   struct Product {
-    void (*add)(const Product&, const double* J, const double* weighted, double* K);
+    void (*add)(const Product&, const Real* J, const Real* weighted, Real* K);
     int J, weighted;                // into jacobian_ and weighted_
     int J_stride, weighted_stride;  // between rows
     int rows, columns;
-    Ldlt::Place to;
+    typename BasicLdlt<Real>::Place to;
   };
 
  private:
@@ -147,27 +148,27 @@ class System {
   bool part_contradicting_rows();
   void solve_rows();
   void solve_kept_rows();
-  static double slight(double scale);
-  bool misses_rows(std::vector<double>& missed);
+  static Real slight(Real scale);
+  bool misses_rows(std::vector<Real>& missed);
   void share_contradictions();
   bool drops_rows_by_round_off();
   void soften(Softened how);
-  double find_rest(const std::vector<double>& wanted, std::vector<double>& rest);
-  double refine(const std::vector<double>& wanted, double scale);
+  Real find_rest(const std::vector<Real>& wanted, std::vector<Real>& rest);
+  Real refine(const std::vector<Real>& wanted, Real scale);
   void solve_softly();
   bool kept(int row) const { return !out_[static_cast<size_t>(row)] && !ldlt_.dependent(row); }
-  void contract(std::vector<double>& w);
-  void expand(const std::vector<double>& y, std::vector<double>& to);
+  void contract(std::vector<Real>& w);
+  void expand(const std::vector<Real>& y, std::vector<Real>& to);
 
   bool built_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
   Softened softened_ = Softened::no;
   int rows_ = 0, dependent_ = 0;
-  Ldlt ldlt_;
+  BasicLdlt<Real> ldlt_;
   std::vector<Product> products_;
-  std::vector<double> jacobian_, weighted_;
-  std::vector<double> right_side_, product_;
-  std::array<std::vector<double>, 4> shared_;  // by row, while contradictions are shared out or rows refined
-  std::vector<double> unmet_;                  // by row
+  std::vector<Real> jacobian_, weighted_;
+  std::vector<Real> right_side_, product_;
+  std::array<std::vector<Real>, 4> shared_;  // by row, while contradictions are shared out or rows refined
+  std::vector<Real> unmet_;                  // by row
   std::vector<int> tension_of_;  // which of `blocks`
   std::vector<char> out_, held_;  // held_: the active set of the last solve_bounded()
 };

@@ -4,7 +4,6 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <type_traits>
 #include <utility>
 
 #include "runtime/ldlt_kernels.hpp"
@@ -17,15 +16,15 @@ namespace {
 // K += J weighted^T over the columns of one body. A and B are the numbers of rows, 0: known at run
 // time only.
 template <class S, int A, int B>
-void add_product(const typename System<S>::Product& product, const double* J, const double* weighted,
-                 double* K) {
+void add_product(const typename System<S>::Product& product, const typename System<S>::Real* J,
+                 const typename System<S>::Real* weighted, typename System<S>::Real* K) {
   const int rows = A ? A : product.rows, columns = B ? B : product.columns;
   J += product.J;
   weighted += product.weighted;
   K += product.to.at;
   for (int r = 0; r < rows; ++r) {
     for (int s = 0; s < columns; ++s) {
-      double sum = 0;
+      typename System<S>::Real sum = 0;
       for (int c = 0; c < S::freedom; ++c)
         sum += J[r * product.J_stride + c] * weighted[s * product.weighted_stride + c];
       K[r * product.to.stride + s] += sum;
@@ -34,7 +33,7 @@ void add_product(const typename System<S>::Product& product, const double* J, co
 }
 
 template <class S>
-using AddProduct = void (*)(const typename System<S>::Product&, const double*, const double*, double*);
+using AddProduct = decltype(System<S>::Product::add);
 
 template <class S, int A, int... B>
 constexpr std::array<AddProduct<S>, sizeof...(B)> products_of(std::integer_sequence<int, B...>) {
@@ -79,8 +78,8 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   const auto n = static_cast<size_t>(rows_);
   for (auto* vector : {&b, &lambda, &softness, &right_side_, &product_, &unmet_}) vector->assign(n, 0.0);
   for (auto& vector : shared_) vector.assign(n, 0.0);
-  lower.assign(n, -std::numeric_limits<double>::infinity());
-  upper.assign(n, std::numeric_limits<double>::infinity());
+  lower.assign(n, -std::numeric_limits<Real>::infinity());
+  upper.assign(n, std::numeric_limits<Real>::infinity());
   for (auto* flags : {&fixed, &broken, &out_, &held_}) flags->assign(n, 0);
   order_rows(bodies);
   list_products(bodies);
@@ -125,8 +124,7 @@ void System<S>::order_rows(const Bodies<S>& bodies) {
     for (int i : groups)
       for (int j : groups)
         if (j < i) coupled.emplace_back(i, j);
-  ldlt_.analyse(rows, coupled,
-                std::is_same_v<T, double> ? Ldlt::pivot_share : Ldlt::pivot_share_of_floats);
+  ldlt_.analyse(rows, coupled, BasicLdlt<Real>::template pivot_share<T>);
   size_t i = 0;
   for (auto* list : {&blocks, &tensions})
     for (Block& block : *list) block.first = ldlt_.first(group[i]) + within[i], ++i;
@@ -167,7 +165,7 @@ void System<S>::list_products(const Bodies<S>& bodies) {
 
 template <class S>
 void System<S>::assemble(const Bodies<S>& bodies) {
-  std::vector<double>& K = ldlt_.values();
+  std::vector<Real>& K = ldlt_.values();
   std::fill(K.begin(), K.end(), 0.0);
   for (const Block& block : blocks)
     block.batch->ops->dense(*block.batch, block.slot, bodies, jacobian_.data() + block.jacobian,

@@ -47,11 +47,11 @@ void System<S>::load_tensions(const typename S::Velocity* velocity) {
     b[row] = 0;
     if (!velocity || broken[row]) return;
     const int bodies = tension.batch->ops->bodies;
-    const double* w = jacobian_.data() + tension.jacobian + r * S::freedom * bodies;
+    const Real* w = jacobian_.data() + tension.jacobian + r * S::freedom * bodies;
     for (int k = 0; k < bodies; ++k, w += S::freedom) {
       T v[S::freedom];
       S::write(velocity[tension.batch->body[tension.slot * bodies + k]], v);
-      for (int c = 0; c < S::freedom; ++c) b[row] -= w[c] * double(v[c]);
+      for (int c = 0; c < S::freedom; ++c) b[row] -= w[c] * Real(v[c]);
     }
   });
 }
@@ -63,8 +63,8 @@ void System<S>::assemble_tensions(const Bodies<S>& all) {
   each_tension_row([&](const Block& tension, int r, int row) {
     if (broken[row]) return;
     const int bodies = tension.batch->ops->bodies, width = S::freedom * bodies;
-    const double* W = jacobian_.data() + tension.jacobian;
-    double* weighted = weighted_.data() + tension.jacobian + r * width;
+    const Real* W = jacobian_.data() + tension.jacobian;
+    Real* weighted = weighted_.data() + tension.jacobian + r * width;
     for (int k = 0; k < bodies; ++k) {
       const auto m = exact<typename Exact::InverseMass, T>(
           all.effective_mass[static_cast<size_t>(tension.batch->body[tension.slot * bodies + k])]);
@@ -83,7 +83,7 @@ void System<S>::pull(const Bodies<S>& all, typename S::Velocity* to) const {
   each_tension_row([&](const Block& tension, int r, int row) {
     if (broken[row]) return;
     const int bodies = tension.batch->ops->bodies;
-    const double* weighted = weighted_.data() + tension.jacobian + r * S::freedom * bodies;
+    const Real* weighted = weighted_.data() + tension.jacobian + r * S::freedom * bodies;
     for (int k = 0; k < bodies; ++k, weighted += S::freedom) {
       const int body = tension.batch->body[tension.slot * bodies + k];
       if (all.immovable(body)) continue;

@@ -12,7 +12,7 @@ namespace {
 
 // A pivot below this share of the largest entry is what round-off left.
 template <class T>
-constexpr double slight = std::is_same_v<T, double> ? 1e-9 : 1e-4;
+constexpr double slight = by_precision<T>(1e-4, 1e-9);
 
 // The symmetric part of -d(J^T lambda)/dq of one slot over its movable bodies, and what elimination leaves of it.
 template <class S>

@@ -18,7 +18,7 @@ namespace cdot {
 // What whole turns must be added to `angle` to come nearest to `last`.
 template <class T>
 T whole_turns(T angle, T last) {
-  constexpr T turn = T(6.283185307179586476925);
+  constexpr T turn = T(6.283185307179586476925L);
   return turn * std::round((last - angle) / turn);
 }
 

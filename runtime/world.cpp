@@ -182,14 +182,16 @@ template <class S>
 int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   const JointType* type = find_joint_type(S::dimension, definition.type);
   if (!type) throw Error(fmt::format("there is no joint `{}`", definition.type));
+  if (is_extended<T> && type - joint_types(S::dimension).data() >= std::ssize(joint_entries<S>()))
+    throw Error(fmt::format("joint `{}` was not made for extended precision", type->name));
   check_joint_bodies(*state_, *type, definition.bodies);
   JointRecord record{
       static_cast<int>(type - joint_types(S::dimension).data()), definition.bodies, {}, {}, false};
-  using Exact = typename S::Exact;
-  std::vector<typename Exact::Pose> poses;
-  for (int body : record.bodies) poses.push_back(Exact::placed(place_in_world(*state_, body)));
+  using InDoubles = typename S::InDoubles;
+  std::vector<typename InDoubles::Pose> poses;
+  for (int body : record.bodies) poses.push_back(InDoubles::placed(place_in_world(*state_, body)));
   record.parameters =
-      parameter_numbers<Exact>(record.type, definition.parameters, poses.data(), state_->time);
+      parameter_numbers<InDoubles>(record.type, definition.parameters, poses.data(), state_->time);
   move_world_points(
       *type, record.bodies, [&](int body) { return body == state_->ground; }, state_->origin, -1, record.parameters);
   double spring[spring_constants_count] = {};

@@ -51,7 +51,7 @@ struct Flow {
   using T = typename S::Scalar;
   std::vector<typename S::Pose> pose;  // RATTLE: at the start of the step, [body]
   std::vector<typename S::Velocity> velocity;
-  Broyden search;  // for the impulses of its first half
+  Broyden<ExactNumber<T>> search;  // for the impulses of its first half
   // Runge-Kutta:
   std::vector<T> start, now;  // poses and velocities as numbers, [body][S::pose_numbers + S::freedom]
   std::vector<T> rates;       // of them, [stage][...]

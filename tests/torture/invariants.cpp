@@ -32,7 +32,7 @@ constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
 // Of its row's diagonal: what a pivot of K must be to be told from round-off, and from what joints that are a little open
 // leave of a row too many.
 template <class T>
-constexpr double told_apart = std::is_same_v<T, double> ? Ldlt::pivot_share : Ldlt::pivot_share_of_floats;
+constexpr double told_apart = Ldlt::pivot_share<T>;
 
 double heaviest_over_lightest(const Scene& scene) {
   double least = std::numeric_limits<double>::infinity(), most = 0;
