@@ -102,9 +102,10 @@ bool reversible(const Scene& scene) {
                       [](const SpringDefinition& spring) { return spring.damping > 0; });
 }
 
-Trajectory composed_rattle(const Scene& scene, int steps, const std::vector<double>& times, const Stop& stop) {
-  return scene.dimension == Dimension::planar ? composed_in<Planar<double>>(scene, steps, times, stop)
-                                              : composed_in<Spatial<double>>(scene, steps, times, stop);
+Trajectory composed_rattle(const Scene& scene, int steps, const std::vector<double>& times, const Stop& stop,
+                           bool extended) {
+  return in_space_of(scene, {.extended = extended},
+                     [&]<class S>(S) { return composed_in<S>(scene, steps, times, stop); });
 }
 
 }  // namespace cdot

@@ -11,7 +11,9 @@ namespace cdot {
 // motors or limits, nothing driven in time, nothing that breaks. Only then is it of that order.
 bool reversible(const Scene& scene);
 
-// `steps` such steps from one of the times to the next. Counts::evaluations are RATTLE's steps.
-Trajectory composed_rattle(const Scene& scene, int steps, const std::vector<double>& times, const Stop& stop = {});
+// `steps` such steps from one of the times to the next, in doubles or in extended precision. Counts::evaluations are
+// RATTLE's steps.
+Trajectory composed_rattle(const Scene& scene, int steps, const std::vector<double>& times, const Stop& stop = {},
+                           bool extended = false);
 
 }  // namespace cdot

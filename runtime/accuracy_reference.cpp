@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "runtime/accuracy_compose.hpp"
+#include "runtime/run_process.hpp"
 
 namespace cdot {
 namespace {
@@ -22,7 +23,7 @@ ReferenceRun pair_of(const Refined& first, const Refined& second, const std::vec
                      Dimension dimension) {
   ReferenceRun reference;
   reference.times = times;
-  reference.made_by = first.name + " and " + second.name;
+  reference.made_by = first.name + " and " + second.name + (first.way.extended ? ", in extended precision" : "");
   reference.settled = settled_text(first) + ", " + settled_text(second);
   reference.frames = first.change() <= second.change() ? first.best.frames : second.best.frames;
   reference.disagree.assign(times.size(), std::numeric_limits<double>::infinity());
@@ -54,14 +55,76 @@ Sensitivity sensitivity_of(const Scene& scene, const ReferenceRun& reference, co
   const auto growth = [&](double share) {
     double worst = 0;
     for (unsigned seed = 0; seed < starts; ++seed) {
-      const Trajectory beside = trajectory_of(scene, way_of_dop853(), method.knob, reference.times, stop,
-                                              nudge_by(share, reference, seed));
+      const Trajectory beside =
+          trajectory_of(scene, method.way, method.knob, reference.times, stop, nudge_by(share, reference, seed));
       worst = std::max(worst, largest(distances(beside.frames, method.best.frames, scene.dimension)));
     }
     return worst;
   };
-  return {growth(1e-9) / 1e-9, growth(1e-15)};
+  const double condition = growth(1e-9) / 1e-9;
+  if (!method.way.extended) return {condition, growth(1e-15), 1e-15};
+  // No start can be given as finely as extended precision rounds: what becomes of it is told from larger changes.
+  constexpr double slight = by_precision<long double>(1e-15);
+  return {condition, condition * slight, slight};
 }
+
+// What three methods may cost, for all that are asked.
+class Purse {
+ public:
+  explicit Purse(const Effort& each) : each_(each), start_(cpu_now()) {}
+  // For one, where so many are still to come.
+  Effort share(int to_come) const {
+    const double left = 3 * each_.cpu - (cpu_now() - start_);
+    return {each_.evaluations, std::min(each_.cpu, left / to_come)};
+  }
+
+ private:
+  Effort each_;
+  double start_;
+};
+
+// Methods one after the other, in one precision, and the two of them that agree best.
+class Comparison {
+ public:
+  Comparison(const Scene& scene, const std::vector<double>& times, bool extended, const Stop& stop)
+      : scene_(scene), times_(times), extended_(extended), stop_(stop) {}
+
+  void ask(Integrator integrator, const Effort& effort) {
+    Refined method = refined(integrator, extended_, scene_, times_, effort, stop_);
+    for (const Refined& other : methods_) {
+      const ReferenceRun pair = pair_of(other, method, times_, scene_.dimension);
+      if (!best_.frames.empty() && pair.disagreement() >= best_.disagreement()) continue;
+      best_ = pair;
+      finer_would_help_ = !other.at_its_floor || !method.at_its_floor;
+    }
+    methods_.push_back(std::move(method));
+  }
+  // Runge-Kutta on accelerations against RATTLE on impulses, which share no formula but the kernels'; or, where the
+  // motion is not reversible, against a Runge-Kutta method of another order.
+  void ask_two(const Purse& purse) {
+    ask(Integrator::dop853, purse.share(3));
+    Effort effort = purse.share(2);
+    if (!reversible(scene_)) return ask(Integrator::rk4, effort);
+    // RATTLE takes about as many steps as the first has evaluations, or it does not get there.
+    effort.evaluations = std::min(effort.evaluations, 5 * first().evaluations);
+    ask(Integrator::rattle, effort);
+  }
+  bool agrees() const { return best_.disagreement() <= wanted_agreement; }
+  // By more than chance.
+  bool better_than(const Comparison& other) const { return 2 * best_.disagreement() < other.best_.disagreement(); }
+  bool finer_would_help() const { return finer_would_help_; }
+  const Refined& first() const { return methods_.front(); }
+  ReferenceRun& best() { return best_; }
+
+ private:
+  const Scene& scene_;
+  const std::vector<double>& times_;
+  bool extended_;
+  const Stop& stop_;
+  std::vector<Refined> methods_;
+  ReferenceRun best_;
+  bool finer_would_help_ = false;
+};
 
 }  // namespace
 
@@ -83,32 +146,22 @@ double ReferenceRun::agreed_until(double bound) const {
   return until;
 }
 
-// Runge-Kutta on accelerations against RATTLE on impulses, which share no formula but the kernels'. Where these do not
-// agree as wanted, and where the motion is not reversible, a Runge-Kutta method of another order is asked as well; the
-// two that agree best are believed.
+// By two methods in doubles; where these do not agree as wanted, by the same in extended precision; and where these do not
+// either, a third is asked in the precision in which they agree better.
 ReferenceRun make_reference_run(const Scene& scene, const Effort& effort, const Stop& stop) {
   const std::vector<double> times = equal_times(scene.duration, sample_count);
-  std::vector<Refined> methods = {refined_dop853(scene, times, effort, stop)};
-  ReferenceRun best;
-  bool finer_would_help = false;
-  const auto compare_with_the_others = [&](Refined method) {
-    for (const Refined& other : methods) {
-      const ReferenceRun pair = pair_of(other, method, times, scene.dimension);
-      if (!best.frames.empty() && pair.disagreement() >= best.disagreement()) continue;
-      best = pair;
-      finer_would_help = !other.at_its_floor || !method.at_its_floor;
-    }
-    methods.push_back(std::move(method));
-    return best.disagreement() <= wanted_agreement;
-  };
-  if (reversible(scene)) {
-    // RATTLE takes about as many steps as the first has evaluations, or it does not get there.
-    const Effort own{std::min(effort.evaluations, 5 * methods[0].evaluations), effort.cpu};
-    if (compare_with_the_others(refined_rattle(scene, times, own, stop))) return best;
+  const Purse purse(effort);
+  Comparison doubles(scene, times, false, stop), extended(scene, times, true, stop);
+  for (Comparison* comparison : {&doubles, &extended}) {
+    comparison->ask_two(purse);
+    if (comparison->agrees()) return comparison->best();
   }
-  if (compare_with_the_others(refined_rk4(scene, times, effort, stop)) || !methods[0].found()) return best;
-  best.sensitivity = sensitivity_of(scene, best, methods[0], stop);
-  best.verdict = verdict_on(best.disagreement(), best.sensitivity, finer_would_help);
+  Comparison& better = extended.better_than(doubles) ? extended : doubles;
+  if (reversible(scene)) better.ask(Integrator::rk4, purse.share(1));
+  ReferenceRun& best = better.best();
+  if (better.agrees() || !better.first().found()) return best;
+  best.sensitivity = sensitivity_of(scene, best, better.first(), stop);
+  best.verdict = verdict_on(best.disagreement(), best.sensitivity, better.finer_would_help());
   return best;
 }
 

@@ -14,7 +14,8 @@ inline constexpr double wanted_agreement = 1e-12;  // [m, rad], of a reference t
 // How far a change of the start takes the motion, at its worst sample.
 struct Sensitivity {
   double condition = 0;  // the growth of a change by 1e-9 of the largest place, speed and spin, and 1e-9 rad
-  double round_off = 0;  // [m, rad] what one by 1e-15 of them comes to, on the way through round-off
+  double round_off = 0;  // [m, rad] what one by `slight` of them comes to, on the way through round-off
+  double slight = 1e-15;  // in extended precision less
   bool known() const { return condition > 0; }
 };
 
@@ -38,7 +39,8 @@ struct ReferenceRun {
   double agreed_until(double bound) const;
 };
 
-// Made by two methods, each refined until it changes no more or has used up its effort.
+// Made by two methods, each refined until it changes no more or has used up its effort; in extended precision where
+// doubles do not agree as wanted.
 ReferenceRun make_reference_run(const Scene& scene, const Effort& effort = {}, const Stop& stop = {});
 
 // As `cdot-run simulate -o` writes it; its last row ends the comparison. Throws cdot::Error.

@@ -10,16 +10,30 @@
 namespace cdot {
 namespace {
 
-constexpr double settled = 3e-13;  // [m, rad]: a change that is round-off
+constexpr double settled = 3e-13;  // [m, rad]: a change that is round-off of doubles
 constexpr double small = 1e-6;     // a change from which on
 constexpr int patience = 3;        // so many finer knobs without a smaller one mean that round-off is reached
 
+// The trajectory of one knob.
+Trajectory made(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
+                const Stop& stop) {
+  if (way.integrator == Integrator::rattle) return composed_rattle(scene, knob.steps, times, stop, way.extended);
+  return trajectory_of(scene, way, knob, times, stop);
+}
+
+std::string name_of_method(Integrator integrator) {
+  const std::string name(name_of(integrators, integrator));
+  return integrator == Integrator::rattle ? "composed " + name : name;
+}
+
+}  // namespace
+
 // Where two knobs, one after the other, differ least, the finer one is the best: before, the method's error, and behind
-// it round-off is larger. `run` makes the trajectory of one knob.
-template <class F>
-Refined refine(std::string name, const Scene& scene, const Way& way, std::size_t samples, const Effort& effort,
-               const Stop& stop, F run) {
-  Refined refined{std::move(name), {}, {}, {}, false, 0};
+// it round-off is larger.
+Refined refined(Integrator integrator, bool extended, const Scene& scene, const std::vector<double>& times,
+                const Effort& effort, const Stop& stop) {
+  const Way way{.integrator = integrator, .extended = extended};
+  Refined refined{name_of_method(integrator), way, {}, {}, {}, false, 0};
   Trajectory before;
   const double start = cpu_now();
   const Stop enough = [&] { return (stop && stop()) || cpu_now() - start > effort.cpu; };
@@ -27,12 +41,12 @@ Refined refine(std::string name, const Scene& scene, const Way& way, std::size_t
   int idle = 0;
   for (int level = 0; has_level(way, level) && !refined.at_its_floor && !enough(); ++level) {
     if (refined.evaluations + 2 * last > effort.evaluations) break;  // no knob costs more than twice the one before
-    Trajectory now = run(knob_at(way, level), enough);
+    Trajectory now = made(scene, way, knob_at(way, level), times, enough);
     last = now.counts.evaluations;
     refined.evaluations += last;
     if (now.stopped) break;
-    const bool whole = now.finite && now.frames.size() == samples;
-    if (whole && before.frames.size() == samples) {
+    const bool whole = now.finite && now.frames.size() == times.size();
+    if (whole && before.frames.size() == times.size()) {
       std::vector<double> changes = distances(now.frames, before.frames, scene.dimension);
       const double change = largest(changes), best = refined.change();
       idle = change < best || best > small ? 0 : idle + 1;
@@ -44,29 +58,8 @@ Refined refine(std::string name, const Scene& scene, const Way& way, std::size_t
   return refined;
 }
 
-Refined refined_runge_kutta(const Scene& scene, const Way& way, const std::vector<double>& times, const Effort& effort,
-                            const Stop& stop) {
-  return refine(std::string(name_of(integrators, way.integrator)), scene, way, times.size(), effort, stop,
-                [&](const Knob& knob, const Stop& enough) { return trajectory_of(scene, way, knob, times, enough); });
-}
-
-}  // namespace
-
 double Refined::change() const {
   return found() ? largest(changes) : std::numeric_limits<double>::infinity();
-}
-
-Way way_of_dop853() { return {Integrator::dop853}; }
-
-Refined refined_dop853(const Scene& scene, const std::vector<double>& times, const Effort& effort, const Stop& stop) {
-  return refined_runge_kutta(scene, way_of_dop853(), times, effort, stop);
-}
-Refined refined_rk4(const Scene& scene, const std::vector<double>& times, const Effort& effort, const Stop& stop) {
-  return refined_runge_kutta(scene, {Integrator::rk4}, times, effort, stop);
-}
-Refined refined_rattle(const Scene& scene, const std::vector<double>& times, const Effort& effort, const Stop& stop) {
-  return refine("composed rattle", scene, {Integrator::rattle}, times.size(), effort, stop,
-                [&](const Knob& knob, const Stop& enough) { return composed_rattle(scene, knob.steps, times, enough); });
 }
 
 std::vector<double> distances(const std::vector<Frame>& a, const std::vector<Frame>& b, Dimension dimension) {

@@ -16,6 +16,7 @@ struct Effort {
 
 struct Refined {
   std::string name;  // "dop853"
+  Way way;
   Trajectory best;
   Knob knob;                    // that made it
   std::vector<double> changes;  // from the knob before, at each time [m, rad]
@@ -25,13 +26,10 @@ struct Refined {
   bool found() const { return !best.frames.empty(); }
 };
 
-// Runge-Kutta methods on accelerations, and RATTLE, composed, on impulses; all with fixed steps, ever more of them.
-Refined refined_dop853(const Scene& scene, const std::vector<double>& times, const Effort& effort, const Stop& stop);
-Refined refined_rk4(const Scene& scene, const std::vector<double>& times, const Effort& effort, const Stop& stop);
-Refined refined_rattle(const Scene& scene, const std::vector<double>& times, const Effort& effort, const Stop& stop);
-
-// What refined_dop853 runs, with a knob.
-Way way_of_dop853();
+// A Runge-Kutta method on accelerations, or RATTLE, composed, on impulses: with fixed steps, ever more of them; in
+// doubles or in extended precision.
+Refined refined(Integrator integrator, bool extended, const Scene& scene, const std::vector<double>& times,
+                const Effort& effort, const Stop& stop);
 
 // The largest distance or angle at each time; both are whole.
 std::vector<double> distances(const std::vector<Frame>& a, const std::vector<Frame>& b, Dimension dimension);

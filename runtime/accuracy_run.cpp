@@ -32,13 +32,6 @@ void run(BasicWorld<S>& world, const Knob& knob, const std::vector<double>& time
   }
 }
 
-// f(scene, space tag) for the space and precision in which the way computes.
-template <class F>
-auto in_space_of(const Scene& scene, const Way& way, F f) {
-  if (scene.dimension == Dimension::planar) return way.single ? f(Planar<float>{}) : f(Planar<double>{});
-  return way.single ? f(Spatial<float>{}) : f(Spatial<double>{});
-}
-
 template <class T, class Random>
 void move_body(World<T>& world, int body, const Nudge& by, Random off) {
   const auto q = world.place(body);
@@ -54,8 +47,8 @@ void move_body(SpatialWorld<T>& world, int body, const Nudge& by, Random off) {
   const auto turned = spatial::turned_by(world.pose(body), {T(by.angle * off()), T(by.angle * off()), T(by.angle * off())});
   world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.z + by.speed * off(),
                             v.wx + by.spin * off(), v.wy + by.spin * off(), v.wz + by.spin * off()});
-  world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.z + by.position * off(), turned.e0,
-                        turned.e1, turned.e2, turned.e3});
+  world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.z + by.position * off(),
+                        double(turned.e0), double(turned.e1), double(turned.e2), double(turned.e3)});
 }
 
 template <class S>

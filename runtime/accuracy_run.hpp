@@ -21,6 +21,15 @@ struct Trajectory {
   bool finite = true, stopped = false;
 };
 
+// f(space) for the space and precision in which the way computes.
+template <class F>
+auto in_space_of(const Scene& scene, const Way& way, F f) {
+  const bool planar = scene.dimension == Dimension::planar;
+  if (way.extended) return planar ? f(Planar<long double>{}) : f(Spatial<long double>{});
+  if (way.single) return planar ? f(Planar<float>{}) : f(Spatial<float>{});
+  return planar ? f(Planar<double>{}) : f(Spatial<double>{});
+}
+
 // A start beside the scene's: every number of every body off by up to as much, then back onto the joints.
 struct Nudge {
   double position = 0, angle = 0, speed = 0, spin = 0;  // [m], [rad], [m/s], [rad/s]

@@ -59,7 +59,8 @@ Json json_of(const ReferenceRun& reference) {
           {"settled", reference.settled},
           {"times", reference.times},
           {"disagree", reference.disagree},
-          {"sensitivity", {reference.sensitivity.condition, reference.sensitivity.round_off}},
+          {"sensitivity",
+           {reference.sensitivity.condition, reference.sensitivity.round_off, reference.sensitivity.slight}},
           {"verdict", reference.verdict},
           {"frames", frames}};
 }
@@ -70,7 +71,7 @@ ReferenceRun reference_of(const Json& json) {
   reference.times = json.at("times").get<std::vector<double>>();
   reference.disagree = json.at("disagree").get<std::vector<double>>();
   const Json& sensitivity = json.at("sensitivity");
-  reference.sensitivity = {sensitivity.at(0), sensitivity.at(1)};
+  reference.sensitivity = {sensitivity.at(0), sensitivity.at(1), sensitivity.at(2)};
   reference.verdict = json.at("verdict");
   for (const Json& frame : json.at("frames")) reference.frames.push_back(frame_of(frame));
   return reference;

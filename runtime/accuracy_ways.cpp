@@ -55,6 +55,7 @@ std::string name_of(const Way& way) {
   name += way.solver == direct ? ", direct" : fmt::format(", {} iterations", way.iterations);
   if (way.adaptive) name += ", adaptive";
   if (way.single) name += ", float";
+  if (way.extended) name += ", extended precision";
   return name;
 }
 

@@ -15,6 +15,7 @@ struct Way {
   int iterations = 10;    // of the iterative solver
   bool single = false;    // in float
   bool adaptive = false;  // its knob is the local error, not the step
+  bool extended = false;  // in extended precision: for references, never compared
   bool operator==(const Way&) const = default;
 };
 

@@ -89,9 +89,9 @@ std::string sensitivity_text(const ReferenceRun& reference) {
   const Sensitivity& s = reference.sensitivity;
   if (!s.known()) return {};
   return fmt::format(
-      "                  starts that differ by 1e-9 of their numbers end {:.1e} apart, by 1e-15: {:.1e}\n"
+      "                  starts that differ by 1e-9 of their numbers end {:.1e} apart, by {:.0e}: {:.1e}\n"
       "                  {}\n",
-      1e-9 * s.condition, s.round_off, reference.verdict);
+      1e-9 * s.condition, s.slight, s.round_off, reference.verdict);
 }
 
 }  // namespace

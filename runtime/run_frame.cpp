@@ -19,12 +19,13 @@ double linear(double p, double q, double s) { return (1 - s) * p + s * q; }
 
 template <class T>
 BodyState state_of(const planar::Place& q, const planar::Velocity<T>& v) {
-  return {q.x, q.y, q.angle, v.x, v.y, v.w};
+  return {q.x, q.y, q.angle, double(v.x), double(v.y), double(v.w)};
 }
 
 template <class T>
 BodyState state_of(const spatial::Place& q, const spatial::Velocity<T>& v) {
-  return {q.x, q.y, 0, v.x, v.y, 0, q.z, v.z, q.e0, q.e1, q.e2, q.e3, v.wx, v.wy, v.wz};
+  return {q.x, q.y,  0,    double(v.x), double(v.y), 0,    q.z,          double(v.z),
+          q.e0, q.e1, q.e2, q.e3,        double(v.wx), double(v.wy), double(v.wz)};
 }
 
 spatial::Pose<double> orientation_of(const BodyState& b) {
@@ -66,6 +67,7 @@ Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
 
 #define CDOT_INSTANTIATE(S) template Frame frame_of(const BasicWorld<S>&, double, int);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+CDOT_FOR_EACH_EXTENDED_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
 bool finite(const Frame& frame) {

@@ -13,9 +13,9 @@ namespace {
 
 // [m], [rad], and per second: what a start may be off unreported, and how well it is projected.
 template <class T>
-constexpr double start_tolerance = std::is_same_v<T, double> ? 1e-6 : 1e-4;
+constexpr double start_tolerance = std::is_same_v<T, float> ? 1e-4 : 1e-6;
 template <class T>
-constexpr double start_projected = std::is_same_v<T, double> ? 1e-12 : 1e-5;
+constexpr double start_projected = by_precision<T>(1e-5, 1e-12);
 
 // A line on stderr that is written over, at most a few times a second.
 class Progress {
@@ -222,6 +222,7 @@ RunResult simulate(const Scene& scene, const RunOptions& options, std::string& w
 
 #define CDOT_INSTANTIATE(S) template BasicWorld<S> world_at_start(const Scene&, std::string&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+CDOT_FOR_EACH_EXTENDED_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -131,6 +131,7 @@ std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world,
   template BasicWorld<S> build_world_in<S>(const Scene&); \
   template std::string inconsistency_report(const Scene&, const BasicWorld<S>&, double);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+CDOT_FOR_EACH_EXTENDED_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
 }  // namespace cdot

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -62,20 +63,36 @@ CommandResult cdot_run(const std::string& arguments) {
   return run_command(fmt::format("'{}' {}", CDOT_RUN, arguments));
 }
 
-Reference read_reference(const std::string& problem, double until) {
-  const auto json = nlohmann::json::parse(
-      read_text(source_dir() / "tests/scenes/reference" / (problem + ".json")));
-  Reference reference{json["error_estimate"], {}};
+namespace {
+
+std::vector<ReferenceSample> samples_of(const nlohmann::json& json, double until) {
+  std::vector<ReferenceSample> samples;
   for (const auto& sample : json["samples"]) {
     if (sample["t"].get<double>() > until) continue;
-    ReferenceSample& added = reference.samples.emplace_back(ReferenceSample{sample["t"], {}});
+    ReferenceSample& added = samples.emplace_back(ReferenceSample{sample["t"], {}});
     for (const auto& [name, v] : sample["bodies"].items())
       added.bodies[name] = v.size() == 6
                                ? BodyState{v[0], v[1], v[2], v[3], v[4], v[5]}
                                : BodyState{v[0], v[1], 0,    v[7], v[8],  0,     v[2], v[9],
                                            v[3], v[4], v[5], v[6], v[10], v[11], v[12]};
   }
-  return reference;
+  return samples;
+}
+
+nlohmann::json json_at(const fs::path& path) { return nlohmann::json::parse(read_text(source_dir() / path)); }
+
+}  // namespace
+
+Reference read_reference(const std::string& problem, double until) {
+  const auto json = json_at("tests/scenes/reference/" + problem + ".json");
+  return {json["error_estimate"], samples_of(json, until)};
+}
+
+Reference read_reference_of_peers(const std::string& problem) {
+  const auto json = json_at("tests/bench/peers/references/" + problem + ".json");
+  double accuracy = 0;
+  for (const auto& difference : json["routes_differ_by"]) accuracy = std::max(accuracy, difference.get<double>());
+  return {accuracy, samples_of(json, std::numeric_limits<double>::infinity())};
 }
 
 std::vector<fs::path> all_scene_files() {

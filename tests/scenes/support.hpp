@@ -54,6 +54,8 @@ struct Reference {
   std::vector<ReferenceSample> samples;
 };
 Reference read_reference(const std::string& problem, double until);
+// Of tests/bench/peers: made by code that shares nothing with the runtime's.
+Reference read_reference_of_peers(const std::string& problem);
 
 // The largest differences from the reference over its samples and bodies, in SI units.
 struct Distance {
