@@ -1,6 +1,6 @@
 // The spaces that the runtime is compiled for. Every stage is one template, instantiated for each of them by
 // CDOT_FOR_EACH_SPACE(declaration), where `declaration` is a macro of the space. The same files once more, with
-// CDOT_EXTENDED, are the library of Worlds in extended precision: what does not link it does not pay for these.
+// CDOT_EXTENDED, are a library apart, of Worlds in extended precision without snapshots, changes and diagnoses.
 #pragma once
 
 #include "runtime/planar.hpp"

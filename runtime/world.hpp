@@ -44,7 +44,7 @@ struct Inconsistency {
   double value;
 };
 
-// S is a space: Planar<double>, Planar<float>, Spatial<double>, Spatial<float>.
+// S is a space: Planar<double>, Planar<float>, Spatial<double>, Spatial<float>; of long double: see spaces.hpp.
 template <class S>
 class BasicWorld {
  public:
