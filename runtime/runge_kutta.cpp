@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "runtime/events.hpp"
 #include "runtime/hold.hpp"
@@ -129,11 +130,13 @@ void settle_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
 }
 
 template <class S>
-double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
+double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed) {
+  constexpr double epsilon = std::numeric_limits<typename S::Scalar>::epsilon();
   return estimated_error(island.flow, method, h, [&](size_t k) {
+    const double size = std::abs(double(island.flow.start[k]));
     const bool velocity = k % numbers_per_body<S> >= S::pose_numbers;
-    return velocity ? 1 + std::abs(double(island.flow.start[k])) : 1.0;
-  });
+    return std::max(velocity ? 1 + size : 1.0, epsilon * size / allowed);
+  }) / allowed;
 }
 
 template <class S>
@@ -185,7 +188,7 @@ void go_back(WorldState<S>& world, Island<S>& island) {
   template void go_back(WorldState<S>&, Island<S>&);                                                  \
   template void take_stages(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
   template void settle_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                 \
-  template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                      \
+  template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);              \
   template double share_of_size(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

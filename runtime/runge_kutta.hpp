@@ -55,9 +55,10 @@ void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bo
 template <class S>
 void settle_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 
-// The estimated error of the step [m], [rad], [m/s], [rad/s]; of velocities relative where they exceed 1.
+// The estimated error of the step over what is allowed [m], [rad], [m/s], [rad/s]: of velocities relative where they
+// exceed 1, of no number less than its last bit.
 template <class S>
-double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
+double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed);
 // The same in units of Island::size and of a radian, of velocities relative where they exceed that per second.
 template <class S>
 double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);

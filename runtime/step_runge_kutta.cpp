@@ -17,6 +17,7 @@ namespace {
 // In one step(), and in a row; beyond them its rest is left to Euler's: something chatters, or jams.
 constexpr int most_events = 32, most_slivers = 1000;
 constexpr double sliver = 1e-4;  // of the longest step so far
+constexpr double crawl = 1e-6;   // of step(): shorter is a sliver too, as where the error asked for is below round-off
 constexpr int most_rejections = 30;  // in a row
 // The same of attempts that do not end on the joints, or only where these undo the motion: at steps hundreds of times
 // shorter too. Then no length is to blame, but velocities that contradict each other, as a motor's and a bar's.
@@ -159,7 +160,7 @@ typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, c
   int astray = 0;
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
     const double error = try_step(world, island, method, time, h, [&] {
-      return error_of_step(island, method, h) / world.settings.local_error;
+      return error_of_step(island, method, h, world.settings.local_error);
     });
     // 0.9 of the step that would just do; a NaN shrinks like the worst.
     const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
@@ -263,7 +264,8 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
       return h;
     }
     flow.longest = std::max(flow.longest, flow.length);
-    flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
+    const T shortest = std::max(T(sliver) * flow.longest, T(crawl) * h);
+    flow.slivers = flow.length < shortest ? flow.slivers + 1 : 0;
     if (flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts.events;
