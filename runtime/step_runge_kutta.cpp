@@ -108,7 +108,7 @@ bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S
   return !bends_the_path(world, island, double(h));
 }
 
-// The end was not brought onto the joints, where the start was on them: a step too far for Newton, past where they reach.
+// The end was not brought onto the joints, where the start was on them: a step too far for Newton, beyond their reach.
 template <class S>
 bool left_the_joints(const WorldState<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;
