@@ -37,8 +37,10 @@ Cell ask(const Question& question, bool slow) {
   if (too_large) asked.longest = longest_of_them;
   for (Outcome outcome; judge(*question.hard_case, asked, outcome); ++asked.setting) {
     cell.settings.push_back(outcome);
-    const bool holds = outcome.kind == Outcome::survives;
-    if (outcome.kind == Outcome::cannot_say || (slow && (holds || large)) || (too_large && holds)) return cell;
+    const bool holds = outcome.kind == Outcome::survives, died_at_once = outcome.setting.empty();
+    if (outcome.kind == Outcome::cannot_say || died_at_once || (slow && (holds || large)) ||
+        (too_large && (holds || outcome.kind == Outcome::too_slow)))
+      return cell;
   }
   const int best = int(cell.best());
   if (large || cell.settings[cell.best()].kind == Outcome::survives) return cell;
