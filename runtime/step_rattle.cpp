@@ -16,17 +16,49 @@ constexpr int most_in_vain = 4;  // rounds that do not bring the error down
 template <class T>
 constexpr T round_off = T(by_precision<T>(1e-7, 1e-15));
 
-// A state that is not the end of a step: on its joints, with the factor of its exact rows.
+// Rows without a position tell the first half of a step nothing: it repeats what they exerted in the second half of the
+// one before. From 0 on that would be nothing and twice their share by turns, for ever. Here half of what they exert in h.
 template <class S>
-void begin(WorldState<S>& world, Island<S>& island) {
-  if (island.evaluated) return;
+void exert_at_start(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    for (int i = segment.begin * batch.ops->rows; batch.law && i < segment.end * batch.ops->rows; ++i)
+      batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
+  }
+  const T time = T(world.time);
+  accelerate(world, island, time);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
+      batch.lambda[i] *= batch.law ? T(0) : h / 2;
+  }
+  evaluate_anew(world, island, time);  // gamma took the place of dC/dt
+}
+
+template <class S>
+bool has_velocity_rows(const Island<S>& island) {
+  return std::any_of(island.segments.begin(), island.segments.end(), [](const Segment<S>& segment) {
+    const auto& kinds = segment.batch->kinds;
+    return !segment.batch->law && std::find(kinds.begin(), kinds.end(), RowKind::velocity) != kinds.end();
+  });
+}
+
+// A state that is not the end of a step: on its joints, with the factor of its exact rows. Returns by how much the
+// impulses of the rows belong to this step: h over the step that they are of.
+template <class S>
+typename S::Scalar begin(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  if (island.evaluated) return world.last_step > 0 ? h / T(world.last_step) : T(0);
   settle_poses(world, island);
   evaluate_anew(world, island, typename S::Scalar(world.time));
   clear_correction(world, island);
   hold_velocities(world, island);
-  fill_lambda(island, typename S::Scalar(0));
+  fill_lambda(island, T(0));
   island.evaluated = true;
   island.factored = world.settings.solver == Solver::direct;
+  if (has_velocity_rows(island)) exert_at_start(world, island, h);
+  return T(1);
 }
 
 // velocity += h dv/dt of all forces, springs on coordinates among them, at the velocities that are in flow.velocity.
@@ -51,9 +83,7 @@ void kick(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 
 // What the joints exerted at the end of the step before, they exert at the start of this one: the first guess.
 template <class S>
-void guess_impulses(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  const T share = world.last_step > 0 ? h / T(world.last_step) : T(0);
+void guess_impulses(WorldState<S>& world, Island<S>& island, typename S::Scalar share) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int rows = batch.ops->rows;
@@ -165,12 +195,12 @@ void hold_end(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 
 // Half a kick at the start, and what the joints are expected to exert there.
 template <class S>
-void start_half(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void start_half(WorldState<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
   for (size_t k = 0; k < island.bodies.size(); ++k)
     world.bodies.velocity[island.bodies[k]] = island.flow.velocity[k];
   clear_correction(world, island);
   kick(world, island, h / 2);
-  guess_impulses(world, island, h);
+  guess_impulses(world, island, share);
 }
 
 // Where the drift of RATTLE does not find the joints, and by sweeps: poses go there with J renewed on the way. The
@@ -193,15 +223,15 @@ void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h) 
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   Flow<S>& flow = island.flow;
-  begin(world, island);
+  const T share = begin(world, island, h);
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     flow.pose[k] = all.pose[island.bodies[k]];
     flow.velocity[k] = all.velocity[island.bodies[k]];
   }
-  start_half(world, island, h);
+  start_half(world, island, h, share);
   const bool by_sweeps = world.settings.solver == Solver::iterative;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
-    if (!by_sweeps) start_half(world, island, h);
+    if (!by_sweeps) start_half(world, island, h, share);
     drift_with_renewed_directions(world, island, h);
   }
   // The velocity that the end will have, to second order: 2 v_half - v_start.
