@@ -178,14 +178,14 @@ void go_back(WorldState<S>& world, Island<S>& island) {
   island.residual = island.flow.residual;
 }
 
-#define CDOT_INSTANTIATE(S)                                                                           \
-  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                     \
-  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                      \
+#define CDOT_INSTANTIATE(S)                                                                                \
+  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                          \
+  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                           \
   template void take_stage(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
-  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                                  \
+  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                                       \
   template void prepare_flow(Island<S>&, const RungeKuttaOf<S>&);                                          \
-  template void keep_start(const WorldState<S>&, Island<S>&);                                         \
-  template void go_back(WorldState<S>&, Island<S>&);                                                  \
+  template void keep_start(const WorldState<S>&, Island<S>&);                                              \
+  template void go_back(WorldState<S>&, Island<S>&);                                                       \
   template void take_stages(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
   template void settle_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                 \
   template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);              \
