@@ -17,7 +17,6 @@ namespace {
 // In one step(), and in a row; beyond them its rest is left to Euler's: something chatters, or jams.
 constexpr int most_events = 32, most_slivers = 1000;
 constexpr double sliver = 1e-4;  // of the longest step so far
-constexpr double crawl = 1e-6;   // of step(): shorter is a sliver too, as where the error asked for is below round-off
 constexpr int most_rejections = 30;  // in a row
 // The same of attempts that do not end on the joints, or only where these undo the motion: at steps hundreds of times
 // shorter too. Then no length is to blame, but velocities that contradict each other, as a motor's and a bar's.
@@ -264,8 +263,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
       return h;
     }
     flow.longest = std::max(flow.longest, flow.length);
-    const T shortest = std::max(T(sliver) * flow.longest, T(crawl) * h);
-    flow.slivers = flow.length < shortest ? flow.slivers + 1 : 0;
+    flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
     if (flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed) {
       flow.length = go_to_event(world, island, method, time, flow.length);
       ++world.counts.events;
