@@ -52,10 +52,8 @@ class OdeRun final : public SteppedRun {
 
   void step(double h) override {
     for (const auto& [body, torque] : torques_) dBodyAddTorque(body, torque[0], torque[1], torque[2]);
-    if (sweeps_ > 0)
-      dWorldQuickStep(world_, h);
-    else
-      dWorldStep(world_, h);
+    const int done = sweeps_ > 0 ? dWorldQuickStep(world_, h) : dWorldStep(world_, h);
+    if (!done) throw std::runtime_error("ODE: no memory for the step");
   }
   State state(int body) const override {
     const dBodyID b = bodies_[std::size_t(body)];

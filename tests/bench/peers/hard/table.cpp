@@ -46,7 +46,6 @@ float, and is held to the bounds for floats.
 // Why some are not asked, by the beginnings of names.
 const std::vector<std::pair<std::string, std::string>>& not_asked() {
   static const std::vector<std::pair<std::string, std::string>> all = {
-      {"joint_grid", "1,200 pins and more in as many loops as bodies: a run of all engines takes hours"},
       {"gimbal_lock", "adapters know no universal and no six-degree joints"},
       {"pulley_at_zero_rope", "adapters know no pulleys"},
       {"axis_not_unit, the zero axis", "what is judged is that Cdot refuses it, and says why"},
