@@ -9,6 +9,13 @@ struct Words {
   bool held_orientations = false, motors = false, stops = false, springs = false, soft_joints = false, damping = false,
        sleep = false;
 };
+inline constexpr Words all_words{.held_orientations = true,
+                                 .motors = true,
+                                 .stops = true,
+                                 .springs = true,
+                                 .soft_joints = true,
+                                 .damping = true,
+                                 .sleep = true};
 
 // Throws CannotSay.
 inline void check(const Problem& problem, const Words& known) {

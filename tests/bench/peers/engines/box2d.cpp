@@ -21,13 +21,7 @@ class Box2dRun final : public SteppedRun {
         velocity_iterations_(velocity_iterations),
         position_iterations_(position_iterations),
         last_(h) {
-    check(problem, {.held_orientations = true,
-                    .motors = true,
-                    .stops = true,
-                    .springs = true,
-                    .soft_joints = true,
-                    .damping = true,
-                    .sleep = true});
+    check(problem, all_words);
     world_.SetAllowSleeping(problem.sleep_after > 0);
     world_.SetContinuousPhysics(false);
     const b2BodyDef ground;

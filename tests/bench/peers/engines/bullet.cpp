@@ -27,13 +27,7 @@ class BulletRun final : public SteppedRun {
         dantzig_solver_(&dantzig_),
         world_(&parts_.dispatcher, &parts_.broadphase,
                way.sweeps > 0 ? static_cast<btConstraintSolver*>(&sweeps_) : &dantzig_solver_, &parts_.configuration) {
-    check(problem, {.held_orientations = true,
-                    .motors = true,
-                    .stops = true,
-                    .springs = true,
-                    .soft_joints = true,
-                    .damping = true,
-                    .sleep = true});
+    check(problem, all_words);
     if (problem.sleep_after > 0) gDeactivationTime = problem.sleep_after;
     world_.setGravity(bt(problem.gravity));
     btContactSolverInfo& info = world_.getSolverInfo();

@@ -22,13 +22,7 @@ class ChipmunkRun final : public SteppedRun {
   // left_per_step < 0: the default errorBias
   ChipmunkRun(const Problem& problem, int iterations, double left_per_step, double h)
       : SteppedRun(h), space_(cpSpaceNew()), last_(h) {
-    check(problem, {.held_orientations = true,
-                    .motors = true,
-                    .stops = true,
-                    .springs = true,
-                    .soft_joints = true,
-                    .damping = true,
-                    .sleep = true});
+    check(problem, all_words);
     if (left_per_step >= 0) left_after_a_second_ = left_after_a_second(left_per_step, h);
     cpSpaceSetIterations(space_, iterations);
     cpSpaceSetGravity(space_, vec(problem.gravity));
