@@ -1,37 +1,27 @@
-// What an adapter has words for, beside bodies that move freely and joints that hold for good.
+// What a problem may say beside bodies that move freely and joints that hold for good, and an adapter have no words
+// for.
 #pragma once
 
 #include "tests/bench/peers/peer.hpp"
 
 namespace cdot::peers {
 
-struct Words {
-  bool held_orientations = false, motors = false, stops = false, springs = false, soft_joints = false, damping = false,
-       sleep = false;
+struct Lacks {
+  bool held_orientations = false, motors = false, stops = false, springs = false, soft_joints = false, sleep = false;
 };
-inline constexpr Words all_words{.held_orientations = true,
-                                 .motors = true,
-                                 .stops = true,
-                                 .springs = true,
-                                 .soft_joints = true,
-                                 .damping = true,
-                                 .sleep = true};
 
 // Throws CannotSay.
-inline void check(const Problem& problem, const Words& known) {
-  const auto need = [](bool asked, bool said, const char* what) {
-    if (asked && !said) throw CannotSay(what);
+inline void check(const Problem& problem, const Lacks& lacks) {
+  const auto refuse = [](bool asked, bool lacking, const char* what) {
+    if (asked && lacking) throw CannotSay(what);
   };
-  need(problem.sleep_after > 0, known.sleep, "nothing sleeps in it");
-  for (const Body& body : problem.bodies) {
-    need(!body.turns, known.held_orientations, "no body that cannot turn");
-    need(body.damping > 0, known.damping, "no damping of a body's motion against the world");
-  }
+  refuse(problem.sleep_after > 0, lacks.sleep, "nothing sleeps in it");
+  for (const Body& body : problem.bodies) refuse(!body.turns, lacks.held_orientations, "no body that cannot turn");
   for (const Joint& joint : problem.joints) {
-    need(joint.motor.has_value(), known.motors, "no motor that has a speed and a greatest torque");
-    need(joint.stops.has_value(), known.stops, "no stops of a hinge");
-    need(joint.spring.has_value(), known.springs, "no spring or damper of a joint");
-    need(joint.soft.has_value(), known.soft_joints, "no joint that gives like a spring");
+    refuse(joint.motor.has_value(), lacks.motors, "no motor that has a speed and a greatest torque");
+    refuse(joint.stops.has_value(), lacks.stops, "no stops of a hinge");
+    refuse(joint.spring.has_value(), lacks.springs, "no spring or damper of a joint");
+    refuse(joint.soft.has_value(), lacks.soft_joints, "no joint that gives like a spring");
   }
 }
 

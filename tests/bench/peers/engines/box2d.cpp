@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "tests/bench/peers/geometry.hpp"
-#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -21,7 +20,6 @@ class Box2dRun final : public SteppedRun {
         velocity_iterations_(velocity_iterations),
         position_iterations_(position_iterations),
         last_(h) {
-    check(problem, all_words);
     world_.SetAllowSleeping(problem.sleep_after > 0);
     world_.SetContinuousPhysics(false);
     const b2BodyDef ground;

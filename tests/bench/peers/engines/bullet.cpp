@@ -7,7 +7,6 @@
 #include <string>
 
 #include "tests/bench/peers/engines/bullet_world.hpp"
-#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -27,7 +26,6 @@ class BulletRun final : public SteppedRun {
         dantzig_solver_(&dantzig_),
         world_(&parts_.dispatcher, &parts_.broadphase,
                way.sweeps > 0 ? static_cast<btConstraintSolver*>(&sweeps_) : &dantzig_solver_, &parts_.configuration) {
-    check(problem, all_words);
     if (problem.sleep_after > 0) gDeactivationTime = problem.sleep_after;
     world_.setGravity(bt(problem.gravity));
     btContactSolverInfo& info = world_.getSolverInfo();

@@ -33,7 +33,7 @@ class MultibodyRun final : public SteppedRun {
         world_(&parts_.dispatcher, &parts_.broadphase, &solver_, &parts_.configuration),
         places_(problem.bodies.size()),
         h_(h) {
-    check(problem, {.motors = true, .stops = true, .damping = true, .sleep = true});
+    check(problem, {.held_orientations = true, .springs = true, .soft_joints = true});
     world_.setGravity(bt(problem.gravity));
     world_.getSolverInfo().m_erp = way.erp;
     world_.getSolverInfo().m_jointFeedbackInWorldSpace = true;

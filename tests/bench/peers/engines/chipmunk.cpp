@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "tests/bench/peers/geometry.hpp"
-#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -22,7 +21,6 @@ class ChipmunkRun final : public SteppedRun {
   // left_per_step < 0: the default errorBias
   ChipmunkRun(const Problem& problem, int iterations, double left_per_step, double h)
       : SteppedRun(h), space_(cpSpaceNew()), last_(h) {
-    check(problem, all_words);
     if (left_per_step >= 0) left_after_a_second_ = left_after_a_second(left_per_step, h);
     cpSpaceSetIterations(space_, iterations);
     cpSpaceSetGravity(space_, vec(problem.gravity));

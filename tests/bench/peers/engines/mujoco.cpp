@@ -91,7 +91,7 @@ using Model = std::shared_ptr<mjModel>;
 Model model_of(const Problem& problem) {
   mju_user_warning = [](const char*) {};
   mju_user_error = [](const char* message) { throw std::runtime_error(message); };
-  check(problem, {.stops = true, .springs = true, .soft_joints = true, .damping = true});
+  check(problem, {.held_orientations = true, .motors = true, .sleep = true});
   const std::string xml = model_text(problem, tree_of(problem));
   const auto files = std::make_unique<mjVFS>();
   mj_defaultVFS(files.get());

@@ -35,8 +35,7 @@ void ignore(int, const char*, va_list) {}
 class OdeRun final : public SteppedRun {
  public:
   OdeRun(const Problem& problem, const Way& way, double h) : SteppedRun(h), world_(made()), sweeps_(way.sweeps), h_(h) {
-    check(problem,
-          {.motors = true, .stops = true, .springs = true, .soft_joints = true, .damping = true, .sleep = true});
+    check(problem, {.held_orientations = true});
     dWorldSetAutoDisableFlag(world_, problem.sleep_after > 0);
     dWorldSetAutoDisableTime(world_, problem.sleep_after);
     dWorldSetGravity(world_, problem.gravity[0], problem.gravity[1], problem.gravity[2]);

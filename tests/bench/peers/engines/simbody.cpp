@@ -35,9 +35,9 @@ class SimbodyRun final : public Run {
         gravity_(forces_, matter_, vec(problem.gravity)),
         bodies_(problem.bodies.size()),
         most_steps_(most_steps(problem)) {
-    Words known;
-    known.motors = known.stops = known.springs = known.soft_joints = known.damping = true;
-    check(problem, known);
+    Lacks lacks;
+    lacks.held_orientations = lacks.sleep = true;
+    check(problem, lacks);
     const Tree tree = tree_of(problem);
     for (const Branch& branch : tree.branches) {
       add(problem, branch);
