@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "runtime/joint_table.hpp"
+#include "runtime/probe.hpp"
 #include "runtime/spaces.hpp"
 
 namespace cdot {
@@ -87,6 +88,7 @@ int add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordin
   JointRecord& record = world.joints[joint];
   const int index = coordinate_index<S>(record.type, coordinate);
   if (record.places.empty()) return -1;
+  check_value(world, record, index);
   const auto& variants = joint_entries<S>()[record.type].coordinates[index];
   add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality},
            constants);

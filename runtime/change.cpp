@@ -23,6 +23,16 @@ void hand_out(WorldState<S>& world, const JointRecord& record, const std::vector
   }
 }
 
+// Refuses parameters with which a coordinate that effects act on has no value.
+template <class S>
+void check_effects(const WorldState<S>& world, const JointRecord& record) {
+  const auto& coordinates = joint_entries<S>()[record.type].coordinates;
+  for (size_t k = 0; k < coordinates.size(); ++k)
+    if (std::any_of(record.places.begin(), record.places.end(),
+                    [&](const Place& place) { return coordinates[k].has(world.batches[place.batch]->ops); }))
+      check_value(world, record, static_cast<int>(k));
+}
+
 }  // namespace
 
 template <class S>
@@ -47,7 +57,8 @@ void BasicWorld<S>::set_parameters(int joint, const std::vector<NamedValue>& par
   JointRecord next = record;
   for (const ParameterInfo* info : changed)
     std::copy_n(moved.begin() + info->offset, info->size, next.parameters.begin() + info->offset);
-  if (!is_soft(*state_, record)) check_directions(*state_, next);
+  check_rows(*state_, next, is_soft(*state_, record));
+  check_effects(*state_, next);
 
   record.parameters = next.parameters;
   hand_out(*state_, record, changed);

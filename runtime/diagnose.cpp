@@ -114,7 +114,7 @@ double spin_of(const typename S::Velocity& velocity) {
   typename S::Scalar numbers[S::freedom];
   S::write(velocity, numbers);
   double square = 0;
-  for (int k = S::freedom == 3 ? 2 : 3; k < S::freedom; ++k) square += double(numbers[k]) * double(numbers[k]);
+  for (int k = S::lengths; k < S::freedom; ++k) square += double(numbers[k]) * double(numbers[k]);
   return std::sqrt(square);
 }
 
@@ -130,7 +130,7 @@ void look_at_bodies(const WorldState<S>& world, const Island<S>& island, Diagnos
     }
     typename S::Scalar numbers[S::pose_numbers];
     S::write(world.bodies.pose[body], numbers);
-    for (int k = 0; k < (S::freedom == 3 ? 2 : 3); ++k)
+    for (int k = 0; k < S::lengths; ++k)
       found.farthest = std::max(found.farthest, std::abs(double(numbers[k])));
     const double spin = spin_of<S>(world.bodies.velocity[body]);
     if (spin > found.fastest_spin) found.fastest_spin = spin, found.spinning = body;

@@ -89,10 +89,9 @@ class Motion {
   double product(const typename S::Velocity& v, const typename S::Velocity& w) const {
     T a[S::freedom], b[S::freedom];
     S::write(v, a), S::write(w, b);
-    constexpr int turns = S::freedom == 3 ? 2 : 3;  // the first of them
     const double arm = double(island_.size);
     double sum = 0;
-    for (int k = 0; k < S::freedom; ++k) sum += double(a[k]) * double(b[k]) * (k < turns ? 1 : arm * arm);
+    for (int k = 0; k < S::freedom; ++k) sum += double(a[k]) * double(b[k]) * (k < S::lengths ? 1 : arm * arm);
     return sum;
   }
 

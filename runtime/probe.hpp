@@ -72,10 +72,30 @@ class Probe {
     // if it is one at every scale.
     for (const T wanted : {T(1e-3), T(1e-6), T(1e-9), T(1e3) * resolution()}) {
       if (wanted == T(0)) continue;  // all bodies are at the origin
-      const T forth = C_after(wanted / promised, row), back = C_after(-wanted / promised, row);
+      const T forth = C_after(wanted / promised)[row], back = C_after(-wanted / promised)[row];
       if (!(std::abs(forth - back) < T(0.01) * T(2) * wanted)) return false;
     }
     return true;
+  }
+
+  // The first row whose C has no value here, as an angle has none that is told by axes which point against each other:
+  // a body moves by a hair, by a thousandth of it, and C changes by the same. -1 if there is none; whole turns are
+  // counted and no jump.
+  int jumping_row() {
+    const T hair = T(by_precision<T>(1e-2, 1e-6)), least = std::max(T(0.01), T(1e3) * resolution());
+    const std::vector<T> here = batch_.C;
+    std::vector<T> near(here.size());
+    for (size_t k = 0; k < bodies_.pose.size(); ++k)
+      for (int c = 0; c < S::freedom; ++c) {
+        const T by = c < S::lengths ? hair * reach() : hair;
+        near = C_moved(k, c, T(1e-3) * by);
+        C_moved(k, c, by);
+        for (size_t r = 0; r < here.size(); ++r) {
+          const T jump = std::abs(batch_.C[r] - here[r]);
+          if (jump > least && std::abs(near[r] - here[r]) > jump / 2) return static_cast<int>(r);
+        }
+      }
+    return -1;
   }
 
   // J and (M^-1 J^T)^T, [rows][freedom * bodies].
@@ -104,6 +124,17 @@ class Probe {
     }
   }
 
+  // How far bodies are from the first.
+  T reach() const {
+    T far = 0, from[S::pose_numbers], to[S::pose_numbers];
+    S::write(bodies_.pose[0], from);
+    for (const auto& pose : bodies_.pose) {
+      S::write(pose, to);
+      for (int c = 0; c < S::lengths; ++c) far = std::max(far, std::abs(to[c] - from[c]));
+    }
+    return far;
+  }
+
   // What two places are told apart by, where the bodies are.
   T resolution() const {
     T far = 0;
@@ -114,13 +145,22 @@ class Probe {
     return far * std::numeric_limits<T>::epsilon();
   }
 
-  T C_after(T scale, int row) {
+  const std::vector<T>& C_moved(size_t body, int component, T by) {
+    T numbers[S::freedom] = {};
+    numbers[component] = by;
+    std::fill(bodies_.displacement.begin(), bodies_.displacement.end(), typename S::Velocity{});
+    bodies_.displacement[body] = S::read_velocity(numbers);
+    return C_after(T(1));
+  }
+
+  // C of all rows where `scale` times the displacements lead.
+  const std::vector<T>& C_after(T scale) {
     const auto poses = bodies_.pose;
     for (size_t k = 0; k < poses.size(); ++k)
       bodies_.pose[k] = S::moved(poses[k], S::sum({}, bodies_.displacement[k], scale));
     ops_->position(batch_, 0, 1, bodies_, T(world_.time));
     bodies_.pose = poses;
-    return batch_.C[row];
+    return batch_.C;
   }
 
   const WorldState<S>& world_;
@@ -151,12 +191,31 @@ bool is_soft(const WorldState<S>& world, const JointRecord& joint) {
   return law && !law->reported;
 }
 
-// Refuses rows that have no direction where they hold. A velocity row has no C, a soft one is a
-// spring: both may.
+inline constexpr const char* why_it_jumps =
+    "it jumps however little a body moves, as an angle does that is told by axes which point against each other. Turn "
+    "one of the joint's frames round";
+
+// Refuses a coordinate that has no value here, for an effect on it.
 template <class S>
-void check_directions(const WorldState<S>& world, const JointRecord& record) {
+void check_value(const WorldState<S>& world, const JointRecord& record, int coordinate) {
   const JointType& type = joint_types(S::dimension)[record.type];
   Probe<S> probe(world);
+  probe.look_at(record, coordinate);
+  if (probe.jumping_row() >= 0)
+    throw Error(fmt::format("coordinate `{}` of joint `{}` has no value here: {}", type.coordinates[coordinate].name,
+                            type.name, why_it_jumps));
+}
+
+// Refuses rows that have no value where the bodies are, or no direction where they hold. A velocity row has no C; a
+// soft one is a spring, which may have no direction.
+template <class S>
+void check_rows(const WorldState<S>& world, const JointRecord& record, bool soft) {
+  const JointType& type = joint_types(S::dimension)[record.type];
+  Probe<S> probe(world);
+  probe.look_at(record);
+  if (const int row = probe.jumping_row(); row >= 0)
+    throw Error(fmt::format("row {} of joint `{}` has no value here: {}", row + 1, type.name, why_it_jumps));
+  if (soft) return;
   for (size_t r = 0; r < type.row_kinds.size(); ++r) {
     if (type.row_kinds[r] == RowKind::velocity) continue;
     probe.look_at(record);

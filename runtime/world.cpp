@@ -199,7 +199,7 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
 
   record.added.add(record.type), record.added.add(record.bodies), record.added.add(record.parameters);
 
-  if (!definition.soft) check_directions(*state_, record);
+  check_rows(*state_, record, definition.soft.has_value());
   const int joint = joint_count();
   state_->joints.push_back(record);
   const auto movable = [&](int body) { return !state_->bodies.immovable(body); };

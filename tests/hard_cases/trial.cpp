@@ -58,6 +58,15 @@ void Trial::start() {
   if (another_engine) mover_ = another_engine(scene, *world_);
 }
 
+bool Trial::refused(const std::string& why) {
+  try {
+    start();
+  } catch (const std::exception& error) {
+    return std::string(error.what()).find(why) != std::string::npos;
+  }
+  return false;
+}
+
 void Trial::step(double by) {
   if (mover_) return mover_->step(by);
   diagnose(by);

@@ -61,6 +61,58 @@ TEST(SpatialJoints, ReactionsOfAHangingChain) {
   }
 }
 
+// An angle that is told by axes has no value where these point against each other, and none that a motor could act on:
+// refused. Where it is only small, large, or has a kink, effects are taken.
+template <class T>
+std::string refusal_of(const char* type, const char* coordinate, double lean) {
+  SpatialWorld<T> world(settings(Solver::direct));
+  const int body = world.add_body(brick(0.5, 0, 0));
+  const int joint = join(world, type, world.ground(), body,
+                         {{"pa", {0, 0, 0}}, {"fa", {0, 0, 1}}, {"fb", {std::sin(lean), 0, std::cos(lean)}}});
+  try {
+    add_motor(world, joint, coordinate, {.speed = 1});
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+TEST(SpatialJoints, AnAngleWithoutValueIsRefused) {
+  const auto check = [](auto refusal) {
+    for (const auto& [type, coordinate] : {std::pair{"hinge", "angle"}, std::pair{"cylindrical", "angle"},
+                                           std::pair{"planar_joint", "angle"}, std::pair{"swing_twist", "twist"}}) {
+      const std::string against = refusal(type, coordinate, pi);
+      EXPECT_EQ(against.find(std::string("coordinate `") + coordinate + "` of joint `" + type + "` has no value here"),
+                0u)
+          << type << ": \"" << against << '"';
+      EXPECT_EQ(refusal(type, coordinate, 0), "");
+    }
+    EXPECT_EQ(refusal("swing_twist", "twist", pi - 0.1), "");
+    for (const double lean : {0.0, 0.1, pi - 0.1}) EXPECT_EQ(refusal("swing_twist", "swing", lean), "") << lean;
+    for (const double lean : {0.0, 0.1}) EXPECT_EQ(refusal("six_dof", "turn_x", lean), "") << lean;
+  };
+  check(refusal_of<double>);
+  check(refusal_of<float>);
+}
+
+// The same of a row, and of parameters that change while a World runs: what was stays.
+TEST(SpatialJoints, ChangesThatTakeAnAngleItsValueAreRefused) {
+  SpatialWorld<double> world(settings(Solver::direct));
+  const int body = world.add_body(brick(0.5, 0, 0));
+  const int wheel = world.add_body(brick(0, 2, 0));
+  const std::vector<double> up = {0, 0, 1}, down = {0, 0, -1};
+  const int hinge = join(world, "hinge", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", up}});
+  EXPECT_THROW(join(world, "gear", body, wheel, {{"fa", up}, {"fb", up}, {"ga", down}, {"gb", up}, {"ratio", {1}}}),
+               Error);
+  EXPECT_EQ(world.joint_count(), 1);
+  world.set_parameters(hinge, {{"fb", down}});  // nothing acts on its angle
+  world.set_parameters(hinge, {{"fb", up}});
+  add_motor(world, hinge, "angle", {.speed = 1});
+  EXPECT_THROW(world.set_parameters(hinge, {{"fb", down}}), Error);
+  run(world, 1, 0.01);
+  EXPECT_NEAR(world.coordinate_rate(hinge, "angle"), 1, 1e-9);
+}
+
 // A motor turns a hinge to a limit three turns away: an angle of the kernel ends at pi.
 TEST(SpatialJoints, AnglesGoOnBeyondHalfATurn) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {

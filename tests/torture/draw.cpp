@@ -252,21 +252,13 @@ void push(Random& random, const Scales& scales, SceneBody& body) {
 
 }  // namespace
 
-// An angle about an axis has no value where the axes it is told by are antiparallel: there it jumps as a body turns.
+// An angle about an axis has no value where the axes it is told by are antiparallel: the World refuses effects on it.
 template <class S>
-bool has_value(const Scene& scene, int joint, std::string_view coordinate) {
-  const BasicWorld<S> world = build_world_in<S>(scene);
-  const double now = world.coordinate(joint, coordinate);
-  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
-    if (scene.bodies[k].is_static) continue;
-    BasicWorld<S> moved = build_world_in<S>(scene);
-    auto place = moved.place(static_cast<int>(k));
-    if constexpr (S::dimension == Dimension::spatial)
-      place.e1 += 1e-6, place.e2 -= 2e-6, place.e3 += 3e-6, place.e0 += 2e-6;
-    else
-      place.angle += 1e-6;
-    moved.set_pose(static_cast<int>(k), place);
-    if (std::abs(moved.coordinate(joint, coordinate) - now) > 0.01 * std::max(1.0, std::abs(now))) return false;
+bool has_value(BasicWorld<S> world, int joint, std::string_view coordinate) {
+  try {
+    add_motor(world, joint, coordinate, {0, 0});
+  } catch (const Error&) {
+    return false;
   }
   return true;
 }
@@ -278,7 +270,7 @@ void add_effects(Random& random, const Scales& scales, Scene& scene) {
     SceneJoint& joint = scene.joints[j];
     const JointType& type = world.joint_type(static_cast<int>(j));
     for (const CoordinateInfo& coordinate : type.coordinates)
-      if (random.chance(0.4) && has_value<S>(scene, static_cast<int>(j), coordinate.name))
+      if (random.chance(0.4) && has_value(build_world_in<S>(scene), static_cast<int>(j), coordinate.name))
         joint.effects.push_back(random_effects(random, scales, coordinate,
                                                world.coordinate(static_cast<int>(j), coordinate.name)));
     if (random.chance(0.1)) joint.definition.soft = random_softness(random, scales, false);

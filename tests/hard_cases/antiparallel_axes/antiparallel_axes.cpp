@@ -15,7 +15,16 @@ void swing(Trial& t) {
   t.at_most("leans by [rad]", 2 * std::hypot(b.e1, b.e2), 1e-9, 1e-4);
 }
 
+// An angle told by axes that point against each other has no value for a motor to act on: refused, with what to do.
+void motor(Trial& t) {
+  SceneJoint& hinge = t.scene.joints.front();
+  hinge.definition.type = "hinge";
+  hinge.effects.push_back({"angle", {}, Motor{1, 10}, {}, {}});
+  t.at_most("accepted", t.refused("Turn one of the joint's frames round") ? 0 : 1, 0);
+}
+
 const Register spatial({"antiparallel_axes", "spatial", without(all_ways(), {Integrator::implicit}), swing});
+const Register spatial_motor({"antiparallel_axes", "spatial", all_ways(), motor, "a motor"});
 
 }  // namespace
 }  // namespace cdot::hard
