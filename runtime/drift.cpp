@@ -33,9 +33,10 @@ void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   hold_poses(world, island, time, false);
   // Otherwise it would be thrown in as energy.
   const bool keep = from_motion && bends_the_path(world, island, double(h));
-  // One such step may be mended by the next; where that one begins apart and ends further apart, none will.
   const bool was_apart = foreign_error > foreign<T> && std::isfinite(foreign_error);
-  if (!keep && was_apart && island.residual > T(2) * std::max(error, foreign_error))
+  if (!was_apart)
+    tell_joints_apart(world, island, foreign_error);
+  else if (!keep && island.residual > T(2) * std::max(error, foreign_error))
     island.trouble = StepProblem::joints_apart;
   add_corrections(world, island, keep ? T(1) / h : T(0));
   evaluate_anew(world, island, time);

@@ -12,6 +12,9 @@ namespace cdot {
 namespace {
 
 constexpr int newton_rounds = 20;
+// What a round may leave of the error: less, and any is down to round-off when the rounds end, 0.2^19 being 5e-14. In
+// continuous time a step that needs new directions is rather too long: its error control is to find that.
+constexpr double enough = 0.2, enough_in_continuous_time = 0.5;
 
 // What is wrong with a row under a law: for an island in continuous time only rows that are held have to be at their
 // end.
@@ -28,13 +31,17 @@ void error_of_law(const Island<S>& island, const Batch<S>& batch, int slot, type
     if (batch.mode[slot * rows + r] == Mode::held) error[r] = guards[r].off_by;
 }
 
+// A row that has something to correct.
+template <class S>
+bool has_error(const Batch<S>& batch, int i) {
+  if (!batch.law || batch.mode[i] == Mode::held) return true;
+  return batch.mode[i] == Mode::bounded && batch.scratch[i] != 0;
+}
+
 // Takes rows out of the system that have nothing to correct.
 template <class S>
 void factor_rows_with_errors(Island<S>& island) {
-  island.system.choose([](const Batch<S>& batch, int i) {
-    if (!batch.law || batch.mode[i] == Mode::held) return true;
-    return batch.mode[i] == Mode::bounded && batch.scratch[i] != 0;
-  });
+  island.system.choose(has_error<S>);
   island.system.factor();
 }
 
@@ -53,8 +60,8 @@ void move_by_newton(WorldState<S>& world, Island<S>& island) {
   }
 }
 
-// `fresh`: J and K are not yet those of the step. Where the error does not halve they are
-// renewed, and where that does not help the joints contradict each other or round-off is reached.
+// `fresh`: J and K are not yet those of the step. Where they leave more than `enough` of the error they are renewed, and
+// where new ones do not halve it the joints contradict each other, round-off is reached, or the step went too far.
 template <class S>
 void newton(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   using T = typename S::Scalar;
@@ -62,20 +69,25 @@ void newton(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bo
   bool renewed = false;
   // Forces that are known move nothing here.
   island.system.give([](const Batch<S>&, int) { return 0.0; });
-  for (int round = 0; round < newton_rounds; ++round) {
-    T worst = find_errors(world, island, time);
+  // Without laws, and in continuous time, the solve before has left just this factor.
+  const bool other_rows = island.system.lawful() && !island.continuous;
+  for (int round = 0;; ++round) {
+    const T worst = find_errors(world, island, time);
     island.residual = worst;
-    if (!(worst > converged<T> * island.scale)) return;
-    const bool slow = worst > T(0.5) * before;
-    if (slow && renewed) return;
+    if (!(worst > converged<T> * island.scale) || round == newton_rounds) return;
+    // Bounds that were within reach when the rows were chosen, and are passed now. What has come in stays.
+    const bool more = round > 0 && other_rows && island.system.choose_more(has_error<S>);
+    const bool slow = !more && worst > T(island.continuous ? enough_in_continuous_time : enough) * before;
+    if (slow && renewed && worst > T(0.5) * before) return;
     if (slow || (fresh && round == 0)) {
       evaluate_anew(world, island, time);
       island.system.assemble(world.bodies);
-      renewed = slow;
+      renewed |= slow;
     }
-    // Without laws, and in continuous time, the solve before has left just this factor.
-    const bool other_rows = island.system.lawful() && !island.continuous;
-    if (slow || (round == 0 && (fresh || other_rows))) factor_rows_with_errors(island);
+    if (round == 0 && (fresh || other_rows))
+      factor_rows_with_errors(island);
+    else if (more || slow)
+      island.system.factor();
     before = worst;
     move_by_newton(world, island);
   }
@@ -293,6 +305,35 @@ void hold_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time
   sweep_poses(world, island, time);
 }
 
+// What numbers of the size of the poses leave of C, at most about.
+template <class S>
+typename S::Scalar round_off(const WorldState<S>& world, const Island<S>& island) {
+  using T = typename S::Scalar;
+  T farthest = 0, numbers[S::pose_numbers];
+  for (int i : island.bodies) {
+    S::write(world.bodies.pose[i], numbers);
+    for (T number : numbers) farthest = std::max(farthest, std::abs(number));
+  }
+  return T(64) * std::numeric_limits<T>::epsilon() * farthest;
+}
+
+template <class S>
+bool left_the_joints(const WorldState<S>& world, const Island<S>& island, typename S::Scalar at_start) {
+  using T = typename S::Scalar;
+  const bool holds = world.settings.drift == Drift::projection && world.settings.solver == Solver::direct;
+  if (!holds || island.segments.empty() || island.residual <= T(2) * at_start) return false;
+  const T told = foreign<T> * std::max(island.size, island.scale);
+  return !(island.residual <= T(2) * std::max(told, round_off(world, island)));
+}
+
+template <class S>
+void tell_joints_apart(const WorldState<S>& world, Island<S>& island, typename S::Scalar at_start) {
+  if (!left_the_joints(world, island, at_start)) return;
+  typename System<S>::Real shared = 0;
+  for (int r = 0; r < island.system.rows(); ++r) shared = std::max(shared, std::abs(island.system.unmet(r)));
+  if (!(island.residual <= 2 * shared)) island.trouble = StepProblem::joints_apart;
+}
+
 template <class S>
 bool bends_the_path(const WorldState<S>& world, const Island<S>& island, double h) {
   const Bodies<S>& all = world.bodies;
@@ -316,17 +357,19 @@ void hold_velocities(WorldState<S>& world, Island<S>& island) {
   if (island.continuous) add_wanted_rates(island, T(1));
 }
 
-#define CDOT_INSTANTIATE(S)                                                     \
-  template void clear_correction(WorldState<S>&, Island<S>&);                   \
-  template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar);        \
-  template void solve_errors(Island<S>&, S::Scalar);                            \
-  template void apply_solution(WorldState<S>&, Island<S>&, S::Velocity*);       \
-  template void fill_lambda(const Island<S>&, S::Scalar);                       \
-  template void scale_corrections(const Island<S>&, S::Scalar);                 \
-  template void add_corrections(WorldState<S>&, Island<S>&, S::Scalar);         \
-  template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);           \
-  template void hold_poses(WorldState<S>&, Island<S>&, S::Scalar, bool);        \
-  template bool bends_the_path(const WorldState<S>&, const Island<S>&, double); \
+#define CDOT_INSTANTIATE(S)                                                         \
+  template void clear_correction(WorldState<S>&, Island<S>&);                       \
+  template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar);            \
+  template void solve_errors(Island<S>&, S::Scalar);                                \
+  template void apply_solution(WorldState<S>&, Island<S>&, S::Velocity*);           \
+  template void fill_lambda(const Island<S>&, S::Scalar);                           \
+  template void scale_corrections(const Island<S>&, S::Scalar);                     \
+  template void add_corrections(WorldState<S>&, Island<S>&, S::Scalar);             \
+  template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);               \
+  template void hold_poses(WorldState<S>&, Island<S>&, S::Scalar, bool);            \
+  template bool left_the_joints(const WorldState<S>&, const Island<S>&, S::Scalar); \
+  template void tell_joints_apart(const WorldState<S>&, Island<S>&, S::Scalar);     \
+  template bool bends_the_path(const WorldState<S>&, const Island<S>&, double);     \
   template void hold_velocities(WorldState<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

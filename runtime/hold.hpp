@@ -49,6 +49,15 @@ void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar t
 template <class S>
 void hold_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
 
+// The poses were not brought onto the joints, where those of the start of the step were, but for `at_start`: a step too
+// far for Newton, or beyond their reach. Of sweeps, which leave what they leave, nothing is said.
+template <class S>
+bool left_the_joints(const WorldState<S>& world, const Island<S>& island, typename S::Scalar at_start);
+// Such a step has failed, where no shorter one takes its place; unless what is left is what the last solve had to leave:
+// joints that contradict each other share it.
+template <class S>
+void tell_joints_apart(const WorldState<S>& world, Island<S>& island, typename S::Scalar at_start);
+
 // What bends a path back onto its curve is a small part of the way: 2 |displacement| <= |h v| in the metric of the
 // masses. More than that comes of a passage through a singular pose, or of a step far too large.
 template <class S>

@@ -207,11 +207,13 @@ void start_half(WorldState<S>& world, Island<S>& island, typename S::Scalar h, t
 // displacement over h belongs to the velocities, and what caused it to the impulses; unless it undoes the
 // motion. (Sweeps leave something of it to the next step, and need all that they found.)
 template <class S>
-void drift_with_renewed_directions(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void drift_with_renewed_directions(WorldState<S>& world, Island<S>& island, typename S::Scalar h,
+                                   typename S::Scalar at_start) {
   using T = typename S::Scalar;
   drift(world, island, h);
   scale_corrections(island, h);
   hold_poses(world, island, T(world.time) + h, false);
+  tell_joints_apart(world, island, at_start);
   const bool keep = world.settings.solver == Solver::iterative || bends_the_path(world, island, double(h));
   add_corrections(world, island, keep ? T(1) / h : T(0));
 }
@@ -223,7 +225,7 @@ void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h) 
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   Flow<S>& flow = island.flow;
-  const T share = begin(world, island, h);
+  const T share = begin(world, island, h), at_start = island.residual;
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     flow.pose[k] = all.pose[island.bodies[k]];
     flow.velocity[k] = all.velocity[island.bodies[k]];
@@ -232,7 +234,7 @@ void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h) 
   const bool by_sweeps = world.settings.solver == Solver::iterative;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
     if (!by_sweeps) start_half(world, island, h, share);
-    drift_with_renewed_directions(world, island, h);
+    drift_with_renewed_directions(world, island, h, at_start);
   }
   // The velocity that the end will have, to second order: 2 v_half - v_start.
   for (size_t k = 0; k < island.bodies.size(); ++k)

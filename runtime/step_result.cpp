@@ -10,7 +10,7 @@ const char* what_went_wrong(StepProblem problem) {
     case StepProblem::not_finite:
       return "a pose or velocity came out not finite";
     case StepProblem::joints_apart:
-      return "Newton drove the joints further apart than the motion had";
+      return "Newton did not bring the joints together that the motion drew apart";
     case StepProblem::bad_step:
     case StepProblem::none:
       break;

@@ -9,7 +9,7 @@ enum class StepProblem : char {
   none,
   bad_step,      // its length is no finite number > 0
   not_finite,    // a pose or a velocity came out infinite or not a number
-  joints_apart,  // Newton drove the joints further apart than the motion did
+  joints_apart,  // Newton did not bring the joints together again, or drove them further apart than the motion did
 };
 
 // What step() does about a step that fails, once the state is again the one before it.

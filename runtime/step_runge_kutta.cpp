@@ -107,15 +107,6 @@ bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S
   return !bends_the_path(world, island, double(h));
 }
 
-// The end was not brought onto the joints, where the start was on them: a step too far for Newton, beyond their reach.
-template <class S>
-bool left_the_joints(const WorldState<S>& world, const Island<S>& island) {
-  using T = typename S::Scalar;
-  const T told = foreign<T> * std::max(island.size, island.scale), at_start = std::max(island.flow.residual, told);
-  const bool holds = world.settings.drift == Drift::projection && world.settings.solver == Solver::direct;
-  return holds && !island.segments.empty() && !(island.residual <= T(2) * at_start);
-}
-
 // A step of h, at its end on the constraints. Returns its error, as error_now() tells it in units of what is allowed:
 // above 1 (or no number) the state is none.
 template <class S, class F>
@@ -126,7 +117,7 @@ double try_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
   if (!(error <= 1)) return error;
   settle_end(world, island, method, time + h);
   if (method.error_at_end) error = error_now();
-  const bool lost = left_the_joints(world, island) || went_astray(world, island, h);
+  const bool lost = left_the_joints(world, island, island.flow.residual) || went_astray(world, island, h);
   return lost ? std::numeric_limits<double>::infinity() : error;
 }
 

@@ -51,6 +51,18 @@ class System {
       softness[row] = lambda[row] = 0;
     });
   }
+  // The same of rows that do not take part so far; the others stay. True if there is one more.
+  template <class F>
+  bool choose_more(F wanted) {
+    bool any = false;
+    each_row([&](int row, const Batch<S>& batch, int i) {
+      if (!fixed[row] || !wanted(batch, i)) return;
+      fixed[row] = free;
+      softness[row] = lambda[row] = 0;
+      any = true;
+    });
+    return any;
+  }
   // lambda of the rows that do not take part.
   template <class F>
   void give(F force) {
