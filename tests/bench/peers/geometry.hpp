@@ -1,6 +1,7 @@
 // Vectors and quaternions as plain arrays: what all adapters need to place bodies and joints.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/bench/peers/peer.hpp"
@@ -36,6 +37,16 @@ inline Vec3 local_point(const Problem& problem, int body, const Vec3& p) {
 inline Vec3 local_direction(const Problem& problem, int body, const Vec3& u) {
   if (body == world) return u;
   return turned(conjugate(problem.bodies[std::size_t(body)].start.q), u);
+}
+
+// The turns of a joint in their order; where one alone is free, it may come first, since the angle in the middle is
+// singular at a right angle.
+inline std::vector<Turn> turns_of(const Joint& joint, bool free_first) {
+  std::vector<Turn> turns = joint.turns;
+  if (free_first && joint.kind == JointKind::six_dof)
+    std::rotate(turns.begin(), std::find_if(turns.begin(), turns.end(), [](const Turn& t) { return !t.held; }),
+                turns.end());
+  return turns;
 }
 
 // The force and the torque that damp a body's motion.

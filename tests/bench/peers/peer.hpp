@@ -27,6 +27,7 @@ struct Body {
   double mass = 0;
   Vec3 inertia{};  // about the axes of the body's frame, which are principal
   State start;
+  bool moves = true;
   bool turns = true;   // its orientation is not held
   Vec3 torque{};       // constant [N m]
   double damping = 0;  // force = -mass * damping * velocity, and likewise for its spin [1/s]
@@ -34,8 +35,19 @@ struct Body {
 };
 
 // `distance` keeps two points apart, `max_distance` is a string, `orientation` keeps two bodies from turning against
-// each other.
-enum class JointKind { revolute, prismatic, spherical, fixed, distance, max_distance, orientation };
+// each other; `six_dof` has its slides held, and of its turns what is said.
+enum class JointKind {
+  revolute,
+  prismatic,
+  spherical,
+  fixed,
+  distance,
+  max_distance,
+  orientation,
+  universal,
+  six_dof,
+  pulley
+};
 
 // What drives a hinge from a to b, and what stops it; in the plane an angle is zero where both bodies' are equal.
 struct Motor {
@@ -51,13 +63,23 @@ struct Spring {
 
 inline constexpr int world = -1;
 
+// About one of several axes at right angles: the first fixed in a, the last in b, each moved by those before it.
+struct Turn {
+  Vec3 axis{};  // at the start, in world axes, of length 1
+  bool held = false;
+  std::optional<Motor> motor;
+};
+
 struct Joint {
   JointKind kind = JointKind::revolute;
-  int a = 0, b = 0;  // indices of bodies, or `world`
-  Vec3 anchor{};     // of a, at the start, in world axes
-  Vec3 axis{};       // likewise: what it turns about or slides along, of any length but 0
-  Vec3 anchor_b{};   // of b: elsewhere where a joint starts open
-  double length = 0;
+  int a = 0, b = 0;         // indices of bodies, or `world`
+  Vec3 anchor{};            // of a, at the start, in world axes
+  Vec3 axis{};              // likewise: what it turns about or slides along, of any length but 0
+  Vec3 anchor_b{};          // of b: elsewhere where a joint starts open
+  double length = 0;        // of a rope over wheels, its part at a and `ratio` times that at b
+  Vec3 wheel{}, wheel_b{};  // of a pulley, in the world
+  double ratio = 1;
+  std::vector<Turn> turns;  // of a universal joint two, of one of six degrees three
   std::optional<Motor> motor;
   std::optional<Stops> stops;
   std::optional<Spring> spring;  // of a hinge or a slider, at rest where it starts

@@ -60,13 +60,13 @@ Body body_of(const BasicWorld<S>& built, const SceneBody& source, int number) {
   return body;
 }
 
-// The numbers of one of the joint's parameters.
+// Three of the numbers of one of the joint's parameters.
 template <class S>
-Vec3 parameter(const BasicWorld<S>& built, int joint, std::string_view name) {
+Vec3 parameter(const BasicWorld<S>& built, int joint, std::string_view name, int from = 0) {
   for (const ParameterInfo& info : built.joint_type(joint).parameters) {
     if (info.name != name) continue;
     const std::vector<double> all = built.joint_parameters(joint);
-    const auto at = all.begin() + info.offset, end = all.end();
+    const auto at = all.begin() + info.offset + from, end = all.end();
     Vec3 numbers{};  // up to three; those of the next parameter do no harm
     std::copy_n(at, std::min<std::ptrdiff_t>(end - at, S::dimension == Dimension::spatial ? 3 : 2), numbers.begin());
     return numbers;
@@ -92,7 +92,9 @@ JointKind kind_of(std::string_view type, Dimension dimension) {
       {"prismatic", JointKind::prismatic}, {"spherical", JointKind::spherical},
       {"weld", JointKind::fixed},          {"fixed", JointKind::fixed},
       {"distance", JointKind::distance},   {"max_distance", JointKind::max_distance},
-      {"angle", JointKind::orientation},   {"relative_orientation", JointKind::orientation}};
+      {"angle", JointKind::orientation},   {"relative_orientation", JointKind::orientation},
+      {"universal", JointKind::universal}, {"six_dof", JointKind::six_dof},
+      {"pulley", JointKind::pulley}};
   const auto found = kinds.find(type);
   if (found == kinds.end() || (found->second == JointKind::spherical && dimension == Dimension::planar))
     throw CannotSay(fmt::format("{}: no adapter knows this joint", type));
@@ -112,10 +114,37 @@ double given_length(const SceneJoint& source) {
   return 1;
 }
 
+bool locks(const SceneEffects& effects) {
+  return effects.limit && effects.limit->lower.value_or(-1) == 0 && effects.limit->upper.value_or(1) == 0;
+}
+
+// Angles differ by their order, and twists from them, but not where one turn is free at most: only that is asked.
+void take_turns(const SceneJoint& source, Joint& joint) {
+  static const std::map<std::string_view, std::size_t> places{
+      {"bend_a", 0}, {"bend_b", 1}, {"twist_x", 0}, {"twist_y", 1}, {"twist_z", 2}};
+  int held_slides = 0;
+  std::ptrdiff_t held_turns = 0;
+  for (const SceneEffects& effects : source.effects) {
+    const bool slides = effects.coordinate.starts_with("slide"), drives = joint.kind == JointKind::universal;
+    if (effects.friction || !effects.springs.empty() || (effects.motor && !drives) ||
+        (effects.limit && !locks(effects)))
+      throw CannotSay(source.name + ": adapters hold the turns of a joint or drive those of a universal one, no more");
+    held_slides += slides;
+    if (slides) continue;
+    Turn& turn = joint.turns.at(places.at(effects.coordinate));
+    turn.held = effects.limit.has_value();
+    held_turns += turn.held;
+    if (effects.motor) turn.motor = {effects.motor->speed, effects.motor->max_force};
+  }
+  if (joint.kind == JointKind::six_dof && (held_slides != 3 || held_turns == 1))
+    throw CannotSay(source.name + ": adapters know joints of six degrees without slides and with one turn, or all");
+}
+
 // What the World does not tell of a joint, as the scene has it.
 void take_given(const SceneJoint& source, Joint& joint) {
   joint.axis = given_length(source) * joint.axis;
   if (source.definition.soft) joint.soft = spring_of(source, *source.definition.soft);
+  if (!joint.turns.empty()) return take_turns(source, joint);
   for (const SceneEffects& effects : source.effects) {
     const bool turns = joint.kind == JointKind::revolute;
     if (effects.friction || (!turns && (effects.motor || effects.limit)) || effects.springs.size() > 1)
@@ -131,6 +160,30 @@ int index_of(const Problem& problem, int number) {
   const auto at = std::lower_bound(problem.bodies.begin(), problem.bodies.end(), number,
                                    [](const Body& body, int wanted) { return body.number < wanted; });
   return at != problem.bodies.end() && at->number == number ? int(at - problem.bodies.begin()) : world;
+}
+
+// The axes of a joint that turns about several, which start at right angles.
+template <class S>
+std::vector<Turn> turns_of(const BasicWorld<S>& built, int number, JointKind kind) {
+  const std::vector<int> bodies = built.joint_bodies(number);
+  const auto axis = [&](int body, const char* frame, int k) {
+    return Turn{world_direction(built, body, parameter(built, number, frame, 3 * k)), false, {}};
+  };
+  const int a = bodies.at(0), b = bodies.at(1);
+  if (kind == JointKind::universal) return {axis(a, "fa", 1), axis(b, "fb", 2)};
+  for (int k = 0; k < 3; ++k)
+    if (norm(axis(a, "fa", k).axis - axis(b, "fb", k).axis) > 1e-12)
+      throw CannotSay("adapters know joints of six degrees that start unturned");
+  return {axis(a, "fa", 0), axis(a, "fa", 1), axis(a, "fa", 2)};
+}
+
+template <class S>
+void take_rope(const BasicWorld<S>& built, int number, Joint& joint) {
+  joint.wheel = parameter(built, number, "ga");
+  joint.wheel_b = parameter(built, number, "gb");
+  if (S::dimension == Dimension::planar) joint.wheel[2] = joint.wheel_b[2] = 0;
+  joint.ratio = parameter(built, number, "ratio")[0];
+  joint.length = parameter(built, number, "length")[0];
 }
 
 template <class S>
@@ -149,6 +202,9 @@ Joint joint_of(const Problem& problem, const BasicWorld<S>& built, int number) {
   if (joint.kind == JointKind::prismatic) joint.anchor_b = joint.anchor;  // apart by what it has slid
   if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
     joint.length = parameter(built, number, "l")[0];
+  if (joint.kind == JointKind::pulley) take_rope(built, number, joint);
+  if (joint.kind == JointKind::universal || joint.kind == JointKind::six_dof)
+    joint.turns = turns_of(built, number, joint.kind);
   if (planar) {
     joint.axis = {0, 0, 1};
     if (joint.kind == JointKind::prismatic) {

@@ -12,8 +12,6 @@ const State& state(const Problem& problem, int body) {
 }
 
 void check_closed(const Problem& problem, const Joint& joint) {
-  if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
-    throw CannotSay("no joint that keeps a distance");
   if (joint.kind == JointKind::orientation) throw CannotSay("no joint that keeps an orientation alone");
   double reach = 0;
   for (const int body : {joint.a, joint.b})
@@ -34,7 +32,7 @@ Tree spanning(const Problem& problem) {
   const auto grow = [&](int parent) {
     for (int k = 0; k < int(problem.joints.size()); ++k) {
       const Joint& joint = problem.joints[std::size_t(k)];
-      if (joint.a != parent && joint.b != parent) continue;
+      if ((joint.a != parent && joint.b != parent) || only_closes(joint)) continue;
       const int child = joint.a == parent ? joint.b : joint.a;
       if (child == world || reached[std::size_t(child)]) continue;
       reached[std::size_t(child)] = used[std::size_t(k)] = true;
@@ -45,6 +43,11 @@ Tree spanning(const Problem& problem) {
   const auto grow_all = [&] {
     for (; grown < tree.branches.size(); ++grown) grow(tree.branches[grown].body);
   };
+  for (std::size_t k = 0; k < reached.size(); ++k) {
+    if (problem.bodies[k].moves) continue;
+    reached[k] = true;
+    tree.branches.push_back({int(k), world, -1});
+  }
   grow(world);
   grow_all();
   for (std::size_t k = 0; k < reached.size(); ++k) {
@@ -59,6 +62,10 @@ Tree spanning(const Problem& problem) {
 }
 
 }  // namespace
+
+bool only_closes(const Joint& joint) {
+  return joint.kind == JointKind::distance || joint.kind == JointKind::max_distance || joint.kind == JointKind::pulley;
+}
 
 Tree tree_of(const Problem& problem) {
   Tree tree = spanning(problem);
@@ -113,6 +120,14 @@ double rate(const Problem& problem, const Branch& branch) {
   const Vec3 along = (1 / norm(joint.axis)) * joint.axis;
   if (joint.kind == JointKind::revolute) return dot(child.w - parent.w, along);
   return dot(velocity_at(child, joint.anchor_b) - velocity_at(parent, joint.anchor), along);
+}
+
+std::vector<Turn> turns_of(const Problem& problem, const Branch& branch, bool free_first) {
+  std::vector<Turn> turns = turns_of(problem.joints[std::size_t(branch.joint)], free_first);
+  if (sense(problem, branch) > 0) return turns;
+  std::reverse(turns.begin(), turns.end());
+  for (Turn& turn : turns) turn.axis = -1.0 * turn.axis;
+  return turns;
 }
 
 Vec3 spin(const Problem& problem, const Branch& branch) {

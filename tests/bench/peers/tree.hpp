@@ -10,13 +10,16 @@ namespace cdot::peers {
 struct Branch {
   int body;
   int parent;  // a body, or `world`
-  int joint;   // -1: nothing holds it, it is free
+  int joint;   // -1: nothing holds it, it is free, or does not move
 };
 
 struct Tree {
   std::vector<Branch> branches;  // parents before children
   std::vector<int> loops;        // joints that the tree does not use
 };
+
+// Whether a joint leaves too much free for a tree, and closes a loop always.
+bool only_closes(const Joint& joint);
 
 // Throws CannotSay where a joint of the tree starts open.
 Tree tree_of(const Problem& problem);
@@ -33,7 +36,9 @@ double sense(const Problem& problem, const Branch& branch);
 
 // How fast the joint of a branch moves at the start: child against parent, along or about the axis.
 double rate(const Problem& problem, const Branch& branch);
-// The same for a ball joint, in world axes.
+// The turns of its joint from parent to child.
+std::vector<Turn> turns_of(const Problem& problem, const Branch& branch, bool free_first);
+// The same for a joint that turns about more than one axis, in world axes.
 Vec3 spin(const Problem& problem, const Branch& branch);
 
 }  // namespace cdot::peers

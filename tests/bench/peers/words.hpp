@@ -2,6 +2,8 @@
 // for.
 #pragma once
 
+#include <algorithm>
+
 #include "tests/bench/peers/peer.hpp"
 
 namespace cdot::peers {
@@ -23,6 +25,29 @@ inline void check(const Problem& problem, const Lacks& lacks) {
     refuse(joint.spring.has_value(), lacks.springs, "no spring or damper of a joint");
     refuse(joint.soft.has_value(), lacks.soft_joints, "no joint that gives like a spring");
   }
+}
+
+// Thrown where an engine has no joint of that kind.
+inline CannotSay no_such(const Joint& joint) {
+  return CannotSay(joint.kind == JointKind::pulley         ? "no rope over wheels"
+                   : joint.kind == JointKind::max_distance ? "no string"
+                                                           : "no joint that keeps a distance");
+}
+
+// Where there are joints of six degrees, all ways are asked for both orders of their turns.
+template <class Way>
+std::vector<Way> with_free_turns_first(const Problem& problem, std::vector<Way> ways) {
+  if (std::none_of(problem.joints.begin(), problem.joints.end(),
+                   [](const Joint& joint) { return joint.kind == JointKind::six_dof; }))
+    return ways;
+  const std::vector<Way> as_given = ways;
+  for (Way way : as_given) {
+    way.free_first = true;
+    way.name += ", the free turn first";
+    way.changed += way.changed.empty() ? "the free turn first" : ", the free turn first";
+    ways.push_back(way);
+  }
+  return ways;
 }
 
 }  // namespace cdot::peers

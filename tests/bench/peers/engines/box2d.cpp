@@ -68,7 +68,7 @@ class Box2dRun final : public SteppedRun {
  private:
   void add(const Body& body) {
     b2BodyDef def;
-    def.type = b2_dynamicBody;
+    def.type = body.moves ? b2_dynamicBody : b2_staticBody;
     def.position = vec(body.start.x);
     def.angle = float(angle(body.start.q));
     def.linearVelocity = vec(body.start.v);
@@ -112,6 +112,10 @@ class Box2dRun final : public SteppedRun {
       b2WeldJointDef def;
       def.Initialize(a, b, at);
       make(def, problem, joint);
+    } else if (joint.kind == JointKind::pulley) {
+      b2PulleyJointDef def;
+      def.Initialize(a, b, vec(joint.wheel), vec(joint.wheel_b), at, vec(joint.anchor_b), float(joint.ratio));
+      make(def);
     } else if (joint.kind == JointKind::orientation) {
       b2MotorJointDef def;
       def.Initialize(a, b);

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/bench/peers/engines/bullet_world.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -17,6 +18,7 @@ struct Way {
   int sweeps = 10;  // 0: Dantzig
   double erp = 0.2;
   bool gyroscope_in_world = false;
+  bool free_first = false;  // of the turns of a joint of six degrees
 };
 
 class BulletRun final : public SteppedRun {
@@ -25,7 +27,8 @@ class BulletRun final : public SteppedRun {
       : SteppedRun(h),
         dantzig_solver_(&dantzig_),
         world_(&parts_.dispatcher, &parts_.broadphase,
-               way.sweeps > 0 ? static_cast<btConstraintSolver*>(&sweeps_) : &dantzig_solver_, &parts_.configuration) {
+               way.sweeps > 0 ? static_cast<btConstraintSolver*>(&sweeps_) : &dantzig_solver_, &parts_.configuration),
+        free_first_(way.free_first) {
     if (problem.sleep_after > 0) gDeactivationTime = problem.sleep_after;
     world_.setGravity(bt(problem.gravity));
     btContactSolverInfo& info = world_.getSolverInfo();
@@ -93,7 +96,7 @@ class BulletRun final : public SteppedRun {
   void add(const Body& body, const Way& way, bool sleeps) {
     const State& s = body.start;
     const btVector3 inertia = body.turns ? bt(body.inertia) : btVector3(0, 0, 0);  // 0: it cannot turn
-    btRigidBody::btRigidBodyConstructionInfo info(body.mass, nullptr, &parts_.shape, inertia);
+    btRigidBody::btRigidBodyConstructionInfo info(body.moves ? body.mass : 0, nullptr, &parts_.shape, inertia);
     info.m_startWorldTransform = btTransform(bt(s.q), bt(s.x));
     bodies_.push_back(std::make_unique<btRigidBody>(info));
     btRigidBody& made = *bodies_.back();
@@ -111,6 +114,10 @@ class BulletRun final : public SteppedRun {
     const btVector3 x = norm(joint.axis) == 0 ? btVector3(1, 0, 0) : bt(joint.axis).normalized();
     btVector3 y, z;
     btPlaneSpace1(x, y, z);
+    return frame(problem, x, y, z, body, anchor);
+  }
+  static btTransform frame(const Problem& problem, const btVector3& x, const btVector3& y, const btVector3& z, int body,
+                           const Vec3& anchor) {
     const btMatrix3x3 axes(x.x(), y.x(), z.x(), x.y(), y.y(), z.y(), x.z(), y.z(), z.z());
     if (body == peers::world) return btTransform(axes, bt(anchor));
     const State& s = problem.bodies[std::size_t(body)].start;
@@ -152,6 +159,27 @@ class BulletRun final : public SteppedRun {
     for (int k = 4; k < 6; ++k) made->setLimit(k, 0, 0);
     return made;
   }
+  // Turns about x of a, y and z of b, of which a universal joint leaves the last two: the second may then go all
+  // around.
+  std::unique_ptr<btTypedConstraint> turning(const Problem& problem, const Joint& joint) {
+    std::vector<Turn> turns = turns_of(joint, free_first_);
+    if (joint.kind == JointKind::universal)
+      turns.insert(turns.begin(), Turn{cross(turns[0].axis, turns[1].axis), true, {}});
+    const btVector3 x = bt(turns[0].axis), y = bt(turns[1].axis), z = bt(turns[2].axis);
+    auto made = std::make_unique<btGeneric6DofSpring2Constraint>(
+        body(joint.a), body(joint.b), frame(problem, x, y, z, joint.a, joint.anchor),
+        frame(problem, x, y, z, joint.b, joint.anchor_b), RO_ZYX);
+    for (int k = 0; k < 3; ++k) {
+      const Turn& turn = turns[std::size_t(k)];
+      made->setLimit(k, 0, 0);
+      made->setLimit(3 + k, turn.held ? 0 : 1, turn.held ? 0 : -1);
+      if (!turn.motor) continue;
+      made->enableMotor(3 + k, true);
+      made->setTargetVelocity(3 + k, -turn.motor->speed);  // counts from b to a
+      made->setMaxMotorForce(3 + k, turn.motor->most);
+    }
+    return made;
+  }
   static void add_spring(btGeneric6DofSpring2Constraint& made, int coordinate, const Spring& spring) {
     made.enableSpring(coordinate, true);
     made.setStiffness(coordinate, spring.stiffness);
@@ -174,12 +202,14 @@ class BulletRun final : public SteppedRun {
       made->setLimit(3, 0, 0);
       return made;
     }
-    if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
-      throw CannotSay("no joint that keeps a distance");
+    if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance || joint.kind == JointKind::pulley)
+      throw no_such(joint);
+    if (!joint.turns.empty()) return turning(problem, joint);
     if (joint.kind == JointKind::spherical)
       return std::make_unique<btPoint2PointConstraint>(a, b, in_a.getOrigin(), in_b.getOrigin());
     if (joint.kind == JointKind::revolute) return hinge(problem, joint, a, b);
     if (joint.kind == JointKind::fixed) return std::make_unique<btFixedConstraint>(a, b, in_a, in_b);
+    if (norm(joint.axis) == 0) throw CannotSay("its sliders take a frame, of which no axis is zero");
     return std::make_unique<btSliderConstraint>(a, b, in_a, in_b, true);
   }
 
@@ -200,6 +230,7 @@ class BulletRun final : public SteppedRun {
   btDantzigSolver dantzig_;
   btMLCPSolver dantzig_solver_;
   Untouched<btDiscreteDynamicsWorld> world_;
+  bool free_first_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
   std::map<int, Made> joints_;  // by number
   Made* made_ = nullptr;        // of the joint that is being added
@@ -217,7 +248,7 @@ std::vector<Series> series(const Problem& problem) {
     ways.push_back(
         {"10 sweeps, gyroscope in the world", "gyroscopic force implicit in world coordinates", 10, 0.2, true});
   std::vector<Series> all;
-  for (const Way& way : ways)
+  for (const Way& way : with_free_turns_first(problem, ways))
     all.push_back({way.name, way.changed, "h", steps(problem),
                    [&problem, way](double h) { return std::make_unique<BulletRun>(problem, way, h); }});
   return all;

@@ -23,6 +23,7 @@ struct Way {
   std::string name, changed;
   bool rk4;
   double erp = 0.2;
+  bool free_first = false;  // of the turns of a joint of six degrees
 };
 
 class MultibodyRun final : public SteppedRun {
@@ -32,7 +33,8 @@ class MultibodyRun final : public SteppedRun {
         problem_(problem),
         world_(&parts_.dispatcher, &parts_.broadphase, &solver_, &parts_.configuration),
         places_(problem.bodies.size()),
-        h_(h) {
+        h_(h),
+        free_first_(way.free_first) {
     check(problem, {.held_orientations = true, .springs = true, .soft_joints = true});
     world_.setGravity(bt(problem.gravity));
     world_.getSolverInfo().m_erp = way.erp;
@@ -129,7 +131,9 @@ class MultibodyRun final : public SteppedRun {
         continue;
       }
       mine = branch.parent == peers::world ? 0 : group[std::size_t(branch.parent)];
-      places_[std::size_t(branch.body)].link = links[std::size_t(mine)]++;
+      int& made = links[std::size_t(mine)];
+      made += links_of(problem, branch);
+      places_[std::size_t(branch.body)].link = made - 1;
     }
     multibodies_.resize(links.size());
     if (links[0] > 0) multibodies_[0] = std::make_unique<btMultiBody>(links[0], 0, btVector3(0, 0, 0), true, false);
@@ -145,9 +149,22 @@ class MultibodyRun final : public SteppedRun {
     for (const Branch& branch : tree.branches) set_velocity(problem, branch, places_[std::size_t(branch.body)]);
   }
 
+  // A joint that turns about several axes is as many hinges, between links without mass.
+  static int links_of(const Problem& problem, const Branch& branch) {
+    return std::max(1, int(problem.joints[std::size_t(branch.joint)].turns.size()));
+  }
+
+  static int link_of(const Place& last, const std::vector<Turn>& turns, std::size_t turn) {
+    return last.link + 1 - int(turns.size() - turn);
+  }
+
+  std::vector<Turn> turns_in(const Problem& problem, const Branch& branch) const {
+    return branch.joint < 0 ? std::vector<Turn>() : turns_of(problem, branch, free_first_);
+  }
+
   static std::unique_ptr<btMultiBody> base(const Problem& problem, const Branch& branch, int links) {
     const Body& body = problem.bodies[std::size_t(branch.body)];
-    auto made = std::make_unique<btMultiBody>(links, body.mass, bt(body.inertia), false, false);
+    auto made = std::make_unique<btMultiBody>(links, body.mass, bt(body.inertia), !body.moves, false);
     made->setBasePos(bt(body.start.x));
     made->setWorldToBaseRot(bt(body.start.q).inverse());
     return made;
@@ -160,25 +177,42 @@ class MultibodyRun final : public SteppedRun {
     const Joint& joint = problem.joints[std::size_t(branch.joint)];
     const Quaternion parent =
         branch.parent == peers::world ? Quaternion{1, 0, 0, 0} : problem.bodies[std::size_t(branch.parent)].start.q;
-    const btQuaternion turn = bt(conjugate(body.start.q) * parent);
-    const btVector3 in = bt(local_point(problem, branch.parent, joint.anchor)),
-                    out = -bt(local_point(problem, branch.body, joint.anchor)),
+    btQuaternion turn = bt(conjugate(body.start.q) * parent);
+    btVector3 in = bt(local_point(problem, branch.parent, joint.anchor));
+    const btVector3 out = -bt(local_point(problem, branch.body, joint.anchor)),
                     axis = bt(local_direction(problem, branch.body, joint.axis)), inertia = bt(body.inertia);
-    const int above = place(branch.parent).link, link = at.link;
+    int above = place(branch.parent).link;
+    const int link = at.link;
     btMultiBody& made = *at.multibody;
+    const std::vector<Turn> turns = turns_in(problem, branch);
+    for (std::size_t k = 0; k + 1 < turns.size(); ++k) {
+      const int between = link_of(at, turns, k);
+      made.setupRevolute(between, 0, btVector3(0, 0, 0), above, turn,
+                         bt(local_direction(problem, branch.body, turns[k].axis)), in, btVector3(0, 0, 0), true);
+      above = between;
+      turn = btQuaternion::getIdentity();
+      in = btVector3(0, 0, 0);
+    }
     if (joint.kind == JointKind::fixed)
       made.setupFixed(link, body.mass, inertia, above, turn, in, out, true);
     else if (joint.kind == JointKind::spherical)
       made.setupSpherical(link, body.mass, inertia, above, turn, in, out, true);
     else if (joint.kind == JointKind::revolute)
       made.setupRevolute(link, body.mass, inertia, above, turn, axis, in, out, true);
+    else if (!turns.empty())
+      made.setupRevolute(link, body.mass, inertia, above, turn,
+                         bt(local_direction(problem, branch.body, turns.back().axis)), in, out, true);
     else
       made.setupPrismatic(link, body.mass, inertia, above, turn, axis, in, out, true);
     made.getLink(link).m_jointFeedback = &felt_[joint.number];
   }
 
-  static void set_velocity(const Problem& problem, const Branch& branch, const Place& at) {
+  void set_velocity(const Problem& problem, const Branch& branch, const Place& at) const {
     const State& start = problem.bodies[std::size_t(branch.body)].start;
+    const std::vector<Turn> turns = turns_in(problem, branch);
+    for (std::size_t k = 0; k < turns.size(); ++k)
+      at.multibody->setJointVel(link_of(at, turns, k), dot(spin(problem, branch), turns[k].axis));
+    if (!turns.empty()) return;
     if (branch.joint < 0) {
       at.multibody->setBaseVel(bt(start.v));
       at.multibody->setBaseOmega(bt(start.w));
@@ -216,6 +250,7 @@ class MultibodyRun final : public SteppedRun {
       const Place at = place(hinge_between(problem, tree, joint.a, joint.b).body);
       return add(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, 0, 0));
     }
+    if (only_closes(joint)) throw no_such(joint);
     const Place a = place(joint.a), b = place(joint.b);
     add(std::make_unique<btMultiBodyPoint2Point>(a.multibody, a.link, b.multibody, b.link,
                                                  bt(local_point(problem, joint.a, joint.anchor)),
@@ -226,13 +261,21 @@ class MultibodyRun final : public SteppedRun {
     if (branch.joint < 0) return;
     const Joint& joint = problem.joints[std::size_t(branch.joint)];
     const Place at = place(branch.body);
+    const std::vector<Turn> turns = turns_in(problem, branch);
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      const int link = link_of(at, turns, k);
+      if (turns[k].held) add(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, link, 0, 0));
+      if (turns[k].motor) move(at.multibody, link, turns[k].motor->speed, *turns[k].motor);
+    }
     if (joint.stops) {
       const Stops stops = stops_from_start(problem, branch);
       add(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, stops.lower, stops.upper));
     }
     if (!joint.motor) return;
-    constraints_.push_back(std::make_unique<btMultiBodyJointMotor>(
-        at.multibody, at.link, sense(problem, branch) * joint.motor->speed, joint.motor->most * h_));
+    move(at.multibody, at.link, sense(problem, branch) * joint.motor->speed, *joint.motor);
+  }
+  void move(btMultiBody* multibody, int link, double speed, const Motor& motor) {
+    constraints_.push_back(std::make_unique<btMultiBodyJointMotor>(multibody, link, speed, motor.most * h_));
   }
 
   const Problem& problem_;
@@ -245,6 +288,7 @@ class MultibodyRun final : public SteppedRun {
   std::vector<Place> places_;  // of bodies
   std::vector<std::pair<Place, Vec3>> struck_;
   double h_;
+  bool free_first_;
   std::vector<std::unique_ptr<btMultiBodyLinkCollider>> colliders_;
   std::vector<std::unique_ptr<btMultiBodyConstraint>> constraints_;
 };
@@ -253,7 +297,7 @@ std::vector<Series> series(const Problem& problem) {
   std::vector<Way> ways{{"RK4", "useRK4Integration", true}, {"Euler", "", false}};
   if (!tree_of(problem).loops.empty()) ways.push_back({"RK4, ERP 0.8", "useRK4Integration, ERP 0.8", true, 0.8});
   std::vector<Series> all;
-  for (const Way& way : ways)
+  for (const Way& way : with_free_turns_first(problem, ways))
     all.push_back({way.name, way.changed, "h", way.rk4 ? fine_steps(problem) : steps(problem),
                    [&problem, way](double h) { return std::make_unique<MultibodyRun>(problem, way, h); }});
   return all;

@@ -25,6 +25,7 @@ BodyDefinition definition(const Planar<double>*, const Body& body) {
           .w = s.w[2],
           .mass = body.mass,
           .inertia = body.inertia[2],
+          .is_static = !body.moves,
           .fixed_rotation = !body.turns,
           .torque = body.torque[2],
           .linear_damping = body.damping,
@@ -48,6 +49,7 @@ SpatialBodyDefinition definition(const Spatial<double>*, const Body& body) {
           .wz = s.w[2],
           .mass = body.mass,
           .inertia = {.xx = body.inertia[0], .yy = body.inertia[1], .zz = body.inertia[2]},
+          .is_static = !body.moves,
           .fixed_rotation = !body.turns,
           .torque_x = body.torque[0],
           .torque_y = body.torque[1],
@@ -58,6 +60,13 @@ SpatialBodyDefinition definition(const Spatial<double>*, const Body& body) {
 
 NamedValue planar_value(const char* name, const Vec3& u) { return {name, {u[0], u[1]}}; }
 NamedValue spatial_value(const char* name, const Vec3& u) { return {name, {u[0], u[1], u[2]}}; }
+
+const char* over_wheels(NamedValue (*value)(const char*, const Vec3&), const Joint& joint, JointDefinition& d) {
+  for (const NamedValue& more : {value("ga", joint.wheel), value("gb", joint.wheel_b),
+                                 NamedValue{"ratio", {joint.ratio}}, NamedValue{"length", {joint.length}}})
+    d.parameters.push_back(more);
+  return "pulley";
+}
 
 const char* with_length(const Joint& joint, JointDefinition& d) {
   d.parameters.push_back({"l", {joint.length}});
@@ -72,12 +81,23 @@ JointDefinition definition(const Planar<double>*, const Problem& problem, const 
   d.type = joint.kind == JointKind::prismatic  ? "prismatic"
            : joint.kind == JointKind::fixed    ? "weld"
            : joint.kind == JointKind::revolute ? "revolute"
+           : joint.kind == JointKind::pulley   ? over_wheels(planar_value, joint, d)
                                                : with_length(joint, d);
   if (joint.kind == JointKind::prismatic) {
     const Vec3 normal{-joint.axis[1], joint.axis[0], 0};
     d.parameters.push_back(planar_value("t", local_direction(problem, joint.b, normal)));
   }
   return d;
+}
+
+// Of a joint that turns about several axes: those of a six-degree joint are x, y and z, those of a universal one y and
+// z.
+NamedValue frame(const Problem& problem, const Joint& joint) {
+  const Vec3 &first = joint.turns[0].axis, &second = joint.turns[1].axis;
+  const bool universal = joint.kind == JointKind::universal;
+  const Vec3 x = local_direction(problem, joint.a, universal ? cross(first, second) : first),
+             y = local_direction(problem, joint.a, universal ? first : second);
+  return {"fa", {x[0], x[1], x[2], y[0], y[1], y[2]}};
 }
 
 JointDefinition definition(const Spatial<double>*, const Problem& problem, const Joint& joint) {
@@ -90,7 +110,11 @@ JointDefinition definition(const Spatial<double>*, const Problem& problem, const
            : joint.kind == JointKind::spherical ? "spherical"
            : joint.kind == JointKind::fixed     ? "fixed"
            : joint.kind == JointKind::revolute  ? (acted_on ? "hinge" : "revolute")
+           : joint.kind == JointKind::universal ? "universal"
+           : joint.kind == JointKind::six_dof   ? "six_dof"
+           : joint.kind == JointKind::pulley    ? over_wheels(spatial_value, joint, d)
                                                 : with_length(joint, d);
+  if (!joint.turns.empty()) d.parameters.push_back(frame(problem, joint));
   if (joint.kind == JointKind::fixed) d.parameters.push_back(spatial_value("fa", {1, 0, 0}));
   if (joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic)
     d.parameters.push_back(spatial_value("fa", local_direction(problem, joint.a, joint.axis)));
@@ -115,11 +139,25 @@ void choose_origin(const Problem& problem, BasicWorld<S>& world) {
 }
 
 template <class S>
+void add_turns(BasicWorld<S>& made, int index, const Joint& joint) {
+  static const char *const bends[] = {"bend_a", "bend_b"}, *const twists[] = {"twist_x", "twist_y", "twist_z"};
+  for (std::size_t k = 0; k < joint.turns.size(); ++k) {
+    const Turn& turn = joint.turns[k];
+    const char* coordinate = joint.kind == JointKind::universal ? bends[k] : twists[k];
+    if (turn.held) add_limit(made, index, coordinate, {0, 0});
+    if (turn.motor) add_motor(made, index, coordinate, {turn.motor->speed, turn.motor->most});
+  }
+  if (joint.kind != JointKind::six_dof) return;
+  for (const char* slide : {"slide_x", "slide_y", "slide_z"}) add_limit(made, index, slide, {0, 0});
+}
+
+template <class S>
 void add(BasicWorld<S>& made, const Problem& problem, const Joint& joint) {
   JointDefinition d = definition(static_cast<const S*>(nullptr), problem, joint);
   for (const int body : {joint.a, joint.b}) d.bodies.push_back(body == world ? made.ground() : body);
   if (joint.soft) d.soft = Softness{false, 0, 0, joint.soft->stiffness, joint.soft->damping};
   const int index = made.add_joint(d);
+  add_turns(made, index, joint);
   const char* coordinate = joint.kind == JointKind::prismatic ? "slide" : "angle";
   if (joint.stops) add_limit(made, index, coordinate, {joint.stops->lower, joint.stops->upper});
   if (joint.motor) add_motor(made, index, coordinate, {joint.motor->speed, joint.motor->most});

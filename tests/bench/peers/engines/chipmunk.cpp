@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "tests/bench/peers/geometry.hpp"
+#include "tests/bench/peers/words.hpp"
 
 namespace cdot::peers {
 namespace {
@@ -90,7 +91,7 @@ class ChipmunkRun final : public SteppedRun {
   }
 
   void add(const Body& body) {
-    cpBody* b = cpBodyNew(body.mass, body.turns ? body.inertia[2] : INFINITY);
+    cpBody* b = body.moves ? cpBodyNew(body.mass, body.turns ? body.inertia[2] : INFINITY) : cpBodyNewStatic();
     cpBodySetPosition(b, vec(body.start.x));
     cpBodySetAngle(b, angle(body.start.q));
     cpBodySetVelocity(b, vec(body.start.v));
@@ -116,6 +117,7 @@ class ChipmunkRun final : public SteppedRun {
       if (joint.kind != JointKind::revolute) throw CannotSay("no joint that gives like a spring but a spring");
       return make(cpDampedSpringNew(a, b, pa, pb, 0, joint.soft->stiffness, joint.soft->damping));
     }
+    if (joint.kind == JointKind::pulley) throw no_such(joint);
     if (joint.kind == JointKind::distance) {
       cpConstraint* rod = cpPinJointNew(a, b, pa, pb);
       cpPinJointSetDist(rod, joint.length);
@@ -147,10 +149,10 @@ class ChipmunkRun final : public SteppedRun {
                            spring.damping));
   }
 
-  // Of a groove that is long enough on both sides.
+  // Of a groove that is long enough on both sides; of none along no axis.
   static cpVect end(const Problem& problem, const Joint& joint, double side) {
-    const double half = 10;
-    return vec(local_point(problem, joint.a, joint.anchor + (side * half / norm(joint.axis)) * joint.axis));
+    const double half = 10, length = norm(joint.axis);
+    return vec(local_point(problem, joint.a, joint.anchor + (length > 0 ? side * half / length : 0) * joint.axis));
   }
 
   cpSpace* space_;

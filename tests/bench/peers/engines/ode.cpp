@@ -23,6 +23,7 @@ struct Way {
   int sweeps = 0;  // 0: Step
   double erp = 0.2, cfm = 1e-10;
   bool finite_rotation = false;
+  bool free_first = false;  // of the turns of a joint of six degrees
 };
 
 [[noreturn]] void give_up(int, const char* format, va_list values) {
@@ -34,7 +35,8 @@ void ignore(int, const char*, va_list) {}
 
 class OdeRun final : public SteppedRun {
  public:
-  OdeRun(const Problem& problem, const Way& way, double h) : SteppedRun(h), world_(made()), sweeps_(way.sweeps), h_(h) {
+  OdeRun(const Problem& problem, const Way& way, double h)
+      : SteppedRun(h), world_(made()), sweeps_(way.sweeps), h_(h), free_first_(way.free_first) {
     check(problem, {.held_orientations = true});
     dWorldSetAutoDisableFlag(world_, problem.sleep_after > 0);
     dWorldSetAutoDisableTime(world_, problem.sleep_after);
@@ -76,13 +78,15 @@ class OdeRun final : public SteppedRun {
   }
   // A joint is told where it is, once for both bodies: one that starts open is made with the second where it would fit.
   bool add(const Problem&, const Joint& joint) override {
-    const Vec3 gap = joint.kind == JointKind::orientation ? Vec3{} : joint.anchor_b - joint.anchor;
+    const bool meets = joint.kind != JointKind::orientation && joint.kind != JointKind::distance;
+    const Vec3 gap = meets ? joint.anchor_b - joint.anchor : Vec3{};
     Made& made = joints_[joint.number];
     move(body(joint.b), -1.0 * gap);
     made.ids = {connect(joint)};
     move(body(joint.b), gap);
     dJointSetFeedback(made.ids[0], made.felt.get());
     if (joint.kind == JointKind::revolute && joint.spring) made.ids.push_back(damper(joint));
+    if (joint.kind == JointKind::six_dof) made.ids.push_back(turns(joint));
     return true;
   }
   double force(int joint) const override { return dCalcVectorLength3(joints_.at(joint).felt->f1); }
@@ -112,6 +116,7 @@ class OdeRun final : public SteppedRun {
     dBodySetMass(b, &mass);
     dBodySetPosition(b, s.x[0], s.x[1], s.x[2]);
     dBodySetQuaternion(b, s.q.data());
+    if (!body.moves) dBodySetKinematic(b);
     dBodySetLinearVel(b, s.v[0], s.v[1], s.v[2]);
     dBodySetAngularVel(b, s.w[0], s.w[1], s.w[2]);
     dBodySetFiniteRotationMode(b, finite_rotation);
@@ -184,6 +189,58 @@ class OdeRun final : public SteppedRun {
     return made;
   }
 
+  // A body that is not the world comes first, and angles count from the second to it.
+  bool forth(const Joint& joint) const { return joint.a == peers::world; }
+  void attach(dJointID made, const Joint& joint) {
+    dJointAttach(made, body(forth(joint) ? joint.b : joint.a), body(forth(joint) ? joint.a : joint.b));
+  }
+
+  dJointID universal(const Joint& joint) {
+    const dJointID made = dJointCreateUniversal(world_, nullptr);
+    attach(made, joint);
+    const Turn &one = joint.turns[forth(joint) ? 1 : 0], &other = joint.turns[forth(joint) ? 0 : 1];
+    dJointSetUniversalAnchor(made, joint.anchor[0], joint.anchor[1], joint.anchor[2]);
+    dJointSetUniversalAxis1(made, one.axis[0], one.axis[1], one.axis[2]);
+    dJointSetUniversalAxis2(made, other.axis[0], other.axis[1], other.axis[2]);
+    for (const auto& [turn, group] : {std::pair{&one, dParamGroup1}, {&other, dParamGroup2}}) {
+      for (const int stop : {dParamLoStop, dParamHiStop})
+        if (turn->held) dJointSetUniversalParam(made, group + stop, 0);
+      if (!turn->motor) continue;
+      dJointSetUniversalParam(made, group + dParamVel, forth(joint) ? turn->motor->speed : -turn->motor->speed);
+      dJointSetUniversalParam(made, group + dParamFMax, turn->motor->most);
+    }
+    return made;
+  }
+
+  // An angular motor that holds them, beside a ball.
+  dJointID turns(const Joint& joint) {
+    std::vector<Turn> all = turns_of(joint, free_first_);
+    if (forth(joint)) std::reverse(all.begin(), all.end());
+    const dJointID made = dJointCreateAMotor(world_, nullptr);
+    attach(made, joint);
+    dJointSetAMotorMode(made, dAMotorEuler);
+    for (const int k : {0, 2}) {
+      const Vec3& axis = all[std::size_t(k)].axis;
+      dJointSetAMotorAxis(made, k, k == 0 ? 1 : 2, axis[0], axis[1], axis[2]);
+    }
+    const int groups[] = {dParamGroup1, dParamGroup2, dParamGroup3};
+    for (std::size_t k = 0; k < all.size(); ++k)
+      for (const int stop : {dParamLoStop, dParamHiStop})
+        if (all[k].held) dJointSetAMotorParam(made, groups[k] + stop, 0);
+    return made;
+  }
+
+  dJointID rod(const Joint& joint) {
+    const dJointID made = dJointCreateDBall(world_, nullptr);
+    attach(made, joint);
+    const Vec3 &one = forth(joint) ? joint.anchor_b : joint.anchor,
+               &other = forth(joint) ? joint.anchor : joint.anchor_b;
+    dJointSetDBallAnchor1(made, one[0], one[1], one[2]);
+    dJointSetDBallAnchor2(made, other[0], other[1], other[2]);
+    dJointSetDBallDistance(made, joint.length);
+    return made;
+  }
+
   // An angular motor whose three angles are stopped where they are.
   dJointID orientation(const Joint& joint) {
     const dJointID made = dJointCreateAMotor(world_, nullptr);
@@ -205,11 +262,13 @@ class OdeRun final : public SteppedRun {
   // A soft hinge is a soft ball: hinges themselves do not give.
   dJointID connect(const Joint& joint) {
     if (joint.soft && joint.kind != JointKind::revolute) throw CannotSay("no soft joint but a ball");
-    if (joint.kind == JointKind::spherical || joint.soft) return ball(joint);
+    if (joint.kind == JointKind::spherical || joint.kind == JointKind::six_dof || joint.soft) return ball(joint);
     if (joint.kind == JointKind::revolute) return hinge(joint);
     if (joint.kind == JointKind::prismatic) return slider(joint);
     if (joint.kind == JointKind::orientation) return orientation(joint);
-    if (joint.kind != JointKind::fixed) throw CannotSay("no joint that keeps a distance");
+    if (joint.kind == JointKind::universal) return universal(joint);
+    if (joint.kind == JointKind::distance) return rod(joint);
+    if (joint.kind != JointKind::fixed) throw no_such(joint);
     const dJointID made = dJointCreateFixed(world_, nullptr);
     dJointAttach(made, body(joint.a), body(joint.b));
     dJointSetFixed(made);
@@ -219,21 +278,23 @@ class OdeRun final : public SteppedRun {
   dWorldID world_;
   int sweeps_;
   double h_;
+  bool free_first_;
   std::vector<dBodyID> bodies_;
   std::map<int, Made> joints_;  // by number
   std::vector<std::pair<dBodyID, Vec3>> torques_;
 };
 
 std::vector<Series> series(const Problem& problem) {
+  const std::vector<Way> ways{
+      {"Step", ""},
+      {"QuickStep, 20 sweeps", "", 20},
+      {"QuickStep, 5 sweeps", "5 iterations", 5},
+      {"Step, ERP 0.8", "ERP 0.8", 0, 0.8},
+      {"Step, ERP 0.8, CFM 0", "ERP 0.8, CFM 0", 0, 0.8, 0},
+      {"Step, finite rotation", "finite rotation mode", 0, 0.2, 1e-10, true},
+  };
   std::vector<Series> all;
-  for (const Way& way : {
-           Way{"Step", ""},
-           Way{"Step, ERP 0.8", "ERP 0.8", 0, 0.8},
-           Way{"Step, ERP 0.8, CFM 0", "ERP 0.8, CFM 0", 0, 0.8, 0},
-           Way{"Step, finite rotation", "finite rotation mode", 0, 0.2, 1e-10, true},
-           Way{"QuickStep, 20 sweeps", "", 20},
-           Way{"QuickStep, 5 sweeps", "5 iterations", 5},
-       })
+  for (const Way& way : with_free_turns_first(problem, ways))
     all.push_back({way.name, way.changed, "h", steps(problem),
                    [&problem, way](double h) { return std::make_unique<OdeRun>(problem, way, h); }});
   return all;

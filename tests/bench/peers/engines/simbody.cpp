@@ -25,6 +25,7 @@ int most_steps(const Problem& problem) { return problem.bodies.size() > 50 ? 100
 struct Way {
   std::string name, changed;
   enum Kind { merson, feldberg, rk3, cpodes, euler } kind;
+  bool free_first = false;  // of the turns of a joint of six degrees
 };
 
 class SimbodyRun final : public Run {
@@ -34,6 +35,7 @@ class SimbodyRun final : public Run {
         forces_(system_),
         gravity_(forces_, matter_, vec(problem.gravity)),
         bodies_(problem.bodies.size()),
+        free_first_(way.free_first),
         most_steps_(most_steps(problem)) {
     Lacks lacks;
     lacks.held_orientations = lacks.sleep = true;
@@ -119,7 +121,10 @@ class SimbodyRun final : public Run {
     SimTK::MobilizedBody& made = bodies_[std::size_t(branch.body)];
     if (branch.joint < 0) {
       const SimTK::Transform start(rotation(body.start.q), vec(body.start.x));
-      made = SimTK::MobilizedBody::Free(parent, start, rigid, SimTK::Transform());
+      if (body.moves)
+        made = SimTK::MobilizedBody::Free(parent, start, rigid, SimTK::Transform());
+      else
+        made = SimTK::MobilizedBody::Weld(parent, start, rigid, SimTK::Transform());
       return;
     }
     const Joint& joint = problem.joints[std::size_t(branch.joint)];
@@ -128,7 +133,9 @@ class SimbodyRun final : public Run {
       return std::pair{frame(problem, branch.parent, axes, joint.anchor),
                        frame(problem, branch.body, axes, joint.anchor)};
     };
-    if (joint.kind == JointKind::fixed) {
+    if (!joint.turns.empty()) {
+      add_turning(problem, branch, rigid);
+    } else if (joint.kind == JointKind::fixed) {
       const auto [in, out] = both(SimTK::Rotation());
       made = SimTK::MobilizedBody::Weld(parent, in, rigid, out);
     } else if (joint.kind == JointKind::spherical) {
@@ -145,6 +152,29 @@ class SimbodyRun final : public Run {
       const auto [in, out] = both(SimTK::Rotation(SimTK::UnitVec3(vec(joint.axis)), SimTK::XAxis));
       made = SimTK::MobilizedBody::Slider(parent, in, rigid, out);
     }
+  }
+
+  // About x, then y, then z: a universal mobilizer, or a gimbal.
+  void add_turning(const Problem& problem, const Branch& branch, const SimTK::Body& rigid) {
+    const std::vector<Turn> turns = turns_of(problem, branch, free_first_);
+    const SimTK::Rotation axes(SimTK::UnitVec3(vec(turns[0].axis)), SimTK::XAxis, vec(turns[1].axis), SimTK::YAxis);
+    const Vec3& anchor = problem.joints[std::size_t(branch.joint)].anchor;
+    const SimTK::Transform in = frame(problem, branch.parent, axes, anchor),
+                           out = frame(problem, branch.body, axes, anchor);
+    SimTK::MobilizedBody& made = bodies_[std::size_t(branch.body)];
+    if (turns.size() == 2)
+      made = SimTK::MobilizedBody::Universal(mobile(branch.parent), in, rigid, out);
+    else
+      made = SimTK::MobilizedBody::Gimbal(mobile(branch.parent), in, rigid, out);
+    for (std::size_t k = 0; k < turns.size(); ++k) {
+      if (turns[k].held) SimTK::Constraint::ConstantCoordinate(made, SimTK::MobilizerQIndex(int(k)), 0);
+      if (turns[k].motor) add_motor(made, int(k), turns[k].motor->speed, *turns[k].motor);
+    }
+  }
+  void add_motor(SimTK::MobilizedBody& made, int coordinate, double speed, const Motor& motor) {
+    if (std::isfinite(motor.most)) throw CannotSay("no motor that has a speed and a greatest torque");
+    motors_.emplace_back(made, SimTK::MobilizerUIndex(coordinate), speed);
+    motors_.back().setDisabledByDefault(true);
   }
 
   // What acts in the joint of a branch, whose coordinates are zero at the start.
@@ -167,10 +197,8 @@ class SimbodyRun final : public Run {
       SimTK::Force::MobilityLinearStop(forces_, made, SimTK::MobilizerQIndex(0), stop_stiffness, stop_dissipation,
                                        stops.lower, stops.upper);
     }
-    if (!joint.motor) return;
-    if (std::isfinite(joint.motor->most)) throw CannotSay("no motor that has a speed and a greatest torque");
-    motors_.emplace_back(bodies_[std::size_t(branch.body)], sense(problem, branch) * joint.motor->speed);
-    motors_.back().setDisabledByDefault(true);
+    if (joint.motor)
+      add_motor(bodies_[std::size_t(branch.body)], 0, sense(problem, branch) * joint.motor->speed, *joint.motor);
   }
 
   // One right angle, between a direction of one body and one of the other, across the hinge that holds the rest.
@@ -183,10 +211,17 @@ class SimbodyRun final : public Run {
         mobile(joint.b), SimTK::UnitVec3(vec(local_direction(problem, joint.b, vec(side)))));
   }
 
+  void keep_distance(const Problem& problem, const Joint& joint) {
+    SimTK::Constraint::Rod(mobile(joint.a), vec(local_point(problem, joint.a, joint.anchor)), mobile(joint.b),
+                           vec(local_point(problem, joint.b, joint.anchor_b)), joint.length);
+  }
+
   // The tree keeps the plane, so that a pin which closes a loop is two rows.
   void close(const Problem& problem, const Tree& tree, const Joint& joint) {
     if (joint.kind == JointKind::orientation) return keep_angle(problem, tree, joint);
     if (joint.kind == JointKind::prismatic) throw CannotSay("the adapter closes no loop by a slider");
+    if (joint.kind == JointKind::distance) return keep_distance(problem, joint);
+    if (only_closes(joint)) throw no_such(joint);
     if (!problem.planar) return close_in_space(problem, joint);
     for (const Vec3& side : {Vec3{1, 0, 0}, Vec3{0, 1, 0}}) {
       const Vec3 normal = local_direction(problem, joint.a, side);
@@ -214,6 +249,9 @@ class SimbodyRun final : public Run {
     if (branch.joint < 0) {
       const Quaternion back = conjugate(start.q);
       made.setUToFitVelocity(state, SimTK::SpatialVec(vec(turned(back, start.w)), vec(turned(back, start.v))));
+    } else if (const auto turns = turns_of(problem, branch, free_first_); !turns.empty()) {
+      for (std::size_t k = 0; k < turns.size(); ++k)
+        made.setOneU(state, int(k), dot(spin(problem, branch), turns[k].axis));
     } else if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
       made.setUToFitAngularVelocity(state, vec(spin(problem, branch)));
     } else if (problem.joints[std::size_t(branch.joint)].kind != JointKind::fixed) {
@@ -263,6 +301,7 @@ class SimbodyRun final : public Run {
   std::vector<SimTK::MobilizedBody> bodies_;
   std::vector<SimTK::Constraint::ConstantSpeed> motors_;  // that do not run yet
   std::map<int, int> held_by_;                            // bodies, by the numbers of the joints that they hang from
+  bool free_first_;
   int most_steps_;
   std::unique_ptr<SimTK::Integrator> integrator_;
 };
@@ -270,10 +309,13 @@ class SimbodyRun final : public Run {
 std::vector<Series> series(const Problem& problem) {
   std::vector<double> accuracies;
   for (int half_digits = 2; half_digits <= 26; ++half_digits) accuracies.push_back(std::pow(10.0, -half_digits / 2.0));
+  const std::vector<Way> ways{{"Runge-Kutta-Merson", "", Way::merson},
+                              {"Runge-Kutta-Fehlberg", "", Way::feldberg},
+                              {"Runge-Kutta 3", "", Way::rk3},
+                              {"CPodes", "", Way::cpodes},
+                              {"semi-explicit Euler", "fixed steps", Way::euler}};
   std::vector<Series> all;
-  for (const Way& way : {Way{"Runge-Kutta-Merson", "", Way::merson}, Way{"Runge-Kutta-Fehlberg", "", Way::feldberg},
-                         Way{"Runge-Kutta 3", "", Way::rk3}, Way{"CPodes", "", Way::cpodes},
-                         Way{"semi-explicit Euler", "fixed steps", Way::euler}}) {
+  for (const Way& way : with_free_turns_first(problem, ways)) {
     const bool fixed = way.kind == Way::euler;
     all.push_back({way.name, way.changed, fixed ? "h" : "accuracy", fixed ? steps(problem) : accuracies,
                    [&problem, way](double knob) { return std::make_unique<SimbodyRun>(problem, way, knob); }});

@@ -23,7 +23,7 @@ constexpr std::array accuracies{1e-3, 1e-6};                // of methods that c
 constexpr double start_off = 1e-9, float_start_off = 1e-6;  // of the largest place or speed
 
 template <std::size_t size>
-void say(char (&to)[size], const std::string& text) {
+void put(char (&to)[size], const std::string& text) {
   to[text.copy(to, size - 1)] = 0;
 }
 
@@ -83,8 +83,7 @@ class Stand final : public hard::Mover {
     if (all.empty()) throw CannotSay("knows the plane only");
     if (asked.setting >= int(all.size())) throw NoSuchSetting();
     setting_ = all[std::size_t(asked.setting)];
-    say(told.setting, setting_.series.name);
-    say(told.changed, setting_.series.changed);
+    say(told, setting_);
     for (const Body& body : problem().bodies) velocities_.push_back(world.velocity(body.number));
     remember_joints();
   }
@@ -226,6 +225,11 @@ std::vector<Setting> settings(const Engine& engine, const Problem& problem) {
   const auto plain = std::find_if(all.begin(), all.end(), [](const Setting& s) { return s.series.changed.empty(); });
   if (plain != all.end()) std::rotate(all.begin(), plain, plain + 1);
   return all;
+}
+
+void say(Told& told, const Setting& setting) {
+  put(told.setting, setting.series.name);
+  put(told.changed, setting.series.changed);
 }
 
 Problem problem_of(const hard::Case& hard_case) {

@@ -11,7 +11,7 @@ struct Asked {
   const Engine* engine;
   int setting = 0;
   int finer = 1;
-  int longest = 900;  // CPU seconds of the run
+  int longest = 30;  // CPU seconds of the run
 };
 
 // Plain memory, which a parent process can share.
@@ -34,6 +34,8 @@ struct Setting {
 };
 // The engine's defaults first. Empty if the problem is not of its kind.
 std::vector<Setting> settings(const Engine& engine, const Problem& problem);
+
+void say(Told& told, const Setting& setting);
 
 // What a case asks, as it starts; throws CannotSay.
 Problem problem_of(const hard::Case& hard_case);

@@ -13,6 +13,8 @@
 #include <csignal>
 #include <cstring>
 
+#include "tests/bench/peers/hard/spoilt.hpp"
+
 namespace cdot::peers {
 namespace {
 
@@ -47,25 +49,25 @@ void settle(Outcome& outcome, const std::vector<hard::Finding>& findings) {
   outcome.kind = held ? Outcome::survives : Outcome::wrong;
 }
 
-void failed(Outcome& outcome, Outcome::Kind kind, const std::string& message) {
-  outcome.kind = kind;
-  outcome.message = message.substr(0, 300);
-  std::replace(outcome.message.begin(), outcome.message.end(), '\n', ' ');
-  std::replace(outcome.message.begin(), outcome.message.end(), '|', '/');
-}
-
-void run(Outcome& outcome, const hard::Case& hard_case, const Asked& asked) {
+void try_it(Outcome& outcome, const hard::Case& hard_case, const Asked& asked) {
   const bool single = asked.engine->number == "float";
   hard::Trial trial(hard_case.fault + "/" + hard_case.scene, {Solver::iterative, Integrator::euler, single});
+  hard_case.run(trial);
+  settle(outcome, trial.findings());
+}
+
+void run(Outcome& outcome, const hard::Case& hard_case, const Asked& asked, Told& told) {
   try {
-    hard_case.run(trial);
-    settle(outcome, trial.findings());
+    if (const Spoilt* question = spoilt(hard_case))
+      judge(*question, hard_case, asked, told, outcome);
+    else
+      try_it(outcome, hard_case, asked);
   } catch (const Exploded&) {
     outcome.kind = Outcome::explodes;
   } catch (const CannotSay& reason) {
-    failed(outcome, Outcome::cannot_say, reason.what());
+    ended(outcome, Outcome::cannot_say, reason.what());
   } catch (const std::exception& error) {
-    failed(outcome, Outcome::gives_up, error.what());
+    ended(outcome, Outcome::gives_up, error.what());
   }
 }
 
@@ -82,20 +84,21 @@ Shared& shared() {
   return *static_cast<Shared*>(memory);
 }
 
-// What engines print is theirs; the last line of it may tell why one died.
+// What engines print is theirs; the last lines of it may tell why one died.
 int redirected() {
   char name[] = "/tmp/cdot-peers-hard-XXXXXX";
   const int file = mkstemp(name);
   unlink(name);
   return file;
 }
-std::string last_line(int file) {
+std::string last_lines(int file) {
   char text[512] = "";
   const off_t size = lseek(file, 0, SEEK_END), take = std::min<off_t>(size, sizeof text - 1);
   if (pread(file, text, std::size_t(take), size - take) <= 0) return "";
   std::string all = text;
   while (!all.empty() && all.back() == '\n') all.pop_back();
-  const std::size_t at = all.rfind('\n');
+  std::size_t at = all.size();
+  for (int lines = 0; lines < 3 && at != std::string::npos && at > 0; ++lines) at = all.rfind('\n', at - 1);
   return at == std::string::npos ? all : all.substr(at + 1);
 }
 
@@ -121,6 +124,13 @@ void limit(int what, rlim_t to) {
 }
 
 }  // namespace
+
+void ended(Outcome& outcome, Outcome::Kind kind, const std::string& message) {
+  outcome.kind = kind;
+  outcome.message = message.substr(0, 300);
+  for (const char of_a_table : {'\n', '\t', '|'})
+    std::replace(outcome.message.begin(), outcome.message.end(), of_a_table, ' ');
+}
 
 const hard::Finding& Outcome::worst() const {
   return *std::max_element(findings.begin(), findings.end(),
@@ -166,7 +176,7 @@ Outcome judged(const hard::Case& hard_case, const Asked& asked, Told& told) {
   Outcome outcome;
   told = {};
   let_move(asked, told);
-  run(outcome, hard_case, asked);
+  run(outcome, hard_case, asked, told);
   outcome.setting = told.setting;
   outcome.changed = told.changed;
   outcome.time = told.time;
@@ -184,7 +194,7 @@ bool judge(const hard::Case& hard_case, const Asked& asked, Outcome& outcome) {
   if (process == 0) child(hard_case, asked, output);
   int status = 0;
   waitpid(process, &status, 0);
-  const std::string said = last_line(output);
+  const std::string said = last_lines(output);
   close(output);
   if (memory.no_such) return false;
   if (memory.size > 0) {
@@ -198,9 +208,9 @@ bool judge(const hard::Case& hard_case, const Asked& asked, Outcome& outcome) {
   outcome.parts = asked.finer;
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU || signal == SIGKILL)
-    failed(outcome, Outcome::too_slow, fmt::format("no end within {} s of CPU time", asked.longest));
+    ended(outcome, Outcome::too_slow, fmt::format("no end within {} s of CPU time", asked.longest));
   else
-    failed(outcome, Outcome::aborts, fmt::format("{}{}{}", strsignal(signal), said.empty() ? "" : ": ", said));
+    ended(outcome, Outcome::aborts, fmt::format("{}{}{}", strsignal(signal), said.empty() ? "" : ": ", said));
   return true;
 }
 

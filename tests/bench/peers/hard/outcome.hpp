@@ -25,6 +25,9 @@ struct Outcome {
   bool operator<(const Outcome& other) const;
 };
 
+// Without findings, for the reason that the message gives.
+void ended(Outcome& outcome, Outcome::Kind kind, const std::string& message);
+
 const char* name_of(Outcome::Kind kind);
 nlohmann::json json_of(const Outcome& outcome);
 Outcome outcome_of(const nlohmann::json& json);

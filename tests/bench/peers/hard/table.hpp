@@ -14,7 +14,7 @@ struct Column {
   const char* engine;
   const char* lifted;  // asked in its place where the case has a planar scene only
   bool planar;
-  bool slow = false;  // asked until a setting holds, and with its defaults only where there are more than 50 bodies
+  bool slow = false;  // asked until a setting holds
 };
 const std::vector<Column>& columns();
 
@@ -22,7 +22,6 @@ const std::vector<Column>& columns();
 struct Row {
   std::string name;  // of the fault, and what tells it from its like
   std::vector<hard::Case> cases;
-  std::string reason;  // why it is not asked; "" if it is
 };
 std::vector<Row> rows();
 
