@@ -72,12 +72,13 @@ struct Turn {
 
 struct Joint {
   JointKind kind = JointKind::revolute;
-  int a = 0, b = 0;         // indices of bodies, or `world`
-  Vec3 anchor{};            // of a, at the start, in world axes
-  Vec3 axis{};              // likewise: what it turns about or slides along, of any length but 0
-  Vec3 anchor_b{};          // of b: elsewhere where a joint starts open
-  double length = 0;        // of a rope over wheels, its part at a and `ratio` times that at b
-  Vec3 wheel{}, wheel_b{};  // of a pulley, in the world
+  int a = 0, b = 0;            // indices of bodies, or `world`
+  Vec3 anchor{};               // of a, at the start, in world axes
+  Vec3 axis{};                 // likewise: what it turns about or slides along, of any length but 0
+  std::optional<Vec3> axis_b;  // what b has for it, if not the same
+  Vec3 anchor_b{};             // of b: elsewhere where a joint starts open
+  double length = 0;           // of a rope over wheels, its part at a and `ratio` times that at b
+  Vec3 wheel{}, wheel_b{};     // of a pulley, in the world
   double ratio = 1;
   std::vector<Turn> turns;  // of a universal joint two, of one of six degrees three
   std::optional<Motor> motor;

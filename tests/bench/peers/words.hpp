@@ -9,7 +9,8 @@
 namespace cdot::peers {
 
 struct Lacks {
-  bool held_orientations = false, motors = false, stops = false, springs = false, soft_joints = false, sleep = false;
+  bool held_orientations = false, motors = false, stops = false, springs = false, soft_joints = false, sleep = false,
+       two_axes = false;
 };
 
 // Throws CannotSay.
@@ -20,6 +21,7 @@ inline void check(const Problem& problem, const Lacks& lacks) {
   refuse(problem.sleep_after > 0, lacks.sleep, "nothing sleeps in it");
   for (const Body& body : problem.bodies) refuse(!body.turns, lacks.held_orientations, "no body that cannot turn");
   for (const Joint& joint : problem.joints) {
+    refuse(joint.axis_b.has_value(), lacks.two_axes, "takes one axis for both bodies");
     refuse(joint.motor.has_value(), lacks.motors, "no motor that has a speed and a greatest torque");
     refuse(joint.stops.has_value(), lacks.stops, "no stops of a hinge");
     refuse(joint.spring.has_value(), lacks.springs, "no spring or damper of a joint");

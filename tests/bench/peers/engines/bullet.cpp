@@ -140,7 +140,8 @@ class BulletRun final : public SteppedRun {
   std::unique_ptr<btTypedConstraint> hinge(const Problem& problem, const Joint& joint, btRigidBody& a, btRigidBody& b) {
     auto made = std::make_unique<btHingeConstraint>(
         a, b, bt(local_point(problem, joint.a, joint.anchor)), bt(local_point(problem, joint.b, joint.anchor_b)),
-        bt(local_direction(problem, joint.a, joint.axis)), bt(local_direction(problem, joint.b, joint.axis)));
+        bt(local_direction(problem, joint.a, joint.axis)),
+        bt(local_direction(problem, joint.b, joint.axis_b.value_or(joint.axis))));
     if (joint.motor) motors_.emplace_back(made.get(), *joint.motor);
     if (joint.stops) made->setLimit(-joint.stops->upper, -joint.stops->lower, 0.9, 0.3, 0);  // without bouncing
     if (!joint.spring) return made;

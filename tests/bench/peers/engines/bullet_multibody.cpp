@@ -35,7 +35,7 @@ class MultibodyRun final : public SteppedRun {
         places_(problem.bodies.size()),
         h_(h),
         free_first_(way.free_first) {
-    check(problem, {.held_orientations = true, .springs = true, .soft_joints = true});
+    check(problem, {.held_orientations = true, .springs = true, .soft_joints = true, .two_axes = true});
     world_.setGravity(bt(problem.gravity));
     world_.getSolverInfo().m_erp = way.erp;
     world_.getSolverInfo().m_jointFeedbackInWorldSpace = true;

@@ -118,6 +118,7 @@ JointDefinition definition(const Spatial<double>*, const Problem& problem, const
   if (joint.kind == JointKind::fixed) d.parameters.push_back(spatial_value("fa", {1, 0, 0}));
   if (joint.kind == JointKind::revolute || joint.kind == JointKind::prismatic)
     d.parameters.push_back(spatial_value("fa", local_direction(problem, joint.a, joint.axis)));
+  if (joint.axis_b) d.parameters.push_back(spatial_value("fb", local_direction(problem, joint.b, *joint.axis_b)));
   return d;
 }
 

@@ -186,7 +186,7 @@ struct Model {
 Model model_of(const Problem& problem, bool free_first) {
   mju_user_warning = [](const char*) {};
   mju_user_error = [](const char* message) { throw std::runtime_error(message); };
-  check(problem, {.held_orientations = true, .sleep = true});
+  check(problem, {.held_orientations = true, .sleep = true, .two_axes = true});
   Model of;
   const std::string xml = model_text(problem, tree_of(problem), free_first, of.speeds);
   const auto files = std::make_unique<mjVFS>();

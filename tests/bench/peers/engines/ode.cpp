@@ -37,7 +37,7 @@ class OdeRun final : public SteppedRun {
  public:
   OdeRun(const Problem& problem, const Way& way, double h)
       : SteppedRun(h), world_(made()), sweeps_(way.sweeps), h_(h), free_first_(way.free_first) {
-    check(problem, {.held_orientations = true});
+    check(problem, {.held_orientations = true, .two_axes = true});
     dWorldSetAutoDisableFlag(world_, problem.sleep_after > 0);
     dWorldSetAutoDisableTime(world_, problem.sleep_after);
     dWorldSetGravity(world_, problem.gravity[0], problem.gravity[1], problem.gravity[2]);

@@ -38,7 +38,7 @@ class SimbodyRun final : public Run {
         free_first_(way.free_first),
         most_steps_(most_steps(problem)) {
     Lacks lacks;
-    lacks.held_orientations = lacks.sleep = true;
+    lacks.held_orientations = lacks.sleep = lacks.two_axes = true;
     check(problem, lacks);
     const Tree tree = tree_of(problem);
     for (const Branch& branch : tree.branches) {

@@ -47,7 +47,14 @@ void take_length(Problem& problem) {
     if (joint.kind == JointKind::distance) joint.length = 0;
 }
 
+void turn_axis_round(Problem& problem) {
+  Joint& hinge = problem.joints.front();
+  hinge.axis_b = -1.0 * hinge.axis;
+  hinge.motor = {1, 10};
+}
+
 constexpr std::array questions{
+    Spoilt{"antiparallel_axes", "a motor", 2, "gone [m]", hard::finite_only, turn_axis_round, nullptr},
     Spoilt{"axis_not_unit", "the zero axis", 2, "gone [m]", hard::finite_only, take_axis, nullptr},
     Spoilt{"both_immovable", "", 2, "off the way without the joint [m]", 1e-6, add_idle, remove_idle},
     Spoilt{"both_immovable", "mass 0", 2, "moved [m]", 1e-6, take_mass, nullptr},
