@@ -8,6 +8,8 @@
 namespace cdot {
 namespace {
 
+constexpr int most_looks = 8;  // of one factor(), at rows whose noise is in doubt
+
 template <class Real>
 constexpr auto eliminate = dense::all_eliminate<Real>(dense::Sizes{});
 template <class Real>
@@ -47,7 +49,7 @@ void BasicLdlt<Real>::analyse(const std::vector<int>& rows, const std::vector<st
   const size_t n = diagonal_.size();
   l_.assign(values_.size(), Real(0));
   inverse_.assign(n, 0.0);
-  noise_.assign(n, 0.0);
+  for (auto* numbers : {&noise_, &doubtful_, &overstated_}) numbers->assign(n, 0.0);
   out_.assign(n, 0);
   dependent_.assign(n, 0);
   definite_.assign(n, 0);
@@ -147,7 +149,8 @@ dense::Numbers<Real> BasicLdlt<Real>::numbers(const Real* added) {
           factored_ ? 1 : dense::lasting_count,
           share_,
           std::max(share_, pivot_share_of_soft),
-          noise_.data()};
+          noise_.data(),
+          doubtful_.data()};
 }
 
 template <class Real>
@@ -168,12 +171,53 @@ int BasicLdlt<Real>::eliminate_columns(const dense::Numbers<Real>& all, const ch
 }
 
 template <class Real>
-int BasicLdlt<Real>::factor(const Real* added, const char* out) {
+void BasicLdlt<Real>::begin_noise() {
   for (size_t k = 0; k < noise_.size(); ++k)
-    noise_[k] = dense::pivot_noise<Real> * values_[diagonal_[k]];
-  const int dependent = eliminate_columns(numbers(added), out);
+    noise_[k] = dense::pivot_noise<Real> * values_[diagonal_[k]] - overstated_[k];
+}
+
+// K_ii + sum y_a^2 K_aa of the last elimination: (-y, 1) is L^-T e_i.
+template <class Real>
+Real BasicLdlt<Real>::round_off_scale(int unknown) {
+  std::vector<Real>& y = given_;
+  std::fill(y.begin(), y.end(), Real(0));
+  y[unknown] = Real(1);
+  const dense::Numbers<Real> all = numbers(nullptr);
+  for (int k = column_of_[unknown]; k >= 0; --k) columns_[k].backward(columns_[k], all, y.data());
+  Real sum = 0;
+  for (int a = 0; a <= unknown; ++a) sum += y[a] * y[a] * diagonal(a);
+  return sum;
+}
+
+// The first row that was dropped for the noise of its pivot, and whose pivot round-off does not reach: the noise is set
+// right for one more elimination, in which others may depend on it. False if there is none.
+template <class Real>
+bool BasicLdlt<Real>::clears_a_doubt(const Real* added) {
+  for (int k = 0; k < size(); ++k) {
+    if (!dependent(k) || !(doubtful_[k] > Real(0))) continue;
+    const Real scale = round_off_scale(k);
+    const double share = added[k] != 0 ? pivot_share_of_soft : pivot_share<Real>;
+    if (!(doubtful_[k] > share * scale)) continue;
+    overstated_[k] += noise_[k] - dense::pivot_noise<Real> * scale;
+    return true;
+  }
+  return false;
+}
+
+template <class Real>
+int BasicLdlt<Real>::factor(const Real* added, const char* out) {
+  std::fill(overstated_.begin(), overstated_.end(), Real(0));
+  begin_noise();
+  const dense::Numbers<Real> all = numbers(added);
+  int dependent_rows = eliminate_columns(all, out);
+  for (int look = 0; dependent_rows > 0 && look < most_looks && clears_a_doubt(added); ++look) {
+    for (int k = 0; k < size(); ++k)  // what was learnt of them is learnt once more
+      if (dependent(k)) dependent_[k] = static_cast<unsigned char>(std::max(dependent_[k] - all.counts, 0));
+    begin_noise();
+    dependent_rows = eliminate_columns(all, out);
+  }
   factored_ = true;
-  return dependent;
+  return dependent_rows;
 }
 
 template <class Real>

@@ -55,6 +55,7 @@ struct Numbers {
   int counts;                // for how many this one counts
   double share, soft_share;  // Ldlt's; soft_share: of rows with something added
   Real* noise;               // of each pivot to come
+  Real* doubtful;            // pivots that were dropped for their noise alone; 0: for their size
 };
 
 template <class Real>
@@ -75,8 +76,9 @@ class BasicLdlt {
   //
   // With y = K_II^-1 k_i, what row i has of the rows I before it, round-off eps sqrt(K_aa K_bb) in every entry ab moves
   // its pivot by eps (sqrt(K_ii) + sum |y_a| sqrt(K_aa))^2 at most, which is at most (m + 1) eps (K_ii + sum y_a^2 K_aa)
-  // where m rows take part. The second factor is what dense::pivot_noise follows from row to row; the share is m + 1 = 10
-  // times it, as many rows as a loop too many has. More is no round-off: a body 1e10 times lighter than the two that it
+  // where m rows take part. The second factor is what dense::pivot_noise follows from row to row, as the sum of what each
+  // pivot before adds, whatever their signs; where only that speaks against a row, y is found, and the factor as it is.
+  // The share is m + 1 = 10 times it, as many rows as a loop too many has. More is no round-off: a body 1e10 times lighter than the two that it
   // joins leaves 1e-10 of the second joint's rows, and they are as good as any. K from floats is further off. T
   // is what J and the masses are in.
   template <class T>
@@ -137,6 +139,9 @@ class BasicLdlt {
   };
   dense::Numbers<Real> numbers(const Real* added);
   int eliminate_columns(const dense::Numbers<Real>& all, const char* out);
+  void begin_noise();
+  Real round_off_scale(int unknown);
+  bool clears_a_doubt(const Real* added);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(Column& column);
 
@@ -147,7 +152,7 @@ class BasicLdlt {
   std::vector<int> panel_row_;  // unknown of each row of a panel
   std::vector<Update> updates_;
   std::vector<Real> values_, l_;
-  std::vector<Real> inverse_, noise_;  // by unknown
+  std::vector<Real> inverse_, noise_, doubtful_, overstated_;  // by unknown; overstated_: of noise_, within factor()
   std::vector<char> out_;
   std::vector<unsigned char> dependent_, definite_;  // definite_: nobody asks what factor_definite() says there
   bool any_out_ = false, factored_ = false;

@@ -95,11 +95,13 @@ int factor_square(const Column& column, const Numbers<Real>& numbers) {
     if (numbers.out[column.first + i]) return;
     unsigned char& before = numbers.dependent[column.first + i];
     const double share = added != 0 ? numbers.soft_share : before >= lasting_count ? lasting_share : numbers.share;
-    if (pivot > std::max(share * (K[i * a + i] + added), noise[i])) {
+    const Real least = share * (K[i * a + i] + added);
+    if (pivot > std::max(least, noise[i])) {
       inverse[i] = 1.0 / pivot;
       before = 0;
     } else {
       ++dependent;
+      numbers.doubtful[column.first + i] = pivot > least ? pivot : Real(0);
       before = static_cast<unsigned char>(std::min(before + numbers.counts, 255));
     }
   });

@@ -154,8 +154,8 @@ struct StateList {
 
   template <class Real, class Visitor>
   static void each_of_factor(BasicLdlt<Real>& ldlt, int index, Visitor& visit) {
-    auto& [first, diagonal, column_of, columns, panel_row, updates, values, l, inverse, noise, out, dependent, definite,
-           any_out, factored, share, unscaled, given] = ldlt;
+    auto& [first, diagonal, column_of, columns, panel_row, updates, values, l, inverse, noise, doubtful, overstated, out,
+           dependent, definite, any_out, factored, share, unscaled, given] = ldlt;
     visit.item("factor.K", index), visit(values);
     visit.item("factor.L", index), visit(l);
     visit.item("factor.inverse", index), visit(inverse), visit(noise);
