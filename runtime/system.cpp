@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/snapshot_list.hpp"
 #include "runtime/spaces.hpp"
 
 namespace cdot {
@@ -23,6 +24,9 @@ void System<S>::exchange(const Batch<S>* batch, int slot, int last, int marked, 
 template <class S>
 void System<S>::remove(const Batch<S>* batch, int slot, int last) {
   exchange(batch, slot, last, slot, 1);
+  // Rows may have been redundant beside these only: the next factor has to find them so again.
+  for (auto& times : StateList::dependent(*this))
+    times = std::min<unsigned char>(times, dense::lasting_count - 1);
 }
 
 template <class S>
