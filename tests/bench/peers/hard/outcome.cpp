@@ -23,7 +23,7 @@ constexpr rlim_t most_memory = rlim_t{4} << 30;  // of a run [bytes]
 constexpr std::array<const char*, 7> kinds{"survives", "wrong",    "explodes",  "gives up",
                                            "aborts",   "too slow", "cannot say"};
 
-// Forces are not read from engines: what joints carry is not judged.
+// What joints carry is judged of chains at rest only.
 bool of_motion(const hard::Finding& found) {
   if (std::isnan(found.value)) return false;
   for (const char* word : {"tension", "wall's force", "wall's moment", "their force"})

@@ -13,9 +13,9 @@ constexpr const char* head = R"(# Hard cases beside today's engines
 
 What Cdot and today's engines make of the [hard cases](../../hard_cases/README.md). One criterion per case, the code
 of that folder, judges all of them; it looks at poses and velocities, which every engine is asked for after every
-step, and computes gaps, angles and energies of them itself. What joints carry is judged only where nothing moves and
-nothing else is asked. Bodies, joints, start and step (1/60 s unless the case says otherwise) are the same for all;
-nobody has contact, nor damping or sleep where the case has none. Engines of the plane are asked in the plane, those
+step, and computes gaps, angles and energies of them itself. What joints carry is judged of chains at rest only. Bodies,
+joints, start and step (1/60 s unless the case says otherwise) are the same for all; nobody has contact, nor damping or
+sleep where the case has none. Engines of the plane are asked in the plane, those
 of space in space; where a case has only a planar scene, it is posed in space to them. What is done to a mechanism
 while it runs, an impulse, a joint that comes, goes or moves, is done to the engine's own run; Bullet's multibodies,
 MuJoCo and Simbody, whose trees are made once, are made anew from where they are when joints change. A joint that
@@ -41,7 +41,7 @@ Simbody) cannot open the joints of their trees at all, Cdot's default method, li
 share of the step, and its other methods may take many steps of their own in one, as Simbody's do. Box2D computes in
 float, and is held to the bounds for floats.
 
-    cdot-peers-hard -o tests/bench/peers        # remakes this page and hard_cases.json, where all settings stand
+    cdot-peers-hard -o tests/bench/peers   # half an hour of CPU time: this page and hard_cases.json, where all settings stand
     cdot-peers-hard --only ball_and_chain --engine ODE
 
 )";
