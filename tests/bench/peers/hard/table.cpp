@@ -30,10 +30,10 @@ step costs from what is wrong there, except mechanisms of more than 50 bodies. A
 60 s for one case no further setting of an engine is begun. Simbody, which is slow here, is asked until one of its
 settings holds, and so is everybody with more than 150 bodies.
 
-Five rows have no proper answer: a slider along no axis, a motor of a hinge whose axes point against each other, a joint
-between two bodies that do not move, a body of mass 0, a distance of 0. There an engine may refuse the question, with an
-error before anything has moved: **refuses**. A hinge between two immovable bodies may do nothing, a body of mass 0 stand
-still, and points 0 apart stay together; the first two are no more than *accepted*.
+Five rows have no proper answer: a slider along no axis, a motor of a hinge whose axes point against each other, a
+joint between two bodies that do not move, a body of mass 0, a distance of 0. There an engine may refuse the question,
+with an error before anything has moved: **refuses**. A hinge between two immovable bodies may do nothing, a body of
+mass 0 stand still, and points 0 apart stay together; the first two are no more than *accepted*.
 
 **To read it fairly.** The bounds are those that Cdot is tested by; many are far below what an engine made for games
 aims at: a gap of a millimetre is none to a player. Engines in minimal coordinates (Bullet's multibodies, MuJoCo,
@@ -41,7 +41,7 @@ Simbody) cannot open the joints of their trees at all, Cdot's default method, li
 share of the step, and its other methods may take many steps of their own in one, as Simbody's do. Box2D computes in
 float, and is held to the bounds for floats.
 
-    cdot-peers-hard -o tests/bench/peers   # half an hour of CPU time: this page and hard_cases.json, where all settings stand
+    cdot-peers-hard -o tests/bench/peers   # this page, and hard_cases.json with all settings; half an hour of CPU time
     cdot-peers-hard --only ball_and_chain --engine ODE
 
 )";
