@@ -240,7 +240,7 @@ class MultibodyRun final : public SteppedRun {
     for (const auto& constraint : constraints_) world_.addMultiBodyConstraint(constraint.get());
   }
 
-  void add(std::unique_ptr<btMultiBodyConstraint> made) {
+  void hold(std::unique_ptr<btMultiBodyConstraint> made) {
     made->setMaxAppliedImpulse(1e9);
     constraints_.push_back(std::move(made));
   }
@@ -248,13 +248,13 @@ class MultibodyRun final : public SteppedRun {
   void close(const Problem& problem, const Tree& tree, const Joint& joint) {
     if (joint.kind == JointKind::orientation) {
       const Place at = place(hinge_between(problem, tree, joint.a, joint.b).body);
-      return add(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, 0, 0));
+      return hold(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, 0, 0));
     }
     if (only_closes(joint)) throw no_such(joint);
     const Place a = place(joint.a), b = place(joint.b);
-    add(std::make_unique<btMultiBodyPoint2Point>(a.multibody, a.link, b.multibody, b.link,
-                                                 bt(local_point(problem, joint.a, joint.anchor)),
-                                                 bt(local_point(problem, joint.b, joint.anchor_b))));
+    hold(std::make_unique<btMultiBodyPoint2Point>(a.multibody, a.link, b.multibody, b.link,
+                                                  bt(local_point(problem, joint.a, joint.anchor)),
+                                                  bt(local_point(problem, joint.b, joint.anchor_b))));
   }
 
   void drive(const Problem& problem, const Branch& branch) {
@@ -264,12 +264,12 @@ class MultibodyRun final : public SteppedRun {
     const std::vector<Turn> turns = turns_in(problem, branch);
     for (std::size_t k = 0; k < turns.size(); ++k) {
       const int link = link_of(at, turns, k);
-      if (turns[k].held) add(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, link, 0, 0));
+      if (turns[k].held) hold(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, link, 0, 0));
       if (turns[k].motor) move(at.multibody, link, turns[k].motor->speed, *turns[k].motor);
     }
     if (joint.stops) {
       const Stops stops = stops_from_start(problem, branch);
-      add(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, stops.lower, stops.upper));
+      hold(std::make_unique<btMultiBodyJointLimitConstraint>(at.multibody, at.link, stops.lower, stops.upper));
     }
     if (!joint.motor) return;
     move(at.multibody, at.link, sense(problem, branch) * joint.motor->speed, *joint.motor);
