@@ -53,10 +53,10 @@ Vector<T> newton_step(const Symmetric<T>& I, const Vector<T>& b, const Vector<T>
 
 // W after a step of h by Taylor's series, I dW/dt = I W x W; W itself where the step is too long for that.
 template <class T>
-Vector<T> expected_spin(const Gyroscope<T>& gyroscope, const Vector<T>& W, const Vector<T>& momentum, T h) {
+Vector<T> expected_spin(const Symmetric<T>& I, const Symmetric<T>& inverse, const Vector<T>& W, T h) {
   if (!(h * h * dot(W, W) < T(0.25))) return W;
-  const Vector<T> rate = gyroscope.inverse * cross(momentum, W);
-  const Vector<T> bend = gyroscope.inverse * (cross(gyroscope.inertia * rate, W) + cross(momentum, rate));
+  const Vector<T> momentum = I * W, rate = inverse * cross(momentum, W);
+  const Vector<T> bend = inverse * (cross(I * rate, W) + cross(momentum, rate));
   return W + h * (rate + (T(0.5) * h) * bend);
 }
 
@@ -87,8 +87,8 @@ Vector<T> symmetric_spin(const Vector<T>& e, const Vector<T>& W, const Vector<T>
 
 template <class T>
 Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vector<T>& w, T h) {
-  const Symmetric<T>& I = gyroscope.inertia;
-  const Symmetric<T>& inverse = gyroscope.inverse;
+  const T unit = unit_of(gyroscope.inertia);  // how a body turns does not depend on how heavy it is
+  const Symmetric<T> I = unit * gyroscope.inertia, inverse = (T(1) / unit) * gyroscope.inverse;
   const Vector<T> before = to_body(q, w), momentum = I * before;
   const Vector<T> axis = symmetry_axis(I);
   if (dot(axis, axis) > T(0)) {
@@ -98,7 +98,7 @@ Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vecto
   const T round_off = std::numeric_limits<T>::epsilon() * norm(before);
   // What Newton leaves of an error d is below this times d^2: h^2 / 8 d x (d x I W), weighed by I^-1.
   const T curvature = T(0.125) * h * h * (inverse.xx + inverse.yy + inverse.zz) * norm(momentum);
-  Vector<T> after = expected_spin(gyroscope, before, momentum, h), best = before;
+  Vector<T> after = expected_spin(I, inverse, before, h), best = before;
   T smallest_residual = std::numeric_limits<T>::infinity();
   for (int round = 0; round < 12; ++round) {
     const Vector<T> mean = T(0.5) * (before + after);
@@ -113,7 +113,7 @@ Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vecto
     if (size < smallest_residual) best = mean, smallest_residual = size;
     if (!converges || size <= round_off) break;
     // d(exp(-theta) L) = turned x (T dtheta); dtheta = h/2 dW
-    const Vector<T> step = newton_step(gyroscope.inertia, (T(0.5) * h) * turned, theta, sinc, versine, residual);
+    const Vector<T> step = newton_step(I, (T(0.5) * h) * turned, theta, sinc, versine, residual);
     after = after - step;
     if (curvature * dot(step, step) <= round_off) {
       best = T(0.5) * (before + after);

@@ -2,6 +2,7 @@
 // tensor that turns with its body, and the exact rotation by a vector.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -51,12 +52,22 @@ struct Symmetric {
   }
 };
 
+// 1 over the size of a tensor, as a power of two, which rounds nothing: products of three moments of inertia leave the
+// range of floats. 1 for the zero tensor.
+template <class T>
+T unit_of(const Symmetric<T>& S) {
+  const T largest = std::max({std::abs(S.xx), std::abs(S.yy), std::abs(S.zz)});
+  return largest > T(0) ? std::scalbn(T(1), -std::ilogb(largest)) : T(1);
+}
+
 // S^-1 by its cofactors; 0 of the zero tensor.
 template <class T>
-Symmetric<T> inverse(const Symmetric<T>& S) {
+Symmetric<T> inverse(const Symmetric<T>& tensor) {
+  const T unit = unit_of(tensor);
+  const Symmetric<T> S = unit * tensor;
   const T cxx = S.yy * S.zz - S.yz * S.yz, cxy = S.xz * S.yz - S.xy * S.zz,
           cxz = S.xy * S.yz - S.xz * S.yy;
-  const T scale = cdot::inverse(S.xx * cxx + S.xy * cxy + S.xz * cxz);
+  const T scale = unit * cdot::inverse(S.xx * cxx + S.xy * cxy + S.xz * cxz);
   return {scale * cxx,
           scale * (S.xx * S.zz - S.xz * S.xz),
           scale * (S.xx * S.yy - S.xy * S.xy),

@@ -116,8 +116,9 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_flow(Flow<S>& flow, int index, Visitor& visit) {
-    auto& [pose, velocity, search, start, now, rates, guarded, row_rates, margins, margins_chosen, low, high,
+    auto& [pose, velocity, search, start, now, rates, guarded, told, row_rates, margins, margins_chosen, low, high,
            at_start, next_step, longest, slivers, known, ahead, length, end_kept, end, end_forces, further_terms] = flow;
+    visit.item("flow.told", index), visit(told);
     visit.item("flow.row_rates", index), visit(row_rates);
     visit.item("flow.margins", index), visit(margins), visit(margins_chosen);
     visit.item("flow.lengths", index);

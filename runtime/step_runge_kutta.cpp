@@ -173,14 +173,14 @@ typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, c
 
 // The state as it was found, on its constraints, with the accelerations.
 template <class S>
-void begin(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+void begin(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   if (island.flow.known) return;
   drop_modes(island);
   island.continuous = false;
   settle_poses(world, island);
   island.continuous = true;
   evaluate_anew(world, island, time);
-  choose_modes(world, island, time);
+  choose_modes(world, island, time, h);
   island.flow.known = true;
 }
 
@@ -240,7 +240,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
       leave_to_euler(world, island, time, left);
       return h;
     }
-    begin(world, island, time);
+    begin(world, island, time, h);
     keep_start(world, island);
     flow.low = flow.margins;
     flow.end_kept = false;

@@ -56,6 +56,11 @@ struct Flow {
   std::vector<T> start, now;  // poses and velocities as numbers, [body][S::pose_numbers + S::freedom]
   std::vector<T> rates;       // of them, [stage][...]
   int guarded = 0;            // rows that come and go at events
+  // [guarded] What is not told apart of a row: of C [m, rad], of its rate, of its force.
+  struct Told {
+    T C, rate, force;
+  };
+  std::vector<Told> told;
   std::vector<T> row_rates;   // [guarded] J v + dC/dt
   std::vector<T> margins, margins_chosen;  // [guarded] how far from their next event; when their modes were chosen
   std::vector<T> low, high;                // the same at the start of a step, then on both sides of an event

@@ -22,7 +22,7 @@ constexpr double start_tolerance = std::is_same_v<T, double> ? 1e-9 : 1e-4;
 // What is left of C after a step, as a share of the row's size, by Newton down to round-off.
 template <class T>
 constexpr double held_tolerance = std::is_same_v<T, double> ? 1e-10 : 1e-4;
-// Where one-sided rows act, Runge-Kutta goes on until they have just passed: up to so much of C [m, rad].
+// Where one-sided rows act, Runge-Kutta goes on until they have just passed: up to this share of the row's size.
 template <class T>
 constexpr double just_passed = std::is_same_v<T, double> ? 3e-9 : 3e-4;
 

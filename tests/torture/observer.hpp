@@ -62,7 +62,8 @@ double independence(const SystemMatrix& system, double round_off);
 // How far the row turned that turned most, of as many unit rows: 2 where one turned round.
 double turned(const SystemMatrix& before, const SystemMatrix& after, double length);
 
-// The largest C as a share of its row's size, and whose it is. Of inequalities what is beyond `slack` [m, rad].
+// The largest C as a share of its row's size, and whose it is. Of inequalities what is beyond
+// `slack`, a share too.
 struct Gap {
   double share = 0;
   int joint = -1;
@@ -78,8 +79,8 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
     const auto& kinds = world.joint_type(j).row_kinds;
     for (std::size_t r = 0; r < C.size(); ++r) {
       const bool one_sided = kinds[r] == RowKind::inequality;
-      if (one_sided && C[r] > -slack) continue;
-      const double share = std::abs(one_sided ? C[r] + slack : C[r]) / size[r];
+      if (one_sided && C[r] > -slack * size[r]) continue;
+      const double share = std::abs(C[r]) / size[r] - (one_sided ? slack : 0);
       if (!(share <= gap.share)) gap = {share, j};
     }
   }

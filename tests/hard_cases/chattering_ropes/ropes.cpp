@@ -1,4 +1,5 @@
 // Inequality rows that come and go at every step.
+#include "tests/hard_cases/scaled.hpp"
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::hard {
@@ -12,8 +13,30 @@ void swing(Trial& t) {
   t.at_most("energy gained, of the throw's", w.rise / start, 0.01);
 }
 
+// When a rope is slack and when taut is told by what its length, rate and force are made of, at any scale.
+void swing_scaled(Trial& t, double length, double mass) {
+  scale(t.scene, length, mass);
+  t.start();
+  const Watch w = t.run(5);
+  t.at_most("a rope too long by, of a box's length", w.gap / length, 1e-6, 1e-3);
+  t.at_most("energy gained, of the box's weight times its length", w.rise / (g * mass * length * length), 5e-3);
+}
+
 const Register planar({"chattering_ropes", "planar", all_ways(), swing});
 const Register spatial({"chattering_ropes", "spatial", all_ways(), swing});
+
+struct RegisterScaled {
+  RegisterScaled() {
+    const struct {
+      const char* name;
+      double length, mass;
+    } scales[] = {{"1e-6 m, 1e-9 kg", 1e-6, 1e-9}, {"1e-3 m, 1e-6 kg", 1e-3, 1e-6}, {"1e6 m, 1e9 kg", 1e6, 1e9}};
+    for (const char* space : {"planar", "spatial"})
+      for (const auto& [name, length, mass] : scales)
+        Register({"chattering_ropes", space, all_ways(),
+                  [length = length, mass = mass](Trial& t) { swing_scaled(t, length, mass); }, name});
+  }
+} const scaled;
 
 }  // namespace
 }  // namespace cdot::hard

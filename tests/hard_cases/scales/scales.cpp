@@ -2,26 +2,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/hard_cases/scaled.hpp"
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::hard {
 namespace {
-
-void scale(Scene& scene, double length, double mass) {
-  for (SceneBody& body : scene.bodies) {
-    BodyDefinition& b = body.definition;
-    SpatialBodyDefinition& s = body.spatial;
-    for (double* x : {&b.x, &b.y, &s.x, &s.y, &s.z}) *x *= length;
-    for (double* m : {&b.mass, &s.mass}) *m *= mass;
-    for (double* I : {&b.inertia, &s.inertia.xx, &s.inertia.yy, &s.inertia.zz}) *I *= mass * length * length;
-  }
-  for (SceneJoint& joint : scene.joints)
-    for (NamedValue& value : joint.definition.parameters)
-      if (value.name == "pa" || value.name == "pb")
-        for (double& number : value.numbers) number *= length;
-  scene.settings.gravity_y *= length;
-  scene.settings.gravity_z *= length;
-}
 
 // Against the same mechanism of metres and kilograms.
 void swing(Trial& t, double length, double mass) {
