@@ -21,7 +21,7 @@ std::string failed_step_text(const Scene& scene, const StepResult& step) {
   return fmt::format("{}. Likely fix: {}",
                      in_words(step, fmt::format("body \"{}\"", name_in(scene.bodies, step.body)),
                               fmt::format("joint \"{}\"", name_in(scene.joints, step.joint))),
-                     likely_fix(step.problem));
+                     likely_fix(step.problem, scene.on_failure));
 }
 
 nlohmann::ordered_json failed_step_json(const Scene& scene, const StepResult& step) {

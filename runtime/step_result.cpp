@@ -20,13 +20,13 @@ const char* what_went_wrong(StepProblem problem) {
 
 }  // namespace
 
-const char* likely_fix(StepProblem problem) {
+std::string likely_fix(StepProblem problem, OnFailure tried) {
+  const std::string or_retry = tried == OnFailure::retry ? "" : "; or on_failure = \"retry\"";
   switch (problem) {
     case StepProblem::not_finite:
-      return "a shorter step; the direct solver; integrator implicit where loads are heavy or springs stiff; or "
-             "on_failure = \"retry\"";
+      return "a shorter step; the direct solver; integrator implicit where loads are heavy or springs stiff" + or_retry;
     case StepProblem::joints_apart:
-      return "a shorter step: at most a tenth of a radian in each; or on_failure = \"retry\"";
+      return "a shorter step: at most a tenth of a radian in each" + or_retry;
     case StepProblem::bad_step:
       return "a step is a finite number of seconds above 0";
     case StepProblem::none:

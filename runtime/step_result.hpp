@@ -33,7 +33,7 @@ struct StepResult {
 
 // Of a step that failed, or that did not succeed at once: where and why, given the names of its body and its joint.
 std::string in_words(const StepResult& result, const std::string& body, const std::string& joint);
-const char* likely_fix(StepProblem problem);
+std::string likely_fix(StepProblem problem, OnFailure tried);
 const char* name_of(StepProblem problem);  // for programs: "not_finite"
 
 }  // namespace cdot

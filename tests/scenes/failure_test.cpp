@@ -69,15 +69,19 @@ TEST(FailedStep, IsToldWithPlaceReasonAndFix) {
   EXPECT_EQ(json["failed_step"]["problem"], "not_finite");
 }
 
+// A hard case with more keys at its head.
+CommandResult run_hard_case(const char* scene, const std::string& keys, const char* options) {
+  const TemporaryFolder folder;
+  std::ifstream original(source_dir() / "tests/hard_cases" / scene);
+  const auto file = folder / "scene.toml";
+  std::ofstream(file) << keys << original.rdbuf();
+  return cdot_run(fmt::format("simulate '{}' {}", file.string(), options));
+}
+
 // A ball of 4 t on a light chain, by steps far too long for its tension: the run ends at 1.8 s, or goes on in parts.
 TEST(FailedStep, IsTakenAgainInPartsWhereTheSceneAllows) {
-  const TemporaryFolder folder;
-  std::ifstream original(source_dir() / "tests/hard_cases/ball_and_chain/planar.toml");
-  const std::string text(std::istreambuf_iterator<char>(original), {});
-  const auto run = [&](const std::string& keys) {
-    const auto file = folder / "chain.toml";
-    std::ofstream(file) << keys << text;
-    return cdot_run(fmt::format("simulate '{}' --integrator euler --until 1.9 --tolerance 1 --json", file.string()));
+  const auto run = [](const std::string& keys) {
+    return run_hard_case("ball_and_chain/planar.toml", keys, "--integrator euler --until 1.9 --tolerance 1 --json");
   };
   const CommandResult stopped = run(""), retried = run("on_failure = \"retry\"\n");
   EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
@@ -89,6 +93,30 @@ TEST(FailedStep, IsTakenAgainInPartsWhereTheSceneAllows) {
   EXPECT_GE(json["time"], 1.9 - 1e-9);
   EXPECT_LT(json["worst_error"], 0.02);
   EXPECT_FALSE(json.contains("failed_step"));
+}
+
+// Links that start a metre apart: no number of parts is enough for ten sweeps, but the direct solver puts them together;
+// then the run goes on by sweeps.
+TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
+  const auto run = [](const std::string& keys, const char* options) {
+    return run_hard_case("stretched_chain/planar.toml", "solver = \"iterative\"\n" + keys, options);
+  };
+  const char* until = "--integrator euler --until 1 --tolerance 2";
+  const CommandResult stopped = run("", until), retried = run("on_failure = \"retry\"\n", until);
+  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
+  EXPECT_NE(stopped.out.find("or on_failure = \"retry\""), std::string::npos) << stopped.out;
+  EXPECT_EQ(retried.status, 0) << retried.out << retried.err;
+  EXPECT_NE(retried.out.find("1 step failed and went well in parts, 1 of them by the direct solver"), std::string::npos)
+      << retried.out;
+}
+
+// What has been tried is not advised.
+TEST(FailedStep, AdvisesWhatWasNotTried) {
+  Failing scene;
+  const CommandResult stopped = cdot_run(scene.run("", "")), retried = cdot_run(scene.run("on_failure = \"retry\"\n", ""));
+  EXPECT_NE(stopped.out.find("or on_failure = \"retry\""), std::string::npos) << stopped.out;
+  EXPECT_NE(retried.out.find("FAILED"), std::string::npos) << retried.out;
+  EXPECT_EQ(retried.out.find("on_failure"), std::string::npos) << retried.out;
 }
 
 }  // namespace
