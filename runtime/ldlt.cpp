@@ -64,6 +64,11 @@ void BasicLdlt<Real>::forget() {
 }
 
 template <class Real>
+void BasicLdlt<Real>::doubt_lasting() {
+  for (unsigned char& times : dependent_) times = std::min<unsigned char>(times, dense::lasting_count - 1);
+}
+
+template <class Real>
 void BasicLdlt<Real>::lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order) {
   columns_.clear();
   diagonal_.clear();

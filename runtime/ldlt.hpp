@@ -78,9 +78,9 @@ class BasicLdlt {
   // its pivot by eps (sqrt(K_ii) + sum |y_a| sqrt(K_aa))^2 at most, which is at most (m + 1) eps (K_ii + sum y_a^2 K_aa)
   // where m rows take part. The second factor is what dense::pivot_noise follows from row to row, as the sum of what each
   // pivot before adds, whatever their signs; where only that speaks against a row, y is found, and the factor as it is.
-  // The share is m + 1 = 10 times it, as many rows as a loop too many has. More is no round-off: a body 1e10 times lighter than the two that it
-  // joins leaves 1e-10 of the second joint's rows, and they are as good as any. K from floats is further off. T
-  // is what J and the masses are in.
+  // The share is m + 1 = 10 times it, as many rows as a loop too many has. More is no round-off: a body 1e10 times
+  // lighter than the two that it joins leaves 1e-10 of the second joint's rows, and they are as good as any. K from
+  // floats is further off. T is what J and the masses are in.
   template <class T>
   static constexpr double pivot_share = std::is_same_v<T, float> ? 1e-7 : 10 * dense::pivot_noise<T>;
   // Of a soft row: below it the softness is not told from none. Dropped, the row is rigid beside those that it depends
@@ -112,6 +112,8 @@ class BasicLdlt {
   void factor_definite(const Real* added, const char* out);
   // The next factor() is the first.
   void forget();
+  // Rows have gone: others that have depended for long may have depended on these only.
+  void doubt_lasting();
   // The last factor() found the row to depend on others.
   bool dependent(int unknown) const { return inverse_[unknown] == 0 && !out_[unknown]; }
   // What it magnified round-off to was above what a pivot may be of the diagonal: whether the row depends on others

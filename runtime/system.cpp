@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/snapshot_list.hpp"
 #include "runtime/spaces.hpp"
 
 namespace cdot {
@@ -24,9 +23,7 @@ void System<S>::exchange(const Batch<S>* batch, int slot, int last, int marked, 
 template <class S>
 void System<S>::remove(const Batch<S>* batch, int slot, int last) {
   exchange(batch, slot, last, slot, 1);
-  // Rows may have been redundant beside these only: the next factor has to find them so again.
-  for (auto& times : StateList::dependent(*this))
-    times = std::min<unsigned char>(times, dense::lasting_count - 1);
+  ldlt_.doubt_lasting();
 }
 
 template <class S>

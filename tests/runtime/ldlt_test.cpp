@@ -295,5 +295,25 @@ TEST(Ldlt, AChainIsEliminatedFromBothItsEnds) {
   EXPECT_EQ(place, (std::vector<int>{0, 2, 4, 6, 8, 7, 5, 3, 1}));
 }
 
+// Rows e0 + eps (e1 + ... + ek): each leaves eps^2 of itself beside the one before, and none of them depends on others.
+// What each pivot adds to the noise of those to come doubles it from row to row, to 5e-12 at the tenth: above every
+// pivot. Only the row before counts: y = (0, ..., 0, 1). A copy of the last depends on it all the same.
+TEST(Ldlt, RowsAreNotDroppedForNoiseThatIsOverstated) {
+  constexpr int rows = 10;
+  const double eps = std::sqrt(5e-13);
+  Ldlt ldlt;
+  ldlt.analyse({rows + 1}, {});
+  for (int i = 0; i <= rows; ++i)
+    for (int j = 0; j <= i; ++j)
+      ldlt.values()[ldlt.place(i, j).at] = 1 + eps * eps * (std::min({i, j, rows - 1}) + 1);
+  const std::vector<double> added(rows + 1, 0.0);
+  EXPECT_EQ(ldlt.factor(added.data(), nullptr), 1);
+  for (int k = 1; k < rows; ++k) {
+    EXPECT_FALSE(ldlt.dependent(k)) << "row " << k;
+    EXPECT_NEAR(ldlt.pivot(k) / (eps * eps), 1, 0.01) << "row " << k;
+  }
+  EXPECT_TRUE(ldlt.dependent(rows));
+}
+
 }  // namespace
 }  // namespace cdot::test

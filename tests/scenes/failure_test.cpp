@@ -101,7 +101,7 @@ TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
   const auto run = [](const std::string& keys, const char* options) {
     return run_hard_case("stretched_chain/planar.toml", "solver = \"iterative\"\n" + keys, options);
   };
-  const char* until = "--integrator euler --until 1 --tolerance 2";
+  const char* until = "--integrator euler --until 1 --tolerance 4";
   const CommandResult stopped = run("", until), retried = run("on_failure = \"retry\"\n", until);
   EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
   EXPECT_NE(stopped.out.find("or on_failure = \"retry\""), std::string::npos) << stopped.out;
