@@ -37,13 +37,7 @@ template <class T>
 BodyMotion motion_of(const spatial::Pose<T>& q, const spatial::Velocity<T>& v, const spatial::InverseMass<T>& m) {
   BodyMotion body;
   body.mass = 1 / double(m.m);
-  // Scaled by the largest entry: the cofactors of a tiny tensor would vanish.
-  const double size = std::max({double(m.Ixx), double(m.Iyy), double(m.Izz)});
-  if (size > 0) {
-    const double s = 1 / size;
-    const spatial::Symmetric<double> scaled = {s * m.Ixx, s * m.Iyy, s * m.Izz, s * m.Ixy, s * m.Ixz, s * m.Iyz};
-    body.inertia = s * spatial::inverse(scaled);
-  }
+  body.inertia = spatial::inverse(spatial::Symmetric<double>{m.Ixx, m.Iyy, m.Izz, m.Ixy, m.Ixz, m.Iyz});
   body.x = {q.x, q.y, q.z}, body.v = {v.x, v.y, v.z}, body.w = {v.wx, v.wy, v.wz};
   return body;
 }
@@ -93,6 +87,16 @@ inline VelocityChange change(const Motion& from, const Motion& to) {
       c[3 + k] = to.bodies[i].w[k] - from.bodies[i].w[k];
     }
     d.bodies.push_back(c);
+  }
+  return d;
+}
+// What the turning of the inertia tensors makes of w over h: h I^-1 (I w x w).
+inline VelocityChange turning(const Motion& from, double h) {
+  VelocityChange d;
+  for (const BodyMotion& body : from.bodies) {
+    const spatial::Vector<double> w{body.w[0], body.w[1], body.w[2]};
+    const spatial::Vector<double> dw = h * (spatial::inverse(body.inertia) * spatial::cross(body.inertia * w, w));
+    d.bodies.push_back({0, 0, 0, dw.x, dw.y, dw.z});
   }
   return d;
 }

@@ -75,14 +75,16 @@ Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double e
       springs_(std::move(springs)),
       last_(start) {}
 
-// Per step: (|dv| (|dv| + |h F|) + what springs miss) rho^(p-1), rho being how much the acceleration changes within a step, against the
-// largest so far.
+// Per step: (|dv| (|dv| + |h F|) + what springs miss) rho^(p-1), rho being how much the acceleration changes within a
+// step, against the largest so far. What joints do against the turning of a tensor does not show in dv: the larger one,
+// with it or without.
 void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations,
                     long long taken) {
   const VelocityChange d = change(last_, now);
   pushed_ = std::max(pushed_, constant_ + push_of(springs, substep_));
   const double size = std::sqrt(square(now, d));
-  const double first_order = size * (size + pushed_) + missed_work(springs_, springs, step_, size);
+  const double done = std::max(size, std::sqrt(square(now, d, turning(last_, step_))));
+  const double first_order = done * (done + pushed_) + missed_work(springs_, springs, step_, size);
   largest_change_ = std::max(largest_change_, size);
   largest_speed_ = std::max(largest_speed_, std::sqrt(2 * now.kinetic));
   largest_energy_ = std::max({largest_energy_, now.kinetic, std::abs(energy - start_energy_)});

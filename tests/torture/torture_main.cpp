@@ -73,13 +73,18 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
   if (!options.keep.empty()) keep(options, name, text);
 }
 
+void say(const Verdict& verdict) {
+  const char* words[] = {"held", "refused", "limited", "BROKEN"};
+  const std::string why = verdict.outcome == Outcome::held ? "" : ": " + told(verdict);
+  fmt::print("{}{}\n", words[static_cast<int>(verdict.outcome)], why);
+}
+
 int judge_file(const Options& options) {
   const Scene scene = read_scene(options.scene);
   Asked asked;
   asked.bits = !options.no_bits;
   const Verdict verdict = judge(scene, asked);
-  const char* words[] = {"held", "refused", "limited", "BROKEN"};
-  fmt::print("{}: {}\n", words[static_cast<int>(verdict.outcome)], told(verdict));
+  say(verdict);
   return verdict.broken();
 }
 
@@ -95,7 +100,10 @@ int torture(const Options& options) {
     if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
     const Verdict verdict = judge(mechanism.scene, asked);
     tally.add(mechanism, verdict);
-    if (verdict.broken()) report(options, seed, mechanism.scene, verdict);
+    if (verdict.broken())
+      report(options, seed, mechanism.scene, verdict);
+    else if (options.count == 1)
+      say(verdict);
     if (k % 100 == 99) fmt::print(stderr, "\r{} mechanisms, {} broken", k + 1, tally.count(Outcome::broken));
   }
   fmt::print(stderr, "\r{:60}\r", "");
