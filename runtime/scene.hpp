@@ -96,8 +96,8 @@ World<T> build_world(const Scene& scene) {
   return build_world_in<Planar<T>>(scene);
 }
 
-// The rows that the start violates beyond `tolerance`, one paragraph per joint; empty if there are
-// none.
+// The rows that the start violates beyond `tolerance`, a paragraph for each of the first joints, and how many more there
+// are; empty if there are none.
 template <class S>
 std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance);
 

@@ -54,6 +54,8 @@ std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::si
   return list;
 }
 
+constexpr int most_told = 5;  // joints that the start does not fit; of others their number
+
 // A scene whose bodies are all far away, against how far they are apart, is counted from among them.
 constexpr double far_away = 1000;
 
@@ -114,16 +116,20 @@ template <class S>
 std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance) {
   std::string report;
   const std::vector<Inconsistency> rows = world.inconsistencies(tolerance);
+  int told = 0;
   for (int joint = 0; joint < world.joint_count(); ++joint) {
     const SceneJoint& source = scene.joints[static_cast<std::size_t>(joint)];
     const std::string list = rows_text(rows, joint, world.joint_type(joint).row_kinds.size());
-    if (list.empty()) continue;
+    if (list.empty() || ++told > most_told) continue;
     report += scene.source->paragraph(
         "warning", source.where,
         fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name,
                     list),
         "correct the pose or velocity, or let project = true move the bodies onto their joints");
   }
+  if (told > most_told)
+    report += fmt::format("warning: nor does it fit {} more joint{}\n", told - most_told,
+                          told == most_told + 1 ? "" : "s");
   return report;
 }
 

@@ -40,6 +40,21 @@ TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
       "joints\n");
 }
 
+// A chain that starts off its joints is no page of paragraphs for each link.
+TEST(Run, OfManyInconsistentJointsTheFirstAreTold) {
+  const std::string links = with(with(pendulum, "[[body]]", "[[body]]\nrepeat = 40"), "[[joint]]", "[[joint]]\nrepeat = 40");
+  const Scene scene = scene_of(with(
+      with(with(with(links, "\"rod\"", "\"rod{i}\""), "\"pivot\"", "\"pivot{i}\""), "\"rod\"]", "\"rod{i}\"]"),
+      "[0.5, 0]", "[0.5, 0.25]"));
+  std::string warnings;
+  simulate(scene, {}, warnings);
+  std::size_t told = 0;
+  for (std::size_t at = 0; (at = warnings.find("does not fit", at)) != std::string::npos; ++at) ++told;
+  EXPECT_EQ(told, 5u) << warnings;
+  EXPECT_NE(warnings.find("\"pivot5\""), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("warning: nor does it fit 35 more joints\n"), std::string::npos) << warnings;
+}
+
 TEST(Run, ProjectionMakesTheStartConsistent) {
   Scene scene = scene_of(with(pendulum, "[0.5, 0]", "[0.5, 0.25]\nvelocity = [3, 1]"));
   scene.project = true;
