@@ -73,7 +73,7 @@ const std::vector<Word>& words() {
     problem.bodies[2].start.w = free == 1 ? Vec3{0, 4, 0} : Vec3{0, 0, 5};
     problem.bodies[2].start.v = free == 1 ? Vec3{0, 0, -2} : Vec3{0, 2.5, 0};
   };
-  // The end of the chain hangs from the world.
+  // The end of the chain hangs from the link before it, or over wheels.
   const auto hang = [](Problem& problem, JointKind kind) {
     Joint rope;
     rope.kind = kind;
@@ -88,6 +88,15 @@ const std::vector<Word>& words() {
                                             : norm(rope.anchor_b - rope.anchor);
     rope.number = 3;
     problem.joints.push_back(rope);
+  };
+  // It is tied to a point of the world, and starts at rest.
+  const auto tie = [=](Problem& problem, JointKind kind) {
+    hang(problem, kind);
+    Joint& rope = problem.joints.back();
+    rope.a = world;
+    rope.anchor = {2, 2, 0};
+    rope.length = std::sqrt(5);
+    problem.bodies[2].start.w = problem.bodies[2].start.v = {};
   };
   const auto add_angle = [](Run& run, const Problem& problem) {
     Problem now = problem;
@@ -142,22 +151,8 @@ const std::vector<Word>& words() {
                                          }},
                                         {"six degrees, about y", [=](Problem& p) { turn_about(p, 1); }},
                                         {"six degrees, about z", [=](Problem& p) { turn_about(p, 2); }},
-                                        {"distance",
-                                         [=](Problem& p) {
-                                           hang(p, JointKind::distance);
-                                           p.joints.back().a = -1;
-                                           p.joints.back().anchor = {2, 2, 0};
-                                           p.joints.back().length = std::sqrt(5);
-                                           p.bodies[2].start.w = p.bodies[2].start.v = {};
-                                         }},
-                                        {"string",
-                                         [=](Problem& p) {
-                                           hang(p, JointKind::max_distance);
-                                           p.joints.back().a = -1;
-                                           p.joints.back().anchor = {2, 2, 0};
-                                           p.joints.back().length = std::sqrt(5);
-                                           p.bodies[2].start.w = p.bodies[2].start.v = {};
-                                         }},
+                                        {"distance", [=](Problem& p) { tie(p, JointKind::distance); }},
+                                        {"string", [=](Problem& p) { tie(p, JointKind::max_distance); }},
                                         {"pulley",
                                          [=](Problem& p) {
                                            hang(p, JointKind::pulley);
