@@ -8,7 +8,11 @@
 namespace cdot {
 namespace {
 
-constexpr int most_looks = 8;  // of one factor(), at rows whose noise is in doubt
+// Of one factor(), at rows whose noise is in doubt; each that is cleared costs an elimination. Of a large grid thousands
+// are in doubt: where an elimination takes more multiplications than that, they stay dropped, and what that leaves unmet
+// is refined (soften.cpp).
+constexpr int most_looks = 8;
+constexpr long affordable = 1'000'000;
 
 template <class Real>
 constexpr auto eliminate = dense::all_eliminate<Real>(dense::Sizes{});
@@ -194,19 +198,28 @@ Real BasicLdlt<Real>::round_off_scale(int unknown) {
   return sum;
 }
 
-// The first row that was dropped for the noise of its pivot, and whose pivot round-off does not reach: the noise is set
-// right for one more elimination, in which others may depend on it. False if there is none.
+// Of the rows that were dropped for the noise of their pivots, the one whose pivot is nearest to it; -1 if all of them
+// were looked at.
 template <class Real>
-bool BasicLdlt<Real>::clears_a_doubt(const Real* added) {
+int BasicLdlt<Real>::most_doubtful(std::span<const int> looked_at) const {
+  int best = -1;
   for (int k = 0; k < size(); ++k) {
     if (!dependent(k) || !(doubtful_[k] > Real(0))) continue;
-    const Real scale = round_off_scale(k);
-    const double share = added[k] != 0 ? pivot_share_of_soft : pivot_share<Real>;
-    if (!(doubtful_[k] > share * scale)) continue;
-    overstated_[k] += noise_[k] - dense::pivot_noise<Real> * scale;
-    return true;
+    if (best >= 0 && !(doubtful_[k] * noise_[best] > doubtful_[best] * noise_[k])) continue;
+    if (std::find(looked_at.begin(), looked_at.end(), k) == looked_at.end()) best = k;
   }
-  return false;
+  return best;
+}
+
+// True if round-off does not reach the pivot of such a row: its noise is set right for one more elimination, in which
+// others may depend on it.
+template <class Real>
+bool BasicLdlt<Real>::clears_of_doubt(int row, const Real* added) {
+  const Real scale = round_off_scale(row);
+  const double share = added[row] != 0 ? pivot_share_of_soft : pivot_share<Real>;
+  if (!(doubtful_[row] > share * scale)) return false;
+  overstated_[row] += noise_[row] - dense::pivot_noise<Real> * scale;
+  return true;
 }
 
 template <class Real>
@@ -215,7 +228,12 @@ int BasicLdlt<Real>::factor(const Real* added, const char* out) {
   begin_noise();
   const dense::Numbers<Real> all = numbers(added);
   int dependent_rows = eliminate_columns(all, out);
-  for (int look = 0; dependent_rows > 0 && look < most_looks && clears_a_doubt(added); ++look) {
+  int looked_at[most_looks];
+  for (int looks = 0; dependent_rows > 0 && looks < most_looks;) {
+    const int row = most_doubtful({looked_at, static_cast<size_t>(looks)});
+    if (row < 0 || multiplications() > affordable) break;
+    looked_at[looks++] = row;
+    if (!clears_of_doubt(row, added)) continue;
     for (int k = 0; k < size(); ++k)  // what was learnt of them is learnt once more
       if (dependent(k)) dependent_[k] = static_cast<unsigned char>(std::max(dependent_[k] - all.counts, 0));
     begin_noise();
