@@ -198,28 +198,19 @@ Real BasicLdlt<Real>::round_off_scale(int unknown) {
   return sum;
 }
 
-// Of the rows that were dropped for the noise of their pivots, the one whose pivot is nearest to it; -1 if all of them
-// were looked at.
+// The first row that was dropped for the noise of its pivot, and whose pivot round-off does not reach: the noise is set
+// right for one more elimination, in which others may depend on it. False if there is none.
 template <class Real>
-int BasicLdlt<Real>::most_doubtful(std::span<const int> looked_at) const {
-  int best = -1;
+bool BasicLdlt<Real>::clears_a_doubt(const Real* added) {
   for (int k = 0; k < size(); ++k) {
     if (!dependent(k) || !(doubtful_[k] > Real(0))) continue;
-    if (best >= 0 && !(doubtful_[k] * noise_[best] > doubtful_[best] * noise_[k])) continue;
-    if (std::find(looked_at.begin(), looked_at.end(), k) == looked_at.end()) best = k;
+    const Real scale = round_off_scale(k);
+    const double share = added[k] != 0 ? pivot_share_of_soft : pivot_share<Real>;
+    if (!(doubtful_[k] > share * scale)) continue;
+    overstated_[k] += noise_[k] - dense::pivot_noise<Real> * scale;
+    return true;
   }
-  return best;
-}
-
-// True if round-off does not reach the pivot of such a row: its noise is set right for one more elimination, in which
-// others may depend on it.
-template <class Real>
-bool BasicLdlt<Real>::clears_of_doubt(int row, const Real* added) {
-  const Real scale = round_off_scale(row);
-  const double share = added[row] != 0 ? pivot_share_of_soft : pivot_share<Real>;
-  if (!(doubtful_[row] > share * scale)) return false;
-  overstated_[row] += noise_[row] - dense::pivot_noise<Real> * scale;
-  return true;
+  return false;
 }
 
 template <class Real>
@@ -228,12 +219,8 @@ int BasicLdlt<Real>::factor(const Real* added, const char* out) {
   begin_noise();
   const dense::Numbers<Real> all = numbers(added);
   int dependent_rows = eliminate_columns(all, out);
-  int looked_at[most_looks];
-  for (int looks = 0; dependent_rows > 0 && looks < most_looks;) {
-    const int row = most_doubtful({looked_at, static_cast<size_t>(looks)});
-    if (row < 0 || multiplications() > affordable) break;
-    looked_at[looks++] = row;
-    if (!clears_of_doubt(row, added)) continue;
+  const int looks = dependent_rows > 0 && multiplications() <= affordable ? most_looks : 0;
+  for (int look = 0; look < looks && clears_a_doubt(added); ++look) {
     for (int k = 0; k < size(); ++k)  // what was learnt of them is learnt once more
       if (dependent(k)) dependent_[k] = static_cast<unsigned char>(std::max(dependent_[k] - all.counts, 0));
     begin_noise();

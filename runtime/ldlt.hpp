@@ -3,7 +3,6 @@
 // number by number.
 #pragma once
 
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -144,8 +143,7 @@ class BasicLdlt {
   int eliminate_columns(const dense::Numbers<Real>& all, const char* out);
   void begin_noise();
   Real round_off_scale(int unknown);
-  int most_doubtful(std::span<const int> looked_at) const;
-  bool clears_of_doubt(int row, const Real* added);
+  bool clears_a_doubt(const Real* added);
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(Column& column);
 
