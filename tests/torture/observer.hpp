@@ -81,7 +81,8 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
       const bool one_sided = kinds[r] == RowKind::inequality;
       if (one_sided && C[r] > -slack * size[r]) continue;
       const double share = std::abs(C[r]) / size[r] - (one_sided ? slack : 0);
-      if (!(share <= gap.share)) gap = {share, j};
+      if (std::isnan(share)) return {share, j};
+      if (share > gap.share) gap = {share, j};
     }
   }
   return gap;
