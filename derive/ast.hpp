@@ -95,8 +95,8 @@ struct JointAst {
 struct HandItemAst {
   enum class Kind { assume, let, free, rows, quantity, lambda, update, bound, claim };
   Kind kind = Kind::let;
-  Word word;  // let, quantity, claim: what; update: v, w, x or angle; assume: the anchored name
-  Word body;  // update, anchor, immovable
+  Word word;                // let, quantity, claim: what; update: v, w, x or angle; assume: the anchored name
+  Word body;                // update, anchor, immovable
   std::vector<Word> names;  // free, rows
   bool flag = false;        // update: -=; bound: lambda >= 0; assume: the body is immovable
   Ast left, right;          // right: the expression; left: of a claim or an assumed equation

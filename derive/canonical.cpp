@@ -81,7 +81,7 @@ std::vector<Expr> Components::of_vector(Expr v) {
   const std::string name = spoken_name(v);
   if (!name.empty() && v->kind != Kind::symbol) {
     for (std::size_t k = 0; k < components.size(); ++k) {
-      v->pool->name(components[k], name + "_" + "xyz"[k], v->named_by_let);
+      v->pool->name(components[k], name + "_" + "xyz"[k], v -> named_by_let);
     }
   }
   vectors_.emplace(&*v, components);
@@ -157,7 +157,8 @@ std::vector<Expr> Components::vector_rule(Expr v) {
       std::vector<Expr> product;
       for (std::size_t i = 0; i < 3; ++i) {
         product.push_back(inner_product({tensor_component(v->args[0], i, 0), tensor_component(v->args[0], i, 1),
-                                         tensor_component(v->args[0], i, 2)}, u));
+                                         tensor_component(v->args[0], i, 2)},
+                                        u));
       }
       return product;
     }

@@ -12,19 +12,16 @@ namespace {
 void take_over(const Diagnostics& diagnostics, Findings& findings) {
   for (const Diagnostic& d : diagnostics.list) {
     const bool error = d.severity == Severity::error;
-    findings.push_back({error ? Level::error : Level::warning, error ? "unreadable" : "reader",
-                        d.where, d.also, d.message, d.fix});
+    findings.push_back(
+        {error ? Level::error : Level::warning, error ? "unreadable" : "reader", d.where, d.also, d.message, d.fix});
   }
 }
 
 std::string kind_of(LawId id) {
   switch (id) {
-    case LawId::momentum:
-      return "momentum";
-    case LawId::rank:
-      return "dependent";
-    default:
-      return "law";
+    case LawId::momentum: return "momentum";
+    case LawId::rank: return "dependent";
+    default: return "law";
   }
 }
 
@@ -58,8 +55,7 @@ Span place_of(const Block& coordinate, const Joint& joint) {
 }
 
 bool CheckReport::clean() const {
-  return std::all_of(findings.begin(), findings.end(),
-                     [](const Finding& f) { return f.level == Level::note; });
+  return std::all_of(findings.begin(), findings.end(), [](const Finding& f) { return f.level == Level::note; });
 }
 
 CheckReport check(const ReadResult& read) {
@@ -80,32 +76,27 @@ CheckReport check(const ReadResult& read) {
     check_undefined(subject, report.findings);
     check_mass(subject, report.findings);
   } catch (const NotLinear& e) {
-    report.findings.push_back(
-        {Level::error,
-         "linear",
-         joint.rows.front().where,
-         {},
-         e.what(),
-         "a velocity row is a sum of velocities times what does not contain them"});
+    report.findings.push_back({Level::error,
+                               "linear",
+                               joint.rows.front().where,
+                               {},
+                               e.what(),
+                               "a velocity row is a sum of velocities times what does not contain them"});
   } catch (const NumberTooLarge& e) {
     report.findings.push_back({Level::error, "number", joint.rows.front().where, {}, e.what(), ""});
   }
-  std::stable_sort(report.findings.begin(), report.findings.end(),
-                   [](const Finding& a, const Finding& b) {
-                     if (a.where.begin != b.where.begin) return a.where.begin < b.where.begin;
-                     return a.level > b.level;
-                   });
+  std::stable_sort(report.findings.begin(), report.findings.end(), [](const Finding& a, const Finding& b) {
+    if (a.where.begin != b.where.begin) return a.where.begin < b.where.begin;
+    return a.level > b.level;
+  });
   return report;
 }
 
 std::string_view name_of(Level level) {
   switch (level) {
-    case Level::note:
-      return "note";
-    case Level::warning:
-      return "warning";
-    case Level::error:
-      return "error";
+    case Level::note: return "note";
+    case Level::warning: return "warning";
+    case Level::error: return "error";
   }
   return "";
 }
@@ -114,8 +105,7 @@ std::string_view name_of(Level level) {
 std::string render(const SourceFile& file, const Finding& f) {
   std::string text = render(file, Diagnostic{Severity::warning, f.where, f.also, f.message, f.fix});
   const std::string said = ": warning: ";
-  return text.replace(text.find(said, file.path.size()), said.size(),
-                      fmt::format(": {}: ", name_of(f.level)));
+  return text.replace(text.find(said, file.path.size()), said.size(), fmt::format(": {}: ", name_of(f.level)));
 }
 
 }  // namespace cdot::derive

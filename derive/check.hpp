@@ -17,8 +17,7 @@ enum class Level {
 
 struct Finding {
   Level level = Level::note;
-  std::string
-      kind;  // one word per kind of finding, for programs: "momentum", "vanishing", "singular", ...
+  std::string kind;  // one word per kind of finding, for programs: "momentum", "vanishing", "singular", ...
   Span where;
   std::vector<Span> also;
   std::string message, fix;
@@ -26,8 +25,7 @@ struct Finding {
 
 struct CheckReport {
   bool readable = true;
-  std::vector<Finding>
-      findings;  // in the order of the text; errors first where they stand at one place
+  std::vector<Finding> findings;  // in the order of the text; errors first where they stand at one place
   // The laws of the joint (name "") and of each coordinate.
   struct Proved {
     std::string name;

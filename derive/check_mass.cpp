@@ -40,14 +40,10 @@ struct Candidate {
 class MassCheck {
  public:
   MassCheck(const Subject& subject, Findings& findings)
-      : subject_(subject),
-        joint_(subject.joint),
-        findings_(findings),
-        names_(subject.joint, Algebra::Route::names) {}
+      : subject_(subject), joint_(subject.joint), findings_(findings), names_(subject.joint, Algebra::Route::names) {}
 
   void run() {
-    const double minors =
-        number_of_choices(width_ * joint_.bodies.size(), subject_.block.rows.size());
+    const double minors = number_of_choices(width_ * joint_.bodies.size(), subject_.block.rows.size());
     if (minors > most_minors) {
       return add("where K is singular was not looked into: too many minors of J");
     }
@@ -57,8 +53,7 @@ class MassCheck {
     for (Coefficient& c : coefficients_) describe(c);
     if (coefficients_.empty()) return;  // said by the law of the rank
     report_all();
-    for (std::size_t b = 0; joint_.bodies.size() > 1 && b < joint_.bodies.size(); ++b)
-      report_alone(b);
+    for (std::size_t b = 0; joint_.bodies.size() > 1 && b < joint_.bodies.size(); ++b) report_alone(b);
     report_without_turning();
   }
 
@@ -96,8 +91,7 @@ class MassCheck {
     }
   }
 
-  void add_minor(const std::vector<std::vector<ex>>& J,
-                 const std::vector<std::vector<std::vector<double>>>& seen,
+  void add_minor(const std::vector<std::vector<ex>>& J, const std::vector<std::vector<std::vector<double>>>& seen,
                  const std::vector<std::size_t>& columns, std::map<Monomial, Coefficient>& sums) {
     const ex minor = by_algebra_ ? determinant(J, columns) : ex(1);
     if (minor.is_zero()) return;
@@ -132,15 +126,13 @@ class MassCheck {
 
   // A component along an axis of the world means nothing to a joint.
   static bool of_world(Expr e) {
-    return is_world_axis(e) ||
-           (e->kind == Kind::cross && std::any_of(e->args.begin(), e->args.end(), is_world_axis));
+    return is_world_axis(e) || (e->kind == Kind::cross && std::any_of(e->args.begin(), e->args.end(), is_world_axis));
   }
 
   // An axis brings the other axes of its frame: they are across one another.
   void add_vector(Expr e, std::vector<Expr>& vectors) {
     const Pool::Axis axis = joint_.pool->axis_of(e);
-    for (const Expr v : axis.triad ? std::vector<Expr>(axis.triad->begin(), axis.triad->end())
-                                   : std::vector<Expr>{e}) {
+    for (const Expr v : axis.triad ? std::vector<Expr>(axis.triad->begin(), axis.triad->end()) : std::vector<Expr>{e}) {
       if (std::find(vectors.begin(), vectors.end(), v) != vectors.end()) continue;
       vectors.push_back(v);
       if (!v->unit_length) add_candidate(norm(v));
@@ -171,10 +163,9 @@ class MassCheck {
       }
     }
     // The shortest words for the same thing.
-    std::stable_sort(candidates_.begin(), candidates_.end(),
-                     [&](const Candidate& a, const Candidate& b) {
-                       return said(a.e, joint_).size() < said(b.e, joint_).size();
-                     });
+    std::stable_sort(candidates_.begin(), candidates_.end(), [&](const Candidate& a, const Candidate& b) {
+      return said(a.e, joint_).size() < said(b.e, joint_).size();
+    });
   }
 
   // factor such that c = factor * s^2 at every pose that was looked at, if there is a simple one.
@@ -230,8 +221,7 @@ class MassCheck {
   bool equal(const ex& a, const ex& b) { return !by_algebra_ || names_.vanishes(a - b); }
 
   static bool is_constant(const std::vector<double>& seen) {
-    return std::all_of(seen.begin(), seen.end(),
-                       [&](double x) { return std::fabs(x - seen[0]) <= 1e-9 * seen[0]; });
+    return std::all_of(seen.begin(), seen.end(), [&](double x) { return std::fabs(x - seen[0]) <= 1e-9 * seen[0]; });
   }
 
   void describe(Coefficient& c) {
@@ -261,8 +251,7 @@ class MassCheck {
   }
 
   static bool any_never_zero(const Choice& choice) {
-    return std::any_of(choice.begin(), choice.end(),
-                       [](const Coefficient* c) { return c->never_zero; });
+    return std::any_of(choice.begin(), choice.end(), [](const Coefficient* c) { return c->never_zero; });
   }
 
   static std::string all_zero(const Choice& choice) {
@@ -311,8 +300,7 @@ class MassCheck {
       return true;
     });
     if (any_never_zero(choice)) return;
-    add("while nothing but " + joint_.bodies[body] + " can move, K is singular " +
-        all_zero(choice));
+    add("while nothing but " + joint_.bodies[body] + " can move, K is singular " + all_zero(choice));
   }
 
   void report_without_turning() {
@@ -327,8 +315,7 @@ class MassCheck {
   }
 
   void add(std::string message) {
-    findings_.push_back(
-        {Level::note, "singular", joint_.rows.front().where, {}, std::move(message), ""});
+    findings_.push_back({Level::note, "singular", joint_.rows.front().where, {}, std::move(message), ""});
   }
 
   const Subject& subject_;

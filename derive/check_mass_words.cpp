@@ -34,16 +34,14 @@ std::string where_all_vanish(const std::vector<std::vector<std::string>>& factor
   alternatives.erase(std::unique(alternatives.begin(), alternatives.end()), alternatives.end());
   std::vector<std::string> conditions;
   for (const auto& any : alternatives) {
-    const bool implied =
-        std::any_of(alternatives.begin(), alternatives.end(), [&](const auto& other) {
-          return other != any && std::includes(any.begin(), any.end(), other.begin(), other.end());
-        });
+    const bool implied = std::any_of(alternatives.begin(), alternatives.end(), [&](const auto& other) {
+      return other != any && std::includes(any.begin(), any.end(), other.begin(), other.end());
+    });
     if (implied) continue;
     std::vector<std::string> zeros;
     for (const std::string& factor : any) zeros.push_back(factor + " = 0");
     const std::string condition = listed(zeros, " or ");
-    conditions.push_back(zeros.size() > 1 && factors.size() > 1 ? "(" + condition + ")"
-                                                                : condition);
+    conditions.push_back(zeros.size() > 1 && factors.size() > 1 ? "(" + condition + ")" : condition);
   }
   return (without_words > 0 ? "only where " : "where ") + listed(conditions);
 }
@@ -56,8 +54,7 @@ std::string in_words(const std::vector<Way>& ways) {
     any.move.insert(way.move.begin(), way.move.end());
     any.turn.insert(way.turn.begin(), way.turn.end());
   }
-  const std::size_t all =
-      std::max<std::size_t>(1, any.move.size()) * std::max<std::size_t>(1, any.turn.size());
+  const std::size_t all = std::max<std::size_t>(1, any.move.size()) * std::max<std::size_t>(1, any.turn.size());
   if (single && ways.size() == all) return abilities(any, " or ", ", and ");
   std::vector<std::string> parts;
   for (const Way& way : ways) parts.push_back(abilities(way, " and ", " and "));

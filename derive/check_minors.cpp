@@ -12,8 +12,7 @@ ex determinant(const std::vector<std::vector<ex>>& J, const std::vector<std::siz
   return m.determinant(GiNaC::determinant_algo::laplace);
 }
 
-double determinant(const std::vector<std::vector<double>>& J,
-                   const std::vector<std::size_t>& columns) {
+double determinant(const std::vector<std::vector<double>>& J, const std::vector<std::size_t>& columns) {
   std::vector<std::vector<double>> m;
   for (const auto& row : J) {
     m.emplace_back();
@@ -37,9 +36,8 @@ double determinant(const std::vector<std::vector<double>>& J,
 }
 
 bool is_positive(const ex& expanded, const std::vector<ex>& symbols) {
-  const GiNaC::exvector terms = is_a<GiNaC::add>(expanded)
-                                    ? GiNaC::exvector(expanded.begin(), expanded.end())
-                                    : GiNaC::exvector{expanded};
+  const GiNaC::exvector terms =
+      is_a<GiNaC::add>(expanded) ? GiNaC::exvector(expanded.begin(), expanded.end()) : GiNaC::exvector{expanded};
   bool constant = false;
   for (const ex& term : terms) {
     ex factor = term;

@@ -9,8 +9,7 @@ namespace cdot::derive {
 
 // The determinant of J's columns as chosen: as many as J has rows.
 ex determinant(const std::vector<std::vector<ex>>& J, const std::vector<std::size_t>& columns);
-double determinant(const std::vector<std::vector<double>>& J,
-                   const std::vector<std::size_t>& columns);
+double determinant(const std::vector<std::vector<double>>& J, const std::vector<std::size_t>& columns);
 // n over k.
 double number_of_choices(std::size_t n, std::size_t k);
 

@@ -31,8 +31,7 @@ Gradients jacobian(Numbers& numbers, const Block& block, const std::vector<std::
   return J;
 }
 
-std::vector<double> values(Numbers& numbers, const Block& block,
-                           const std::vector<std::size_t>& rows) {
+std::vector<double> values(Numbers& numbers, const Block& block, const std::vector<std::size_t>& rows) {
   std::vector<double> C;
   for (const std::size_t i : rows) C.push_back(numbers.scalar(block.rows[i].C));
   return C;
@@ -88,8 +87,7 @@ bool project(const Joint& joint, const Block& block, Sample& sample) {
   return error < reached;
 }
 
-std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block,
-                                             const Sample& sample) {
+std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block, const Sample& sample) {
   std::vector<std::size_t> rows(block.rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = i;
   Numbers numbers(world_values(joint, sample));

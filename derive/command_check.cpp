@@ -27,8 +27,8 @@ struct Options {
 Json place(const SourceFile& file, Span span) {
   return {{"line", file.line(span.begin)},
           {"column", file.column(span.begin)},
-          {"text", file.text.substr(static_cast<std::size_t>(span.begin),
-                                    static_cast<std::size_t>(span.end - span.begin))}};
+          {"text",
+           file.text.substr(static_cast<std::size_t>(span.begin), static_cast<std::size_t>(span.end - span.begin))}};
 }
 
 Json as_json(const SourceFile& file, const Finding& f) {
@@ -41,8 +41,7 @@ Json as_json(const SourceFile& file, const Finding& f) {
 Json as_json(const CheckReport::Proved& proved) {
   Json laws = Json::array();
   for (const Law& law : proved.proof.laws) {
-    laws.push_back(
-        {{"law", name_of(law.id)}, {"verdict", name_of(law.verdict)}, {"text", law.text}});
+    laws.push_back({{"law", name_of(law.id)}, {"verdict", name_of(law.verdict)}, {"text", law.text}});
   }
   return {{"coordinate", proved.name}, {"laws", std::move(laws)}};
 }
@@ -62,8 +61,8 @@ Json as_json(const SourceFile& file, const CheckReport& report) {
 }
 
 std::string counted(const CheckReport& report, Level level) {
-  const auto n = std::count_if(report.findings.begin(), report.findings.end(),
-                               [&](const Finding& f) { return f.level == level; });
+  const auto n =
+      std::count_if(report.findings.begin(), report.findings.end(), [&](const Finding& f) { return f.level == level; });
   return n == 0 ? "" : fmt::format(", {} {}{}", n, name_of(level), n == 1 ? "" : "s");
 }
 
@@ -125,16 +124,13 @@ int run(const Options& options) {
 
 void add_check_command(CLI::App& app, Command& selected) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "check", "Everything known to be wrong or risky about a spec, before any code exists");
+  CLI::App* command =
+      app.add_subcommand("check", "Everything known to be wrong or risky about a spec, before any code exists");
   command->add_option("SPEC", options->specs, "Specs, by path or by name")->required();
-  command->add_option("--specs", options->specs_folder, "Folder of specs")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command->add_flag(
-      "--json", options->json,
-      "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
-      "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
+  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command->add_flag("--json", options->json,
+                    "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
+                    "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
   add_processes_option(*command, options->processes);
   command->footer(
       "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where "

@@ -54,8 +54,7 @@ std::vector<std::size_t> dearest_first(const std::vector<fs::path>& paths, const
 }
 
 // The files of all specs, or none if there is anything wrong with any of them, which is said here.
-std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsFolder& folder,
-                                const Options& options) {
+std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsFolder& folder, const Options& options) {
   const Memory memory(usual_memory());
   const std::string program = identity_of_program();
   std::vector<GeneratedJoint> joints;
@@ -64,9 +63,7 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
   Tasks tasks;
   for (const fs::path& path : paths) tasks.names.push_back(path.string());
   tasks.order = dearest_first(paths, options.output);
-  tasks.run = [&](std::size_t i) {
-    return packed(derive_spec(paths[i], folder, memory, program, options.fresh));
-  };
+  tasks.run = [&](std::size_t i) { return packed(derive_spec(paths[i], folder, memory, program, options.fresh)); };
   tasks.take = [&](std::size_t i, const Answer& answer) {
     if (!answer.failure.empty()) return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
     const Outcome outcome = unpacked_outcome(answer.result);
@@ -146,8 +143,7 @@ int compare(const Files& wanted, const fs::path& root, const std::string& comman
     fmt::print("{} is current: {} files\n", root.string(), wanted.size());
     return 0;
   }
-  fmt::print("{} is not current: {} of {} files. To mend it: {}\n", root.string(), differences, wanted.size(),
-             command);
+  fmt::print("{} is not current: {} of {} files. To mend it: {}\n", root.string(), differences, wanted.size(), command);
   return 1;
 }
 

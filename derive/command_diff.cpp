@@ -42,9 +42,8 @@ Pairing pair_of_hand(const fs::path& hand, const SpecsFolder& folder) {
 Pairing pair_of_spec(const std::string& word, const SpecsFolder& folder) {
   const fs::path spec = folder.find(word), hand = hand_beside(spec);
   if (fs::exists(hand)) return {hand, spec, ""};
-  throw NoSuchSpec(
-      fmt::format("no hand derivation beside {}: write {} (the language is in specs/README.md)",
-                  spec.string(), hand.string()));
+  throw NoSuchSpec(fmt::format("no hand derivation beside {}: write {} (the language is in specs/README.md)",
+                               spec.string(), hand.string()));
 }
 
 std::vector<Pairing> all_pairs(const SpecsFolder& folder) {
@@ -173,11 +172,8 @@ void add_diff_command(CLI::App& app, Command& selected) {
                       "Specs by name or path (their .hand beside them), .hand files, or ids of "
                       "entries (LIN-4); all if none\n"
                       "is given");
-  command->add_option("--specs", options->specs_folder, "Folder of specs")
-      ->type_name("DIR")
-      ->capture_default_str();
-  command->add_flag("--all", options->all,
-                    "Also entries that agree (always shown for named specs)");
+  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command->add_flag("--all", options->all, "Also entries that agree (always shown for named specs)");
   command->add_flag("--json", options->json,
                     "An array with, per entry: id, joint, title, source, verdict (agrees, "
                     "agrees-if, differs, listed),\n"

@@ -30,21 +30,21 @@ Expr zero_spin(Pool& pool);
 
 // A scalar row. Vector equations have been taken apart into their components along the world's axes.
 struct ScalarRow {
-  std::string name;        // "C1", "C1_x", or the author's name
+  std::string name;          // "C1", "C1_x", or the author's name
   const Row* row = nullptr;  // the statement that it comes from; null for a coordinate
   RowKind kind = RowKind::equality;
-  int component = -1;      // of a vector equation; -1 for a scalar one
-  Expr C;                  // zero for a velocity row
-  Expr Cdot;               // J v + dC/dt, before the velocities are isolated
-  Expr C_t;                // dC/dt at fixed q
-  Expr gamma;              // -Jdot v - d/dt(dC/dt)
-  Expr gamma_by_entries;   // the same, entry of J by entry
+  int component = -1;            // of a vector equation; -1 for a scalar one
+  Expr C;                        // zero for a velocity row
+  Expr Cdot;                     // J v + dC/dt, before the velocities are isolated
+  Expr C_t;                      // dC/dt at fixed q
+  Expr gamma;                    // -Jdot v - d/dt(dC/dt)
+  Expr gamma_by_entries;         // the same, entry of J by entry
   std::vector<JacobianEntry> J;  // one per body
 };
 
 // The rows of a joint, or the one row of a coordinate.
 struct Block {
-  std::string name;  // of the coordinate; empty for the joint itself
+  std::string name;    // of the coordinate; empty for the joint itself
   int immovable = -1;  // this body has neither velocity nor inverse mass
   std::vector<ScalarRow> rows;
   std::vector<std::vector<Expr>> K;  // lower triangle: K[i][j], j <= i

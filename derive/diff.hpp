@@ -19,8 +19,8 @@ std::string_view name_of(Agreement agreement);  // "agrees-if"
 struct Difference {
   std::string what;         // C, Cdot, J, K, b, update
   std::string row, column;  // "1", "w_b"; empty where there are none
-  std::string kind;  // sign, factor, wrong body, missing term, extra term, transposed, undeclared
-                     // assumption
+  std::string kind;         // sign, factor, wrong body, missing term, extra term, transposed, undeclared
+                            // assumption
   std::string generated, hand,
       difference;  // infix, in the spec's names; difference = hand - generated
   std::string sentence;
@@ -46,8 +46,7 @@ struct DiffReport {
 };
 
 // Judges every entry of a .hand file against the spec beside it (`spec`).
-DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path& spec,
-                 const SpecsFolder& folder);
+DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path& spec, const SpecsFolder& folder);
 
 std::string to_text(const DiffReport& report, bool all);  // `all`: also what agrees, in a line each
 std::string to_json(const DiffReport& report);

@@ -42,14 +42,12 @@ std::string row_text(const Matrix& m, int row) {
 }
 
 // The rows of `larger` that are none of `smaller`, if the others are those, in order.
-std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix& smaller,
-                                             const Poses& poses) {
+std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix& smaller, const Poses& poses) {
   if (larger.columns != smaller.columns) return std::nullopt;
   const auto same = [&](int i, int j) {
     for (const Rational sign : {Rational(1), Rational(-1)}) {
       bool all = true;
-      for (int c = 0; c < larger.columns; ++c)
-        all = all && poses.equal(larger.at(i, c), sign * smaller.at(j, c));
+      for (int c = 0; c < larger.columns; ++c) all = all && poses.equal(larger.at(i, c), sign * smaller.at(j, c));
       if (all) return true;
     }
     return false;
@@ -57,10 +55,8 @@ std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix&
   std::vector<int> further;
   int found = 0;
   for (int i = 0; i < larger.rows; ++i) {
-    if (found < smaller.rows && same(i, found))
-      ++found;
-    else
-      further.push_back(i);
+    if (found < smaller.rows && same(i, found)) ++found;
+    else further.push_back(i);
   }
   if (found < smaller.rows) return std::nullopt;
   return further;
@@ -70,8 +66,7 @@ std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix&
 
 // Rows are numbered, or named in parts about certain rows.
 std::string EntryJudge::name_of_row(const Part& part, int row) {
-  return part.hand->rows.empty() ? std::to_string(row + 1)
-                                 : part.rows[static_cast<std::size_t>(row)].name;
+  return part.hand->rows.empty() ? std::to_string(row + 1) : part.rows[static_cast<std::size_t>(row)].name;
 }
 
 Place EntryJudge::place_of(const Part& part, const HandItem& item, int row, int column) const {
@@ -104,11 +99,9 @@ std::string EntryJudge::in_names_of_spec(std::string text) const {
 }
 
 // With the condition that may have been meant.
-Difference EntryJudge::finished(const HandItem& item, Difference difference, Expr hand,
-                                Expr generated) {
+Difference EntryJudge::finished(const HandItem& item, Difference difference, Expr hand, Expr generated) {
   if (difference.kind != "sign" && difference.kind != "wrong body") {
-    const std::string hidden =
-        hidden_assumption(joint_, poses_on_constraint(), hand, generated, poses());
+    const std::string hidden = hidden_assumption(joint_, poses_on_constraint(), hand, generated, poses());
     if (!hidden.empty()) difference.sentence += fmt::format("; equal only where {}", hidden);
     const bool unsaid = item.kind == HandItem::Kind::claim || hidden == "C = 0";
     if (!hidden.empty() && unsaid) difference.kind = "undeclared assumption";
@@ -118,8 +111,8 @@ Difference EntryJudge::finished(const HandItem& item, Difference difference, Exp
   return difference;
 }
 
-void EntryJudge::add_plain(const HandItem& item, const Place& place, std::string kind,
-                           std::string sentence, std::string confirmed) {
+void EntryJudge::add_plain(const HandItem& item, const Place& place, std::string kind, std::string sentence,
+                           std::string confirmed) {
   Difference d;
   d.what = item.kind == HandItem::Kind::claim ? item.what : place.what;
   d.row = place.row;
@@ -134,8 +127,7 @@ void EntryJudge::add_plain(const HandItem& item, const Place& place, std::string
 
 // What each leaf of C that moves with a body brings into an entry of J, or into Cdot: the terms of
 // the product rule.
-std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::size_t entry,
-                                                    Rational sign) const {
+std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::size_t entry, Rational sign) const {
   std::vector<Contribution> sources;
   if (row.kind == RowKind::velocity) return sources;
   for (const Expr leaf : leaves_of(std::span(&row.C, 1))) {
@@ -143,14 +135,13 @@ std::vector<Contribution> EntryJudge::contributions(const ScalarRow& row, std::s
     ScalarRow only;
     only.Cdot = time_derivative(row.C, joint_, {immovable_, leaf});
     only.J = isolate_velocities(only.Cdot, joint_);
-    sources.push_back(
-        {leaf, sign * (entry == whole_row ? only.Cdot : columns_in_form(only.J)[entry])});
+    sources.push_back({leaf, sign * (entry == whole_row ? only.Cdot : columns_in_form(only.J)[entry])});
   }
   return sources;
 }
 
-std::optional<Difference> EntryJudge::compare_entry(const Part& part, const HandItem& item, int row,
-                                                    int column, Expr hand, Expr generated) {
+std::optional<Difference> EntryJudge::compare_entry(const Part& part, const HandItem& item, int row, int column,
+                                                    Expr hand, Expr generated) {
   if (equal(hand, generated)) return std::nullopt;
   Place place = place_of(part, item, row, column);
   const std::size_t r = static_cast<std::size_t>(row);
@@ -159,8 +150,7 @@ std::optional<Difference> EntryJudge::compare_entry(const Part& part, const Hand
     for (int c = column % width(); c < static_cast<int>(mine.size()); c += width()) {
       if (c != column) place.elsewhere.push_back(mine[static_cast<std::size_t>(c)]);
     }
-    place.sources =
-        contributions(part.rows[r], static_cast<std::size_t>(column), Rational(part.sign[r]));
+    place.sources = contributions(part.rows[r], static_cast<std::size_t>(column), Rational(part.sign[r]));
   }
   if (item.kind != HandItem::Kind::claim && item.what == "Cdot") {
     place.sources = contributions(part.rows[r], whole_row, Rational(part.sign[r]));
@@ -170,21 +160,19 @@ std::optional<Difference> EntryJudge::compare_entry(const Part& part, const Hand
   return finished(item, std::move(d), hand, generated);
 }
 
-std::string EntryJudge::confirmation(const Part& part, const HandItem& item, int row, int column,
-                                     Expr hand, Expr generated) {
+std::string EntryJudge::confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand,
+                                     Expr generated) {
   if (item.kind == HandItem::Kind::claim) return confirm().claim(hand, generated);
   const std::size_t r = static_cast<std::size_t>(row), c = static_cast<std::size_t>(column);
   const ScalarRow& of = part.rows[r];
   const double sign = part.sign[r];
   if (item.what == "C") return confirm().value_of_C(of, poses_on_constraint(), generated, hand);
   if (item.what == "J") return confirm().entry_of_J(of, sign, c, generated, hand);
-  if (item.what == "K")
-    return confirm().entry_of_K(of, part.rows[c], sign * part.sign[c], generated, hand);
+  if (item.what == "K") return confirm().entry_of_K(of, part.rows[c], sign * part.sign[c], generated, hand);
   return confirm().rate(of, item.what == "b" ? -sign : sign, generated, hand);
 }
 
-void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& hand,
-                         const Matrix& generated) {
+void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated) {
   const bool claim = item.kind == HandItem::Kind::claim;
   if (hand.rows != generated.rows || hand.columns != generated.columns) {
     return compare_sizes(part, item, hand, generated);
@@ -216,8 +204,8 @@ void EntryJudge::compare(const Part& part, const HandItem& item, const Matrix& h
 }
 
 // One difference where the entries of a block have one in common; in the spec's own names.
-void EntryJudge::report(std::vector<Difference> found, const std::string& row,
-                        const std::string& column, const Matrix& hand, const Matrix& generated) {
+void EntryJudge::report(std::vector<Difference> found, const std::string& row, const std::string& column,
+                        const Matrix& hand, const Matrix& generated) {
   BlockPlace place{row, column, "", "", ""};
   if (found.size() > 1) {
     place.generated = text_of(generated, joint_);
@@ -225,8 +213,8 @@ void EntryJudge::report(std::vector<Difference> found, const std::string& row,
     place.difference = text_of(difference_of(hand, generated, joint_), joint_);
   }
   for (Difference& d : merged(std::move(found), place)) {
-    for (std::string Difference::*text : {&Difference::generated, &Difference::hand,
-                                          &Difference::difference, &Difference::sentence}) {
+    for (std::string Difference::*text :
+         {&Difference::generated, &Difference::hand, &Difference::difference, &Difference::sentence}) {
       d.*text = in_names_of_spec(d.*text);
     }
     out_.differences.push_back(std::move(d));
@@ -234,22 +222,18 @@ void EntryJudge::report(std::vector<Difference> found, const std::string& row,
 }
 
 // In space the rows of one vector equation go together.
-std::vector<EntryJudge::Group> EntryJudge::groups_of_rows(const Part& part, const HandItem& item,
-                                                          int rows) const {
+std::vector<EntryJudge::Group> EntryJudge::groups_of_rows(const Part& part, const HandItem& item, int rows) const {
   std::vector<Group> groups;
   const bool claim = item.kind == HandItem::Kind::claim, named = !part.hand->rows.empty();
   for (int r = 0; r < rows;) {
     int count = joint_.dimension == 3 && claim && rows == 3 ? 3 : 1;
     if (joint_.dimension == 3 && !claim) {
       const Row* row = part.rows[static_cast<std::size_t>(r)].row;
-      while (row && r + count < rows && part.rows[static_cast<std::size_t>(r + count)].row == row)
-        ++count;
+      while (row && r + count < rows && part.rows[static_cast<std::size_t>(r + count)].row == row) ++count;
     }
     std::string name = place_of(part, item, r, 0).row;
-    if (count > 1 && named && !claim)
-      name = part.rows[static_cast<std::size_t>(r)].row->name;
-    else if (count > 1)
-      name = fmt::format("{}-{}", r + 1, r + count);
+    if (count > 1 && named && !claim) name = part.rows[static_cast<std::size_t>(r)].row->name;
+    else if (count > 1) name = fmt::format("{}-{}", r + 1, r + count);
     groups.push_back({r, count, name});
     r += count;
   }
@@ -265,8 +249,7 @@ std::vector<EntryJudge::Group> EntryJudge::groups_of_columns(const Part& part, c
   const bool blocks = item.what == "J" && !claim && joint_.dimension == 3;
   for (int c = 0; c < columns;) {
     int count = 1;
-    while (blocks && c + count < columns && block_of(c + count, width()) == block_of(c, width()))
-      ++count;
+    while (blocks && c + count < columns && block_of(c + count, width()) == block_of(c, width())) ++count;
     const std::string name = place_of(part, item, 0, c).column;
     groups.push_back({c, count, count == 1 ? name : name.substr(0, name.find('.'))});
     c += count;
@@ -275,16 +258,13 @@ std::vector<EntryJudge::Group> EntryJudge::groups_of_columns(const Part& part, c
 }
 
 // Matrices of different sizes: turned, or with rows too many or too few.
-void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Matrix& hand,
-                               const Matrix& generated) {
+void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated) {
   Place place = place_of(part, item, 0, 0);
   place.row.clear();
   place.column.clear();
   const auto size = [](const Matrix& m) { return fmt::format("{} x {}", m.rows, m.columns); };
-  const std::string sizes =
-      fmt::format("{} numbers stand where {} belong", size(hand), size(generated));
-  const std::string none =
-      fmt::format("{} and {} numbers have no difference", size(hand), size(generated));
+  const std::string sizes = fmt::format("{} numbers stand where {} belong", size(hand), size(generated));
+  const std::string none = fmt::format("{} and {} numbers have no difference", size(hand), size(generated));
   if (hand.columns == generated.rows && hand.rows == generated.columns) {
     const bool right = further_rows(transposed(hand), generated, poses()).has_value();
     return add_plain(item, place, "transposed", sizes + ": it is transposed",
@@ -294,9 +274,8 @@ void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Mat
   const auto further = further_rows(more ? hand : generated, more ? generated : hand, poses());
   if (!further) {
     const Matrix &larger = more ? hand : generated, &smaller = more ? generated : hand;
-    const std::string combined = larger.columns == smaller.columns
-                                     ? confirm().row_space(poses_on_constraint(), larger, smaller)
-                                     : "";
+    const std::string combined =
+        larger.columns == smaller.columns ? confirm().row_space(poses_on_constraint(), larger, smaller) : "";
     return add_plain(item, place, more ? "extra term" : "missing term", sizes, none + combined);
   }
   std::string which, what;
@@ -306,8 +285,7 @@ void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Mat
   }
   place.row = which;
   if (more) {
-    add_plain(item, place, "extra term",
-              fmt::format("{}: this row ({}) does not belong", sizes, what),
+    add_plain(item, place, "extra term", fmt::format("{}: this row ({}) does not belong", sizes, what),
               none + "; without that row both sides agree at 12 poses");
   } else {
     add_plain(item, place, "missing term", fmt::format("{}: this row ({}) is missing", sizes, what),
@@ -318,8 +296,7 @@ void EntryJudge::compare_sizes(const Part& part, const HandItem& item, const Mat
 // A formula without a value: as it stands, and as its author may have meant it.
 void EntryJudge::judge_problem(const Part& part, const HandItem& item) {
   Place place{item.what.empty() ? "update" : item.what, "", "", {}, {}, &joint_};
-  if (part.rows.size() == 1 && item.kind == HandItem::Kind::quantity)
-    place = place_of(part, item, 0, 0);
+  if (part.rows.size() == 1 && item.kind == HandItem::Kind::quantity) place = place_of(part, item, 0, 0);
   std::string sentence = item.problem, confirmed = "no value: " + item.problem;
   const Matrix& Cdot = part.generated.Cdot;
   for (const HandReading& reading : item.readings) {

@@ -10,8 +10,7 @@
 namespace cdot::derive {
 namespace {
 
-Sample moved_along(const Joint& joint, Sample sample, const Motion& motion, double time,
-                   double amount) {
+Sample moved_along(const Joint& joint, Sample sample, const Motion& motion, double time, double amount) {
   const std::size_t width = columns_per_body(joint.dimension);
   for (std::size_t c = 0; c < motion.size(); ++c) {
     sample.bodies[c / width].move(joint.dimension, c % width, amount * motion[c]);
@@ -22,28 +21,23 @@ Sample moved_along(const Joint& joint, Sample sample, const Motion& motion, doub
 }
 
 Sample with_velocities(const Joint& joint, Sample sample, const Motion& motion) {
-  const std::size_t width = columns_per_body(joint.dimension),
-                    linear = static_cast<std::size_t>(joint.dimension);
+  const std::size_t width = columns_per_body(joint.dimension), linear = static_cast<std::size_t>(joint.dimension);
   for (std::size_t c = 0; c < motion.size(); ++c) {
     Sample::Body& body = sample.bodies[c / width];
     const std::size_t k = c % width;
-    if (k < linear)
-      body.v[k] = motion[c];
-    else
-      body.w[joint.dimension == 2 ? 2 : k - linear] = motion[c];
+    if (k < linear) body.v[k] = motion[c];
+    else body.w[joint.dimension == 2 ? 2 : k - linear] = motion[c];
   }
   return sample;
 }
 
 // A row of the inverse inertia of a body: one number in the plane, of a tensor in space.
-std::vector<double> inverse_inertia(const Joint& joint, const Sample& sample, std::size_t body,
-                                    std::size_t row) {
+std::vector<double> inverse_inertia(const Joint& joint, const Sample& sample, std::size_t body, std::size_t row) {
   const std::string name = "inv_I_" + joint.bodies[body];
   if (joint.dimension == 2) return {sample.scalars.at(name)};
   std::vector<double> numbers;
   for (std::size_t k = 0; k < 3; ++k) {
-    numbers.push_back(
-        sample.scalars.at(name + "_" + "xyz"[std::min(row, k)] + "xyz"[std::max(row, k)]));
+    numbers.push_back(sample.scalars.at(name + "_" + "xyz"[std::min(row, k)] + "xyz"[std::max(row, k)]));
   }
   return numbers;
 }
@@ -64,8 +58,7 @@ Motion sum_of(const Motion& a, const Motion& b) {
 
 }  // namespace
 
-double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample,
-                  const Motion& motion, double time) {
+double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample, const Motion& motion, double time) {
   if (row.kind == RowKind::velocity) {
     const Motion rest(motion.size());
     return values_at(joint, {row.Cdot}, with_velocities(joint, sample, motion))[0] -
@@ -100,10 +93,8 @@ Motion Confirm::in_form(const Motion& gradient, const Sample& sample) const {
     if (form_ == Form::local) {
       for (const Triple<double>& axis : axes_of(e)) columns.push_back(inner_product(w, axis));
     } else {
-      for (const Triple<double>& g : {Triple<double>{-e[1], -e[2], -e[3]},
-                                      {e[0], e[3], -e[2]},
-                                      {-e[3], e[0], e[1]},
-                                      {e[2], -e[1], e[0]}}) {
+      for (const Triple<double>& g :
+           {Triple<double>{-e[1], -e[2], -e[3]}, {e[0], e[3], -e[2]}, {-e[3], e[0], e[1]}, {e[2], -e[1], e[0]}}) {
         columns.push_back(2 * inner_product(w, g));
       }
     }
@@ -121,8 +112,7 @@ Motion Confirm::velocity(const Sample& sample) const {
 }
 
 Motion Confirm::times_inverse_mass(const Sample& sample, const Motion& impulse) const {
-  const std::size_t width = columns_per_body(joint_.dimension),
-                    linear = static_cast<std::size_t>(joint_.dimension);
+  const std::size_t width = columns_per_body(joint_.dimension), linear = static_cast<std::size_t>(joint_.dimension);
   Motion change(impulse.size());
   for (std::size_t c = 0; c < impulse.size(); ++c) {
     const std::size_t body = c / width, k = c % width;
@@ -132,8 +122,7 @@ Motion Confirm::times_inverse_mass(const Sample& sample, const Motion& impulse) 
       continue;
     }
     const std::vector<double> row = inverse_inertia(joint_, sample, body, k - linear);
-    for (std::size_t j = 0; j < row.size(); ++j)
-      change[c] += row[j] * impulse[body * width + linear + j];
+    for (std::size_t j = 0; j < row.size(); ++j) change[c] += row[j] * impulse[body * width + linear + j];
   }
   return change;
 }
@@ -149,15 +138,15 @@ Motion Confirm::times_mass(const Sample& sample, const Motion& change) const {
   return shortest_step(inverse, change);
 }
 
-std::string Confirm::worst(const std::string& how, const Poses& poses,
-                           const Measure& generated_error, const Measure& published_error) const {
+std::string Confirm::worst(const std::string& how, const Poses& poses, const Measure& generated_error,
+                           const Measure& published_error) const {
   double derived = 0, published = 0;
   for (const Sample& sample : poses.samples()) {
     derived = std::max(derived, std::abs(generated_error(sample)));
     published = std::max(published, std::abs(published_error(sample)));
   }
-  return fmt::format("{} at {} poses: generated off by {}, published by {:.2g}", how,
-                     poses.samples().size(), small(derived), published);
+  return fmt::format("{} at {} poses: generated off by {}, published by {:.2g}", how, poses.samples().size(),
+                     small(derived), published);
 }
 
 std::string Confirm::against(const Measure& measured, Expr generated, Expr published) const {
@@ -170,15 +159,14 @@ std::string Confirm::against(const Measure& measured, Expr generated, Expr publi
   return worst("central differences of C", poses_, error(generated), error(published));
 }
 
-std::string Confirm::entry_of_J(const ScalarRow& row, double sign, std::size_t column,
-                                Expr generated, Expr published) const {
-  return against(
-      [&](const Sample& sample) { return sign * in_form(gradient(row, sample), sample)[column]; },
-      generated, published);
+std::string Confirm::entry_of_J(const ScalarRow& row, double sign, std::size_t column, Expr generated,
+                                Expr published) const {
+  return against([&](const Sample& sample) { return sign * in_form(gradient(row, sample), sample)[column]; }, generated,
+                 published);
 }
 
-std::string Confirm::entry_of_K(const ScalarRow& row, const ScalarRow& other, double sign,
-                                Expr generated, Expr published) const {
+std::string Confirm::entry_of_K(const ScalarRow& row, const ScalarRow& other, double sign, Expr generated,
+                                Expr published) const {
   const auto measured = [&](const Sample& sample) {
     return sign * inner(gradient(row, sample), times_inverse_mass(sample, gradient(other, sample)));
   };
@@ -192,14 +180,12 @@ std::string Confirm::rate(const ScalarRow& row, double sign, Expr generated, Exp
   return against(measured, generated, published);
 }
 
-std::string Confirm::value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated,
-                                Expr published) const {
+std::string Confirm::value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated, Expr published) const {
   const bool coordinate = row.row == nullptr;
   const Expr zero = published->pool->number(0);
   if (!coordinate && !fulfilled.empty() && !fulfilled.equal(published, zero)) {
     return worst(
-        "C where the constraint holds", fulfilled,
-        [&](const Sample& sample) { return value(generated, sample); },
+        "C where the constraint holds", fulfilled, [&](const Sample& sample) { return value(generated, sample); },
         [&](const Sample& sample) { return value(published, sample); });
   }
   const std::string how = coordinate ? "the coordinate" : "C, which is zero in the same places,";
@@ -219,20 +205,17 @@ std::string Confirm::claim(Expr left, Expr right) const {
       poses_.samples().size(), most, value(left, first), value(right, first));
 }
 
-std::string Confirm::reading(const std::string& words, const ScalarRow& row, double sign,
-                             Expr read) const {
+std::string Confirm::reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const {
   double off = 0;
   for (const Sample& sample : poses_.samples()) {
     const double truth = sign * rate_along(joint_, row, sample, velocity(sample), 1);
     off = std::max(off, std::abs(value(read, sample) - truth) / (1 + std::abs(truth)));
   }
-  return fmt::format(
-      "no value as published; {} it is off by {} from central differences of C at {} poses", words,
-      small(off), poses_.samples().size());
+  return fmt::format("no value as published; {} it is off by {} from central differences of C at {} poses", words,
+                     small(off), poses_.samples().size());
 }
 
-std::string Confirm::row_space(const Poses& poses, const Matrix& larger,
-                               const Matrix& smaller) const {
+std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const {
   double off = 0;
   for (const Sample& sample : poses.samples()) {
     const auto rows_of = [&](const Matrix& m) {
@@ -247,8 +230,7 @@ std::string Confirm::row_space(const Poses& poses, const Matrix& larger,
     for (const Motion& row : rows_of(smaller)) {
       std::vector<double> along;
       for (const Motion& of : basis) along.push_back(inner(of, row));
-      for (const double rest : sum_of(row, shortest_step(basis, along)))
-        off = std::max(off, std::abs(rest));
+      for (const double rest : sum_of(row, shortest_step(basis, along))) off = std::max(off, std::abs(rest));
     }
   }
   return fmt::format(
@@ -258,36 +240,32 @@ std::string Confirm::row_space(const Poses& poses, const Matrix& larger,
       small(off), poses.samples().size());
 }
 
-std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows,
-                                      const Change& change) const {
+std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows, const Change& change) const {
   const auto left = [&](const std::vector<Expr>& columns) {
     return [&](const Sample& sample) {
       const Motion after = sum_of(velocity(sample), values_at(joint_, columns, sample));
       double most = 0;
-      for (const ScalarRow& row : rows)
-        most = std::max(most, std::abs(rate_along(joint_, row, sample, after, 1)));
+      for (const ScalarRow& row : rows) most = std::max(most, std::abs(rate_along(joint_, row, sample, after, 1)));
       return most;
     };
   };
-  return worst("Cdot after the update, by central differences of C,", poses_,
-               left(change.generated), left(change.published));
+  return worst("Cdot after the update, by central differences of C,", poses_, left(change.generated),
+               left(change.published));
 }
 
-std::string Confirm::positions_after(const std::vector<ScalarRow>& rows,
-                                     const Change& change) const {
+std::string Confirm::positions_after(const std::vector<ScalarRow>& rows, const Change& change) const {
   const auto left = [&](const std::vector<Expr>& columns) {
     return [&](const Sample& sample) {
       const Motion step = values_at(joint_, columns, sample);
       double most = 0;
       for (const ScalarRow& row : rows) {
-        most = std::max(most,
-                        std::abs(value(row.C, sample) + rate_along(joint_, row, sample, step, 0)));
+        most = std::max(most, std::abs(value(row.C, sample) + rate_along(joint_, row, sample, step, 0)));
       }
       return most;
     };
   };
-  return worst("C after the update, by central differences along it,", poses_,
-               left(change.generated), left(change.published));
+  return worst("C after the update, by central differences along it,", poses_, left(change.generated),
+               left(change.published));
 }
 
 std::string Confirm::work(const std::vector<ScalarRow>& rows, const Change& change) const {
@@ -303,12 +281,11 @@ std::string Confirm::work(const std::vector<ScalarRow>& rows, const Change& chan
       return inner(times_mass(sample, values_at(joint_, columns, sample)), allowed);
     };
   };
-  return worst("work of the impulse along motions that C allows, which has to be 0,", poses_,
-               done(change.generated), done(change.published));
+  return worst("work of the impulse along motions that C allows, which has to be 0,", poses_, done(change.generated),
+               done(change.published));
 }
 
-std::string Confirm::bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda,
-                           bool inequality) const {
+std::string Confirm::bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const {
   // Velocities are reversed where C falls.
   const auto rising = [&](const Sample& sample) {
     return std::abs(rate_along(joint_, rows[0], sample, velocity(sample), 0));

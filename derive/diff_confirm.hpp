@@ -17,8 +17,7 @@ using Motion = std::vector<double>;
 
 // The change of C along a motion of the bodies and of time, by central differences; of a velocity
 // row, its value there less that at rest.
-double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample,
-                  const Motion& motion, double time);
+double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample, const Motion& motion, double time);
 
 class Confirm {
  public:
@@ -27,14 +26,12 @@ class Confirm {
       : joint_(joint), immovable_(immovable), poses_(poses), form_(form) {}
 
   // Each says how far the generated and the published value are off; `sign` is that of the row.
-  std::string entry_of_J(const ScalarRow& row, double sign, std::size_t column, Expr generated,
-                         Expr published) const;
+  std::string entry_of_J(const ScalarRow& row, double sign, std::size_t column, Expr generated, Expr published) const;
   std::string entry_of_K(const ScalarRow& row, const ScalarRow& other, double sign, Expr generated,
                          Expr published) const;
   std::string rate(const ScalarRow& row, double sign, Expr generated, Expr published) const;
   // `fulfilled`: poses at which C = 0, where C has to vanish, if the row is no coordinate.
-  std::string value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated,
-                         Expr published) const;
+  std::string value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated, Expr published) const;
   std::string claim(Expr left, Expr right) const;
   // Shows that some other reading of a formula without a value is right.
   std::string reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const;
@@ -52,8 +49,7 @@ class Confirm {
   std::string work(const std::vector<ScalarRow>& rows, const Change& change) const;
   // While C rises by itself: the impulse of an equation pulls it back, that of an inequality does
   // not act.
-  std::string bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda,
-                    bool inequality) const;
+  std::string bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const;
 
  private:
   using Measure = std::function<double(const Sample&)>;

@@ -12,9 +12,7 @@
 namespace cdot::derive {
 namespace {
 
-Matrix column(std::vector<Expr> entries) {
-  return {static_cast<int>(entries.size()), 1, std::move(entries)};
-}
+Matrix column(std::vector<Expr> entries) { return {static_cast<int>(entries.size()), 1, std::move(entries)}; }
 
 std::vector<Expr> lower_triangle(const Matrix& m) {
   std::vector<Expr> entries;
@@ -24,15 +22,12 @@ std::vector<Expr> lower_triangle(const Matrix& m) {
   return entries;
 }
 
-bool is_coordinate(const std::vector<ScalarRow>& rows) {
-  return rows.size() == 1 && rows[0].row == nullptr;
-}
+bool is_coordinate(const std::vector<ScalarRow>& rows) { return rows.size() == 1 && rows[0].row == nullptr; }
 
 }  // namespace
 
 EntryJudge::EntryJudge(const HandEntryAst& ast, const HandFile& file, const ReadResult& read,
-                       const std::map<std::string, std::string>& changed_anchors,
-                       Diagnostics& diagnostics)
+                       const std::map<std::string, std::string>& changed_anchors, Diagnostics& diagnostics)
     : joint_(*read.joint), pool_(*read.joint->pool), changed_anchors_(changed_anchors) {
   for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
     if (!ast.immovable.empty() && ast.immovable.front() == joint_.bodies[b]) {
@@ -45,8 +40,7 @@ EntryJudge::EntryJudge(const HandEntryAst& ast, const HandFile& file, const Read
     coordinates_.push_back(derive_coordinate(joint_, c, immovable_));
   }
   entry_ = elaborate_entry(
-      ast, file, read,
-      [this](const std::vector<std::string>& names) { return generated_for(rows_named(names)); },
+      ast, file, read, [this](const std::vector<std::string>& names) { return generated_for(rows_named(names)); },
       diagnostics);
   out_.id = entry_.id;
   out_.joint = joint_.name;
@@ -104,8 +98,8 @@ Generated EntryJudge::generated_for(const std::vector<ScalarRow>& rows) const {
   g.K = {n, n, {}};
   for (int i = 0; i < n; ++i) {
     for (int j = 0; j < n; ++j) {
-      g.K.entries.push_back(triangle[static_cast<std::size_t>(std::max(i, j))]
-                                    [static_cast<std::size_t>(std::min(i, j))]);
+      g.K.entries.push_back(
+          triangle[static_cast<std::size_t>(std::max(i, j))][static_cast<std::size_t>(std::min(i, j))]);
     }
   }
   return g;
@@ -139,9 +133,7 @@ std::vector<Expr> EntryJudge::constraints() const {
 void EntryJudge::prepare_poses() {
   std::vector<Expr> all = assumed_equations();
   const std::vector<Expr> equations = all;
-  const auto take = [&](const Matrix& m) {
-    all.insert(all.end(), m.entries.begin(), m.entries.end());
-  };
+  const auto take = [&](const Matrix& m) { all.insert(all.end(), m.entries.begin(), m.entries.end()); };
   for (const HandPart& part : entry_.parts) {
     const Generated g = generated_for(rows_named(part.rows));
     for (const Matrix& m : {g.C, g.Cdot, g.J, g.K}) take(m);
@@ -217,10 +209,7 @@ void EntryJudge::judge_item(const Part& part, const HandItem& item) {
   const Generated& g = part.generated;
   const std::size_t before = out_.differences.size();
   const bool others_need_assumptions = std::exchange(needs_assumptions_, false);
-  const Matrix& generated = item.what == "C"   ? g.C
-                            : item.what == "J" ? g.J
-                            : item.what == "K" ? g.K
-                                               : g.Cdot;
+  const Matrix& generated = item.what == "C" ? g.C : item.what == "J" ? g.J : item.what == "K" ? g.K : g.Cdot;
   compare(part, item, *item.value, generated);
   if (item.what == "J" && item.value->columns == g.J.columns) judge_momentum(part, *item.value);
   // Under an assumption more may be left out than is when nothing is assumed: no fair comparison.
@@ -249,8 +238,8 @@ void EntryJudge::add_costs(const Part& part, const HandItem& item, const Matrix&
   const std::string scope = scope_of(part);
   const auto add = [&](const std::string& source, const Matrix& m) {
     const std::vector<Expr> entries = item.what == "K" ? lower_triangle(m) : m.entries;
-    out_.costs.push_back({name_of_space(joint_.dimension), joint_.name, block, item.what,
-                          source + scope, cost_from_poses(joint_, item.what, entries)});
+    out_.costs.push_back({name_of_space(joint_.dimension), joint_.name, block, item.what, source + scope,
+                          cost_from_poses(joint_, item.what, entries)});
   };
   add(entry_.id, *item.value);
   if (!scope.empty()) add("generated", generated);
@@ -276,21 +265,16 @@ Judgement EntryJudge::judge() {
   const bool other_way_round = std::any_of(parts.begin(), parts.end(), [](const Part& part) {
     return std::count(part.sign.begin(), part.sign.end(), -1) > 0;
   });
-  if (other_way_round)
-    out_.remarks.push_back("C is counted the other way round: J flips its sign, K does not");
-  if (only_by_numbers_)
-    out_.remarks.push_back("equal at 12 random poses; algebra alone did not decide");
+  if (other_way_round) out_.remarks.push_back("C is counted the other way round: J flips its sign, K does not");
+  if (only_by_numbers_) out_.remarks.push_back("equal at 12 random poses; algebra alone did not decide");
   conclude();
   return out_;
 }
 
 void EntryJudge::conclude() {
   std::string condition;
-  const auto append = [&](const std::string& c) {
-    condition += (condition.empty() ? "" : ", ") + c;
-  };
-  for (const auto& [name, body] : changed_anchors_)
-    append(fmt::format("{} is fixed in {}", name, body));
+  const auto append = [&](const std::string& c) { condition += (condition.empty() ? "" : ", ") + c; };
+  for (const auto& [name, body] : changed_anchors_) append(fmt::format("{} is fixed in {}", name, body));
   if (needs_assumptions_) {
     for (const HandAssumption& a : entry_.assumptions) {
       if (a.left && a.right) append(a.text);

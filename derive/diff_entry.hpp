@@ -62,19 +62,16 @@ class EntryJudge {
   };
   std::vector<Group> groups_of_rows(const Part& part, const HandItem& item, int rows) const;
   std::vector<Group> groups_of_columns(const Part& part, const HandItem& item, int columns) const;
-  std::optional<Difference> compare_entry(const Part& part, const HandItem& item, int row,
-                                          int column, Expr hand, Expr generated);
-  void report(std::vector<Difference> found, const std::string& row, const std::string& column,
-              const Matrix& hand, const Matrix& generated);
-  void compare_sizes(const Part& part, const HandItem& item, const Matrix& hand,
-                     const Matrix& generated);
+  std::optional<Difference> compare_entry(const Part& part, const HandItem& item, int row, int column, Expr hand,
+                                          Expr generated);
+  void report(std::vector<Difference> found, const std::string& row, const std::string& column, const Matrix& hand,
+              const Matrix& generated);
+  void compare_sizes(const Part& part, const HandItem& item, const Matrix& hand, const Matrix& generated);
   void judge_problem(const Part& part, const HandItem& item);
   static std::string name_of_row(const Part& part, int row);
   Place place_of(const Part& part, const HandItem& item, int row, int column) const;
-  std::vector<Contribution> contributions(const ScalarRow& row, std::size_t entry,
-                                          Rational sign) const;
-  std::string confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand,
-                           Expr generated);
+  std::vector<Contribution> contributions(const ScalarRow& row, std::size_t entry, Rational sign) const;
+  std::string confirmation(const Part& part, const HandItem& item, int row, int column, Expr hand, Expr generated);
   Confirm confirm() const { return {joint_, immovable_, poses(), form_}; }
   std::string in_names_of_spec(std::string text) const;
   Difference finished(const HandItem& item, Difference difference, Expr hand, Expr generated);
@@ -95,8 +92,7 @@ class EntryJudge {
   // diff_momentum.cpp
   std::vector<Expr> turns_of_columns(int body) const;
   void judge_momentum(const Part& part, const Matrix& J);
-  void note_momentum(const std::vector<std::string>& rows, const char* quantity,
-                     const char* motion);
+  void note_momentum(const std::vector<std::string>& rows, const char* quantity, const char* motion);
 
   const Joint& joint_;
   Pool& pool_;

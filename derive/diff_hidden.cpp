@@ -37,8 +37,7 @@ class Search {
         const Expr w = body_symbols(joint_, static_cast<int>(b)).w;
         if (w->vector) continue;
         const Expr meant = substitute(hand_, {{&*symbol, w}}, KeepNames::no);
-        if (poses_.equal(meant, generated_))
-          return fmt::format("{} = {}", symbol->symbol, w->symbol);
+        if (poses_.equal(meant, generated_)) return fmt::format("{} = {}", symbol->symbol, w->symbol);
       }
     }
     return "";
@@ -87,8 +86,8 @@ class Search {
     }
     for (std::size_t i = 0; i < vectors.size(); ++i) {
       for (std::size_t j = i + 1; j < vectors.size(); ++j) {
-        for (const Expr product : {cross(vectors[i].second, vectors[j].second),
-                                   dot(vectors[i].second, vectors[j].second)}) {
+        for (const Expr product :
+             {cross(vectors[i].second, vectors[j].second), dot(vectors[i].second, vectors[j].second)}) {
           if (product->kind != Kind::number && !is_zero(product) && holds(components_of(product))) {
             return text(product) + " = 0";
           }
@@ -100,8 +99,7 @@ class Search {
 
  private:
   bool equal_and_needed(const Poses& there) const {
-    return there.equal(hand_, generated_) &&
-           (!there.equal(generated_, zero_) || poses_.equal(generated_, zero_));
+    return there.equal(hand_, generated_) && (!there.equal(generated_, zero_) || poses_.equal(generated_, zero_));
   }
 
   const Joint& joint_;
@@ -112,8 +110,8 @@ class Search {
 
 }  // namespace
 
-std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand,
-                              Expr generated, const Poses& poses) {
+std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand, Expr generated,
+                              const Poses& poses) {
   const Search search(joint, hand, generated, poses);
   // Where a symbol stands for anything, the two are equal only by chance or if it means something.
   const std::vector<Expr> free = free_symbols(hand);

@@ -34,8 +34,7 @@ std::string condition_of(const Difference& d) {
 
 void set_reason(Difference& d, const std::string& reason) {
   std::string place = d.sentence.substr(0, d.sentence.find(","));  // "J", "claim on C"
-  if (!d.row.empty())
-    place += (d.row.find_first_of("-,") == d.row.npos ? ", row " : ", rows ") + d.row;
+  if (!d.row.empty()) place += (d.row.find_first_of("-,") == d.row.npos ? ", row " : ", rows ") + d.row;
   const bool numbers = d.column.find_first_not_of("0123456789-") == d.column.npos;
   if (!d.column.empty()) place += (numbers ? ", columns " : ", ") + d.column;
   d.sentence = place + ": " + reason;
@@ -78,16 +77,11 @@ std::vector<Difference> merged(std::vector<Difference> entries, const BlockPlace
   const auto formula = [](const std::string Difference::*text) {
     return [text](const Difference& d, std::size_t i) { return without_component(d.*text, i); };
   };
-  const auto reason = [](const Difference& d, std::size_t i) {
-    return without_component(reason_of(d), i);
-  };
-  if (kinds && entries.size() == 3 && all_same(entries, reason) &&
-      all_same(entries, formula(&Difference::hand)) &&
-      all_same(entries, formula(&Difference::generated)) &&
-      all_same(entries, formula(&Difference::difference))) {
+  const auto reason = [](const Difference& d, std::size_t i) { return without_component(reason_of(d), i); };
+  if (kinds && entries.size() == 3 && all_same(entries, reason) && all_same(entries, formula(&Difference::hand)) &&
+      all_same(entries, formula(&Difference::generated)) && all_same(entries, formula(&Difference::difference))) {
     set_reason(one, reason(entries[0], 0));
-    for (std::string Difference::*text :
-         {&Difference::hand, &Difference::generated, &Difference::difference}) {
+    for (std::string Difference::*text : {&Difference::hand, &Difference::generated, &Difference::difference}) {
       one.*text = without_component(one.*text, 0);
     }
     return {one};
@@ -100,11 +94,9 @@ std::vector<Difference> merged(std::vector<Difference> entries, const BlockPlace
     return {one};
   }
   const std::string condition = condition_of(entries[0]);
-  const bool same_condition =
-      all_same(entries, [](const Difference& d, std::size_t) { return condition_of(d); });
+  const bool same_condition = all_same(entries, [](const Difference& d, std::size_t) { return condition_of(d); });
   if (!kinds || condition.empty() || !same_condition) return entries;
-  set_reason(
-      one, fmt::format("{} entries of it are {} (the first is shown)", entries.size(), condition));
+  set_reason(one, fmt::format("{} entries of it are {} (the first is shown)", entries.size(), condition));
   return {one};
 }
 

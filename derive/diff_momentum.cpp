@@ -22,10 +22,8 @@ std::vector<Expr> EntryJudge::turns_of_columns(int body) const {
     const std::vector<Expr> columns = columns_in(form_, row, joint_, body);
     for (std::size_t m = 0; m < 4; ++m) {
       const Expr turn = Rational(1, 4) * (columns[3 + m] * axes[i]);
-      if (i == 0)
-        turns.push_back(turn);
-      else
-        turns[m] = turns[m] + turn;
+      if (i == 0) turns.push_back(turn);
+      else turns[m] = turns[m] + turn;
     }
   }
   return turns;
@@ -61,24 +59,20 @@ void EntryJudge::judge_momentum(const Part& part, const Matrix& J) {
       moved = moved + v;
       turned = turned + w + cross(body_symbols(joint_, b).x, v);
     }
-    if (!vanishes(moved))
-      pushed.push_back(name_of_row(part, r));
-    else if (!vanishes(turned))
-      spun.push_back(name_of_row(part, r));
+    if (!vanishes(moved)) pushed.push_back(name_of_row(part, r));
+    else if (!vanishes(turned)) spun.push_back(name_of_row(part, r));
   }
   note_momentum(pushed, "momentum", "translation");
   note_momentum(spun, "angular momentum", "rotation");
 }
 
-void EntryJudge::note_momentum(const std::vector<std::string>& rows, const char* quantity,
-                               const char* motion) {
+void EntryJudge::note_momentum(const std::vector<std::string>& rows, const char* quantity, const char* motion) {
   if (rows.empty()) return;
   std::string names;
   for (const std::string& row : rows) names += (names.empty() ? "" : ", ") + row;
   const bool one = rows.size() == 1;
-  out_.remarks.push_back(
-      fmt::format("{} {} of this J {} conservation of {}: a common {} of all bodies gives J v != 0",
-                  one ? "row" : "rows", names, one ? "breaks" : "break", quantity, motion));
+  out_.remarks.push_back(fmt::format("{} {} of this J {} conservation of {}: a common {} of all bodies gives J v != 0",
+                                     one ? "row" : "rows", names, one ? "breaks" : "break", quantity, motion));
 }
 
 }  // namespace cdot::derive

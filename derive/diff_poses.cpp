@@ -33,8 +33,7 @@ class Variables {
     for (const Expr leaf : sample.leaves) {
       if (leaf->unit_length) directions.insert(leaf->symbol);
     }
-    const std::size_t linear = static_cast<std::size_t>(dimension_),
-                      turns = dimension_ == 2 ? 1 : 3;
+    const std::size_t linear = static_cast<std::size_t>(dimension_), turns = dimension_ == 2 ? 1 : 3;
     for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
       for (std::size_t k = 0; k < linear + turns; ++k) {
         add([=, this](Sample& s, double by) { s.bodies[b].move(dimension_, k, by); });
@@ -56,9 +55,7 @@ class Variables {
     }
     for (const Triad* triad : triads_of(joint, sample)) {
       for (std::size_t k = 0; k < 3; ++k) {
-        add([=](Sample& s, double by) {
-          s.triads.at(triad) = turned_about(k, by, s.triads.at(triad));
-        });
+        add([=](Sample& s, double by) { s.triads.at(triad) = turned_about(k, by, s.triads.at(triad)); });
       }
     }
   }
@@ -70,8 +67,7 @@ class Variables {
   void add(std::function<void(Sample&, double)> move) { moves_.push_back(std::move(move)); }
 
   void turn(Triple<double>& u, std::size_t axis, double by) const {
-    const std::size_t i = dimension_ == 2 ? 0 : (axis + 1) % 3,
-                      j = dimension_ == 2 ? 1 : (axis + 2) % 3;
+    const std::size_t i = dimension_ == 2 ? 0 : (axis + 1) % 3, j = dimension_ == 2 ? 1 : (axis + 2) % 3;
     const double x = u[i], y = u[j], c = std::cos(by), s = std::sin(by);
     u[i] = c * x - s * y;
     u[j] = s * x + c * y;
@@ -84,8 +80,7 @@ class Variables {
 // Masses, and symbols that an entry declares free.
 bool is_positive(const Sample& sample) {
   return std::none_of(sample.leaves.begin(), sample.leaves.end(), [&](Expr leaf) {
-    const bool positive =
-        (leaf->role == Role::given && leaf->body < 0) || leaf->role == Role::inverse_mass;
+    const bool positive = (leaf->role == Role::given && leaf->body < 0) || leaf->role == Role::inverse_mass;
     const auto found = sample.scalars.find(leaf->symbol);
     return positive && found != sample.scalars.end() && found->second <= 0;
   });
@@ -97,8 +92,8 @@ double largest(const std::vector<double>& numbers) {
   return most;
 }
 
-Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations,
-                       const Variables& variables, const Sample& sample) {
+Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations, const Variables& variables,
+                       const Sample& sample) {
   constexpr double step = 1e-6;
   Gradients G(equations.size());
   for (std::size_t v = 0; v < variables.size(); ++v) {
@@ -115,8 +110,7 @@ Gradients gradients_of(const Joint& joint, const std::vector<Expr>& equations,
 
 }  // namespace
 
-std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars,
-                              const Sample& sample) {
+std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample) {
   Numbers numbers(world_values(joint, sample));
   std::vector<double> values;
   for (const Expr e : scalars) values.push_back(numbers.scalar(e));
@@ -142,8 +136,7 @@ bool Poses::satisfy(Sample& sample) const {
   double error = largest(values_at(*joint_, equations_, sample));
   for (int iteration = 0; iteration < 60 && error > reached; ++iteration) {
     const std::vector<double> residual = values_at(*joint_, equations_, sample);
-    const std::vector<double> step =
-        shortest_step(gradients_of(*joint_, equations_, variables, sample), residual);
+    const std::vector<double> step = shortest_step(gradients_of(*joint_, equations_, variables, sample), residual);
     double fraction = 1;
     for (; fraction > 1e-3; fraction /= 2) {
       Sample moved = sample;

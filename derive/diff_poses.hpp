@@ -36,7 +36,6 @@ class Poses {
 };
 
 // Values of scalars at a pose.
-std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars,
-                              const Sample& sample);
+std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample);
 
 }  // namespace cdot::derive

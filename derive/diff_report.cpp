@@ -13,12 +13,10 @@ std::string to_text(const DiffReport& report, bool all) {
     if (!all && j.agreement != Agreement::differs) continue;
     s += fmt::format("{:<8} {:<10} {}\n", j.id, name_of(j.agreement), j.title);
     if (!j.condition.empty()) {
-      s += fmt::format("         {} {}\n", j.agreement == Agreement::listed ? "not judged:" : "if",
-                       j.condition);
+      s += fmt::format("         {} {}\n", j.agreement == Agreement::listed ? "not judged:" : "if", j.condition);
     }
     if (j.agreement == Agreement::differs) {
-      s += fmt::format("         {}:{}, after {}\n", report.file->path,
-                       report.file->line(j.where.begin), j.source);
+      s += fmt::format("         {}:{}, after {}\n", report.file->path, report.file->line(j.where.begin), j.source);
     }
     for (const Difference& d : j.differences) {
       s += fmt::format("         {}: {}\n", d.kind, d.sentence);

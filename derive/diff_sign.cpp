@@ -12,8 +12,7 @@ int EntryJudge::block_of(int column, int width) const {
 }
 
 // How badly one row of an item fits if the row is counted with this sign.
-EntryJudge::Misfit EntryJudge::misfit(const Part& part, const HandItem& item, std::size_t row,
-                                      int sign) const {
+EntryJudge::Misfit EntryJudge::misfit(const Part& part, const HandItem& item, std::size_t row, int sign) const {
   Misfit misfit;
   if (item.kind != HandItem::Kind::quantity || !item.value || item.what == "K") return misfit;
   const Generated& g = part.generated;
@@ -57,8 +56,7 @@ void EntryJudge::find_signs(std::vector<Part>& parts) {
     bool any = false;
     for (std::size_t row = 0; row < part.rows.size(); ++row) {
       const Evidence& e = evidence.at(part.rows[row].name);
-      const bool turned =
-          std::pair(e.minus.blocks, e.minus.terms) < std::pair(e.plus.blocks, e.plus.terms);
+      const bool turned = std::pair(e.minus.blocks, e.minus.terms) < std::pair(e.plus.blocks, e.plus.terms);
       part.sign.push_back(turned ? -1 : 1);
       any = any || e.any;
     }

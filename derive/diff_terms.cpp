@@ -11,15 +11,12 @@ namespace {
 
 // Equal terms added up, in the order of expressions.
 Terms merged(Terms terms) {
-  std::stable_sort(terms.begin(), terms.end(),
-                   [](const Term& a, const Term& b) { return compare(a.e, b.e) < 0; });
+  std::stable_sort(terms.begin(), terms.end(), [](const Term& a, const Term& b) { return compare(a.e, b.e) < 0; });
   Terms sums;
   for (const Term& t : terms) {
     if (is_zero(t.e)) continue;
-    if (!sums.empty() && sums.back().e == t.e)
-      sums.back().coef = sums.back().coef + t.coef;
-    else
-      sums.push_back(t);
+    if (!sums.empty() && sums.back().e == t.e) sums.back().coef = sums.back().coef + t.coef;
+    else sums.push_back(t);
   }
   std::erase_if(sums, [](const Term& t) { return t.coef.is_zero(); });
   return sums;
@@ -45,22 +42,14 @@ class Expansion {
  private:
   Terms distributed(Expr e) {
     switch (e->kind) {
-      case Kind::sum:
-        return sum_of_terms(e);
-      case Kind::dot:
-        return bilinear(e, [&](Expr u, Expr v) { return dot_terms(u, v); });
-      case Kind::cross:
-        return bilinear(e, [&](Expr u, Expr v) { return cross_terms(u, v); });
-      case Kind::scale:
-        return bilinear(e, [](Expr s, Expr v) { return terms_of(s * v); });
-      case Kind::perp:
-        return linear(e, 0, [](Expr u) { return perp(u); });
-      case Kind::tensor:
-        return linear(e, 1, [&](Expr u) { return apply(e->args[0], u); });
-      case Kind::product:
-        return product(e);
-      default:
-        return {split_coefficient(e)};
+      case Kind::sum: return sum_of_terms(e);
+      case Kind::dot: return bilinear(e, [&](Expr u, Expr v) { return dot_terms(u, v); });
+      case Kind::cross: return bilinear(e, [&](Expr u, Expr v) { return cross_terms(u, v); });
+      case Kind::scale: return bilinear(e, [](Expr s, Expr v) { return terms_of(s * v); });
+      case Kind::perp: return linear(e, 0, [](Expr u) { return perp(u); });
+      case Kind::tensor: return linear(e, 1, [&](Expr u) { return apply(e->args[0], u); });
+      case Kind::product: return product(e);
+      default: return {split_coefficient(e)};
     }
   }
 
@@ -117,16 +106,13 @@ class Expansion {
     return merged(std::move(terms));
   }
 
-  Expr denominator(Expr e) {
-    return stays(e) || opened_ < Opened::everything ? e : sum(pool_, of(e), false);
-  }
+  Expr denominator(Expr e) { return stays(e) || opened_ < Opened::everything ? e : sum(pool_, of(e), false); }
 
   static Terms times(const Terms& left, const Terms& right) {
     Terms products;
     for (const Term& l : left) {
       for (const Term& r : right) {
-        for (const Term& t : terms_of(l.e * r.e))
-          products.push_back({l.coef * r.coef * t.coef, t.e});
+        for (const Term& t : terms_of(l.e * r.e)) products.push_back({l.coef * r.coef * t.coef, t.e});
       }
     }
     return products;
@@ -188,8 +174,8 @@ class Expansion {
 Terms terms_without(const Terms& of, const Terms& other) {
   Terms only;
   for (const Term& t : of) {
-    const bool found = std::any_of(other.begin(), other.end(),
-                                   [&](const Term& u) { return u.e == t.e && u.coef == t.coef; });
+    const bool found =
+        std::any_of(other.begin(), other.end(), [&](const Term& u) { return u.e == t.e && u.coef == t.coef; });
     if (!found) only.push_back(t);
   }
   return only;
@@ -225,8 +211,7 @@ Factors leftover_factors(const Term& hand, const Term& generated) {
   Pool& pool = *hand.e->pool;
   const bool same = abs(hand.coef) == abs(generated.coef), negative = generated.coef.sign() < 0;
   const Rational common = same ? generated.coef : Rational(negative ? -1 : 1);
-  Factors f{pool.number(hand.coef / common), pool.number(generated.coef / common),
-            pool.number(common)};
+  Factors f{pool.number(hand.coef / common), pool.number(generated.coef / common), pool.number(common)};
   const Powers ours = powers_of(hand.e), theirs = powers_of(generated.e);
   const auto exponent = [](const Powers& powers, const Node* base) {
     const auto found = powers.find(base);
@@ -258,16 +243,14 @@ Expr difference_of(Expr hand, Expr generated, const Joint& joint) {
 std::string brief_text(Expr e, const Joint& joint) {
   const std::string plain = text(e);
   if (joint.dimension == 2 || e->vector) return plain;
-  const std::string distributed =
-      text(sum_of(terms_of_expansion(e, joint, Opened::nothing), *e->pool));
+  const std::string distributed = text(sum_of(terms_of_expansion(e, joint, Opened::nothing), *e->pool));
   return distributed.size() < plain.size() ? distributed : plain;
 }
 
 std::vector<Expr> free_symbols(Expr e) {
   std::vector<Expr> free;
   for (const Expr node : topological(std::span(&e, 1))) {
-    if (node->kind == Kind::symbol && node->role == Role::given && node->body < 0)
-      free.push_back(node);
+    if (node->kind == Kind::symbol && node->role == Role::given && node->body < 0) free.push_back(node);
   }
   return free;
 }

@@ -20,9 +20,8 @@ enum class Opened {
   dots,        // own_lets, and dot products of vectors in components
   components   // everything, and all products of vectors in components
 };
-constexpr Opened all_openings[] = {Opened::top,       Opened::nothing,    Opened::rates,
-                                   Opened::own_lets,  Opened::everything, Opened::dots,
-                                   Opened::components};
+constexpr Opened all_openings[] = {Opened::top,        Opened::nothing, Opened::rates,     Opened::own_lets,
+                                   Opened::everything, Opened::dots,    Opened::components};
 
 // e as a sum of products.
 Terms terms_of_expansion(Expr e, const Joint& joint, Opened opened);

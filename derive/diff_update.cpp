@@ -41,8 +41,7 @@ std::vector<Expr> solved(const Matrix& K, std::vector<Expr> b) {
 }
 
 // M^-1 J^T lambda, column by column.
-std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& rows,
-                             const std::vector<Expr>& lambda) {
+std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda) {
   std::vector<Expr> columns;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     const BodySymbols body = body_symbols(joint, static_cast<int>(b));
@@ -58,8 +57,7 @@ std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& r
 }
 
 std::string column_name(const Joint& joint, std::size_t column, bool positions) {
-  const std::size_t width = columns_per_body(joint.dimension),
-                    linear = static_cast<std::size_t>(joint.dimension);
+  const std::size_t width = columns_per_body(joint.dimension), linear = static_cast<std::size_t>(joint.dimension);
   const std::size_t k = column % width;
   const std::string& body = joint.bodies[column / width];
   if (k < linear) return fmt::format("{}_{}.{}", positions ? "x" : "v", body, "xyz"[k]);
@@ -71,8 +69,7 @@ std::string column_name(const Joint& joint, std::size_t column, bool positions) 
 bool same_direction(const Confirm::Change& change, const Poses& poses) {
   for (std::size_t i = 0; i < change.generated.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (!poses.equal(change.published[i] * change.generated[j],
-                       change.published[j] * change.generated[i])) {
+      if (!poses.equal(change.published[i] * change.generated[j], change.published[j] * change.generated[i])) {
         return false;
       }
     }
@@ -103,20 +100,17 @@ void EntryJudge::judge_updates(const Part& part) {
   }
   if (updates.empty()) return;
   const bool positions = is_position_level(updates[0]->target);
-  const bool any_impulse = std::any_of(updates.begin(), updates.end(), [](const HandItem* item) {
-    return contains_multiplier(*item);
-  });
+  const bool any_impulse =
+      std::any_of(updates.begin(), updates.end(), [](const HandItem* item) { return contains_multiplier(*item); });
   const UpdateLevel level = any_impulse ? UpdateLevel::any_impulse
                             : positions ? UpdateLevel::positions
                                         : UpdateLevel::velocities;
   Confirm::Change change{changes_by(joint_, part.rows, impulse(part, level)), {}};
   change.published.assign(change.generated.size(), pool_.number(0));
   std::vector<const HandItem*> said_by(change.generated.size(), updates[0]);
-  const std::size_t width = columns_per_body(joint_.dimension),
-                    linear = static_cast<std::size_t>(joint_.dimension);
+  const std::size_t width = columns_per_body(joint_.dimension), linear = static_cast<std::size_t>(joint_.dimension);
   for (const HandItem* item : updates) {
-    const std::size_t first =
-        static_cast<std::size_t>(item->body) * width + (is_linear(item->target) ? 0 : linear);
+    const std::size_t first = static_cast<std::size_t>(item->body) * width + (is_linear(item->target) ? 0 : linear);
     for (std::size_t k = 0; k < item->value->entries.size(); ++k) {
       change.published[first + k] = change.published[first + k] + item->value->entries[k];
       said_by[first + k] = item;
@@ -150,8 +144,7 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
     const Place place{"update", "", column, {}, {}, &joint_};
     Difference d = describe_difference(place, change.published[c], change.generated[c], poses());
     d.confirmed = confirmed;
-    if (only_size && d.kind == "factor")
-      d.sentence += "; the direction of the impulse is right, its size is not";
+    if (only_size && d.kind == "factor") d.sentence += "; the direction of the impulse is right, its size is not";
     return finished(*said_by[c], std::move(d), change.published[c], change.generated[c]);
   };
   for (const Group& group : groups_of_changes(level, said_by.size())) {
@@ -168,13 +161,11 @@ void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Ch
 }
 
 // In space the components of one change go together.
-std::vector<EntryJudge::Group> EntryJudge::groups_of_changes(UpdateLevel level,
-                                                             std::size_t columns) const {
+std::vector<EntryJudge::Group> EntryJudge::groups_of_changes(UpdateLevel level, std::size_t columns) const {
   std::vector<Group> groups;
   const int width = static_cast<int>(columns_per_body(joint_.dimension));
   for (int c = 0; c < static_cast<int>(columns); ++c) {
-    const std::string name =
-        column_name(joint_, static_cast<std::size_t>(c), level == UpdateLevel::positions);
+    const std::string name = column_name(joint_, static_cast<std::size_t>(c), level == UpdateLevel::positions);
     if (joint_.dimension == 3 && c > 0 && block_of(c, width) == block_of(c - 1, width)) {
       ++groups.back().count;
       groups.back().name = name.substr(0, name.find('.'));
@@ -186,9 +177,8 @@ std::vector<EntryJudge::Group> EntryJudge::groups_of_changes(UpdateLevel level,
 }
 
 void EntryJudge::judge_bound(const Part& part, const HandItem& item) {
-  const bool inequality = std::all_of(part.rows.begin(), part.rows.end(), [](const ScalarRow& row) {
-    return row.kind == RowKind::inequality;
-  });
+  const bool inequality = std::all_of(part.rows.begin(), part.rows.end(),
+                                      [](const ScalarRow& row) { return row.kind == RowKind::inequality; });
   if (inequality == item.pushes_only) return;
   std::vector<Expr> b;
   for (const Expr e : part.generated.Cdot.entries) b.push_back(-e);
@@ -201,8 +191,7 @@ void EntryJudge::judge_bound(const Part& part, const HandItem& item) {
               "also stops bodies that are already on their way back",
               confirmed);
   } else {
-    add_plain(item, place, "extra term", "the row is an equation, its impulse may have either sign",
-              confirmed);
+    add_plain(item, place, "extra term", "the row is an equation, its impulse may have either sign", confirmed);
   }
 }
 

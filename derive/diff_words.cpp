@@ -27,11 +27,10 @@ std::string spoken(Expr e) { return e->name.empty() ? text(e) : e->name; }
 // A name that the entry gave, with what it stands for: "theta_initial = -phi".
 std::string introduced(Expr e, const Joint& joint) {
   constexpr std::size_t longest_value = 40;
-  const bool of_spec = std::any_of(joint.lets.begin(), joint.lets.end(),
-                                   [&](const Let& let) { return let.name == e->name; });
+  const bool of_spec =
+      std::any_of(joint.lets.begin(), joint.lets.end(), [&](const Let& let) { return let.name == e->name; });
   const std::string value = text(e);
-  if (e->name.empty() || !e->named_by_let || of_spec || value.size() > longest_value)
-    return spoken(e);
+  if (e->name.empty() || !e->named_by_let || of_spec || value.size() > longest_value) return spoken(e);
   return fmt::format("{} = {}", e->name, value);
 }
 
@@ -45,9 +44,7 @@ std::string where_from(const Contribution& source, const Joint& joint) {
   const std::string body = joint.bodies[static_cast<std::size_t>(source.leaf->body)];
   const std::string& s = source.leaf->symbol;
   if (source.leaf->role == Role::body_vector) {
-    return fmt::format(
-        "{0} turns with {1} (d{0}/dt = w_{1} x {0}), so the product rule has a term for it", s,
-        body);
+    return fmt::format("{0} turns with {1} (d{0}/dt = w_{1} x {0}), so the product rule has a term for it", s, body);
   }
   return fmt::format("{} moves with {}", s, body);
 }
@@ -70,8 +67,7 @@ std::vector<std::vector<Expr>> symbols_by_class(const Joint& joint, std::size_t 
 }
 
 // One for the other, the other for the one, or both exchanged.
-void add_exchanges(const std::vector<Expr>& ours, const std::vector<Expr>& theirs,
-                   std::vector<Exchange>& all) {
+void add_exchanges(const std::vector<Expr>& ours, const std::vector<Expr>& theirs, std::vector<Exchange>& all) {
   Exchange forth, back;
   for (std::size_t i = 0; i < ours.size(); ++i) {
     forth.replacements.emplace(&*ours[i], theirs[i]);
@@ -107,22 +103,19 @@ std::vector<Exchange> exchanges(const Joint& joint) {
 // What of one body stands where another body's belongs; empty if that is not it.
 std::string of_another_body(Expr hand, Expr generated, const Joint& joint, const Poses& poses) {
   for (const Exchange& exchange : exchanges(joint)) {
-    if (poses.equal(substitute(hand, exchange.replacements, KeepNames::no), generated))
-      return exchange.words;
+    if (poses.equal(substitute(hand, exchange.replacements, KeepNames::no), generated)) return exchange.words;
   }
   return "";
 }
 
-std::optional<Explained> whole_entry(const Place& place, Expr hand, Expr generated,
-                                     const Poses& poses) {
+std::optional<Explained> whole_entry(const Place& place, Expr hand, Expr generated, const Poses& poses) {
   if (poses.equal(hand, -generated)) return Explained{"sign", "the sign is wrong"};
   const std::string exchanged = of_another_body(hand, generated, *place.joint, poses);
   if (!exchanged.empty()) return Explained{"wrong body", exchanged};
   for (const Expr other : place.elsewhere) {
     if (is_zero(other)) continue;
     if (poses.equal(hand, other) || poses.equal(hand, -other)) {
-      return Explained{"wrong body",
-                       fmt::format("{} is what belongs to another body's column", text(hand))};
+      return Explained{"wrong body", fmt::format("{} is what belongs to another body's column", text(hand))};
     }
   }
   const Expr zero = hand->pool->number(0);
@@ -161,19 +154,15 @@ std::optional<Explained> by_factor(const Leftover& left, Expr has, Expr lacks, c
     if (f.rest->kind == Kind::number || !poses.equal(has * f.generated, lacks * f.hand)) continue;
     const std::string ours = spoken(f.hand), right = spoken(f.generated), where = spoken(has);
     const std::string at = where.size() > longest_formula ? "" : " in " + where;
-    if (is_one(f.hand))
-      return Explained{"factor", fmt::format("the factor {} is missing{}", right, at)};
-    if (is_one(f.generated))
-      return Explained{"factor", fmt::format("the factor {} does not belong{}", ours, at)};
+    if (is_one(f.hand)) return Explained{"factor", fmt::format("the factor {} is missing{}", right, at)};
+    if (is_one(f.generated)) return Explained{"factor", fmt::format("the factor {} does not belong{}", ours, at)};
     if (ours.size() + right.size() > longest_formula) return std::nullopt;
-    return Explained{"factor", fmt::format("the factor {} stands where {} belongs", ours, right),
-                     unspecific};
+    return Explained{"factor", fmt::format("the factor {} stands where {} belongs", ours, right), unspecific};
   }
   return std::nullopt;
 }
 
-Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& poses,
-                   Opened opened) {
+Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& poses, Opened opened) {
   Pool& pool = *hand->pool;
   const Leftover left = leftover_terms(hand, generated, *place.joint, opened);
   const Expr has = sum_of(left.hand, pool), lacks = sum_of(left.generated, pool);
@@ -181,13 +170,10 @@ Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& p
   const bool brief = ours.size() + theirs.size() <= longest_formula;
   const std::size_t effort = ours.size() + theirs.size();
   if (is_zero(has)) {
-    return {"missing term", fmt::format("the hand derivation lacks {}", brief ? theirs : "terms"),
-            effort};
+    return {"missing term", fmt::format("the hand derivation lacks {}", brief ? theirs : "terms"), effort};
   }
   if (is_zero(lacks)) {
-    return {"extra term",
-            brief ? fmt::format("{} does not belong here", ours)
-                  : "it has terms that do not belong here",
+    return {"extra term", brief ? fmt::format("{} does not belong here", ours) : "it has terms that do not belong here",
             effort};
   }
   const std::string sentence = instead(introduced(has, *place.joint), theirs);
@@ -201,8 +187,7 @@ Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& p
   return {"factor", sentence, effort + 2 * unspecific};
 }
 
-Explained explained(const Place& place, Expr hand, Expr generated, Expr difference,
-                    const Poses& poses) {
+Explained explained(const Place& place, Expr hand, Expr generated, Expr difference, const Poses& poses) {
   if (const auto whole = whole_entry(place, hand, generated, poses)) return *whole;
   if (const auto source = single_source(place, difference, poses)) return *source;
   Explained best = by_terms(place, hand, generated, poses, Opened::top);
@@ -216,9 +201,7 @@ Explained explained(const Place& place, Expr hand, Expr generated, Expr differen
 }  // namespace
 
 std::string name_of(const Place& place) {
-  const auto is_digit = [](const std::string& s) {
-    return s.find_first_not_of("0123456789") == s.npos;
-  };
+  const auto is_digit = [](const std::string& s) { return s.find_first_not_of("0123456789") == s.npos; };
   std::string s = place.what;
   if (!place.row.empty()) s += ", row " + place.row;
   if (!place.column.empty()) s += (is_digit(place.column) ? ", column " : ", ") + place.column;

@@ -30,7 +30,7 @@ Difference describe_difference(const Place& place, Expr hand, Expr generated, co
 
 // A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty
 // if none is found. `constraints`: the rows of C.
-std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand,
-                              Expr generated, const Poses& poses);
+std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand, Expr generated,
+                              const Poses& poses);
 
 }  // namespace cdot::derive

@@ -37,8 +37,8 @@ Expr gamma_by_entries(const Joint& joint, const ScalarRow& row, int immovable) {
   const auto collect = [&](Expr entry, Expr velocity) {
     if (is_zero(entry)) return;
     const Term part = split_coefficient(entry);
-    const auto found = std::find_if(entries.begin(), entries.end(),
-                                    [&](const auto& known) { return known.first == part.e; });
+    const auto found =
+        std::find_if(entries.begin(), entries.end(), [&](const auto& known) { return known.first == part.e; });
     if (found == entries.end()) {
       entries.emplace_back(part.e, part.coef * velocity);
     } else {
@@ -71,8 +71,7 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
   }
   if (at_velocity_level && immovable >= 0) {
     const BodySymbols body = body_symbols(joint, immovable);
-    row.Cdot = substitute(row.Cdot, {{&*body.v, zero_vector(pool)}, {&*body.w, zero_spin(pool)}},
-                          KeepNames::no);
+    row.Cdot = substitute(row.Cdot, {{&*body.v, zero_vector(pool)}, {&*body.w, zero_spin(pool)}}, KeepNames::no);
   }
   row.C_t = substitute(row.Cdot, at_rest, KeepNames::no);
   row.J = isolate_velocities(row.Cdot, joint);
@@ -114,8 +113,8 @@ std::vector<Expr> columns_of(const std::vector<JacobianEntry>& J) {
 }
 
 // Entry by entry the sum over the bodies of v_i . v_j / m + w_i . I^-1 w_j.
-std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vector<ScalarRow>& rows,
-                                              int immovable, bool isotropic) {
+std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vector<ScalarRow>& rows, int immovable,
+                                              bool isotropic) {
   std::vector<std::vector<Expr>> K(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
@@ -143,8 +142,7 @@ Block derive_rows(const Joint& joint, int immovable) {
   const std::vector<Expr> axes = world_axes(*joint.pool);
   for (const Row& row : joint.rows) {
     if (!row.C->vector) {
-      block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, {}, {}, {}, {}, {}, {}},
-                                      row.C, immovable));
+      block.rows.push_back(derive_row(joint, {row.name, &row, row.kind, -1, {}, {}, {}, {}, {}, {}}, row.C, immovable));
       continue;
     }
     for (std::size_t k = 0; k < axes.size(); ++k) {

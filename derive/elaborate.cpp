@@ -17,14 +17,12 @@ bool valid_name_of_file(const SourceFile& file, const std::string& name) {
 
 bool depends_on_role(Expr e, Role role) {
   const std::vector<Expr> parts = topological(std::span<const Expr>(&e, 1));
-  return std::any_of(parts.begin(), parts.end(),
-                     [&](Expr p) { return p->kind == Kind::symbol && p->role == role; });
+  return std::any_of(parts.begin(), parts.end(), [&](Expr p) { return p->kind == Kind::symbol && p->role == role; });
 }
 
 bool depends_on_bodies(Expr e) {
   const std::vector<Expr> parts = topological(std::span<const Expr>(&e, 1));
-  return std::any_of(parts.begin(), parts.end(),
-                     [](Expr p) { return p->kind == Kind::symbol && p->body >= 0; });
+  return std::any_of(parts.begin(), parts.end(), [](Expr p) { return p->kind == Kind::symbol && p->body >= 0; });
 }
 
 void parse_source(Source& source) {
@@ -42,8 +40,7 @@ Elaborator::Elaborator(const Library& library, int dimension, const ReadOptions&
   joint_.dimension = dimension;
 }
 
-void Elaborator::error(Source& source, Span where, std::string message, std::string fix,
-                       std::vector<Span> also) {
+void Elaborator::error(Source& source, Span where, std::string message, std::string fix, std::vector<Span> also) {
   if (source.include) {
     where = *source.include;
     source.clashed = true;
@@ -66,19 +63,15 @@ void Elaborator::run(Source& spec) {
   spec.including = {spec.ast.name.text};
   statements(spec);
   if (is_word_of_cpp(joint_.name))
-    spec.diagnostics.error(
-        spec.ast.name.where,
-        quote(joint_.name) + " is a word of C++, in which kernels are written",
-        "choose another name");
+    spec.diagnostics.error(spec.ast.name.where, quote(joint_.name) + " is a word of C++, in which kernels are written",
+                           "choose another name");
   if (!spec.ast.name.text.empty() && !valid_name_of_file(*spec.file, spec.ast.name.text))
-    spec.diagnostics.warning(spec.ast.name.where,
-                             "the file is not named after its joint " + quote(spec.ast.name.text),
+    spec.diagnostics.warning(spec.ast.name.where, "the file is not named after its joint " + quote(spec.ast.name.text),
                              "name it " + spec.ast.name.text + ".joint");
   check_bodies(spec);
   // Coordinates alone are enough: effects hold what a scene wants held.
   if (joint_.rows.empty() && joint_.coordinates.empty() && !spec.diagnostics.has_errors())
-    spec.diagnostics.error(spec.ast.name.where,
-                           "the joint has neither a row nor a coordinate: it is of no use",
+    spec.diagnostics.error(spec.ast.name.where, "the joint has neither a row nor a coordinate: it is of no use",
                            "write an equation, such as pa = pb");
   warn_unused(spec);
 }
@@ -86,21 +79,11 @@ void Elaborator::run(Source& spec) {
 void Elaborator::statements(Source& source) {
   for (const StatementAst& s : source.ast.statements) {
     switch (s.kind) {
-      case StatementAst::Kind::include:
-        include(source, s.include);
-        break;
-      case StatementAst::Kind::declare:
-        declare(source, s.declared);
-        break;
-      case StatementAst::Kind::let:
-        let(source, s.declared);
-        break;
-      case StatementAst::Kind::row:
-        row(source, s);
-        break;
-      case StatementAst::Kind::coordinate:
-        coordinate(source, s);
-        break;
+      case StatementAst::Kind::include: include(source, s.include); break;
+      case StatementAst::Kind::declare: declare(source, s.declared); break;
+      case StatementAst::Kind::let: let(source, s.declared); break;
+      case StatementAst::Kind::row: row(source, s); break;
+      case StatementAst::Kind::coordinate: coordinate(source, s); break;
     }
   }
 }
@@ -111,18 +94,16 @@ void Elaborator::check_bodies(Source& spec) {
   const auto last = *bodies_.rbegin();
   for (int i = 0; i < last.first; ++i)
     if (!bodies_.contains(i)) {
-      spec.diagnostics.error(
-          last.second,
-          "body " + quote(body_name(last.first)) + " is used, but not " + quote(body_name(i)),
-          "bodies are a, b, c, ... in that order");
+      spec.diagnostics.error(last.second,
+                             "body " + quote(body_name(last.first)) + " is used, but not " + quote(body_name(i)),
+                             "bodies are a, b, c, ... in that order");
       break;
     }
   for (const auto& [body, where] : bodies_)
     if (const auto entry = names_.find(body_name(body)); entry != names_.end())
-      spec.diagnostics.error(
-          entry->second.where,
-          quote(body_name(body)) + " is a body here, so it cannot be a " + entry->second.kind,
-          "choose another name", {where});
+      spec.diagnostics.error(entry->second.where,
+                             quote(body_name(body)) + " is a body here, so it cannot be a " + entry->second.kind,
+                             "choose another name", {where});
   for (int i = 0; i <= last.first; ++i) joint_.bodies.push_back(body_name(i));
 }
 
@@ -147,8 +128,7 @@ void Elaborator::warn_unused(Source& spec) {
         used_arms.contains(entry.where.begin))
       continue;
     if (entry.kind == "let" && arises_in_derivative(entry.value.e)) continue;
-    spec.diagnostics.warning(entry.where, "the " + entry.kind + " " + quote(name) + " is not used",
-                             "remove it");
+    spec.diagnostics.warning(entry.where, "the " + entry.kind + " " + quote(name) + " is not used", "remove it");
   }
 }
 
@@ -170,14 +150,10 @@ const Value* SourceNames::find(const std::string& name) {
 int SourceNames::body(const std::string& letter) const {
   const int body = body_of_letter(letter);
   if (body < 0 || source_.bodies.empty()) return body;
-  return body < static_cast<int>(source_.bodies.size())
-             ? source_.bodies[static_cast<std::size_t>(body)]
-             : -1;
+  return body < static_cast<int>(source_.bodies.size()) ? source_.bodies[static_cast<std::size_t>(body)] : -1;
 }
 
-void SourceNames::use_body(int body, Span where) {
-  e_.bodies_.emplace(body, e_.in_spec(source_, where));
-}
+void SourceNames::use_body(int body, Span where) { e_.bodies_.emplace(body, e_.in_spec(source_, where)); }
 
 std::vector<std::string> SourceNames::known() const {
   std::vector<std::string> names = {"time", "world"};
@@ -189,12 +165,11 @@ std::string SourceNames::hint(const std::string& name) const {
   const auto below = source_.declared_anywhere.find(name);
   if (below == source_.declared_anywhere.end()) {
     for (const auto& [other, entry] : e_.names_)
-      if (entry.included && other.ends_with("_" + name))
-        return "did you mean " + quote(other) + ", from the include?";
+      if (entry.included && other.ends_with("_" + name)) return "did you mean " + quote(other) + ", from the include?";
     return {};
   }
-  return quote(name) + " is declared only in line " +
-         std::to_string(source_.file->line(below->second.begin)) + "; move that up";
+  return quote(name) + " is declared only in line " + std::to_string(source_.file->line(below->second.begin)) +
+         "; move that up";
 }
 
 }  // namespace cdot::derive

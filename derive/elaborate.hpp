@@ -95,8 +95,7 @@ class Elaborator {
 
   Value evaluate(Source& source, const Ast& ast);
   // In the spec: at that place; in an include: at the statement that includes it.
-  void error(Source& source, Span where, std::string message, std::string fix = {},
-             std::vector<Span> also = {});
+  void error(Source& source, Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
   Span in_spec(const Source& source, Span where) const { return source.include.value_or(where); }
 
   const Library& library_;

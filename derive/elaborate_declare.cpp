@@ -18,9 +18,8 @@ ParameterKind kind_of(const std::string& word) {
 
 bool is_reserved(const std::string& name) {
   static const std::array<std::string_view, 22> words = {
-      "joint", "planar", "spatial", "source", "include", "as",       "on",         "world",
-      "point", "vector", "unit",    "frame",  "scalar",  "velocity", "coordinate", "let",
-      "C",     "Cdot",   "J",       "K",      "lambda",  "keep"};
+      "joint", "planar", "spatial",  "source",     "include", "as", "on",   "world", "point", "vector", "unit",
+      "frame", "scalar", "velocity", "coordinate", "let",     "C",  "Cdot", "J",     "K",     "lambda", "keep"};
   return std::find(words.begin(), words.end(), name) != words.end();
 }
 
@@ -107,15 +106,12 @@ bool Elaborator::default_fits(Source& source, const DeclaredAst& d, Value& given
   }
   if (d.kind == "frame" && is(Type::frame)) given.type = Type::vector;
   if (given.zero && d.kind == "vector") given = vector(zero_vector(*pool_), {});
-  const Type wanted = d.kind == "point"    ? Type::point
-                      : d.kind == "scalar" ? Type::scalar
-                                           : Type::vector;
+  const Type wanted = d.kind == "point" ? Type::point : d.kind == "scalar" ? Type::scalar : Type::vector;
   if (!is(wanted)) {
-    source.diagnostics.error(
-        d.value->where,
-        "the default of the " + d.kind + " " + quote(d.name.text) + " must be " +
-            std::string(in_words(wanted)) + ", here is " + std::string(in_words(given.type)),
-        wanted == Type::point && is(Type::vector) ? "add it to a point, such as x(a) + ..." : "");
+    source.diagnostics.error(d.value->where,
+                             "the default of the " + d.kind + " " + quote(d.name.text) + " must be " +
+                                 std::string(in_words(wanted)) + ", here is " + std::string(in_words(given.type)),
+                             wanted == Type::point && is(Type::vector) ? "add it to a point, such as x(a) + ..." : "");
     return false;
   }
   if (!given.along.empty()) {
@@ -125,8 +121,7 @@ bool Elaborator::default_fits(Source& source, const DeclaredAst& d, Value& given
   }
   if (d.kind != "unit" && d.kind != "frame") return true;
   if (given.unit && *given.unit != Unit{}) {
-    source.diagnostics.error(d.value->where,
-                             "a direction has no unit, here is one in " + spoken(*given.unit),
+    source.diagnostics.error(d.value->where, "a direction has no unit, here is one in " + spoken(*given.unit),
                              "write unit(...)");
     return false;
   }
@@ -134,34 +129,28 @@ bool Elaborator::default_fits(Source& source, const DeclaredAst& d, Value& given
   return true;
 }
 
-bool Elaborator::resolve_unit(Source& source, const DeclaredAst& d, const Value& given,
-                              Parameter& p) {
+bool Elaborator::resolve_unit(Source& source, const DeclaredAst& d, const Value& given, Parameter& p) {
   if (d.unit && (d.kind == "unit" || d.kind == "frame" || d.unit->degrees != 0)) {
-    source.diagnostics.error(d.unit->where,
-                             d.unit->degrees != 0
-                                 ? "quantities are kept in radians"
-                                 : "a " + d.kind + " is a direction, without a unit",
-                             d.unit->degrees != 0 ? "write [rad]; a default may be 90 [deg]"
-                                                  : "remove the unit, or declare a vector");
+    source.diagnostics.error(
+        d.unit->where,
+        d.unit->degrees != 0 ? "quantities are kept in radians" : "a " + d.kind + " is a direction, without a unit",
+        d.unit->degrees != 0 ? "write [rad]; a default may be 90 [deg]" : "remove the unit, or declare a vector");
     return false;
   }
   const Unit metre{.m = 1};
-  if (d.kind == "point")
-    p.unit = metre;
-  else if (d.unit)
-    p.unit = d.unit->unit;
-  else if (given.unit && d.value)
-    p.unit = *given.unit;
+  if (d.kind == "point") p.unit = metre;
+  else if (d.unit) p.unit = d.unit->unit;
+  else if (given.unit && d.value) p.unit = *given.unit;
   if (d.kind == "point" && d.unit && d.unit->unit != metre) {
     source.diagnostics.error(d.unit->where, "a point is in metres", "remove the unit");
     return false;
   }
   if (d.value && !same_unit(scalar(Expr(), p.unit), given)) {
-    source.diagnostics.error(d.value->where,
-                             "the default of " + quote(d.name.text) + " is in " +
-                                 spoken(*given.unit) + ", not in " + spoken(p.unit),
-                             given.unit == Unit{} ? "give the number its unit, as in 2 [m]" : "",
-                             d.unit ? std::vector<Span>{d.unit->where} : std::vector<Span>{});
+    source.diagnostics.error(
+        d.value->where,
+        "the default of " + quote(d.name.text) + " is in " + spoken(*given.unit) + ", not in " + spoken(p.unit),
+        given.unit == Unit{} ? "give the number its unit, as in 2 [m]" : "",
+        d.unit ? std::vector<Span>{d.unit->where} : std::vector<Span>{});
     return false;
   }
   return true;
@@ -189,10 +178,9 @@ bool Elaborator::symbol_is_free(Source& source, const DeclaredAst& d, const std:
   if (!pool_->find(symbol) && !is_symbol_of_tool(symbol) && !(arm && names_.contains(symbol))) return true;
   const auto other = names_.find(symbol);
   error(source, d.name.where,
-        "the " + d.kind + " " + quote(d.name.text) + " needs the name " + quote(symbol) +
-            (arm ? " for its arm" : "") + ", which is taken",
-        "choose another name",
-        other != names_.end() ? std::vector<Span>{other->second.where} : std::vector<Span>{});
+        "the " + d.kind + " " + quote(d.name.text) + " needs the name " + quote(symbol) + (arm ? " for its arm" : "") +
+            ", which is taken",
+        "choose another name", other != names_.end() ? std::vector<Span>{other->second.where} : std::vector<Span>{});
   return false;
 }
 
@@ -247,14 +235,12 @@ void Elaborator::let(Source& source, const DeclaredAst& d) {
   const std::string full = source.prefix + d.name.text;
   Value value = d.value && !d.broken ? evaluate(source, *d.value) : Value{};
   if (value.type == Type::body || value.type == Type::frame) {
-    source.diagnostics.error(d.value->where,
-                             std::string(in_words(value.type)) + " needs no second name",
+    source.diagnostics.error(d.value->where, std::string(in_words(value.type)) + " needs no second name",
                              "use " + quote(d.value->text) + " itself");
     value = {};
   }
-  if (const auto known = names_.find(full); source.include && known != names_.end() &&
-                                            known->second.kind == "let" &&
-                                            known->second.value.e == value.e)
+  if (const auto known = names_.find(full);
+      source.include && known != names_.end() && known->second.kind == "let" && known->second.value.e == value.e)
     return;
   if (!name_is_free(source, d.name, full)) return;
   value.zero = false;
@@ -289,20 +275,17 @@ bool Elaborator::name_is_free(Source& source, const Word& word, const std::strin
     if (o.where != Operator::Where::hand)
       return say(" is the operator " + std::string(o.signature), "choose another name");
   }
-  if (is_word_of_cpp(full))
-    return say(" is a word of C++, in which kernels are written", "choose another name");
+  if (is_word_of_cpp(full)) return say(" is a word of C++, in which kernels are written", "choose another name");
   if (const std::string vector = vector_of_component(full); !vector.empty())
     return say(" is the name of a component of " + quote(vector), "choose another name");
   if (is_symbol_of_tool(full)) return say(" is a name that the tool needs", "choose another name");
   const auto known = names_.find(full);
   if (known == names_.end()) return true;
-  const std::string fix =
-      source.include ? "include it under a prefix: include ... as left" : "choose another name";
+  const std::string fix = source.include ? "include it under a prefix: include ... as left" : "choose another name";
   error(source, word.where,
-        known->second.kind == "arm" ? quote(full) + " is already the arm of a point"
-        : source.include || known->second.included
-            ? quote(full) + " means something else in what is included"
-            : quote(full) + " is declared twice",
+        known->second.kind == "arm"                ? quote(full) + " is already the arm of a point"
+        : source.include || known->second.included ? quote(full) + " means something else in what is included"
+                                                   : quote(full) + " is declared twice",
         fix, {known->second.where});
   return false;
 }
@@ -324,17 +307,14 @@ std::string Elaborator::vector_of_component(const std::string& name) const {
   return {};
 }
 
-void Elaborator::enter(Source& source, const std::string& full, std::string kind, Value value,
-                       Span where) {
+void Elaborator::enter(Source& source, const std::string& full, std::string kind, Value value, Span where) {
   if (value.type == Type::vector || value.type == Type::point || value.type == Type::frame)
     for (const char* component : {"_x", "_y", "_z"})
       if (const auto taken = names_.find(full + component); is_component(component) && taken != names_.end())
         error(source, where,
-              "a component of " + quote(full) + " is called " + quote(full + component) +
-                  ", which is another name",
+              "a component of " + quote(full) + " is called " + quote(full + component) + ", which is another name",
               "choose another name", {taken->second.where});
-  names_[full] = {std::move(value), std::move(kind), in_spec(source, where),
-                  source.include.has_value(), false};
+  names_[full] = {std::move(value), std::move(kind), in_spec(source, where), source.include.has_value(), false};
 }
 
 }  // namespace cdot::derive

@@ -12,8 +12,8 @@ using Kind = HandItemAst::Kind;
 
 class EntryElaborator {
  public:
-  EntryElaborator(const HandEntryAst& ast, const HandFile& file, const ReadResult& read,
-                  const GeneratedRows& generated, Diagnostics& diagnostics)
+  EntryElaborator(const HandEntryAst& ast, const HandFile& file, const ReadResult& read, const GeneratedRows& generated,
+                  Diagnostics& diagnostics)
       : ast_(ast),
         file_(file),
         joint_(*read.joint),
@@ -84,23 +84,15 @@ class EntryElaborator {
 
 void EntryElaborator::elaborate(const HandItemAst& item) {
   switch (item.kind) {
-    case Kind::assume:
-      return assume(item);
-    case Kind::let:
-      return let(item);
-    case Kind::free:
-      return free(item);
-    case Kind::rows:
-      return rows(item);
+    case Kind::assume: return assume(item);
+    case Kind::let: return let(item);
+    case Kind::free: return free(item);
+    case Kind::rows: return rows(item);
     case Kind::quantity:
-    case Kind::lambda:
-      return quantity(item);
-    case Kind::update:
-      return update(item);
-    case Kind::bound:
-      return bound(item);
-    case Kind::claim:
-      return claim(item);
+    case Kind::lambda: return quantity(item);
+    case Kind::update: return update(item);
+    case Kind::bound: return bound(item);
+    case Kind::claim: return claim(item);
   }
 }
 
@@ -202,16 +194,12 @@ void EntryElaborator::assume(const HandItemAst& item) {
   a.text = item.text;
   if (!item.body.text.empty()) {
     const bool known_body = item.body.text == "world" || names_.body(item.body.text) >= 0;
-    if (!known_body)
-      diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
-    const auto parameter =
-        std::find_if(joint_.parameters.begin(), joint_.parameters.end(),
-                     [&](const Parameter& p) { return p.name == item.word.text; });
-    const bool placed =
-        parameter != joint_.parameters.end() && parameter->kind != ParameterKind::scalar;
+    if (!known_body) diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
+    const auto parameter = std::find_if(joint_.parameters.begin(), joint_.parameters.end(),
+                                        [&](const Parameter& p) { return p.name == item.word.text; });
+    const bool placed = parameter != joint_.parameters.end() && parameter->kind != ParameterKind::scalar;
     if (!item.flag && !placed)
-      diagnostics_.error(item.word.where,
-                         "the spec has no point or direction " + quote(item.word.text),
+      diagnostics_.error(item.word.where, "the spec has no point or direction " + quote(item.word.text),
                          "only the spec's parameters can be fixed elsewhere");
     return entry_.assumptions.push_back(std::move(a));
   }
@@ -253,18 +241,15 @@ void EntryElaborator::update(const HandItemAst& item) {
                : item.word.text == "x" ? HandItem::Target::position
                                        : HandItem::Target::angle;
   out.body = names_.body(item.body.text);
-  if (out.body < 0)
-    return diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
+  if (out.body < 0) return diagnostics_.error(item.body.where, "the joint has no body " + quote(item.body.text));
   const std::size_t before = findings();
   const Value v = evaluate(item.right);
   store(v, out.value, out.expression);
   const bool linear = item.word.text == "v" || item.word.text == "x";
   const int rows = linear || pool_.dimension() == 3 ? pool_.dimension() : 1;
-  if (v.type == Type::poison)
-    out.problem = problem(item.right, before);
+  if (v.type == Type::poison) out.problem = problem(item.right, before);
   else if (out.value->rows != rows || out.value->columns != 1) {
-    out.problem =
-        std::string(in_words(v.type)) + " is added to " + (rows > 1 ? "a vector" : "a number");
+    out.problem = std::string(in_words(v.type)) + " is added to " + (rows > 1 ? "a vector" : "a number");
     out.value.reset();
   }
   if (item.flag && out.value) {
@@ -286,8 +271,7 @@ void EntryElaborator::claim(const HandItemAst& item) {
   const std::size_t before = findings();
   const Value left = evaluate(item.left, J), right = evaluate(item.right, J);
   if (!same_unit(left, right, true))
-    findings_.warning(item.right.where,
-                      "equates " + spoken(*left.unit) + " and " + spoken(*right.unit), "",
+    findings_.warning(item.right.where, "equates " + spoken(*left.unit) + " and " + spoken(*right.unit), "",
                       {item.left.where});
   store(left, out.value, out.expression);
   store(right, out.right, out.right_expression);

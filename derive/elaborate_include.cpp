@@ -39,8 +39,7 @@ bool Elaborator::includable(Source& source, const IncludeAst& item) {
   if (std::find(way.begin(), way.end(), name) != way.end()) {
     std::string circle;
     for (const std::string& step : way) circle += step + " includes ";
-    error(source, item.joint.where, "includes go in a circle: " + circle + name,
-          "remove one of them");
+    error(source, item.joint.where, "includes go in a circle: " + circle + name, "remove one of them");
     return false;
   }
   if (++include_count_ > most_includes) {
@@ -53,8 +52,7 @@ bool Elaborator::includable(Source& source, const IncludeAst& item) {
   for (const auto& [other, file] : library_) known.push_back(other);
   const std::string near = nearest(name, known);
   d.error(item.joint.where, "there is no joint " + quote(name) + " to include",
-          near.empty() ? "put " + name + ".joint beside this file"
-                       : "did you mean " + quote(near) + "?");
+          near.empty() ? "put " + name + ".joint beside this file" : "did you mean " + quote(near) + "?");
   return false;
 }
 
@@ -62,8 +60,7 @@ bool Elaborator::same_space(Source& source, const IncludeAst& item, const Source
   const std::string here = name_of_space(joint_.dimension);
   if (inner.ast.dimension == here) return true;
   error(source, item.joint.where,
-        "a " + here + " joint cannot include the " + inner.ast.dimension + " joint " +
-            quote(item.joint.text),
+        "a " + here + " joint cannot include the " + inner.ast.dimension + " joint " + quote(item.joint.text),
         "include a " + here + " one");
   return false;
 }
@@ -77,8 +74,7 @@ bool Elaborator::map_bodies(Source& source, const IncludeAst& item, Source& inne
   for (const Word& word : item.bodies) {
     const int body = names.body(word.text);
     if (body < 0) {
-      source.diagnostics.error(word.where, "there is no body " + quote(word.text),
-                               "bodies are a, b, c, ... up to h");
+      source.diagnostics.error(word.where, "there is no body " + quote(word.text), "bodies are a, b, c, ... up to h");
       return false;
     }
     names.use_body(body, word.where);
@@ -96,10 +92,8 @@ void Elaborator::give_parameters(Source& source, const IncludeAst& item, Source&
     const bool one = d.value->kind == Ast::Kind::name || d.value->kind == Ast::Kind::call ||
                      d.value->kind == Ast::Kind::member || d.value->kind == Ast::Kind::number;
     if (!one) text = "(" + text + ")";
-    const bool is_new =
-        inner.given.emplace(d.name.text, Given{evaluate(source, *d.value), text}).second;
-    if (!is_new)
-      source.diagnostics.error(d.name.where, quote(d.name.text) + " is given twice", "remove one");
+    const bool is_new = inner.given.emplace(d.name.text, Given{evaluate(source, *d.value), text}).second;
+    if (!is_new) source.diagnostics.error(d.name.where, quote(d.name.text) + " is given twice", "remove one");
   }
 }
 
@@ -111,9 +105,8 @@ void Elaborator::check_given(Source& source, const IncludeAst& item, const Sourc
     const auto given = inner.given.find(d.name.text);
     if (given == inner.given.end() || given->second.taken) continue;
     const std::string near = nearest(d.name.text, parameters);
-    source.diagnostics.error(
-        d.name.where, quote(item.joint.text) + " declares no parameter " + quote(d.name.text),
-        near.empty() ? "" : "did you mean " + quote(near) + "?");
+    source.diagnostics.error(d.name.where, quote(item.joint.text) + " declares no parameter " + quote(d.name.text),
+                             near.empty() ? "" : "did you mean " + quote(near) + "?");
   }
 }
 
@@ -134,23 +127,18 @@ bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
                                            : Type::vector;
   const bool arm = wanted == Type::point && value.anchored;
   if (value.type != wanted || (wanted == Type::point && !arm) || !value.along.empty()) {
-    error(
-        source, d.name.where,
-        "the " + d.kind + " " + quote(d.name.text) + " cannot be " + found->second.text,
-        wanted == Type::point ? "give a declared point" : "give " + std::string(in_words(wanted)));
+    error(source, d.name.where, "the " + d.kind + " " + quote(d.name.text) + " cannot be " + found->second.text,
+          wanted == Type::point ? "give a declared point" : "give " + std::string(in_words(wanted)));
     return true;
   }
   if (d.unit && !same_unit(scalar(Expr(), d.unit->unit), value)) {
     error(source, d.name.where,
-          quote(d.name.text) + " is in " + spoken(d.unit->unit) + ", what is given for it in " +
-              spoken(*value.unit));
+          quote(d.name.text) + " is in " + spoken(d.unit->unit) + ", what is given for it in " + spoken(*value.unit));
     return true;
   }
   if (d.kind == "unit" && !value.e->unit_length) value.e = unit(value.e);
   const std::string full = source.prefix + d.name.text;
-  if (arm)
-    enter(source, arm_name(source.prefix, d.name.text), "arm", vector(value.arm, value.unit),
-          d.name.where);
+  if (arm) enter(source, arm_name(source.prefix, d.name.text), "arm", vector(value.arm, value.unit), d.name.where);
   if (name_is_free(source, d.name, full)) enter(source, full, d.kind, value, d.name.where);
   return true;
 }
@@ -158,15 +146,14 @@ bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
 // Mistakes inside the included file are told once, with their place.
 void Elaborator::report_included(Source& source, const IncludeAst& item, const Source& inner) {
   const auto& list = inner.diagnostics.list;
-  const auto first = std::find_if(
-      list.begin(), list.end(), [](const Diagnostic& d) { return d.severity == Severity::error; });
+  const auto first =
+      std::find_if(list.begin(), list.end(), [](const Diagnostic& d) { return d.severity == Severity::error; });
   if (first == list.end() || inner.clashed) return;
   const SourceFile& file = *inner.file;
   const int at = first->where.begin;
   source.diagnostics.error(item.joint.where,
-                           "the included joint has a mistake: " + file.path + ":" +
-                               std::to_string(file.line(at)) + ":" +
-                               std::to_string(file.column(at)) + ": " + first->message,
+                           "the included joint has a mistake: " + file.path + ":" + std::to_string(file.line(at)) +
+                               ":" + std::to_string(file.column(at)) + ": " + first->message,
                            first->fix);
 }
 

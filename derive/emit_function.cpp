@@ -34,18 +34,17 @@ const std::map<std::string, Signature>& signatures() {
 
 // Declarations with a place for the name, which is left out where the argument is not read.
 const std::map<std::string, std::string>& declarations() {
-  static const std::map<std::string, std::string> table = {
-      {"q", "const Pose<T> (&{})[BODIES]"},
-      {"v", "const Velocity<T> (&{})[BODIES]"},
-      {"m", "const InverseMass<T> (&{})[BODIES]"},
-      {"p", "const Parameters<T>& {}"},
-      {"time", "T {}"},
-      {"J", "const Jacobian<T>& {}"},
-      {"K", "const T (&{})[TRIANGLE]"},
-      {"F", "const T (&{})[TRIANGLE]"},
-      {"rhs", "const T (&{})[ROWS]"},
-      {"lambda", "const T (&{})[ROWS]"},
-      {"index", "int {}"}};
+  static const std::map<std::string, std::string> table = {{"q", "const Pose<T> (&{})[BODIES]"},
+                                                           {"v", "const Velocity<T> (&{})[BODIES]"},
+                                                           {"m", "const InverseMass<T> (&{})[BODIES]"},
+                                                           {"p", "const Parameters<T>& {}"},
+                                                           {"time", "T {}"},
+                                                           {"J", "const Jacobian<T>& {}"},
+                                                           {"K", "const T (&{})[TRIANGLE]"},
+                                                           {"F", "const T (&{})[TRIANGLE]"},
+                                                           {"rhs", "const T (&{})[ROWS]"},
+                                                           {"lambda", "const T (&{})[ROWS]"},
+                                                           {"index", "int {}"}};
   return table;
 }
 
@@ -65,8 +64,7 @@ bool mentions(const std::set<std::string>& read, const std::string& name) {
 std::string indent(int depth) { return std::string(2 * static_cast<std::size_t>(depth), ' '); }
 
 void append(std::vector<std::string>& lines, std::vector<std::string> more) {
-  lines.insert(lines.end(), std::make_move_iterator(more.begin()),
-               std::make_move_iterator(more.end()));
+  lines.insert(lines.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
 // Functions of <cmath>, brought in by name so that a pack's own are found as well.
@@ -79,10 +77,8 @@ std::set<std::string> mathematical_functions(const Program& program) {
       case Fn::sign:
       case Fn::inverse:
       case Fn::select:
-      case Fn::pivot:
-        break;  // of the contract
-      default:
-        functions.insert(std::string(name_of(op.fn)));
+      case Fn::pivot: break;  // of the contract
+      default: functions.insert(std::string(name_of(op.fn)));
     }
   }
   return functions;
@@ -110,11 +106,10 @@ FunctionWriter::FunctionWriter(const Joint& joint)
   for (const BodyPart& part : parts_) printing_.reserved.insert(part.name);
   for (const auto& [name, declaration] : declarations()) printing_.reserved.insert(name);
   for (const char* name :
-       {"C",       "D",      "H",      "Jv",     "g",    "C_t",   "T",    "abs",
-        "sign",    "select", "smallest", "sqrt",   "sin",    "cos",  "tan",   "exp",  "log",
-        "atan2",   "pivot",  "rows",   "bodies", "int",  "float", "auto", "double",
-        "inverse", "const",  "static", "struct", "name", "title", "and",  "or",
-        "not",     "new",    "this",   "for",    "if",   "do",    "else", "long"}) {
+       {"C",     "D",    "H",      "Jv",      "g",     "C_t",    "T",      "abs",   "sign",  "select", "smallest",
+        "sqrt",  "sin",  "cos",    "tan",     "exp",   "log",    "atan2",  "pivot", "rows",  "bodies", "int",
+        "float", "auto", "double", "inverse", "const", "static", "struct", "name",  "title", "and",    "or",
+        "not",   "new",  "this",   "for",     "if",    "do",     "else",   "long"}) {
     printing_.reserved.insert(name);
   }
 }
@@ -141,14 +136,13 @@ void FunctionWriter::name_inputs_of_body(const Joint& joint, std::size_t b) {
 }
 
 bool FunctionWriter::reads(const std::set<std::string>& read, const std::string& argument) const {
-  return mentions(read, argument) ||
-         std::any_of(parts_.begin(), parts_.end(), [&](const BodyPart& part) {
+  return mentions(read, argument) || std::any_of(parts_.begin(), parts_.end(), [&](const BodyPart& part) {
            return part.argument == argument && mentions(read, part.name);
          });
 }
 
-std::string FunctionWriter::arguments(const std::vector<std::string>& names,
-                                      const std::set<std::string>& read, std::size_t rows) const {
+std::string FunctionWriter::arguments(const std::vector<std::string>& names, const std::set<std::string>& read,
+                                      std::size_t rows) const {
   std::string list;
   for (const std::string& name : names) {
     std::string declaration = declarations().at(name);
@@ -171,8 +165,7 @@ std::string FunctionWriter::sized(std::string declaration, std::size_t rows) con
   return replaced(declaration, "[ROWS]", fmt::format("[{}]", rows));
 }
 
-std::vector<std::string> FunctionWriter::body(const Program& program, const BodyOptions& options,
-                                              int depth) const {
+std::vector<std::string> FunctionWriter::body(const Program& program, const BodyOptions& options, int depth) const {
   std::vector<std::string> lines;
   for (const std::string& f : mathematical_functions(program)) {
     lines.push_back(indent(depth) + "using std::" + f + ";");
@@ -183,8 +176,8 @@ std::vector<std::string> FunctionWriter::body(const Program& program, const Body
     // `apply` reads the velocities that it overwrites: by value.
     const char* reference = options.in_place && part.argument == "v" ? "" : "&";
     const std::string mass = options.isotropic && part.argument == "m" ? "Isotropic" : "";
-    lines.push_back(fmt::format("{}const {}{}{} {} = {}[{}];", indent(depth), mass, part.type,
-                                reference, part.name, part.argument, part.body));
+    lines.push_back(fmt::format("{}const {}{}{} {} = {}[{}];", indent(depth), mass, part.type, reference, part.name,
+                                part.argument, part.body));
   }
   Printing printing = printing_;
   printing.indent = indent(depth);
@@ -193,21 +186,18 @@ std::vector<std::string> FunctionWriter::body(const Program& program, const Body
   return lines;
 }
 
-std::vector<std::string> FunctionWriter::function(const KernelFunction& f, std::size_t rows,
-                                                  int depth) const {
+std::vector<std::string> FunctionWriter::function(const KernelFunction& f, std::size_t rows, int depth) const {
   const std::string& name = f.name;
   const Program& program = f.program;
   const Signature& signature = signatures().at(name);
   std::string list = arguments(signature.inputs, inputs_read(program, printing_), rows);
   if (f.isotropic) list = replaced(list, "const InverseMass<T>", "const IsotropicInverseMass<T>");
   std::string output = sized(signature.output, rows);
-  const bool writes_jacobian =
-      std::any_of(program.outputs.begin(), program.outputs.end(),
-                  [](const Output& o) { return o.name.starts_with("J."); });
+  const bool writes_jacobian = std::any_of(program.outputs.begin(), program.outputs.end(),
+                                           [](const Output& o) { return o.name.starts_with("J."); });
   if (!writes_jacobian) output = replaced(output, "Jacobian<T>& J", "Jacobian<T>&");
   std::vector<std::string> lines = {indent(depth) + "template <class T>"};
-  append(lines,
-         wrapped(fmt::format("{}static void {}({}, {}) {{", indent(depth), name, list, output)));
+  append(lines, wrapped(fmt::format("{}static void {}({}, {}) {{", indent(depth), name, list, output)));
   const bool zeroed = is_cleared(name);
   if (zeroed) {
     const char* matrix = name == "stiffness" ? "H" : "D";

@@ -37,8 +37,7 @@ class FunctionWriter {
     bool isotropic = false;  // inertias are numbers
   };
   void name_inputs_of_body(const Joint& joint, std::size_t b);
-  std::vector<std::string> body(const Program& program, const BodyOptions& options,
-                                int depth) const;
+  std::vector<std::string> body(const Program& program, const BodyOptions& options, int depth) const;
   std::string arguments(const std::vector<std::string>& names, const std::set<std::string>& read,
                         std::size_t rows) const;
   std::string sized(std::string declaration, std::size_t rows) const;

@@ -11,14 +11,11 @@ namespace {
 constexpr int largest_power = 64;
 constexpr int largest_total_power = 1000;  // of a factor, after products have been joined
 
-bool is_literal_zero(const Ast& ast) {
-  return ast.kind == Ast::Kind::number && ast.value.is_zero() && !ast.unit;
-}
+bool is_literal_zero(const Ast& ast) { return ast.kind == Ast::Kind::number && ast.value.is_zero() && !ast.unit; }
 
 bool powers_too_large(Expr e) {
   return e->kind == Kind::product &&
-         std::any_of(e->exponents.begin(), e->exponents.end(),
-                     [](int n) { return std::abs(n) > largest_total_power; });
+         std::any_of(e->exponents.begin(), e->exponents.end(), [](int n) { return std::abs(n) > largest_total_power; });
 }
 
 // Lengths or masses went in and cancelled: an arc over its radius counts as an angle where one is
@@ -37,8 +34,7 @@ std::string fix_of_units(const Value& a, const Value& b) {
   };
   if (are(length, angle)) return "an arc is radius times angle: multiply the angle by a radius";
   if (are(number, angle)) return "give the number its unit, as in 1.5 [rad] or 90 [deg]";
-  if (are(number, length))
-    return "give the number its unit, as in 2 [m], or the parameter, as in vector d [m] on a";
+  if (are(number, length)) return "give the number its unit, as in 2 [m], or the parameter, as in vector d [m] on a";
   if (are(length, {.m = 2})) return "take the root of one side, or square the other";
   return "only quantities with the same unit can be added or compared";
 }
@@ -50,12 +46,9 @@ Value Evaluator::error(Span where, std::string message, std::string fix, std::ve
   return {};
 }
 
-void Evaluator::unit_error(Span where, std::string message, std::string fix,
-                           std::vector<Span> also) {
-  if (hand_)
-    findings_.warning(where, std::move(message), std::move(fix), std::move(also));
-  else
-    diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
+void Evaluator::unit_error(Span where, std::string message, std::string fix, std::vector<Span> also) {
+  if (hand_) findings_.warning(where, std::move(message), std::move(fix), std::move(also));
+  else diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
 }
 
 Value Evaluator::operator()(const Ast& ast) {
@@ -69,32 +62,21 @@ Value Evaluator::operator()(const Ast& ast) {
 
 Value Evaluator::evaluate(const Ast& ast) {
   switch (ast.kind) {
-    case Ast::Kind::broken:
-      return {};
-    case Ast::Kind::number:
-      return number(ast);
-    case Ast::Kind::name:
-      return name(ast);
-    case Ast::Kind::call:
-      return call(ast);
-    case Ast::Kind::sum:
-      return sum(ast);
-    case Ast::Kind::product:
-      return product(ast);
-    case Ast::Kind::power:
-      return power(ast);
-    case Ast::Kind::member:
-      return member(ast);
-    case Ast::Kind::transpose:
-      return transpose(ast);
-    case Ast::Kind::matrix:
-      return matrix(ast);
+    case Ast::Kind::broken: return {};
+    case Ast::Kind::number: return number(ast);
+    case Ast::Kind::name: return name(ast);
+    case Ast::Kind::call: return call(ast);
+    case Ast::Kind::sum: return sum(ast);
+    case Ast::Kind::product: return product(ast);
+    case Ast::Kind::power: return power(ast);
+    case Ast::Kind::member: return member(ast);
+    case Ast::Kind::transpose: return transpose(ast);
+    case Ast::Kind::matrix: return matrix(ast);
     case Ast::Kind::negate: {
       const Value v = plain(ast.args[0], "has no negative");
       if (v.type == Type::poison) return v;
       if (v.type == Type::point)
-        return error(ast.where, "a point has no negative",
-                     "a difference of points is a vector: pa - pb");
+        return error(ast.where, "a point has no negative", "a difference of points is a vector: pa - pb");
       return add({v}, "-", {ast.args[0].where});
     }
   }
@@ -137,8 +119,7 @@ Value Evaluator::unknown(const Ast& ast, bool called) {
     fix = called ? "`cdot check --help` lists the operators"
                  : "declare it with point, vector, unit, frame, scalar or let";
   const Span where = {ast.where.begin, ast.where.begin + static_cast<int>(ast.text.size())};
-  diagnostics_.error(where, (called ? "there is no operator " : "there is no ") + quote(ast.text),
-                     fix);
+  diagnostics_.error(where, (called ? "there is no operator " : "there is no ") + quote(ast.text), fix);
   return {};
 }
 
@@ -147,14 +128,12 @@ Value Evaluator::plain(const Ast& ast, std::string_view use) {
   Value v = (*this)(ast);
   if (hand_ && v.type == Type::point) v = vector(v.e, v.unit);
   if (v.type == Type::body && v.body >= 0)
-    return error(
-        ast.where, "a body " + std::string(use),
-        "write x(" + ast.text + ") for its centre of mass, angle(" + ast.text + ") for its angle");
+    return error(ast.where, "a body " + std::string(use),
+                 "write x(" + ast.text + ") for its centre of mass, angle(" + ast.text + ") for its angle");
   if (v.type == Type::body)
     return error(ast.where, "the world " + std::string(use), "its axes are world.x and world.y");
   if (v.type == Type::frame)
-    return error(ast.where, "a frame " + std::string(use),
-                 "its axes are " + ast.text + ".x and " + ast.text + ".y");
+    return error(ast.where, "a frame " + std::string(use), "its axes are " + ast.text + ".x and " + ast.text + ".y");
   return v;
 }
 
@@ -171,8 +150,8 @@ Value Evaluator::sum(const Ast& ast) {
   return add(terms, ast.ops, parts);
 }
 
-Value Evaluator::add(const std::vector<Value>& terms, const std::string& signs,
-                     const std::vector<Span>& parts, std::string_view relation) {
+Value Evaluator::add(const std::vector<Value>& terms, const std::string& signs, const std::vector<Span>& parts,
+                     std::string_view relation) {
   const auto is_matrix = [](const Value& v) { return v.type == Type::matrix; };
   if (std::any_of(terms.begin(), terms.end(), is_matrix)) return matrix_sum(terms, signs, parts);
   Value total;
@@ -185,9 +164,9 @@ Value Evaluator::add(const std::vector<Value>& terms, const std::string& signs,
     if (!terms[known].unit) known = i;
     if (!same_unit(terms[known], next, hand_)) {
       const std::string a = spoken(*terms[known].unit), b = spoken(*next.unit);
-      const std::string what = relation.empty() ? signs[i] == '-' ? "subtracts " + b + " from " + a
-                                                                  : "adds " + b + " to " + a
-                                                : std::string(relation) + a + " and " + b;
+      const std::string what = relation.empty()
+                                   ? signs[i] == '-' ? "subtracts " + b + " from " + a : "adds " + b + " to " + a
+                                   : std::string(relation) + a + " and " + b;
       unit_error(parts[i], what, fix_of_units(terms[known], next), {parts[known]});
       if (!hand_) return {};
     }
@@ -195,8 +174,7 @@ Value Evaluator::add(const std::vector<Value>& terms, const std::string& signs,
       total.unit = next.unit;
       total.ratio = next.ratio;
     }
-    if (!next.zero || terms.size() == 1)
-      sums.push_back({Rational(signs[i] == '-' ? -1 : 1), next.e});
+    if (!next.zero || terms.size() == 1) sums.push_back({Rational(signs[i] == '-' ? -1 : 1), next.e});
   }
   total.e = cdot::derive::sum(pool_, sums, total.type != Type::scalar);
   if (terms.size() > 1 || signs[0] == '-') {
@@ -216,8 +194,7 @@ bool Evaluator::add_types(Value& total, const Value& next, char sign, Span part,
     return false;
   }
   if (both(Type::vector, Type::point) && minus) {
-    error(part, "a point cannot be subtracted from a vector",
-          "write point - point, or point - vector", {first});
+    error(part, "a point cannot be subtracted from a vector", "write point - point, or point - vector", {first});
     return false;
   }
   if (next.type == Type::point && total.type != Type::scalar)
@@ -229,11 +206,9 @@ bool Evaluator::add_types(Value& total, const Value& next, char sign, Span part,
     return true;
   } else if ((total.type == Type::scalar) != (next.type == Type::scalar)) {
     error(part,
-          "a number and " +
-              std::string(in_words(total.type == Type::scalar ? next.type : total.type)) +
+          "a number and " + std::string(in_words(total.type == Type::scalar ? next.type : total.type)) +
               " cannot be added or compared",
-          "take a component of the vector with dot(u, n), u.x or u.y, or its length with norm(u)",
-          {first});
+          "take a component of the vector with dot(u, n), u.x or u.y, or its length with norm(u)", {first});
     return false;
   }
   if (total.type != Type::scalar && next.along != total.along) {
@@ -274,12 +249,10 @@ Value Evaluator::scaled(const std::vector<Value>& factors, const Ast& ast) {
     if (f.type == Type::vector && divide)
       return error(where, "nothing can be divided by a vector", "divide by its length, norm(u)");
     if (f.type == Type::vector && direction)
-      return error(where, "a product of two vectors", "write dot(u, v) or cross(u, v)",
-                   {first_vector});
+      return error(where, "a product of two vectors", "write dot(u, v) or cross(u, v)", {first_vector});
     if (divide && is_zero(f.e)) return error(where, "division by zero");
     if (!f.unit) result.unit.reset();
-    if (f.unit && result.unit)
-      result.unit = divide ? *result.unit / *f.unit : *result.unit * *f.unit;
+    if (f.unit && result.unit) result.unit = divide ? *result.unit / *f.unit : *result.unit * *f.unit;
     if (f.type == Type::vector) {
       direction = &f;
       first_vector = where;
@@ -309,20 +282,17 @@ Value Evaluator::power(const Ast& ast) {
     return error(ast.args[1].where, "an exponent must be a whole number, at most 64",
                  "for a root write sqrt(...), for other powers exp(s * log(...))");
   if (exponent.unit && *exponent.unit != Unit{})
-    return error(ast.args[1].where,
-                 "an exponent is a pure number, not in " + spoken(*exponent.unit));
+    return error(ast.args[1].where, "an exponent is a pure number, not in " + spoken(*exponent.unit));
   const int power = static_cast<int>(n->value.num());
   if (base.type == Type::matrix) return matrix_power(base, power, ast);
   if (base.type != Type::scalar)
     return error(ast.args[0].where, std::string(in_words(base.type)) + " has no powers",
                  "for the square of a vector write dot(u, u)");
-  if (power <= 0 && is_zero(base.e))
-    return error(ast.where, power == 0 ? "0^0 has no value" : "division by zero");
+  if (power <= 0 && is_zero(base.e)) return error(ast.where, power == 0 ? "0^0 has no value" : "division by zero");
   const Expr inner = split_coefficient(base.e).e;
   const bool large = inner->kind == Kind::product && power != 0 &&
-                     std::any_of(inner->exponents.begin(), inner->exponents.end(), [&](int k) {
-                       return std::abs(k) > largest_total_power / std::abs(power);
-                     });
+                     std::any_of(inner->exponents.begin(), inner->exponents.end(),
+                                 [&](int k) { return std::abs(k) > largest_total_power / std::abs(power); });
   if (large) return error(ast.where, "a power beyond 1000", "such a formula cannot be meant");
   Value result = scalar(pow(base.e, power));
   result.ratio = base.ratio;
@@ -341,10 +311,8 @@ Value Evaluator::member(const Ast& ast) {
                                         : "in space the components are .x, .y and .z");
   if (v.type == Type::frame) return vector(v.axes[index]);
   if (v.type == Type::body) {
-    if (v.body < 0)
-      names_.use_world();
-    else
-      names_.use_body(v.body, ast.where);
+    if (v.body < 0) names_.use_world();
+    else names_.use_body(v.body, ast.where);
     return vector(body_axes(pool_, v.body)[index]);
   }
   if (v.type == Type::vector) {
@@ -353,8 +321,7 @@ Value Evaluator::member(const Ast& ast) {
     return result;
   }
   if (v.type == Type::point)
-    return error(ast.where, "a point has no components",
-                 "subtract another point: (pa - pb)." + ast.text);
+    return error(ast.where, "a point has no components", "subtract another point: (pa - pb)." + ast.text);
   return error(ast.where, std::string(in_words(v.type)) + " has no component " + ast.text);
 }
 

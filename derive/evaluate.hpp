@@ -41,8 +41,8 @@ class Evaluator {
 
   // Adds `terms` with `signs` ('+' or '-'); `parts` are the trees they came from. `relation` is
   // what the message says about the last one: "adds", "equates".
-  Value add(const std::vector<Value>& terms, const std::string& signs,
-            const std::vector<Span>& parts, std::string_view relation = {});
+  Value add(const std::vector<Value>& terms, const std::string& signs, const std::vector<Span>& parts,
+            std::string_view relation = {});
 
  private:
   Value evaluate(const Ast& ast);
@@ -71,8 +71,7 @@ class Evaluator {
   Value transpose(const Ast& ast);
   Value matrix(const Ast& ast);
   Value matrix_product(const std::vector<Value>& factors, const Ast& ast);
-  Value matrix_sum(const std::vector<Value>& terms, const std::string& signs,
-                   const std::vector<Span>& parts);
+  Value matrix_sum(const std::vector<Value>& terms, const std::string& signs, const std::vector<Span>& parts);
   Value matrix_power(const Value& base, int exponent, const Ast& ast);
   std::optional<Matrix> multiply(const Value& a, const Value& b, Span where);
 

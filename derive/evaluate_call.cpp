@@ -12,20 +12,13 @@ namespace {
 
 unsigned bit_of(const Value& v, bool hand) {
   switch (v.type) {
-    case Type::scalar:
-      return number_ | (v.zero ? vector_ : 0u);
-    case Type::vector:
-      return vector_;
-    case Type::point:
-      return (v.anchored ? point_ : 0u) | (hand ? vector_ : 0u);
-    case Type::body:
-      return v.body < 0 ? world_ : body_;
-    case Type::frame:
-      return frame_;
-    case Type::matrix:
-      return matrix_;
-    case Type::poison:
-      return 0;
+    case Type::scalar: return number_ | (v.zero ? vector_ : 0u);
+    case Type::vector: return vector_;
+    case Type::point: return (v.anchored ? point_ : 0u) | (hand ? vector_ : 0u);
+    case Type::body: return v.body < 0 ? world_ : body_;
+    case Type::frame: return frame_;
+    case Type::matrix: return matrix_;
+    case Type::poison: return 0;
   }
   return 0;
 }
@@ -73,25 +66,17 @@ std::optional<Unit> unit_given(UnitGiven given, const std::vector<Value>& a) {
       }
       return u;
     }
-    case UnitGiven::same:
-      return a[0].unit;
+    case UnitGiven::same: return a[0].unit;
     case UnitGiven::root:
       if (!a[0].unit) return {};
       return pow(*a[0].unit, Rational(1, 2));
-    case UnitGiven::number:
-      return Unit{};
-    case UnitGiven::radians:
-      return Unit{.rad = 1};
-    case UnitGiven::metres:
-      return Unit{.m = 1};
-    case UnitGiven::speed:
-      return Unit{.m = 1, .s = -1};
-    case UnitGiven::spin:
-      return Unit{.rad = 1, .s = -1};
-    case UnitGiven::mass:
-      return Unit{.kg = 1};
-    case UnitGiven::inertia:
-      return Unit{.m = 2, .kg = 1};
+    case UnitGiven::number: return Unit{};
+    case UnitGiven::radians: return Unit{.rad = 1};
+    case UnitGiven::metres: return Unit{.m = 1};
+    case UnitGiven::speed: return Unit{.m = 1, .s = -1};
+    case UnitGiven::spin: return Unit{.rad = 1, .s = -1};
+    case UnitGiven::mass: return Unit{.kg = 1};
+    case UnitGiven::inertia: return Unit{.m = 2, .kg = 1};
   }
   return {};
 }
@@ -99,9 +84,7 @@ std::optional<Unit> unit_given(UnitGiven given, const std::vector<Value>& a) {
 }  // namespace
 
 // A column of two is a vector to an operator, a matrix of one entry a number.
-Value Evaluator::hand_argument(Value v) {
-  return v.type == Type::matrix ? simplest(*v.matrix, true) : v;
-}
+Value Evaluator::hand_argument(Value v) { return v.type == Type::matrix ? simplest(*v.matrix, true) : v; }
 
 std::vector<const Operator*> Evaluator::operators_here(const std::string& name) const {
   std::vector<const Operator*> here;
@@ -118,8 +101,7 @@ Value Evaluator::elsewhere(const Ast& ast) {
       {"angle", "in space: angle(u, v, n) about an axis, angle(u, v), or twist(f, g)"}};
   const auto fix = instead.find(ast.text);
   return error(ast.where,
-               quote(operators_named(ast.text)[0]->signature) + " is an operator of " +
-                   (plane ? "space" : "the plane"),
+               quote(operators_named(ast.text)[0]->signature) + " is an operator of " + (plane ? "space" : "the plane"),
                fix == instead.end() ? "" : std::string(fix->second));
 }
 
@@ -144,9 +126,8 @@ Value Evaluator::call(const Ast& ast) {
 Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast& ast) {
   const auto candidates = operators_here(ast.text);
   const std::string help = signatures(candidates);
-  const auto right_count =
-      std::find_if(candidates.begin(), candidates.end(),
-                   [&](const Operator* o) { return o->takes.size() == arguments.size(); });
+  const auto right_count = std::find_if(candidates.begin(), candidates.end(),
+                                        [&](const Operator* o) { return o->takes.size() == arguments.size(); });
   if (right_count == candidates.end()) {
     diagnostics_.error(ast.where,
                        quote(ast.text) + " takes " + std::to_string(candidates[0]->takes.size()) +
@@ -154,8 +135,7 @@ Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast&
                                 ? " or " + std::to_string(candidates.back()->takes.size())
                                 : "") +
                            (candidates.back()->takes.size() == 1 ? " argument" : " arguments") +
-                           (arguments.size() == 1 ? ", here is " : ", here are ") +
-                           std::to_string(arguments.size()),
+                           (arguments.size() == 1 ? ", here is " : ", here are ") + std::to_string(arguments.size()),
                        help);
     return {};
   }
@@ -166,14 +146,10 @@ Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast&
     if ((allowed & bit_of(arguments[i], hand_)) != 0) continue;
     const bool subtract = arguments[i].type == Type::point && (allowed & vector_) != 0;
     return error(ast.args[i].where,
-                 quote(ast.text) + " takes " + takes_in_words(allowed) + " here, not " +
-                     given_in_words(arguments[i]),
-                 subtract
-                     ? "a difference of points is a vector: pa - pb; the arm of a point: arm(pa)"
-                     : help);
+                 quote(ast.text) + " takes " + takes_in_words(allowed) + " here, not " + given_in_words(arguments[i]),
+                 subtract ? "a difference of points is a vector: pa - pb; the arm of a point: arm(pa)" : help);
   }
-  return error(ast.where, quote(ast.text) + " is not defined for these arguments",
-               help);
+  return error(ast.where, quote(ast.text) + " is not defined for these arguments", help);
 }
 
 Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, const Ast& ast) {
@@ -192,13 +168,10 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
     return error(ast.args[0].where, "these are components along a frame already");
   std::vector<Value> built = arguments;
   for (std::size_t i = 0; i < built.size(); ++i)
-    if (built[i].zero && (o.takes[i] & number_) == 0)
-      built[i] = vector(zero_vector(pool_), {});
-    else if (built[i].type == Type::point && (o.takes[i] & point_) == 0)
-      built[i] = vector(built[i].e, built[i].unit);
+    if (built[i].zero && (o.takes[i] & number_) == 0) built[i] = vector(zero_vector(pool_), {});
+    else if (built[i].type == Type::point && (o.takes[i] & point_) == 0) built[i] = vector(built[i].e, built[i].unit);
   if (o.name == "arm" && arguments[0].body < 0)
-    return error(ast.args[0].where,
-                 "a point of the world has no arm: the world has no centre of mass",
+    return error(ast.args[0].where, "a point of the world has no arm: the world has no centre of mass",
                  "subtract two points instead");
   const auto rule = unit_of_call(o, built, ast);
   if (!rule) return {};
@@ -213,29 +186,24 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
 
 // The unit that the table's rule gives, as the unit of a Value; empty if the arguments' units are
 // wrong.
-std::optional<Value> Evaluator::unit_of_call(const Operator& o, const std::vector<Value>& a,
-                                             const Ast& ast) {
-  const auto need = [&](std::initializer_list<Unit> allowed, std::string_view what,
-                        std::string fix) {
-    if (!a[0].unit || std::find(allowed.begin(), allowed.end(), *a[0].unit) != allowed.end())
-      return true;
-    unit_error(ast.args[0].where,
-               quote(o.name) + " takes " + std::string(what) + ", not " + spoken(*a[0].unit),
+std::optional<Value> Evaluator::unit_of_call(const Operator& o, const std::vector<Value>& a, const Ast& ast) {
+  const auto need = [&](std::initializer_list<Unit> allowed, std::string_view what, std::string fix) {
+    if (!a[0].unit || std::find(allowed.begin(), allowed.end(), *a[0].unit) != allowed.end()) return true;
+    unit_error(ast.args[0].where, quote(o.name) + " takes " + std::string(what) + ", not " + spoken(*a[0].unit),
                std::move(fix));
     return hand_;
   };
   if (o.unit.needs == UnitNeed::angle &&
-      !need({Unit{}, Unit{.rad = 1}}, "an angle",
-            "divide by a quantity of that unit, such as a wavelength"))
+      !need({Unit{}, Unit{.rad = 1}}, "an angle", "divide by a quantity of that unit, such as a wavelength"))
     return {};
   if (o.unit.needs == UnitNeed::number &&
       !need({Unit{}, Unit{.rad = 1}}, "a pure number", "divide by a quantity of that unit"))
     return {};
   if (o.unit.needs == UnitNeed::equal && !same_unit(a[0], a[1], hand_)) {
-    unit_error(ast.args[1].where,
-               quote(o.name) + " takes two quantities of one unit, not " + spoken(*a[0].unit) +
-                   " and " + spoken(*a[1].unit),
-               "", {ast.args[0].where});
+    unit_error(
+        ast.args[1].where,
+        quote(o.name) + " takes two quantities of one unit, not " + spoken(*a[0].unit) + " and " + spoken(*a[1].unit),
+        "", {ast.args[0].where});
     if (!hand_) return {};
   }
   Value v = scalar(Expr(), unit_given(o.unit.gives, a));

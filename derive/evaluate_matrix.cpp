@@ -21,9 +21,7 @@ Matrix sized(const Value& v, int rows, int columns, Pool& pool) {
   return m;
 }
 
-std::string size_in_words(const Matrix& m) {
-  return std::to_string(m.rows) + " x " + std::to_string(m.columns);
-}
+std::string size_in_words(const Matrix& m) { return std::to_string(m.rows) + " x " + std::to_string(m.columns); }
 
 Matrix transposed(const Matrix& m) {
   if (m.any_size()) return m;
@@ -91,8 +89,7 @@ class Blocks {
   Blocks(const std::vector<Value>& blocks, const std::vector<int>& row_lengths,
          const std::vector<int>& expected_columns, int dimension)
       : blocks_(blocks), lengths_(row_lengths), dimension_(dimension) {
-    aligned_ =
-        std::all_of(lengths_.begin(), lengths_.end(), [&](int n) { return n == lengths_[0]; });
+    aligned_ = std::all_of(lengths_.begin(), lengths_.end(), [&](int n) { return n == lengths_[0]; });
     for (std::size_t i = 0, next = 0; i < lengths_.size(); ++i) {
       starts_.push_back(next);
       next += static_cast<std::size_t>(lengths_[i]);
@@ -103,9 +100,7 @@ class Blocks {
 
   std::size_t rows() const { return lengths_.size(); }
   int length(std::size_t row) const { return lengths_[row]; }
-  std::size_t index(std::size_t row, int column) const {
-    return starts_[row] + static_cast<std::size_t>(column);
-  }
+  std::size_t index(std::size_t row, int column) const { return starts_[row] + static_cast<std::size_t>(column); }
   int height(std::size_t row) const { return heights_[row]; }
   // Widths come from the column's blocks, where rows have equally many.
   int width(std::size_t row, int column) const {
@@ -165,11 +160,9 @@ Value Evaluator::transpose(const Ast& ast) {
   return result;
 }
 
-Value Evaluator::matrix_sum(const std::vector<Value>& terms, const std::string& signs,
-                            const std::vector<Span>& parts) {
+Value Evaluator::matrix_sum(const std::vector<Value>& terms, const std::string& signs, const std::vector<Span>& parts) {
   if (const std::optional<Value> sum = sum_in_vectors(terms, signs)) return *sum;
-  const auto first =
-      std::find_if(terms.begin(), terms.end(), [](const Value& v) { return !any_size(v); });
+  const auto first = std::find_if(terms.begin(), terms.end(), [](const Value& v) { return !any_size(v); });
   Matrix total{0, 0, {pool_.number(0)}};
   const bool open = first == terms.end();  // nothing but multiples of E and 0
   if (!open) {
@@ -181,11 +174,10 @@ Value Evaluator::matrix_sum(const std::vector<Value>& terms, const std::string& 
                      : open                ? *terms[i].matrix
                                            : sized(terms[i], total.rows, total.columns, pool_);
     if (m.rows != total.rows || m.columns != total.columns)
-      return error(parts[i], "sizes differ: " + size_in_words(total) + " and " + size_in_words(m),
-                   "", {parts[static_cast<std::size_t>(first - terms.begin())]});
+      return error(parts[i], "sizes differ: " + size_in_words(total) + " and " + size_in_words(m), "",
+                   {parts[static_cast<std::size_t>(first - terms.begin())]});
     for (std::size_t k = 0; k < m.entries.size(); ++k)
-      total.entries[k] =
-          signs[i] == '-' ? total.entries[k] - m.entries[k] : total.entries[k] + m.entries[k];
+      total.entries[k] = signs[i] == '-' ? total.entries[k] - m.entries[k] : total.entries[k] + m.entries[k];
   }
   return open ? of_matrix(std::move(total)) : simplest(std::move(total), false);
 }
@@ -197,8 +189,7 @@ std::optional<Matrix> Evaluator::multiply(const Value& a, const Value& b, Span w
   if (any_size(b)) return scaled_by(as_matrix(a), b.matrix->entries[0]);
   const Matrix l = as_matrix(a), r = as_matrix(b);
   if (l.columns != r.rows || l.rows * r.columns > largest_side * largest_side) {
-    error(where,
-          "matrices of " + size_in_words(l) + " and " + size_in_words(r) + " cannot be multiplied",
+    error(where, "matrices of " + size_in_words(l) + " and " + size_in_words(r) + " cannot be multiplied",
           "columns of the left must be rows of the right; perhaps a transpose ' is missing");
     return {};
   }
@@ -229,8 +220,7 @@ Value Evaluator::matrix_product(const std::vector<Value>& factors, const Ast& as
       total = *product_of_two;
       continue;
     }
-    const bool as_vector =
-        next.type == Type::vector || (total.type == Type::vector && next.type == Type::scalar);
+    const bool as_vector = next.type == Type::vector || (total.type == Type::vector && next.type == Type::scalar);
     const auto product = multiply(total, next, {ast.where.begin, where.end});
     if (!product) return {};
     total = simplest(*product, as_vector);
@@ -272,16 +262,14 @@ Value Evaluator::matrix(const Ast& ast) {
       row.push_back(sized(blocks[k], layout.height(i), layout.width(i, j), pool_));
       if (row.back().rows != layout.height(i) || row.back().columns != layout.width(i, j))
         return error(ast.args[k].where,
-                     "this block is " + size_in_words(row.back()) +
-                         ", its place in the matrix is " + std::to_string(layout.height(i)) +
-                         " x " + std::to_string(layout.width(i, j)),
+                     "this block is " + size_in_words(row.back()) + ", its place in the matrix is " +
+                         std::to_string(layout.height(i)) + " x " + std::to_string(layout.width(i, j)),
                      "perhaps a transpose ' is missing");
       columns += row.back().columns;
     }
     if (i > 0 && columns != m.columns)
       return error(ast.args[layout.index(i, 0)].where,
-                   "this row has " + std::to_string(columns) + " columns, the first has " +
-                       std::to_string(m.columns),
+                   "this row has " + std::to_string(columns) + " columns, the first has " + std::to_string(m.columns),
                    "", {ast.args[0].where});
     append_rows(m, row, columns);
     if (m.rows > largest_side || m.columns > largest_side)

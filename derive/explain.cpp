@@ -10,21 +10,16 @@ namespace cdot::derive {
 namespace {
 
 std::string kind_of(const Joint& joint, const Parameter& p) {
-  const std::string where =
-      p.body < 0 ? "the world" : joint.bodies[static_cast<std::size_t>(p.body)];
+  const std::string where = p.body < 0 ? "the world" : joint.bodies[static_cast<std::size_t>(p.body)];
   switch (p.kind) {
-    case ParameterKind::point:
-      return "a point fixed in " + where;
-    case ParameterKind::vector:
-      return "a vector fixed in " + where;
-    case ParameterKind::unit:
-      return "a direction (a vector of length 1) fixed in " + where;
+    case ParameterKind::point: return "a point fixed in " + where;
+    case ParameterKind::vector: return "a vector fixed in " + where;
+    case ParameterKind::unit: return "a direction (a vector of length 1) fixed in " + where;
     case ParameterKind::frame:
       return (joint.dimension == 2 ? "the x axis of a frame fixed in "
                                    : "the x axis of a right-handed frame fixed in ") +
              where;
-    case ParameterKind::scalar:
-      break;
+    case ParameterKind::scalar: break;
   }
   return "a number";
 }
@@ -61,9 +56,9 @@ void introduce_bodies(const Joint& joint, Step& step) {
     step.say(
         "Vectors are in world axes; × is the cross product of the plane, "
         "w × r = w perp(r), perp(r) = (-r.y, r.x).");
-    step.list(who + "; of a: centre of mass {} [m], angle {} [rad], " + rates +
-                  "inverse inertia {} [1/(kg m^2)]" + others,
-              {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
+    step.list(
+        who + "; of a: centre of mass {} [m], angle {} [rad], " + rates + "inverse inertia {} [1/(kg m^2)]" + others,
+        {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
     return;
   }
   step.say(
@@ -73,10 +68,8 @@ void introduce_bodies(const Joint& joint, Step& step) {
   step.list(who +
                 "; of a: centre of mass {} [m], rotation matrix {} (of the Euler parameters {}, a "
                 "unit quaternion), " +
-                rates + "inverse inertia {} [1/(kg m^2)], a symmetric tensor in world axes" +
-                others,
-            {leaf(a.x), leaf({}, "A_a"), leaf({}, "e_a"), leaf(a.v), leaf(a.w), leaf(a.inv_m),
-             leaf(a.inv_I)});
+                rates + "inverse inertia {} [1/(kg m^2)], a symmetric tensor in world axes" + others,
+            {leaf(a.x), leaf({}, "A_a"), leaf({}, "e_a"), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
 }
 
 void explain_rows(Lecture& lecture, const Part& part, Form form) {
@@ -108,11 +101,10 @@ void explain_rows(Lecture& lecture, const Part& part, Form form) {
   differentiate_again(lecture, part, gamma);
 }
 
-void explain_coordinate(Lecture& lecture, const Part& part, const Coordinate& coordinate,
-                        Form form) {
+void explain_coordinate(Lecture& lecture, const Part& part, const Coordinate& coordinate, Form form) {
   Step& step = lecture.section("Coordinate " + coordinate.name);
-  step.say("Left free by the joint [" + text(coordinate.unit) +
-           "]; motors, limits, springs and friction act on it: `" + coordinate.text + "`");
+  step.say("Left free by the joint [" + text(coordinate.unit) + "]; motors, limits, springs and friction act on it: `" +
+           coordinate.text + "`");
   const Statement& s = part.statements[0];
   step.show({label("C", s, s.C), {{lecture.notation.definition(s.C), ""}}});
   differentiate(lecture, part, step);
@@ -149,8 +141,8 @@ void introduce(Lecture& lecture) {
   introduce_bodies(joint, step);
   for (const Parameter& p : joint.parameters) describe(lecture, p, step);
   for (const Coordinate& c : joint.dropped) {
-    step.say("The coordinate " + c.name + " that the included joint " + c.from + " leaves free (`" +
-             c.text + "`) is none here: " + held_text(c) + ".");
+    step.say("The coordinate " + c.name + " that the included joint " + c.from + " leaves free (`" + c.text +
+             "`) is none here: " + held_text(c) + ".");
   }
 }
 

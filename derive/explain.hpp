@@ -55,9 +55,8 @@ struct Explanation {
 Explanation explain(const Joint& joint, Form form = Form::global);
 
 std::string explanation_text(const Explanation& explanation);
-std::string explanation_html(const Explanation& explanation);  // one file, no links to elsewhere
-std::string explanation_latex(
-    const Explanation& explanation);  // an article that needs amsmath only
+std::string explanation_html(const Explanation& explanation);   // one file, no links to elsewhere
+std::string explanation_latex(const Explanation& explanation);  // an article that needs amsmath only
 
 // The names, C, J and K of the joint, then of each of its coordinates, without the way to them.
 std::vector<std::vector<Chain>> summarise(const Joint& joint);

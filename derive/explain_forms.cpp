@@ -14,8 +14,7 @@ Formula of_body(const std::string& letter, const Lecture& lecture, std::size_t b
 }
 
 // The block of w in the other form: M A, or 2 M G.
-Formula turning_block(const Lecture& lecture, const Part& part, const Statement& s,
-                      std::size_t body, Form form) {
+Formula turning_block(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body, Form form) {
   const Formula block = block_of_w(lecture, part, s, body);
   if (block == number(0)) return block;
   if (form == Form::local) return product({block, of_body("A", lecture, body)});
@@ -61,33 +60,28 @@ void define_euler(Step& step) {
   step.say("So what multiplies w is multiplied by 2 G: J_euler = J diag(E, 2 G, E, 2 G, ...).");
 }
 
-EulerColumns euler_columns_of(const Lecture& lecture, const Part& part, const Statement& s,
-                              std::size_t body) {
+EulerColumns euler_columns_of(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
   EulerColumns worst = EulerColumns::partial_derivative;
   const std::size_t rows = s.vector() ? 3 : 1;
   for (std::size_t i = s.first; i < s.first + rows; ++i) {
-    worst =
-        std::max(worst, euler_columns(part.block.rows[i], lecture.joint, static_cast<int>(body)));
+    worst = std::max(worst, euler_columns(part.block.rows[i], lecture.joint, static_cast<int>(body)));
   }
   return worst;
 }
 
 // dC/de of one body, and where J's columns are just that.
-void compare_with_partial(const Lecture& lecture, const Part& part, const Statement& s,
-                          std::size_t body, Step& step) {
+void compare_with_partial(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body, Step& step) {
   const Formula block = turning_block(lecture, part, s, body, Form::euler);
   const EulerColumns columns = euler_columns_of(lecture, part, s, body);
   const Formula C = label("C", s, s.C);
-  const Formula name =
-      quotient(leaf({}, "d" + C.name), leaf({}, "de_" + lecture.joint.bodies[body]));
+  const Formula name = quotient(leaf({}, "d" + C.name), leaf({}, "de_" + lecture.joint.bodies[body]));
   if (columns == EulerColumns::partial_derivative) {
     if (block == number(0)) return;
     step.show({name, {{block, "J_euler is the partial derivative itself"}}});
     return;
   }
   const Expr along = time_derivative(s.C, lecture.joint, {.stretched = static_cast<int>(body)});
-  const Formula extra =
-      product({lecture.notation.of(along), shaped(Shape::transpose, of_body("e", lecture, body))});
+  const Formula extra = product({lecture.notation.of(along), shaped(Shape::transpose, of_body("e", lecture, body))});
   const std::string where = columns == EulerColumns::where_C_is_zero
                                 ? "J_euler is the partial derivative where C = 0; elsewhere they "
                                   "agree on e · e_dot = 0 only"
@@ -105,10 +99,8 @@ void explain_form(Lecture& lecture, const Part& part, Form form) {
   const bool local = form == Form::local;
   Step& step = lecture.section(local ? "The Jacobian by angular velocities in the bodies' axes"
                                      : "The Jacobian by rates of the Euler parameters");
-  if (local)
-    define_local(lecture, step);
-  else
-    define_euler(step);
+  if (local) define_local(lecture, step);
+  else define_euler(step);
   step.show(jacobian_in(lecture, part, form));
   if (local) return;
   step.say(
@@ -119,8 +111,7 @@ void explain_form(Lecture& lecture, const Part& part, Form form) {
       "e · e_dot = 0:");
   for (const Statement& s : part.statements) {
     if (s.kind == RowKind::velocity) {
-      step.say("Row `" + s.row->name +
-               "` is written at velocity level: there is no C to differentiate.");
+      step.say("Row `" + s.row->name + "` is written at velocity level: there is no C to differentiate.");
       continue;
     }
     for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {

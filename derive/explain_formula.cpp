@@ -14,14 +14,10 @@ Formula of_form(Shape kind, std::vector<Formula> args) {
   return f;
 }
 
-bool is_negative(const Formula& f) {
-  return f.shape == Shape::sum && f.args.size() == 1 && f.minus[0];
-}
+bool is_negative(const Formula& f) { return f.shape == Shape::sum && f.args.size() == 1 && f.minus[0]; }
 
 // A frame by its name, from its x axis.
-Formula frame_of(Expr x_axis) {
-  return leaf(x_axis, x_axis->symbol.substr(0, x_axis->symbol.size() - 2));
-}
+Formula frame_of(Expr x_axis) { return leaf(x_axis, x_axis->symbol.substr(0, x_axis->symbol.size() - 2)); }
 
 std::vector<Formula> of_all(const Notation& notation, Expr e) {
   std::vector<Formula> args;
@@ -61,8 +57,7 @@ Formula sum(std::vector<SignedFormula> terms) {
   f.shape = Shape::sum;
   for (SignedFormula& term : terms) {
     // a + (b + c) is written a + b + c; a - (b + c) stays.
-    const bool opens =
-        term.formula.shape == Shape::sum && (!term.minus || is_negative(term.formula));
+    const bool opens = term.formula.shape == Shape::sum && (!term.minus || is_negative(term.formula));
     for (SignedFormula& t : opens ? terms_of(term.formula) : std::vector{term}) {
       f.minus.push_back(t.minus != (opens && term.minus));
       f.args.push_back(std::move(t.formula));
@@ -83,10 +78,8 @@ Formula product(std::vector<Formula> factors) {
       f = Formula(f.args[0]);
     }
     if (is_one(f)) continue;
-    if (f.shape == Shape::product)
-      kept.insert(kept.end(), f.args.begin(), f.args.end());
-    else
-      kept.push_back(std::move(f));
+    if (f.shape == Shape::product) kept.insert(kept.end(), f.args.begin(), f.args.end());
+    else kept.push_back(std::move(f));
   }
   Formula result = kept.empty()       ? number(1)
                    : kept.size() == 1 ? std::move(kept[0])
@@ -133,17 +126,15 @@ Formula component(Formula u, std::string axis) {
 }
 
 std::vector<SignedFormula> positive_first(std::vector<SignedFormula> terms) {
-  std::stable_partition(terms.begin(), terms.end(),
-                        [](const SignedFormula& term) { return !term.minus; });
+  std::stable_partition(terms.begin(), terms.end(), [](const SignedFormula& term) { return !term.minus; });
   return terms;
 }
 
 bool same_terms(const Formula& f, const Formula& g) {
   std::vector<SignedFormula> left = terms_of(f), right = terms_of(g);
-  return std::is_permutation(left.begin(), left.end(), right.begin(), right.end(),
-                             [](const SignedFormula& a, const SignedFormula& b) {
-                               return a.minus == b.minus && a.formula == b.formula;
-                             });
+  return std::is_permutation(
+      left.begin(), left.end(), right.begin(), right.end(),
+      [](const SignedFormula& a, const SignedFormula& b) { return a.minus == b.minus && a.formula == b.formula; });
 }
 
 Formula identity() { return of_form(Shape::identity, {}); }
@@ -191,44 +182,30 @@ Notation::Notation(const Joint& joint) {
   }
 }
 
-bool Notation::has_name(Expr e) {
-  return !e->name.empty() && (e->named_by_let || e->name.ends_with("_dot"));
-}
+bool Notation::has_name(Expr e) { return !e->name.empty() && (e->named_by_let || e->name.ends_with("_dot")); }
 
 Formula Notation::of(Expr e) const { return has_name(e) && !is_zero(e) ? leaf(e) : written(e); }
 Formula Notation::definition(Expr e) const { return written(e); }
 
 Formula Notation::written(Expr e) const {
   switch (e->kind) {
-    case Kind::number:
-      return e->value.sign() < 0 ? negative(number(-e->value)) : number(e->value);
-    case Kind::symbol:
-      return leaf(e);
-    case Kind::sum:
-      return sum_of(e);
-    case Kind::product:
-      return product_of(e);
-    case Kind::scale:
-      return scale_of(e);
-    case Kind::dot:
-      return dot_of(e);
-    case Kind::cross:
-      return cross_of(e);
-    case Kind::perp:
-      return shaped(Shape::perp, of(e->args[0]));
-    case Kind::tensor:
-      return product({of(e->args[0]), of(e->args[1])});
+    case Kind::number: return e->value.sign() < 0 ? negative(number(-e->value)) : number(e->value);
+    case Kind::symbol: return leaf(e);
+    case Kind::sum: return sum_of(e);
+    case Kind::product: return product_of(e);
+    case Kind::scale: return scale_of(e);
+    case Kind::dot: return dot_of(e);
+    case Kind::cross: return cross_of(e);
+    case Kind::perp: return shaped(Shape::perp, of(e->args[0]));
+    case Kind::tensor: return product({of(e->args[0]), of(e->args[1])});
     case Kind::twist: {
       Formula f = of_form(Shape::call, {frame_of(e->args[0]), frame_of(e->args[3])});
       f.name = "twist";
       return f;
     }
-    case Kind::norm:
-      return shaped(Shape::norm, of(e->args[0]));
-    case Kind::unit:
-      return shaped(Shape::unit, of(e->args[0]));
-    case Kind::function:
-      break;
+    case Kind::norm: return shaped(Shape::norm, of(e->args[0]));
+    case Kind::unit: return shaped(Shape::unit, of(e->args[0]));
+    case Kind::function: break;
   }
   if (const auto angle = angle_between(e)) {
     Formula f = of_form(Shape::call, {of(angle->from), of(angle->to)});
@@ -241,8 +218,7 @@ Formula Notation::written(Expr e) const {
 }
 
 Notation::PointTerms Notation::points_among(Expr sum) const {
-  PointTerms found{std::vector<const Point*>(sum->args.size()),
-                   std::vector<bool>(sum->args.size())};
+  PointTerms found{std::vector<const Point*>(sum->args.size()), std::vector<bool>(sum->args.size())};
   for (std::size_t i = 0; i < sum->args.size(); ++i) {
     for (std::size_t j = 0; j < sum->args.size() && !found.at[i]; ++j) {
       if (found.used[j] || sum->coefs[i] != sum->coefs[j]) continue;
@@ -316,10 +292,8 @@ Expr value_of(const Formula& f, Pool& pool) {
   std::vector<Expr> args;
   for (const Formula& arg : f.args) args.push_back(value_of(arg, pool));
   switch (f.shape) {
-    case Shape::leaf:
-      return f.leaf;
-    case Shape::number:
-      return pool.number(f.number);
+    case Shape::leaf: return f.leaf;
+    case Shape::number: return pool.number(f.number);
     case Shape::sum: {
       Expr total = f.minus[0] ? -args[0] : args[0];
       for (std::size_t i = 1; i < args.size(); ++i) {
@@ -332,31 +306,21 @@ Expr value_of(const Formula& f, Pool& pool) {
       for (std::size_t i = 1; i < args.size(); ++i) total = total * args[i];
       return total;
     }
-    case Shape::quotient:
-      return args[0] / args[1];
-    case Shape::power:
-      return pow(args[0], f.exponent);
-    case Shape::dot:
-      return dot(args[0], args[1]);
-    case Shape::cross:
-      return cross(args[0], args[1]);
-    case Shape::perp:
-      return perp(args[0]);
-    case Shape::norm:
-      return norm(args[0]);
-    case Shape::unit:
-      return unit(args[0]);
-    case Shape::component:
-      return dot(world_axes(pool)[static_cast<std::size_t>(f.name[0] - 'x')], args[0]);
-    default:
-      break;
+    case Shape::quotient: return args[0] / args[1];
+    case Shape::power: return pow(args[0], f.exponent);
+    case Shape::dot: return dot(args[0], args[1]);
+    case Shape::cross: return cross(args[0], args[1]);
+    case Shape::perp: return perp(args[0]);
+    case Shape::norm: return norm(args[0]);
+    case Shape::unit: return unit(args[0]);
+    case Shape::component: return dot(world_axes(pool)[static_cast<std::size_t>(f.name[0] - 'x')], args[0]);
+    default: break;
   }
   if (f.shape == Shape::call && f.name == "angle") {
     const Expr sine = cross(args[0], args[1]);
     return call(Fn::atan2, std::vector{sine->vector ? norm(sine) : sine, dot(args[0], args[1])});
   }
-  for (const Fn fn :
-       {Fn::sqrt, Fn::sin, Fn::cos, Fn::tan, Fn::exp, Fn::log, Fn::abs, Fn::sign, Fn::atan2}) {
+  for (const Fn fn : {Fn::sqrt, Fn::sin, Fn::cos, Fn::tan, Fn::exp, Fn::log, Fn::abs, Fn::sign, Fn::atan2}) {
     if (f.shape == Shape::call && f.name == name_of(fn)) return call(fn, args);
   }
   throw std::logic_error("a matrix has no scalar or vector value");

@@ -11,20 +11,11 @@ std::string escaped(const std::string& s) {
   std::string out;
   for (const char c : s) {
     switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
+      case '&': out += "&amp;"; break;
+      case '<': out += "&lt;"; break;
+      case '>': out += "&gt;"; break;
+      case '"': out += "&quot;"; break;
+      default: out += c;
     }
   }
   return out;
@@ -47,18 +38,15 @@ std::string prose(const std::string& s) {
 
 std::string greek(const std::string& letter) {
   static const std::map<std::string, std::string> letters = {
-      {"alpha", "α"}, {"beta", "β"},   {"gamma", "γ"}, {"delta", "δ"},
-      {"theta", "θ"}, {"lambda", "λ"}, {"mu", "μ"},    {"phi", "φ"},
-      {"psi", "ψ"},   {"omega", "ω"},  {"pi", "π"}};
+      {"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"theta", "θ"}, {"lambda", "λ"},
+      {"mu", "μ"},    {"phi", "φ"},  {"psi", "ψ"},   {"omega", "ω"}, {"pi", "π"}};
   const auto found = letters.find(letter);
   return found == letters.end() ? letter : found->second;
 }
 
 std::string row(const std::string& inner) { return "<mrow>" + inner + "</mrow>"; }
 std::string sign_of(const std::string& s) { return "<mo>" + s + "</mo>"; }
-std::string fence(const std::string& s) {
-  return "<mo stretchy=\"true\" fence=\"true\">" + s + "</mo>";
-}
+std::string fence(const std::string& s) { return "<mo stretchy=\"true\" fence=\"true\">" + s + "</mo>"; }
 
 class MathML : public FormulaWriter {
  public:
@@ -81,9 +69,7 @@ class MathML : public FormulaWriter {
     if (value.is_integer()) return whole(value.num());
     return fraction(whole(value.num()), whole(value.den()));
   }
-  std::string sign(bool minus, bool first) const override {
-    return minus ? sign_of("−") : first ? "" : sign_of("+");
-  }
+  std::string sign(bool minus, bool first) const override { return minus ? sign_of("−") : first ? "" : sign_of("+"); }
   std::string between(Shape shape) const override {
     if (shape == Shape::product) return "<mspace width=\"0.17em\" />";
     return sign_of(shape == Shape::dot ? "·" : "×");
@@ -93,18 +79,14 @@ class MathML : public FormulaWriter {
   }
   std::string power(const std::string& base, int exponent) const override {
     const std::string magnitude = "<mn>" + std::to_string(std::abs(exponent)) + "</mn>";
-    return "<msup>" + row(base) + (exponent < 0 ? row(sign_of("−") + magnitude) : magnitude) +
-           "</msup>";
+    return "<msup>" + row(base) + (exponent < 0 ? row(sign_of("−") + magnitude) : magnitude) + "</msup>";
   }
   std::string call(const std::string& f, const std::vector<std::string>& args) const override {
     std::string inner;
     for (std::size_t i = 0; i < args.size(); ++i) inner += (i ? sign_of(",") : "") + args[i];
-    return row("<mi mathvariant=\"normal\">" + f + "</mi>" + sign_of("&#8289;") +
-               parentheses(inner));
+    return row("<mi mathvariant=\"normal\">" + f + "</mi>" + sign_of("&#8289;") + parentheses(inner));
   }
-  std::string norm(const std::string& arg) const override {
-    return row(fence("|") + arg + fence("|"));
-  }
+  std::string norm(const std::string& arg) const override { return row(fence("|") + arg + fence("|")); }
   std::string component(const std::string& arg, const std::string& axis) const override {
     return "<msub>" + row(arg) + "<mi>" + axis + "</mi></msub>";
   }
@@ -121,9 +103,7 @@ class MathML : public FormulaWriter {
     }
     return row(fence("[") + "<mtable class=\"matrix\">" + rows + "</mtr></mtable>" + fence("]"));
   }
-  std::string parentheses(const std::string& inner) const override {
-    return row(fence("(") + inner + fence(")"));
-  }
+  std::string parentheses(const std::string& inner) const override { return row(fence("(") + inner + fence(")")); }
 
  private:
   static std::string identifier(const std::string& letter, bool vector) {
@@ -178,9 +158,9 @@ std::string chain_html(const Chain& chain, const MathML& formula) {
   std::string out = "<div class=\"chain\"><table>\n";
   for (std::size_t i = 0; i < chain.links.size(); ++i) {
     const Link& link = chain.links[i];
-    out += "<tr><td class=\"left\">" + (i == 0 ? math(formula.write(chain.left)) : "") +
-           "</td><td>" + math(sign_of("=") + formula.write(link.formula)) +
-           "</td><td class=\"rule\">" + escaped(link.rule) + "</td></tr>\n";
+    out += "<tr><td class=\"left\">" + (i == 0 ? math(formula.write(chain.left)) : "") + "</td><td>" +
+           math(sign_of("=") + formula.write(link.formula)) + "</td><td class=\"rule\">" + escaped(link.rule) +
+           "</td></tr>\n";
   }
   return out + "</table></div>\n";
 }
@@ -211,8 +191,7 @@ class Page {
       out_ += chain_html(item.chain, formula_);
       return;
     }
-    const std::string words =
-        fill(item.words, prose, [this](const Formula& f) { return math(formula_.write(f)); });
+    const std::string words = fill(item.words, prose, [this](const Formula& f) { return math(formula_.write(f)); });
     if (item.kind == Item::Kind::paragraph) {
       out_ += "<p>" + words + "</p>\n";
       return;

@@ -1,27 +1,5 @@
-// The derivation for other programs: every entry as a plain infix expression over documented
-// component names.
-//
-// {
-//   "format": 1, "joint": "line", "title", "source", "dimension": 2 or 3, "bodies": ["a", "b"],
-//   "columns": ["v_a_x", "v_a_y", "w_a", "v_b_x", ...],   of every J; in space v_a_z, w_a_x, ...
-//   too "symbols": { "r_pa_x": { "kind", "meaning", "unit", "frame", "body", "from", "unit_length"
-//   } },
-//       kind: position, orientation (Euler parameters, in space), velocity, mass (inverse),
-//       parameter, derived, time, constant frame: "world" or the body whose axes the component is
-//       along; body: whose it is; or null from: of derived ones, how they follow from the pose and
-//       the parameters; else null unit_length: true for components of a vector of length 1, which K
-//       relies on
-//   "frames": [ { "name", "axes": [ [ names of components ] three times ] } ],   right-handed
-//   triads, in space "intermediates": [ { "name", "definition" } ],   each uses only what stands
-//   before it "guards": [ { "where": "u_len = 0", "kernel" } ],   where an entry is undefined
-//   "rows": [ { "name", "kind": equality | inequality | velocity, "text", "unit" } ],
-//   "C", "Cdot", "C_t", "gamma": [ one a row ],   C_t = dC/dt with the bodies at rest
-//   "J": [ [ one a column ] a row ], "K": [ [ ] ] square,
-//   "coordinates": [ { "name", "text", "unit", "C", "Cdot", "C_t", "J", "K", "gamma" } ]   one row
-// }
-//
-// Operators + - * / ** and parentheses, functions sqrt sin cos tan atan2 exp log abs sign; "0" for
-// what is not there.
+// The derivation for other programs: every entry as a plain infix expression over documented component names. The
+// schema is printed by `cdot explain --help`.
 #include <algorithm>
 #include <set>
 
@@ -61,20 +39,15 @@ class Infix {
 
   std::string inline_text(Expr e, Level level) {
     switch (e->kind) {
-      case Kind::number:
-        return enclosed(e->value.text(), level, e->value.sign() < 0, e->value);
-      case Kind::sum:
-        return sum_text(e, level);
-      case Kind::product:
-        return product_text(e, level);
-      default:
-        return function_text(e, level);
+      case Kind::number: return enclosed(e->value.text(), level, e->value.sign() < 0, e->value);
+      case Kind::sum: return sum_text(e, level);
+      case Kind::product: return product_text(e, level);
+      default: return function_text(e, level);
     }
   }
 
   static std::string enclosed(const std::string& text, Level level, bool negative, Rational value) {
-    const bool needs =
-        (negative && level > Level::sum) || (!value.is_integer() && level > Level::sum);
+    const bool needs = (negative && level > Level::sum) || (!value.is_integer() && level > Level::sum);
     return needs ? "(" + text + ")" : text;
   }
 
@@ -85,10 +58,8 @@ class Infix {
       const Rational c = e->coefs[i];
       out += c.sign() < 0 ? (out.empty() ? "-" : " - ") : (out.empty() ? "" : " + ");
       const bool constant = is_one(e->args[i]);
-      if (constant)
-        out += abs(c).text();
-      else if (abs(c) != Rational(1))
-        out += enclosed(abs(c).text(), Level::product, false, c) + "*";
+      if (constant) out += abs(c).text();
+      else if (abs(c) != Rational(1)) out += enclosed(abs(c).text(), Level::product, false, c) + "*";
       if (!constant) out += print(e->args[i], Level::product);
     }
     return level > Level::sum ? "(" + out + ")" : out;
@@ -126,8 +97,7 @@ class Infix {
   }
 
   void guard(const std::string& where, const std::string& kernel) {
-    if (guarded_.insert(where + kernel).second)
-      guards_.push_back({{"where", where}, {"kernel", kernel}});
+    if (guarded_.insert(where + kernel).second) guards_.push_back({{"where", where}, {"kernel", kernel}});
   }
 
   ExplainedSymbols symbols_;
@@ -138,9 +108,7 @@ class Infix {
 };
 
 std::string kind_name(RowKind kind) {
-  return kind == RowKind::equality     ? "equality"
-         : kind == RowKind::inequality ? "inequality"
-                                       : "velocity";
+  return kind == RowKind::equality ? "equality" : kind == RowKind::inequality ? "inequality" : "velocity";
 }
 
 Json J_of(Infix& infix, const ScalarRow& row) {
@@ -186,10 +154,8 @@ nlohmann::ordered_json explanation_json(const Joint& joint) {
   rows["rows"] = Json::array();
   const Block block = derive_rows(joint);
   for (const ScalarRow& row : block.rows) {
-    rows["rows"].push_back({{"name", row.name},
-                            {"kind", kind_name(row.kind)},
-                            {"text", row.row->text},
-                            {"unit", text(row.row->unit)}});
+    rows["rows"].push_back(
+        {{"name", row.name}, {"kind", kind_name(row.kind)}, {"text", row.row->text}, {"unit", text(row.row->unit)}});
   }
   add_block(rows, infix, block);
   for (const Coordinate& c : joint.coordinates) {

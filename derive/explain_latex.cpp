@@ -13,26 +13,17 @@ std::string escaped(const std::string& s) {
   std::string out;
   for (const char c : s) {
     switch (c) {
-      case '\\':
-        out += "\\textbackslash{}";
-        break;
-      case '^':
-        out += "\\textasciicircum{}";
-        break;
-      case '~':
-        out += "\\textasciitilde{}";
-        break;
+      case '\\': out += "\\textbackslash{}"; break;
+      case '^': out += "\\textasciicircum{}"; break;
+      case '~': out += "\\textasciitilde{}"; break;
       case '&':
       case '%':
       case '$':
       case '#':
       case '_':
       case '{':
-      case '}':
-        out += '\\';
-        [[fallthrough]];
-      default:
-        out += c;
+      case '}': out += '\\'; [[fallthrough]];
+      default: out += c;
     }
   }
   return out;
@@ -56,8 +47,8 @@ std::string prose(const std::string& s) {
 }
 
 std::string letter_of(const std::string& letter, bool vector) {
-  static const std::set<std::string> greek = {
-      "alpha", "beta", "gamma", "delta", "theta", "lambda", "mu", "varphi", "psi", "omega", "pi"};
+  static const std::set<std::string> greek = {"alpha", "beta",   "gamma", "delta", "theta", "lambda",
+                                              "mu",    "varphi", "psi",   "omega", "pi"};
   const std::string name = letter == "phi" ? "varphi" : letter;
   if (greek.contains(name)) return "\\" + name;
   if (vector) return "\\mathbf{" + escaped(letter) + "}";
@@ -74,8 +65,7 @@ class Latex : public FormulaWriter {
     std::string out = letter_of(s.letter, leaf.leaf && leaf.leaf->vector);
     if (s.dots > 0) out = (s.dots == 1 ? "\\dot{" : "\\ddot{") + out + "}";
     const bool word = s.index.size() > 1;
-    if (!s.index.empty())
-      out += word ? "_{\\text{" + escaped(s.index) + "}}" : "_{" + s.index + "}";
+    if (!s.index.empty()) out += word ? "_{\\text{" + escaped(s.index) + "}}" : "_{" + s.index + "}";
     return s.inverse ? out + "^{-1}" : out;
   }
   std::string number(Rational value) const override {
@@ -99,15 +89,11 @@ class Latex : public FormulaWriter {
     for (std::size_t i = 0; i < args.size(); ++i) inner += (i ? ", " : "") + args[i];
     return "\\operatorname{" + f + "}" + parentheses(inner);
   }
-  std::string norm(const std::string& arg) const override {
-    return "\\left\\lvert " + arg + " \\right\\rvert";
-  }
+  std::string norm(const std::string& arg) const override { return "\\left\\lvert " + arg + " \\right\\rvert"; }
   std::string component(const std::string& arg, const std::string& axis) const override {
     return "{" + arg + "}_{" + axis + "}";
   }
-  std::string transpose(const std::string& arg) const override {
-    return "{" + arg + "}^{\\mathsf T}";
-  }
+  std::string transpose(const std::string& arg) const override { return "{" + arg + "}^{\\mathsf T}"; }
   std::string identity() const override { return "E"; }
   std::string matrix(int columns, const std::vector<std::string>& entries) const override {
     std::string form, body;
@@ -118,9 +104,7 @@ class Latex : public FormulaWriter {
     }
     return "\\left[\\begin{array}{" + form + "} " + body + " \\end{array}\\right]";
   }
-  std::string parentheses(const std::string& inner) const override {
-    return "\\left(" + inner + "\\right)";
-  }
+  std::string parentheses(const std::string& inner) const override { return "\\left(" + inner + "\\right)"; }
 
  private:
   const std::vector<std::string>& bodies_;
@@ -142,8 +126,7 @@ std::vector<std::string> rule_lines(const std::string& rules) {
   std::vector<std::string> lines;
   for (std::size_t at = 0; at < rules.size();) {
     const std::size_t end = std::min(rules.find("; ", at), rules.size());
-    lines.push_back((at == 0 ? "(" : "") + rules.substr(at, end - at) +
-                    (end == rules.size() ? ")" : ";"));
+    lines.push_back((at == 0 ? "(" : "") + rules.substr(at, end - at) + (end == rules.size() ? ")" : ";"));
     at = end + 2;
   }
   return lines;
@@ -191,8 +174,7 @@ std::string explanation_latex(const Explanation& explanation) {
         continue;
       }
       out += (bullet ? "\\item " : "\n") +
-             fill(item.words, prose,
-                  [&formula](const Formula& f) { return "$" + formula.write(f) + "$"; }) +
+             fill(item.words, prose, [&formula](const Formula& f) { return "$" + formula.write(f) + "$"; }) +
              (bullet ? "\n" : "\n\n");
     }
     if (in_list) out += "\\end{itemize}\n";

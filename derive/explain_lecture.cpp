@@ -28,9 +28,8 @@ Formula row_of(const Notation& notation, Expr e) {
   const Term term = split_coefficient(e);
   const bool scaled = term.e->kind == Kind::scale && !Notation::has_name(term.e);
   if (!scaled) return shaped(Shape::transpose, notation.of(e));
-  Formula row =
-      times(abs(term.coef), product({notation.of(term.e->args[0]),
-                                     shaped(Shape::transpose, notation.of(term.e->args[1]))}));
+  Formula row = times(abs(term.coef),
+                      product({notation.of(term.e->args[0]), shaped(Shape::transpose, notation.of(term.e->args[1]))}));
   return term.coef.sign() < 0 ? negative(std::move(row)) : row;
 }
 

@@ -29,42 +29,31 @@ class Limits {
     const bool plane = e->pool->dimension() == 2;
     const std::string rest = std::string(" has no direction where {} = 0; the kernel takes ") +
                              (plane ? "(1, 0) there." : "(1, 0, 0) there.");
-    if (n.shape == Shape::leaf)
-      limits.list("{}" + rest, {n, shaped(Shape::norm, u)});
-    else
-      limits.list("{}" + rest, {u, shaped(Shape::norm, u)});
+    if (n.shape == Shape::leaf) limits.list("{}" + rest, {n, shaped(Shape::norm, u)});
+    else limits.list("{}" + rest, {u, shaped(Shape::norm, u)});
   }
 
   void of_product(Expr e) {
     for (std::size_t i = 0; i < e->args.size(); ++i) {
       if (e->exponents[i] > 0 || !divided_by_.insert(&*e->args[i]).second) continue;
       const Formula below = notation_.of(e->args[i]);
-      limits.list(
-          "A division by {}: where it is 0 the kernel takes 1/0 as 0, so that term vanishes.",
-          {below});
+      limits.list("A division by {}: where it is 0 the kernel takes 1/0 as 0, so that term vanishes.", {below});
     }
   }
 
   void of_function(Expr e) {
     const std::vector<Formula> args{notation_.of(e->args[0])};
     switch (e->fn) {
-      case Fn::sqrt:
-        return limits.list("sqrt is defined for {} ≥ 0 only.", args);
-      case Fn::log:
-        return limits.list("log is defined for {} > 0 only.", args);
-      case Fn::tan:
-        return limits.list("tan has poles where {} is an odd multiple of pi/2.", args);
-      case Fn::abs:
-        return limits.list("abs has a corner at {} = 0; its derivative is taken as 0 there.", args);
+      case Fn::sqrt: return limits.list("sqrt is defined for {} ≥ 0 only.", args);
+      case Fn::log: return limits.list("log is defined for {} > 0 only.", args);
+      case Fn::tan: return limits.list("tan has poles where {} is an odd multiple of pi/2.", args);
+      case Fn::abs: return limits.list("abs has a corner at {} = 0; its derivative is taken as 0 there.", args);
       case Fn::atan2:
         if (e->args[0]->kind == Kind::norm) {
-          return limits.list("{} is an angle in [0, pi]: it has a corner at both ends.",
-                             {notation_.of(e)});
+          return limits.list("{} is an angle in [0, pi]: it has a corner at both ends.", {notation_.of(e)});
         }
-        return limits.list("{} is an angle in (-pi, pi]: it jumps where the turn is complete.",
-                           {notation_.of(e)});
-      default:
-        return;
+        return limits.list("{} is an angle in (-pi, pi]: it jumps where the turn is complete.", {notation_.of(e)});
+      default: return;
     }
   }
 
@@ -96,14 +85,12 @@ void assume(const Joint& joint, Step& step) {
       step.list("Row `" + row.name + "` acts only where C reaches 0.");
     }
   }
-  step.list(
-      "A body that cannot move has inverse mass and inverse inertia 0; its terms of K vanish.");
+  step.list("A body that cannot move has inverse mass and inverse inertia 0; its terms of K vanish.");
   step.list(
       "If all of K vanishes (no body can move), the kernel's guarded factorisation gives no "
       "impulse.");
   if (joint.uses_world) {
-    step.list(
-        "Something is fixed in the world, which takes any impulse: momentum is not conserved.");
+    step.list("Something is fixed in the world, which takes any impulse: momentum is not conserved.");
   }
 }
 

@@ -44,19 +44,15 @@ Scaled without_scalars(const Notation& notation, Expr e) {
 
 // inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t)' inv_I_a (ra ×
 // t).
-void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj,
-                 std::vector<SignedFormula>& terms) {
+void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj, std::vector<SignedFormula>& terms) {
   if (is_zero(wi) || is_zero(wj)) return;
   const Factors f = factors(wi, wj);
   std::vector<Formula> parts{number(abs(f.coef))};
   if (wi->vector) {
     const Scaled i = without_scalars(notation, f.i), j = without_scalars(notation, f.j);
-    if (i.scalars == j.scalars)
-      parts.push_back(power(i.scalars, 2));
-    else
-      parts.insert(parts.end(), {i.scalars, j.scalars});
-    parts.insert(parts.end(),
-                 {shaped(Shape::transpose, notation.of(i.e)), leaf(inverse), notation.of(j.e)});
+    if (i.scalars == j.scalars) parts.push_back(power(i.scalars, 2));
+    else parts.insert(parts.end(), {i.scalars, j.scalars});
+    parts.insert(parts.end(), {shaped(Shape::transpose, notation.of(i.e)), leaf(inverse), notation.of(j.e)});
   } else {
     const Formula a = notation.of(f.i), b = notation.of(f.j);
     parts.push_back(leaf(inverse));
@@ -80,19 +76,15 @@ class MassProduct {
         add_product(lecture_.notation, body.inv_I, Js.w, Jt.w, terms);
       } else {
         const bool tensor = lecture_.joint.dimension == 3;
-        add_blocks(body.inv_m, block_of_v(lecture_, part_, s, b), block_of_v(lecture_, part_, t, b),
-                   false, terms);
-        add_blocks(body.inv_I, block_of_w(lecture_, part_, s, b), block_of_w(lecture_, part_, t, b),
-                   tensor, terms);
+        add_blocks(body.inv_m, block_of_v(lecture_, part_, s, b), block_of_v(lecture_, part_, t, b), false, terms);
+        add_blocks(body.inv_I, block_of_w(lecture_, part_, s, b), block_of_w(lecture_, part_, t, b), tensor, terms);
       }
     }
     return sum(std::move(terms));
   }
 
  private:
-  const JacobianEntry& J(const Statement& s, std::size_t body) const {
-    return part_.block.rows[s.first].J[body];
-  }
+  const JacobianEntry& J(const Statement& s, std::size_t body) const { return part_.block.rows[s.first].J[body]; }
 
   // (A B)' = B' A', term by term.
   static Formula transposed(const Formula& f) {
@@ -117,9 +109,8 @@ class MassProduct {
 
   static bool is_scalar(const Formula& f) {
     const bool leaf_or_call = f.shape == Shape::leaf || f.shape == Shape::call;
-    return f.shape == Shape::number || f.shape == Shape::dot || f.shape == Shape::power ||
-           f.shape == Shape::norm || f.shape == Shape::component ||
-           (leaf_or_call && (!f.leaf || !f.leaf->vector));
+    return f.shape == Shape::number || f.shape == Shape::dot || f.shape == Shape::power || f.shape == Shape::norm ||
+           f.shape == Shape::component || (leaf_or_call && (!f.leaf || !f.leaf->vector));
   }
 
   // inverse i j', or i inverse j' where `inverse` is a matrix; E beside anything is not written.
@@ -131,19 +122,13 @@ class MassProduct {
     if (left_is_E && (tensor || !right_is_E)) left = unsigned_one(left);
     if (right_is_E) right = unsigned_one(right);
     std::vector<Formula> factors;
-    if (tensor)
-      factors = {std::move(left), leaf(inverse), std::move(right)};
-    else
-      factors = {leaf(inverse), std::move(left), std::move(right)};
+    if (tensor) factors = {std::move(left), leaf(inverse), std::move(right)};
+    else factors = {leaf(inverse), std::move(left), std::move(right)};
     terms.push_back({false, product(std::move(factors))});
   }
 
-  static bool is_identity(const Formula& f) {
-    return f.shape == Shape::identity || f == negative(identity());
-  }
-  static Formula unsigned_one(const Formula& f) {
-    return f.shape == Shape::identity ? number(1) : negative(number(1));
-  }
+  static bool is_identity(const Formula& f) { return f.shape == Shape::identity || f == negative(identity()); }
+  static Formula unsigned_one(const Formula& f) { return f.shape == Shape::identity ? number(1) : negative(number(1)); }
 
   const Lecture& lecture_;
   const Part& part_;
@@ -153,8 +138,7 @@ Expr unscaled(Expr v) { return v->kind == Kind::scale ? v->args[1] : v; }
 std::string spoken(Expr e) { return e->name.empty() ? text(e) : e->name; }
 
 // What the builders used to make K simpler than the product: lengths of unit vectors, right angles.
-std::string identities_used(const Lecture& lecture, const Part& part, const Statement& s,
-                            const Statement& t) {
+std::string identities_used(const Lecture& lecture, const Part& part, const Statement& s, const Statement& t) {
   std::string used;
   if (s.vector() || t.vector()) return "written out in components";
   for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
@@ -180,8 +164,7 @@ std::size_t rows_of(const Lecture& lecture, const Statement& s) {
 }
 
 // Entries of block.K, which holds the lower triangle, for the rows of s and the columns of t.
-Formula simplified(const Lecture& lecture, const Part& part, const Statement& s,
-                   const Statement& t) {
+Formula simplified(const Lecture& lecture, const Part& part, const Statement& s, const Statement& t) {
   std::vector<Formula> entries;
   for (std::size_t i = s.first; i < s.first + rows_of(lecture, s); ++i) {
     for (std::size_t j = t.first; j < t.first + rows_of(lecture, t); ++j) {
@@ -192,9 +175,7 @@ Formula simplified(const Lecture& lecture, const Part& part, const Statement& s,
   return matrix(static_cast<int>(rows_of(lecture, t)), std::move(entries));
 }
 
-Formula J_M_J(const Formula& J) {
-  return product({J, power(leaf({}, "M"), -1), shaped(Shape::transpose, J)});
-}
+Formula J_M_J(const Formula& J) { return product({J, power(leaf({}, "M"), -1), shaped(Shape::transpose, J)}); }
 
 // In space the blocks say more than nine numbers with six components of each tensor.
 bool stays_in_blocks(const Lecture& lecture, const Statement& s, const Statement& t) {
@@ -209,8 +190,8 @@ void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>
     for (const Statement& t : part.statements) {
       if (&t < &s) continue;
       const bool blocks = s.vector() || t.vector();
-      chains.push_back({name_of_K(part, s.name, t.name),
-                        {{blocks ? product.of(s, t) : simplified(lecture, part, s, t), ""}}});
+      chains.push_back(
+          {name_of_K(part, s.name, t.name), {{blocks ? product.of(s, t) : simplified(lecture, part, s, t), ""}}});
     }
   }
 }
@@ -226,8 +207,8 @@ void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
       blocks.push_back(above ? name : shaped(Shape::transpose, name));
       if (!above) continue;
       const Formula full = mass_product.of(s, t), result = simplified(lecture, part, s, t);
-      const bool as_it_stands = stays_in_blocks(lecture, s, t) || same_terms(result, full) ||
-                                same_terms(result, mass_product.of(t, s));
+      const bool as_it_stands =
+          stays_in_blocks(lecture, s, t) || same_terms(result, full) || same_terms(result, mass_product.of(t, s));
       Chain chain{name, {}};
       if (part.statements.size() == 1) chain.links.push_back({J_M_J(label("J", s)), ""});
       chain.links.push_back({full, "body by body"});
@@ -238,8 +219,7 @@ void multiply_mass(Lecture& lecture, const Part& part, Step& step) {
   if (part.statements.size() < 2 || coordinate) return;
   const int columns = static_cast<int>(part.statements.size());
   step.say("Together, with what lies below the diagonal by symmetry:");
-  step.show(
-      {leaf({}, "K"), {{J_M_J(leaf({}, "J")), ""}, {matrix(columns, std::move(blocks)), ""}}});
+  step.show({leaf({}, "K"), {{J_M_J(leaf({}, "J")), ""}, {matrix(columns, std::move(blocks)), ""}}});
 }
 
 }  // namespace cdot::derive

@@ -24,9 +24,8 @@ std::vector<Chain> Rates::differentiate(Expr e, Formula left) {
   Chain last = chain(e, std::move(left));
   // First rates in the order in which the author introduced the names, which never refers ahead.
   if (!depends_on_velocity(e))
-    std::stable_sort(chains_.begin(), chains_.end(), [this](const Chain& a, const Chain& b) {
-      return place_of(a.left.name) < place_of(b.left.name);
-    });
+    std::stable_sort(chains_.begin(), chains_.end(),
+                     [this](const Chain& a, const Chain& b) { return place_of(a.left.name) < place_of(b.left.name); });
   chains_.push_back(std::move(last));
   return std::exchange(chains_, {});
 }
@@ -84,19 +83,13 @@ std::optional<Formula> Rates::rate(Expr e, bool root) {
 
 std::optional<Formula> Rates::rule(Expr e) {
   switch (e->kind) {
-    case Kind::number:
-      return {};
-    case Kind::symbol:
-      return symbol_rule(e);
-    case Kind::sum:
-      return sum_rule(e);
-    case Kind::product:
-      return product_rule(e);
+    case Kind::number: return {};
+    case Kind::symbol: return symbol_rule(e);
+    case Kind::sum: return sum_rule(e);
+    case Kind::product: return product_rule(e);
     case Kind::dot:
-    case Kind::cross:
-      return pair_rule(e);
-    case Kind::scale:
-      return scale_rule(e);
+    case Kind::cross: return pair_rule(e);
+    case Kind::scale: return scale_rule(e);
     case Kind::perp: {
       used("a quarter turn of the rate");
       return shaped(Shape::perp, *rate(e->args[0], false));
@@ -105,23 +98,18 @@ std::optional<Formula> Rates::rule(Expr e) {
       used("derivative of a length: |u|_dot = unit(u) · u_dot");
       return dot(notation_.of(unit(e->args[0])), *rate(e->args[0], false));
     }
-    case Kind::unit:
-      return unit_rule(e);
-    case Kind::tensor:
-      return product({notation_.of(e->args[0]), *rate(e->args[1], false)});
+    case Kind::unit: return unit_rule(e);
+    case Kind::tensor: return product({notation_.of(e->args[0]), *rate(e->args[1], false)});
     case Kind::twist: {
       used("rate of a twist of g against f: (f.x + g.x) · (w_g - w_f)/(1 + f.x · g.x)");
       return notation_.of(time_derivative(e, joint_));
     }
-    case Kind::function:
-      return function_rule(e);
+    case Kind::function: return function_rule(e);
   }
   return {};
 }
 
-Formula Rates::turned(Expr s) const {
-  return cross(leaf(body_symbols(joint_, s->body).w), leaf(s));
-}
+Formula Rates::turned(Expr s) const { return cross(leaf(body_symbols(joint_, s->body).w), leaf(s)); }
 
 std::optional<Formula> Rates::symbol_rule(Expr e) {
   if (e->role == Role::time) return number(1);
@@ -189,8 +177,7 @@ std::optional<Formula> Rates::pair_rule(Expr e) {
   const std::string along_u = world_axis(u), along_v = world_axis(v);
   if (!along_u.empty() || !along_v.empty()) {
     used("component by component");
-    return along_v.empty() ? component(*rate(v, false), along_u)
-                           : component(*rate(u, false), along_v);
+    return along_v.empty() ? component(*rate(v, false), along_u) : component(*rate(u, false), along_v);
   }
   if (v->kind == Kind::symbol && v->role == Role::spin) return negative(turned_again(v, u));
   used("product rule");
@@ -229,8 +216,7 @@ std::optional<Formula> Rates::unit_rule(Expr e) {
   if (joint_.dimension == 3) {
     used("derivative of a direction n of u: n_dot = (u_dot - (n · u_dot) n)/|u|");
     const Formula u_dot = *rate(e->args[0], false);
-    return quotient(sum({{false, u_dot}, {true, product({dot(n, u_dot), n})}}),
-                    notation_.of(norm(e->args[0])));
+    return quotient(sum({{false, u_dot}, {true, product({dot(n, u_dot), n})}}), notation_.of(norm(e->args[0])));
   }
   used("derivative of a direction n of u: n_dot = (n × u_dot)/|u| perp(n)");
   const Formula speed = cross(n, *rate(e->args[0], false));
@@ -261,27 +247,15 @@ Formula Rates::function_rate(Expr e, Formula x_dot) {
     case Fn::sqrt:
       rule("sqrt(x)_dot = x_dot/(2 sqrt(x))");
       return quotient(std::move(x_dot), product({number(2), notation_.of(e)}));
-    case Fn::sin:
-      rule("sin(x)_dot = cos(x) x_dot");
-      return product({of(Fn::cos), std::move(x_dot)});
-    case Fn::cos:
-      rule("cos(x)_dot = -sin(x) x_dot");
-      return negative(product({of(Fn::sin), std::move(x_dot)}));
+    case Fn::sin: rule("sin(x)_dot = cos(x) x_dot"); return product({of(Fn::cos), std::move(x_dot)});
+    case Fn::cos: rule("cos(x)_dot = -sin(x) x_dot"); return negative(product({of(Fn::sin), std::move(x_dot)}));
     case Fn::tan:
       rule("tan(x)_dot = (1 + tan(x)^2) x_dot");
-      return product(
-          {sum({{false, number(1)}, {false, power(notation_.of(e), 2)}}), std::move(x_dot)});
-    case Fn::exp:
-      rule("exp(x)_dot = exp(x) x_dot");
-      return product({notation_.of(e), std::move(x_dot)});
-    case Fn::log:
-      rule("log(x)_dot = x_dot/x");
-      return quotient(std::move(x_dot), notation_.of(x));
-    case Fn::abs:
-      rule("|x|_dot = sign(x) x_dot");
-      return product({of(Fn::sign), std::move(x_dot)});
-    default:
-      break;
+      return product({sum({{false, number(1)}, {false, power(notation_.of(e), 2)}}), std::move(x_dot)});
+    case Fn::exp: rule("exp(x)_dot = exp(x) x_dot"); return product({notation_.of(e), std::move(x_dot)});
+    case Fn::log: rule("log(x)_dot = x_dot/x"); return quotient(std::move(x_dot), notation_.of(x));
+    case Fn::abs: rule("|x|_dot = sign(x) x_dot"); return product({of(Fn::sign), std::move(x_dot)});
+    default: break;
   }
   throw std::logic_error("no rule for the derivative of " + std::string(name_of(e->fn)));
 }

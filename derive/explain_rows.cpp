@@ -13,8 +13,8 @@ void head(Step& step, const Part& part, const Statement& s) {
 }
 
 // What multiplies one velocity, summed up from the terms of Cdot.
-void collect(Lecture& lecture, const std::vector<VelocityTerm>& terms, Expr coefficient, int body,
-             bool spin, Step& step) {
+void collect(Lecture& lecture, const std::vector<VelocityTerm>& terms, Expr coefficient, int body, bool spin,
+             Step& step) {
   std::vector<SignedFormula> parts;
   for (const VelocityTerm& term : terms) {
     if (term.body != body || term.spin != spin || is_zero(term.coefficient)) continue;
@@ -38,8 +38,7 @@ Formula isolated(const Lecture& lecture, const ScalarRow& row) {
     const int body = static_cast<int>(b);
     const auto add = [&](Expr coefficient, bool spin) {
       if (is_zero(coefficient)) return;
-      terms.push_back(
-          {false, multiplied(coefficient, body, spin, lecture.joint, lecture.notation)});
+      terms.push_back({false, multiplied(coefficient, body, spin, lecture.joint, lecture.notation)});
     };
     add(row.J[b].v, false);
     add(row.J[b].w, true);
@@ -51,15 +50,13 @@ Formula isolated(const Lecture& lecture, const ScalarRow& row) {
 void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
   const ScalarRow& row = part.block.rows[s.first];
   const bool at_velocity_level = s.kind == RowKind::velocity;
-  const Formula Cdot =
-      at_velocity_level ? lecture.notation.definition(s.C) : lecture.rates.inserted(s.C);
+  const Formula Cdot = at_velocity_level ? lecture.notation.definition(s.C) : lecture.rates.inserted(s.C);
   const std::vector<VelocityTerm> terms = isolate(Cdot, lecture.joint);
   for (const VelocityTerm& term : terms) {
     if (term.identity.empty()) continue;
     const Formula written = sum({{term.minus, term.written}});
-    const Formula result = term.body < 0 ? number(0)
-                                         : multiplied(term.coefficient, term.body, term.spin,
-                                                      lecture.joint, lecture.notation);
+    const Formula result =
+        term.body < 0 ? number(0) : multiplied(term.coefficient, term.body, term.spin, lecture.joint, lecture.notation);
     step.show({written, {{result, term.identity}}});
   }
   for (std::size_t b = 0; b < row.J.size(); ++b) {
@@ -82,8 +79,7 @@ Formula without_identity(Formula f) {
 }
 
 const char* turning_by_skew(int dimension) {
-  return dimension == 2 ? "w × r = S(r) w, with S(r) = perp(r) as a column"
-                        : "w × r = -S(r) w, with S(r) u = r × u";
+  return dimension == 2 ? "w × r = S(r) w, with S(r) = perp(r) as a column" : "w × r = -S(r) w, with S(r) u = r × u";
 }
 
 void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
@@ -157,9 +153,7 @@ void explain_kept(const Lecture& lecture, Expr product, Step& step) {
   const bool first = pool.axis_of(product->args[0]).triad && product->args[0]->body >= 0;
   const Expr n = product->args[first ? 0 : 1], m = product->args[first ? 1 : 0];
   const Pool::Axis axis = pool.axis_of(n);
-  const auto other = [&](int offset) {
-    return (*axis.triad)[static_cast<std::size_t>((axis.index + offset) % 3)];
-  };
+  const auto other = [&](int offset) { return (*axis.triad)[static_cast<std::size_t>((axis.index + offset) % 3)]; };
   const Expr y = other(1), z = other(2);
   const Notation& notation = lecture.notation;
   const Formula all = cross(leaf(n), notation.of(m));
@@ -174,8 +168,7 @@ void explain_kept(const Lecture& lecture, Expr product, Step& step) {
       "While both vanish {} lies along {}, and {} and {} are as long as {} and stand on each "
       "other: "
       "these two rows stay independent wherever the row holds.",
-      {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)), cross(leaf(z), notation.of(m)),
-       notation.of(m)});
+      {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)), cross(leaf(z), notation.of(m)), notation.of(m)});
 }
 
 }  // namespace
@@ -236,10 +229,8 @@ void differentiate(Lecture& lecture, const Part& part, Step& step) {
 void isolate_velocities(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    if (s.vector())
-      isolate_rows_together(lecture, part, s, step);
-    else
-      isolate_scalar(lecture, part, s, step);
+    if (s.vector()) isolate_rows_together(lecture, part, s, step);
+    else isolate_scalar(lecture, part, s, step);
   }
 }
 

@@ -13,12 +13,9 @@ Chain equation(Formula left, Formula right, std::string note = {}) {
 
 std::string note_of(RowKind kind) {
   switch (kind) {
-    case RowKind::equality:
-      return "";
-    case RowKind::inequality:
-      return "C >= 0 must hold, lambda >= 0";
-    case RowKind::velocity:
-      return "at velocity level: C is 0";
+    case RowKind::equality: return "";
+    case RowKind::inequality: return "C >= 0 must hold, lambda >= 0";
+    case RowKind::velocity: return "at velocity level: C is 0";
   }
   return "";
 }
@@ -45,8 +42,8 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
   std::vector<Formula> J;
   for (const Statement& s : part.statements) {
     const bool velocity = s.kind == RowKind::velocity;
-    const Formula left = part.block.name.empty() ? label(velocity ? "Cdot" : "C", s, s.C)
-                                                 : leaf(s.C, "coordinate " + s.name);
+    const Formula left =
+        part.block.name.empty() ? label(velocity ? "Cdot" : "C", s, s.C) : leaf(s.C, "coordinate " + s.name);
     summary.push_back(equation(left, lecture.notation.definition(s.C), note_of(s.kind)));
     const Formula row = row_of_J(lecture, part, s);
     J.insert(J.end(), row.args.begin(), row.args.end());
@@ -55,8 +52,7 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
   const int width = static_cast<int>(2 * lecture.joint.bodies.size());
   const bool single = part.statements.size() == 1;
   const Formula all = matrix(width, std::move(J));
-  summary.push_back(equation(single ? label("J", part.statements[0]) : leaf({}, "J"), all,
-                             columns(lecture.joint)));
+  summary.push_back(equation(single ? label("J", part.statements[0]) : leaf({}, "J"), all, columns(lecture.joint)));
   if (has_skew(all)) summary.push_back(meaning_of_S(lecture.joint.dimension));
   summarise_mass(lecture, part, summary);
   return summary;

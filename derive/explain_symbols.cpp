@@ -9,24 +9,18 @@ namespace cdot::derive {
 namespace {
 
 constexpr std::array reserved = {
-    "False",    "None",     "True",   "and",    "as",   "assert", "async",  "await",  "break",
-    "class",    "continue", "def",    "del",    "elif", "else",   "for",    "except", "from",
-    "if",       "finally",  "global", "import", "in",   "is",     "lambda", "not",    "or",
-    "nonlocal", "pass",     "raise",  "return", "try",  "while",  "with",   "yield",  "sqrt",
-    "sin",      "cos",      "tan",    "atan2",  "exp",  "log",    "abs",    "sign"};
+    "False", "None",  "True",   "and",  "as",  "assert",   "async", "await", "break",   "class",  "continue",
+    "def",   "del",   "elif",   "else", "for", "except",   "from",  "if",    "finally", "global", "import",
+    "in",    "is",    "lambda", "not",  "or",  "nonlocal", "pass",  "raise", "return",  "try",    "while",
+    "with",  "yield", "sqrt",   "sin",  "cos", "tan",      "atan2", "exp",   "log",     "abs",    "sign"};
 
 std::string spoken_kind(const Parameter& p) {
   switch (p.kind) {
-    case ParameterKind::point:
-      return p.body < 0 ? "the point " + p.name : "the arm of the point " + p.name;
-    case ParameterKind::vector:
-      return "the vector " + p.name;
-    case ParameterKind::unit:
-      return "the direction " + p.name + " (length 1)";
-    case ParameterKind::frame:
-      return " axis of the frame " + p.name + " (length 1)";
-    case ParameterKind::scalar:
-      break;
+    case ParameterKind::point: return p.body < 0 ? "the point " + p.name : "the arm of the point " + p.name;
+    case ParameterKind::vector: return "the vector " + p.name;
+    case ParameterKind::unit: return "the direction " + p.name + " (length 1)";
+    case ParameterKind::frame: return " axis of the frame " + p.name + " (length 1)";
+    case ParameterKind::scalar: break;
   }
   return "the number " + p.name;
 }
@@ -66,12 +60,9 @@ void ExplainedSymbols::add_body(const std::string& b) {
   const bool plane = letters_.size() == 2;
   add_components("x_" + b, {"position", "the centre of mass of " + b, "m", "world", b, "", false});
   if (plane)
-    add("theta_" + b, "theta_" + b,
-        {"position", "angle of " + b + ", unwrapped", "rad", "world", b, "", false});
-  else
-    add_orientation(b);
-  add_components("v_" + b, {"velocity", "the velocity of the centre of mass of " + b, "m/s",
-                            "world", b, "", false});
+    add("theta_" + b, "theta_" + b, {"position", "angle of " + b + ", unwrapped", "rad", "world", b, "", false});
+  else add_orientation(b);
+  add_components("v_" + b, {"velocity", "the velocity of the centre of mass of " + b, "m/s", "world", b, "", false});
   const Doc spin{"velocity", "angular velocity of " + b, "rad/s", "world", b, "", false};
   const Doc inertia{"mass",
                     "inverse inertia of " + b + " about its centre of mass; 0 if it cannot turn",
@@ -80,12 +71,9 @@ void ExplainedSymbols::add_body(const std::string& b) {
                     b,
                     "",
                     false};
-  if (plane)
-    add("w_" + b, "w_" + b, spin);
-  else
-    add_components("w_" + b, spin);
-  add("inv_m_" + b, "inv_m_" + b,
-      {"mass", "inverse mass of " + b + "; 0 if it cannot move", "1/kg", "", b, "", false});
+  if (plane) add("w_" + b, "w_" + b, spin);
+  else add_components("w_" + b, spin);
+  add("inv_m_" + b, "inv_m_" + b, {"mass", "inverse mass of " + b + "; 0 if it cannot move", "1/kg", "", b, "", false});
   if (plane) return add("inv_I_" + b, "inv_I_" + b, inertia);
   for (const std::string ij : {"xx", "yy", "zz", "xy", "xz", "yz"}) {
     Doc entry = inertia;
@@ -100,8 +88,7 @@ void ExplainedSymbols::add_orientation(const std::string& b) {
   for (const std::string k : {"0", "1", "2", "3"}) {
     e.push_back("e_" + b + "_" + k);
     add(e.back(), e.back(),
-        {"orientation", "Euler parameter e" + k + " of " + b + ", a unit quaternion", "1", "world",
-         b, "", false});
+        {"orientation", "Euler parameter e" + k + " of " + b + ", a unit quaternion", "1", "world", b, "", false});
     e.back() = names_.at(e.back());
   }
   const auto twice = [&](int i, int j, const char* sign, int k, int l) {
@@ -110,19 +97,16 @@ void ExplainedSymbols::add_orientation(const std::string& b) {
   };
   const auto diagonal = [&](int k) {
     std::string square = e[0] + "**2";
-    for (int i = 1; i <= 3; ++i)
-      square += (i == k ? " + " : " - ") + e[static_cast<std::size_t>(i)] + "**2";
+    for (int i = 1; i <= 3; ++i) square += (i == k ? " + " : " - ") + e[static_cast<std::size_t>(i)] + "**2";
     return square;
   };
-  const std::string from[3][3] = {
-      {diagonal(1), twice(1, 2, " - ", 0, 3), twice(1, 3, " + ", 0, 2)},
-      {twice(1, 2, " + ", 0, 3), diagonal(2), twice(2, 3, " - ", 0, 1)},
-      {twice(1, 3, " - ", 0, 2), twice(2, 3, " + ", 0, 1), diagonal(3)}};
+  const std::string from[3][3] = {{diagonal(1), twice(1, 2, " - ", 0, 3), twice(1, 3, " + ", 0, 2)},
+                                  {twice(1, 2, " + ", 0, 3), diagonal(2), twice(2, 3, " - ", 0, 1)},
+                                  {twice(1, 3, " - ", 0, 2), twice(2, 3, " + ", 0, 1), diagonal(3)}};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       const std::string ij{"xyz"[i], "xyz"[j]}, name = "A_" + b + "_" + ij;
-      add(name, name,
-          {"derived", ij + " of the rotation matrix of " + b, "1", "world", b, from[i][j], false});
+      add(name, name, {"derived", ij + " of the rotation matrix of " + b, "1", "world", b, from[i][j], false});
     }
   }
 }
@@ -147,8 +131,8 @@ void ExplainedSymbols::add_parameter(const Joint& joint, const Parameter& p) {
   for (const Expr axis : p.axes.empty() ? std::vector{p.symbol} : p.axes) {
     const std::string letter(1, letters_[triad.size()]);
     const std::string what = frame ? "the " + letter + meaning : meaning;
-    triad.push_back(add_direction(
-        joint, p, axis->symbol, {"parameter", what, unit, "world", "", "", p.symbol->unit_length}));
+    triad.push_back(
+        add_direction(joint, p, axis->symbol, {"parameter", what, unit, "world", "", "", p.symbol->unit_length}));
   }
   if (!p.axes.empty()) frames_.push_back({{"name", p.name}, {"axes", triad}});
 }
@@ -185,8 +169,7 @@ void ExplainedSymbols::add_turned(const std::string& leaf, const std::string& wi
     for (const char i : letters_) {
       std::string sum;
       for (std::size_t j = 0; j < 3; ++j) {
-        sum += (j == 0 ? "" : " + ") + names_.at("A_" + doc.body + "_" + i + letters_[j]) + "*" +
-               given[j];
+        sum += (j == 0 ? "" : " + ") + names_.at("A_" + doc.body + "_" + i + letters_[j]) + "*" + given[j];
       }
       from.push_back(sum);
     }

@@ -16,7 +16,7 @@ class ExplainedSymbols {
  public:
   explicit ExplainedSymbols(const Joint& joint);
 
-  std::string name(Expr symbol);  // of a scalar leaf; arms are renamed: ra_x is r_pa_x
+  std::string name(Expr symbol);                 // of a scalar leaf; arms are renamed: ra_x is r_pa_x
   std::string reserve(const std::string& wish);  // a name that nothing else has, near the wish
   nlohmann::ordered_json json() const { return docs_; }
   // Triads among the parameters: name, and three axes of three components each.
@@ -32,10 +32,10 @@ class ExplainedSymbols {
   void add_orientation(const std::string& body);
   void add_components(const std::string& stem, const Doc& doc);
   void add_parameter(const Joint& joint, const Parameter& parameter);
-  std::vector<std::string> add_direction(const Joint& joint, const Parameter& parameter,
-                                         const std::string& leaf, Doc doc);
-  void add_turned(const std::string& leaf, const std::string& wish,
-                  const std::vector<std::string>& given, const Doc& doc);
+  std::vector<std::string> add_direction(const Joint& joint, const Parameter& parameter, const std::string& leaf,
+                                         Doc doc);
+  void add_turned(const std::string& leaf, const std::string& wish, const std::vector<std::string>& given,
+                  const Doc& doc);
   void add_axis(Expr symbol);
 
   std::vector<std::string> bodies_;

@@ -33,9 +33,7 @@ class TextFormula : public FormulaWriter {
     return out + ")";
   }
   std::string norm(const std::string& arg) const override { return "|" + arg + "|"; }
-  std::string component(const std::string& arg, const std::string& axis) const override {
-    return arg + "." + axis;
-  }
+  std::string component(const std::string& arg, const std::string& axis) const override { return arg + "." + axis; }
   std::string transpose(const std::string& arg) const override { return arg + "'"; }
   std::string identity() const override { return "E"; }
   std::string matrix(int columns, const std::vector<std::string>& entries) const override {
@@ -50,13 +48,12 @@ class TextFormula : public FormulaWriter {
 };
 
 std::size_t width(const std::string& s) {
-  return static_cast<std::size_t>(std::count_if(
-      s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
+  return static_cast<std::size_t>(
+      std::count_if(s.begin(), s.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; }));
 }
 
 // Words broken at blanks; further lines start at `indent`.
-std::string wrapped(const std::string& words, std::size_t indent,
-                    std::size_t page_width = text_width) {
+std::string wrapped(const std::string& words, std::size_t indent, std::size_t page_width = text_width) {
   std::string out, line;
   std::size_t at = 0;
   while (at < words.size()) {
@@ -76,8 +73,7 @@ std::string wrapped(const std::string& words, std::size_t indent,
 class ChainText {
  public:
   // Lines start with `margin` blanks and, rules aside, end within `page_width`.
-  ChainText(std::size_t margin, std::size_t page_width)
-      : margin_(margin), page_width_(page_width) {}
+  ChainText(std::size_t margin, std::size_t page_width) : margin_(margin), page_width_(page_width) {}
 
   std::string write(const Chain& chain) {
     std::string left = std::string(margin_, ' ') + formula_.write(chain.left);
@@ -113,12 +109,9 @@ class ChainText {
     const std::string whole = formula_.write(f);
     const bool one_row = f.args.size() == static_cast<std::size_t>(f.columns);
     const bool fits = width(line_) + width(whole) <= page_width_;
-    if (one_row && fits)
-      line_ += whole;
-    else if (fits || width(whole) / f.args.size() * static_cast<std::size_t>(f.columns) < 80)
-      write_rows(f);
-    else
-      write_entries(f);
+    if (one_row && fits) line_ += whole;
+    else if (fits || width(whole) / f.args.size() * static_cast<std::size_t>(f.columns) < 80) write_rows(f);
+    else write_entries(f);
   }
 
   // An entry a line where a row is too long for one: | before each but a row's first, ; before a
@@ -144,19 +137,14 @@ class ChainText {
     }
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::size_t column = i % columns;
-      if (i == 0)
-        line_ += "[ ";
-      else if (column == 0)
-        line_ = std::string(indent_ + 3, ' ') + "  ";
-      else
-        line_ += " | ";
+      if (i == 0) line_ += "[ ";
+      else if (column == 0) line_ = std::string(indent_ + 3, ' ') + "  ";
+      else line_ += " | ";
       const bool last_of_row = column + 1 == columns, last = i + 1 == cells.size();
       line_ += cells[i];
       if (!last_of_row || last) line_ += std::string(widths[column] - width(cells[i]), ' ');
-      if (last)
-        line_ += " ]";
-      else if (last_of_row)
-        finish_line();
+      if (last) line_ += " ]";
+      else if (last_of_row) finish_line();
     }
   }
 
@@ -190,17 +178,14 @@ std::string item_text(const Item& item) {
   if (item.kind == Item::Kind::chain) return ChainText(4, text_width).write(item.chain);
   const TextFormula formula;
   const std::string words = fill(
-      item.words, [](const std::string& s) { return s; },
-      [&formula](const Formula& f) { return formula.write(f); });
+      item.words, [](const std::string& s) { return s; }, [&formula](const Formula& f) { return formula.write(f); });
   if (item.kind == Item::Kind::bullet) return "  - " + wrapped(words, 4) + "\n";
   return "  " + wrapped(words, 2) + "\n";
 }
 
 }  // namespace
 
-std::string chain_text(const Chain& chain, std::size_t page_width) {
-  return ChainText(0, page_width).write(chain);
-}
+std::string chain_text(const Chain& chain, std::size_t page_width) { return ChainText(0, page_width).write(chain); }
 
 std::string explanation_text(const Explanation& explanation) {
   std::string out = explanation.title + "\n" + std::string(width(explanation.title), '=') + "\n";

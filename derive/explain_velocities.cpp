@@ -18,10 +18,8 @@ class Distribution {
         for (std::size_t i = 0; i < f.args.size(); ++i) append(all, of(f.args[i]), f.minus[i]);
         return all;
       }
-      case Shape::product:
-        return through(f, [](std::vector<Formula> args) { return product(std::move(args)); });
-      case Shape::quotient:
-        return through(f, [](std::vector<Formula> args) { return quotient(args[0], args[1]); });
+      case Shape::product: return through(f, [](std::vector<Formula> args) { return product(std::move(args)); });
+      case Shape::quotient: return through(f, [](std::vector<Formula> args) { return quotient(args[0], args[1]); });
       // A velocity w × r is a unit of its own: only sums inside it are taken apart.
       case Shape::dot:
       case Shape::cross:
@@ -32,8 +30,7 @@ class Distribution {
           g.args = std::move(args);
           return g;
         });
-      default:
-        return {{false, f}};
+      default: return {{false, f}};
     }
   }
 
@@ -72,8 +69,7 @@ class Distribution {
 };
 
 bool is_turning(const Formula& f) {  // w × r
-  return f.shape == Shape::cross && f.args[0].shape == Shape::leaf &&
-         f.args[0].leaf->role == Role::spin;
+  return f.shape == Shape::cross && f.args[0].shape == Shape::leaf && f.args[0].leaf->role == Role::spin;
 }
 
 bool moves_in_space(const Formula& f) {
@@ -90,10 +86,8 @@ std::string identity_in(const Formula& f, const Distribution& distribution) {
   }
   const bool in_space = moves_in_space(f);
   if (f.shape == Shape::dot) {
-    if (is_turning(f.args[0]))
-      return in_space ? "(w × s) · u = (s × u) · w" : "(w × s) · u = (s × u) w";
-    if (is_turning(f.args[1]))
-      return in_space ? "n · (w × r) = (r × n) · w" : "n · (w × r) = (r × n) w";
+    if (is_turning(f.args[0])) return in_space ? "(w × s) · u = (s × u) · w" : "(w × s) · u = (s × u) w";
+    if (is_turning(f.args[1])) return in_space ? "n · (w × r) = (r × n) · w" : "n · (w × r) = (r × n) w";
     for (const Formula& arg : f.args) {
       if (in_space && arg.shape == Shape::cross && distribution.moves(arg))
         return "a · (b × c) = b · (c × a) = c · (a × b)";
@@ -127,15 +121,11 @@ struct Left {
     left.matrices.push_back(std::move(f));
     return left;
   }
-  bool same_but_coef(const Left& other) const {
-    return scalars == other.scalars && matrices == other.matrices;
-  }
+  bool same_but_coef(const Left& other) const { return scalars == other.scalars && matrices == other.matrices; }
   SignedFormula formula() const {
     std::vector<Formula> factors = scalars;
-    if (matrices.empty())
-      factors.push_back(identity());
-    else
-      factors.insert(factors.end(), matrices.begin(), matrices.end());
+    if (matrices.empty()) factors.push_back(identity());
+    else factors.insert(factors.end(), matrices.begin(), matrices.end());
     Formula f = product(std::move(factors));
     if (abs(coef) != Rational(1)) f = cdot::derive::times(abs(coef), std::move(f));
     return {coef.sign() < 0, std::move(f)};
@@ -151,23 +141,19 @@ class VectorIsolation {
   void walk(Expr e, const Left& left) {
     if (!depends_on_velocity(e)) return;
     switch (e->kind) {
-      case Kind::symbol:
-        return add(e->role == Role::spin ? w_ : v_, e->body, left);
+      case Kind::symbol: return add(e->role == Role::spin ? w_ : v_, e->body, left);
       case Kind::sum:
         for (std::size_t i = 0; i < e->args.size(); ++i) walk(e->args[i], left.times(e->coefs[i]));
         return;
       case Kind::scale:
-        if (!depends_on_velocity(e->args[0]))
-          return walk(e->args[1], left.with_scalar(notation_.of(e->args[0])));
+        if (!depends_on_velocity(e->args[0])) return walk(e->args[1], left.with_scalar(notation_.of(e->args[0])));
         if (!depends_on_velocity(e->args[1])) return along(e->args[0], left, e->args[1]);
         break;
       case Kind::cross:  // u × v = S(u) v = -S(v) u
         if (!depends_on_velocity(e->args[0]))
           return walk(e->args[1], left.with_matrix(shaped(Shape::skew, notation_.of(e->args[0]))));
-        return walk(e->args[0],
-                    left.times(-1).with_matrix(shaped(Shape::skew, notation_.of(e->args[1]))));
-      default:
-        break;
+        return walk(e->args[0], left.times(-1).with_matrix(shaped(Shape::skew, notation_.of(e->args[1]))));
+      default: break;
     }
     complete_ = false;
   }
@@ -194,8 +180,8 @@ class VectorIsolation {
         continue;
       }
       const Term c = split_coefficient(J[b].w);
-      Left column = left.times(c.coef).with_matrix(
-          u->kind == Kind::perp ? shaped(Shape::skew, notation_.of(u->args[0])) : notation_.of(u));
+      Left column = left.times(c.coef).with_matrix(u->kind == Kind::perp ? shaped(Shape::skew, notation_.of(u->args[0]))
+                                                                         : notation_.of(u));
       add(w_, body, is_one(c.e) ? column : column.with_scalar(notation_.of(c.e)));
     }
   }
@@ -236,8 +222,7 @@ std::vector<VelocityTerm> isolate(const Formula& Cdot, const Joint& joint) {
   const Distribution distribution;
   std::vector<VelocityTerm> terms;
   for (const SignedFormula& part : distribution.of(Cdot)) {
-    VelocityTerm term{part.minus, part.formula, -1,
-                      false,      {},           identity_in(part.formula, distribution)};
+    VelocityTerm term{part.minus, part.formula, -1, false, {}, identity_in(part.formula, distribution)};
     const Expr value = value_of(part.formula, pool);
     const std::vector<JacobianEntry> J = isolate_velocities(part.minus ? -value : value, joint);
     for (std::size_t b = 0; b < J.size(); ++b) {
@@ -255,23 +240,20 @@ std::vector<VelocityTerm> isolate(const Formula& Cdot, const Joint& joint) {
   return terms;
 }
 
-std::optional<std::vector<VelocityBlocks>> isolate_vector(Expr Cdot, const Joint& joint,
-                                                          const Notation& notation) {
+std::optional<std::vector<VelocityBlocks>> isolate_vector(Expr Cdot, const Joint& joint, const Notation& notation) {
   VectorIsolation isolation(joint, notation);
   isolation.walk(Cdot, {});
   return isolation.blocks();
 }
 
-Formula multiplied(Expr coefficient, int body, bool spin, const Joint& joint,
-                   const Notation& notation) {
+Formula multiplied(Expr coefficient, int body, bool spin, const Joint& joint, const Notation& notation) {
   const BodySymbols symbols = body_symbols(joint, body);
   if (spin && !symbols.w->vector) return product({notation.of(coefficient), leaf(symbols.w)});
   // (s n) · v is written s (n · v).
   const Term term = split_coefficient(coefficient);
   const bool scaled = term.e->kind == Kind::scale && !Notation::has_name(term.e);
   const Formula factor = scaled ? notation.of(term.e->args[0]) : number(1);
-  const Formula along =
-      dot(notation.of(scaled ? term.e->args[1] : term.e), leaf(spin ? symbols.w : symbols.v));
+  const Formula along = dot(notation.of(scaled ? term.e->args[1] : term.e), leaf(spin ? symbols.w : symbols.v));
   const Formula f = product({number(abs(term.coef)), factor, along});
   return term.coef.sign() < 0 ? negative(f) : f;
 }

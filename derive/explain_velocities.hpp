@@ -25,11 +25,9 @@ struct VelocityBlocks {
 };
 // J of a vector equation, block by block; nothing if some velocity enters otherwise than by
 // products.
-std::optional<std::vector<VelocityBlocks>> isolate_vector(Expr Cdot, const Joint& joint,
-                                                          const Notation& notation);
+std::optional<std::vector<VelocityBlocks>> isolate_vector(Expr Cdot, const Joint& joint, const Notation& notation);
 
 // coefficient velocity, as a term is written: t · v_a, (ra × t) w_a.
-Formula multiplied(Expr coefficient, int body, bool spin, const Joint& joint,
-                   const Notation& notation);
+Formula multiplied(Expr coefficient, int body, bool spin, const Joint& joint, const Notation& notation);
 
 }  // namespace cdot::derive

@@ -46,8 +46,7 @@ std::vector<std::string> FormulaWriter::pieces(const Formula& f) const {
 
 bool FormulaWriter::needs_parentheses(const Formula& f, Place place) const {
   switch (f.shape) {
-    case Shape::sum:
-      return place != Place::whole;
+    case Shape::sum: return place != Place::whole;
     // -(ra × t), but v_b - w_b × rb; a dot product needs it only if a sum opens it.
     case Shape::cross:
     case Shape::dot: {
@@ -55,16 +54,12 @@ bool FormulaWriter::needs_parentheses(const Formula& f, Place place) const {
       return place >= Place::factor || (place >= Place::negated && opened_by_sum) ||
              (place == Place::opening_minus && f.shape == Shape::cross);
     }
-    case Shape::product:
-      return place >= Place::operand;
-    case Shape::quotient:
-      return fraction_encloses() ? place == Place::base : place >= Place::factor;
+    case Shape::product: return place >= Place::operand;
+    case Shape::quotient: return fraction_encloses() ? place == Place::base : place >= Place::factor;
     case Shape::power:
     case Shape::transpose:
-    case Shape::number:
-      return place == Place::base && (f.shape != Shape::number || !f.number.is_integer());
-    default:
-      return false;
+    case Shape::number: return place == Place::base && (f.shape != Shape::number || !f.number.is_integer());
+    default: return false;
   }
 }
 
@@ -92,38 +87,25 @@ std::string FormulaWriter::fraction_of(const Formula& f) const {
 std::string FormulaWriter::bare(const Formula& f) const {
   std::vector<std::string> args;
   switch (f.shape) {
-    case Shape::leaf:
-      return name(f);
-    case Shape::number:
-      return number(f.number);
+    case Shape::leaf: return name(f);
+    case Shape::number: return number(f.number);
     case Shape::sum: {
       std::string out;
       for (const std::string& piece : pieces(f)) out += piece;
       return out;
     }
-    case Shape::product:
-      return joined(f, Place::factor);
+    case Shape::product: return joined(f, Place::factor);
     case Shape::dot:
-    case Shape::cross:
-      return joined(f, Place::operand);
-    case Shape::quotient:
-      return fraction_of(f);
-    case Shape::power:
-      return power(write(f.args[0], Place::base), f.exponent);
-    case Shape::norm:
-      return norm(write(f.args[0]));
-    case Shape::component:
-      return component(write(f.args[0], Place::base), f.name);
-    case Shape::transpose:
-      return transpose(write(f.args[0], Place::base));
-    case Shape::identity:
-      return identity();
-    case Shape::perp:
-      return call("perp", {write(f.args[0])});
-    case Shape::unit:
-      return call("unit", {write(f.args[0])});
-    case Shape::skew:
-      return call("S", {write(f.args[0])});
+    case Shape::cross: return joined(f, Place::operand);
+    case Shape::quotient: return fraction_of(f);
+    case Shape::power: return power(write(f.args[0], Place::base), f.exponent);
+    case Shape::norm: return norm(write(f.args[0]));
+    case Shape::component: return component(write(f.args[0], Place::base), f.name);
+    case Shape::transpose: return transpose(write(f.args[0], Place::base));
+    case Shape::identity: return identity();
+    case Shape::perp: return call("perp", {write(f.args[0])});
+    case Shape::unit: return call("unit", {write(f.args[0])});
+    case Shape::skew: return call("S", {write(f.args[0])});
     case Shape::call:
       for (const Formula& arg : f.args) args.push_back(write(arg));
       return call(f.name, args);

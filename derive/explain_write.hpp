@@ -31,8 +31,7 @@ class FormulaWriter {
   virtual std::string fraction(const std::string& above, const std::string& below) const = 0;
   virtual bool fraction_encloses() const { return true; }  // its parts need no parentheses
   virtual std::string power(const std::string& base, int exponent) const = 0;
-  virtual std::string call(const std::string& function,
-                           const std::vector<std::string>& args) const = 0;
+  virtual std::string call(const std::string& function, const std::vector<std::string>& args) const = 0;
   virtual std::string norm(const std::string& arg) const = 0;
   virtual std::string component(const std::string& arg, const std::string& axis) const = 0;
   virtual std::string transpose(const std::string& arg) const = 0;

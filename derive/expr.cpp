@@ -175,8 +175,7 @@ bool depends_on_velocity(Expr e) {
   return false;
 }
 
-Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements,
-                KeepNames names) {
+Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements, KeepNames names) {
   std::map<const Node*, Expr> done = replacements;
   for (const Expr n : topological(std::span(&e, 1))) {
     if (done.contains(&*n)) continue;

@@ -86,9 +86,9 @@ struct Node {
   int body = -1;             // symbol: index of its body, -1 for none or the world
   Fn fn = Fn::sqrt;          // function
   std::vector<Expr> args;
-  std::vector<Rational> coefs;       // sum
-  std::vector<int> exponents;        // product
-  mutable std::string name;          // given by `let`, or derived from the names of its parts; may be empty
+  std::vector<Rational> coefs;  // sum
+  std::vector<int> exponents;   // product
+  mutable std::string name;     // given by `let`, or derived from the names of its parts; may be empty
   mutable bool named_by_let = false;
 };
 
@@ -166,8 +166,8 @@ Expr operator/(Expr a, Expr b);     // a scalar or vector, b scalar
 Expr dot(Expr u, Expr v);
 // Two vectors: a scalar in the plane, a vector in space. Plane, scalar and vector: w x v = w perp(v).
 Expr cross(Expr u, Expr v);
-Expr perp(Expr u);             // in the plane
-Expr apply(Expr T, Expr u);    // in the plane T is a number; in space the leaf of a symmetric tensor
+Expr perp(Expr u);           // in the plane
+Expr apply(Expr T, Expr u);  // in the plane T is a number; in space the leaf of a symmetric tensor
 // The angle by which g is twisted against f about their x axes: atan2(f_z . g_y - f_y . g_z, f_y . g_y + f_z . g_z).
 Expr twist(const Triad& f, const Triad& g);
 Expr twist_as_atan2(Expr twist);
@@ -178,9 +178,7 @@ inline Expr call(Fn fn, Expr a) { return call(fn, std::span<const Expr>(&a, 1));
 // The world's axes, unit vectors: two in the plane (the y axis is perp of the x axis), three in space.
 Expr world_x(Pool& pool);
 std::vector<Expr> world_axes(Pool& pool);
-inline bool is_world_axis(Expr e) {
-  return e->kind == Kind::symbol && e->symbol.starts_with("world.");
-}
+inline bool is_world_axis(Expr e) { return e->kind == Kind::symbol && e->symbol.starts_with("world."); }
 // A leaf that stands for a tensor: an inverse inertia in space. Its six components are leaves as well.
 bool is_tensor(Expr leaf);
 // Components along the world's axes; a scalar is its only one.

@@ -71,8 +71,7 @@ std::vector<Term> terms_of(Expr e) {
 Expr sum(Pool& pool, std::span<const Term> terms, bool vector) {
   std::vector<Term> flat;
   for (const Term& t : terms) append_terms(t.coef, t.e, flat);
-  std::sort(flat.begin(), flat.end(),
-            [](const Term& a, const Term& b) { return compare(a.e, b.e) < 0; });
+  std::sort(flat.begin(), flat.end(), [](const Term& a, const Term& b) { return compare(a.e, b.e) < 0; });
   Node n;
   n.kind = Kind::sum;
   n.vector = vector;
@@ -219,8 +218,7 @@ Expr dot(Expr u, Expr v) {
   if (is_unit_of(b.rest, a.rest)) return factor * norm(a.rest);
   if (is_unit_of(a.rest, b.rest)) return factor * norm(b.rest);
   const bool in_order = direction_after(a.rest, b.rest);
-  return factor * node(Kind::dot, false,
-                       in_order ? std::vector{a.rest, b.rest} : std::vector{b.rest, a.rest});
+  return factor * node(Kind::dot, false, in_order ? std::vector{a.rest, b.rest} : std::vector{b.rest, a.rest});
 }
 
 Expr cross(Expr u, Expr v) {
@@ -229,8 +227,8 @@ Expr cross(Expr u, Expr v) {
   const Expr factor = a.factor * b.factor;
   Pool& pool = *u->pool;
   const bool plane = pool.dimension() == 2;
-  if (is_zero(factor) || is_zero(a.rest) || is_zero(b.rest) || a.rest == b.rest ||
-      is_unit_of(b.rest, a.rest) || is_unit_of(a.rest, b.rest)) {
+  if (is_zero(factor) || is_zero(a.rest) || is_zero(b.rest) || a.rest == b.rest || is_unit_of(b.rest, a.rest) ||
+      is_unit_of(a.rest, b.rest)) {
     return plane ? pool.number(0) : zero_vector(pool);
   }
   if (!plane) return factor * cross_in_space(a.rest, b.rest);

@@ -17,14 +17,12 @@ class Printer {
       case Kind::symbol: return e->symbol;
       case Kind::sum: return sum_text(e, level);
       case Kind::product: return product_text(e, level);
-      case Kind::scale:
-        return wrap(arg(e, 0, in_product) + "*" + arg(e, 1, in_product), level >= in_power);
+      case Kind::scale: return wrap(arg(e, 0, in_product) + "*" + arg(e, 1, in_product), level >= in_power);
       case Kind::function: return call(std::string(name_of(e->fn)), e);
       case Kind::dot: return dot_text(e);
       case Kind::cross: return call("cross", e);
       case Kind::perp: return call("perp", e);
-      case Kind::tensor:
-        return wrap(arg(e, 0, in_product) + "*" + arg(e, 1, in_product), level >= in_power);
+      case Kind::tensor: return wrap(arg(e, 0, in_product) + "*" + arg(e, 1, in_product), level >= in_power);
       case Kind::twist: return "twist(" + frame(e, 0) + ", " + frame(e, 3) + ")";
       case Kind::norm: return call("norm", e);
       case Kind::unit: return call("unit", e);
@@ -33,9 +31,7 @@ class Printer {
   }
 
  private:
-  static std::string wrap(std::string s, bool parentheses) {
-    return parentheses ? "(" + s + ")" : s;
-  }
+  static std::string wrap(std::string s, bool parentheses) { return parentheses ? "(" + s + ")" : s; }
   static std::string number(Rational r, Level level) {
     return wrap(r.text(), (r.sign() < 0 && level > in_sum) || (!r.is_integer() && level >= in_power));
   }

@@ -18,9 +18,7 @@ class Pose final : public Arithmetic<Modular> {
  public:
   explicit Pose(std::uint64_t seed) : point_(seed) {}
 
-  Modular number(Rational value) override {
-    return Modular(value.num()) * point_.inverse(Modular(value.den()));
-  }
+  Modular number(Rational value) override { return Modular(value.num()) * point_.inverse(Modular(value.den())); }
 
   Modular scalar_leaf(const Node& symbol) override {
     if (symbol.role == Role::angle) return Modular(angle_of(symbol.body));
@@ -166,8 +164,7 @@ GenericRank::Dependence dependence(const std::vector<Combination>& at_poses) {
   out.row = static_cast<int>(first.row);
   bool constant = true;
   for (std::size_t i = 0; i < first.coefs.size(); ++i) {
-    for (const Combination& other : at_poses)
-      constant = constant && other.coefs[i] == first.coefs[i];
+    for (const Combination& other : at_poses) constant = constant && other.coefs[i] == first.coefs[i];
     if (i != first.row && !first.coefs[i].is_zero()) out.on.push_back(static_cast<int>(i));
     const std::optional<Rational> coef = small_fraction(first.coefs[i]);
     constant = constant && coef;
@@ -193,14 +190,11 @@ Modular Modular::of_bits(std::uint64_t bits) {
 bool Modular::is_square() const { return pow(*this, (prime - 1) / 2) == Modular(1); }
 
 std::int64_t Modular::centred() const {
-  return value_ > prime / 2 ? -static_cast<std::int64_t>(prime - value_)
-                            : static_cast<std::int64_t>(value_);
+  return value_ > prime / 2 ? -static_cast<std::int64_t>(prime - value_) : static_cast<std::int64_t>(value_);
 }
 
 Modular operator+(Modular a, Modular b) { return Modular::of_bits(a.value_ + b.value_); }
-Modular operator-(Modular a, Modular b) {
-  return Modular::of_bits(a.value_ + Modular::prime - b.value_);
-}
+Modular operator-(Modular a, Modular b) { return Modular::of_bits(a.value_ + Modular::prime - b.value_); }
 Modular operator*(Modular a, Modular b) {
   const Wide product = Wide(a.value_) * b.value_;
   return Modular::of_bits(static_cast<std::uint64_t>(product & Modular::prime) +

@@ -9,8 +9,7 @@ namespace cdot::derive {
 namespace {
 
 Expr member(const Joint& joint, int body, const std::string& name) {
-  return joint.pool->symbol(joint.bodies[static_cast<std::size_t>(body)] + "." + name, Role::given,
-                            body);
+  return joint.pool->symbol(joint.bodies[static_cast<std::size_t>(body)] + "." + name, Role::given, body);
 }
 
 // G by its columns.

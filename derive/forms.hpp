@@ -11,7 +11,7 @@
 namespace cdot::derive {
 
 enum class Form { global, local, euler };
-std::string_view name_of(Form form);                   // "local"
+std::string_view name_of(Form form);  // "local"
 inline std::size_t columns_per_body(Form form) { return form == Form::euler ? 7 : 6; }
 
 // Members of a body's pose: A(e) row by row (in the plane [c -s; s c]), and e0, e1, e2, e3.

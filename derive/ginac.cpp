@@ -63,8 +63,7 @@ EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {
   if (!fresh) return e;
   units_.push_back({e.begin(), e.end()});
   // e0^2 = 1 - e1^2 - e2^2 - e3^2
-  atoms_.push_back({Atom::Kind::square, ex_to<GiNaC::realsymbol>(e[0]),
-                    1 - e[1] * e[1] - e[2] * e[2] - e[3] * e[3]});
+  atoms_.push_back({Atom::Kind::square, ex_to<GiNaC::realsymbol>(e[0]), 1 - e[1] * e[1] - e[2] * e[2] - e[3] * e[3]});
   if (!moves(body)) return e;
   const std::vector<ex> v = velocities(body);
   const EulerParameters<ex> rates = rates_of(e, v[3], v[4], v[5]);
@@ -97,16 +96,11 @@ ex Algebra::number(Rational value) {
 
 ex Algebra::scalar_leaf(const Node& symbol) {
   switch (symbol.role) {
-    case Role::constant:
-      return GiNaC::Pi;
-    case Role::time:
-      return leaf(symbol.symbol, 1);
-    case Role::angle:
-      return coordinates(symbol.body)[2];
-    case Role::spin:
-      return velocities(symbol.body)[2];
-    default:
-      return leaf(symbol.symbol, 0);
+    case Role::constant: return GiNaC::Pi;
+    case Role::time: return leaf(symbol.symbol, 1);
+    case Role::angle: return coordinates(symbol.body)[2];
+    case Role::spin: return velocities(symbol.body)[2];
+    default: return leaf(symbol.symbol, 0);
   }
 }
 
@@ -147,14 +141,10 @@ Triple<ex> Algebra::vector_leaf(const Node& symbol) {
     return Triple<ex>{v[first], v[first + 1], joint_.dimension == 2 ? ex(0) : v[first + 2]};
   };
   switch (symbol.role) {
-    case Role::position:
-      return of(coordinates(symbol.body), 0);
-    case Role::velocity:
-      return of(velocities(symbol.body), 0);
-    case Role::spin:
-      return of(velocities(symbol.body), 3);
-    default:
-      return vector_of_body(symbol);
+    case Role::position: return of(coordinates(symbol.body), 0);
+    case Role::velocity: return of(velocities(symbol.body), 0);
+    case Role::spin: return of(velocities(symbol.body), 3);
+    default: return vector_of_body(symbol);
   }
 }
 
@@ -190,26 +180,16 @@ Triple<ex> Algebra::vector_of_body(const Node& symbol) {
 ex Algebra::call(Fn fn, std::span<const ex> args) {
   const ex& x = args[0];
   switch (fn) {
-    case Fn::sqrt:
-      return GiNaC::sqrt(x);
-    case Fn::sin:
-      return sin(x);
-    case Fn::cos:
-      return cos(x);
-    case Fn::tan:
-      return sin(x) / cos(x);
-    case Fn::exp:
-      return exp(x);
-    case Fn::log:
-      return log(x);
-    case Fn::abs:
-      return GiNaC::sqrt(x * x);
-    case Fn::sign:
-      return GiNaC::sqrt(x * x) / x;
-    case Fn::atan2:
-      return atan2(x, args[1]);
-    default:
-      break;
+    case Fn::sqrt: return GiNaC::sqrt(x);
+    case Fn::sin: return sin(x);
+    case Fn::cos: return cos(x);
+    case Fn::tan: return sin(x) / cos(x);
+    case Fn::exp: return exp(x);
+    case Fn::log: return log(x);
+    case Fn::abs: return GiNaC::sqrt(x * x);
+    case Fn::sign: return GiNaC::sqrt(x * x) / x;
+    case Fn::atan2: return atan2(x, args[1]);
+    default: break;
   }
   throw std::logic_error("no such function before the components are written out");
 }

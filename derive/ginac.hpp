@@ -67,7 +67,7 @@ class Algebra final : public Arithmetic<ex> {
   // ones.
   struct Atom {
     enum class Kind { square, inverse } kind;  // symbol^2 = operand; symbol operand = 1
-    GiNaC::realsymbol symbol;  // kept as what it is: a copy as plain `symbol` would be another one
+    GiNaC::realsymbol symbol;                  // kept as what it is: a copy as plain `symbol` would be another one
     ex operand;
   };
   struct Leaf {
@@ -119,14 +119,14 @@ class Algebra final : public Arithmetic<ex> {
   int immovable_;
   std::map<std::string, Leaf> leaves_;
   std::vector<Atom> atoms_;
-  std::vector<std::vector<ex>> units_;    // symbols whose squares sum to 1
-  GiNaC::exmap known_;                    // symbols for compounds of which nothing is known
-  GiNaC::exmap atomised_;                 // what atomised() made of compounds, by their old variables
-  GiNaC::exmap inverses_;                 // by their operand in normal form
-  std::vector<std::pair<ex, ex>> roots_;  // operand -> symbol
+  std::vector<std::vector<ex>> units_;                   // symbols whose squares sum to 1
+  GiNaC::exmap known_;                                   // symbols for compounds of which nothing is known
+  GiNaC::exmap atomised_;                                // what atomised() made of compounds, by their old variables
+  GiNaC::exmap inverses_;                                // by their operand in normal form
+  std::vector<std::pair<ex, ex>> roots_;                 // operand -> symbol
   std::vector<std::pair<ex, std::array<ex, 2>>> turns_;  // angle -> (cos, sin)
-  GiNaC::exmap change_;  // of variables, before an expression is tested
-  std::vector<std::pair<ex, ex>> meanings_;  // of symbols without a name, as they came up
+  GiNaC::exmap change_;                                  // of variables, before an expression is tested
+  std::vector<std::pair<ex, ex>> meanings_;              // of symbols without a name, as they came up
   std::int64_t allowance_ = most_work, left_for_test_ = most_work, left_in_all_ = most_work_in_all;
   PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
   std::string witness_;

@@ -8,9 +8,7 @@ namespace cdot::derive {
 
 namespace {
 
-std::size_t size_of(const ex& polynomial) {
-  return is_a<GiNaC::add>(polynomial) ? polynomial.nops() : 1;
-}
+std::size_t size_of(const ex& polynomial) { return is_a<GiNaC::add>(polynomial) ? polynomial.nops() : 1; }
 
 // How many powers of symbols all terms together have, and one more for each term.
 std::size_t weight_of(const ex& polynomial) {
@@ -49,9 +47,7 @@ GiNaC::exvector Algebra::ordered(const ex& e) {
   return parts;
 }
 
-Modular Algebra::fingerprint(const ex& e) try {
-  return prints_.of(e);
-} catch (const UndefinedHere&) {
+Modular Algebra::fingerprint(const ex& e) try { return prints_.of(e); } catch (const UndefinedHere&) {
   return Modular(0);
 }
 
@@ -94,8 +90,7 @@ ex Algebra::expanded(const ex& e) {
   if (!is_a<GiNaC::mul>(e)) return e;
   GiNaC::exvector factors;
   for (const ex& factor : ordered(e)) factors.push_back(expanded(factor));
-  std::stable_sort(factors.begin(), factors.end(),
-                   [](const ex& a, const ex& b) { return size_of(a) < size_of(b); });
+  std::stable_sort(factors.begin(), factors.end(), [](const ex& a, const ex& b) { return size_of(a) < size_of(b); });
   ex result = 1;
   for (const ex& factor : factors) {
     result = size_of(factor) == 1 ? result * factor : multiplied(result, factor);

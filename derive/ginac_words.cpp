@@ -55,9 +55,8 @@ ex Algebra::in_names(ex e) const {
 
 std::vector<std::string> Algebra::factors_of(const ex& polynomial) const {
   const ex factored = GiNaC::factor(polynomial);
-  const GiNaC::exvector factors = is_a<GiNaC::mul>(factored)
-                                      ? GiNaC::exvector(factored.begin(), factored.end())
-                                      : GiNaC::exvector{factored};
+  const GiNaC::exvector factors =
+      is_a<GiNaC::mul>(factored) ? GiNaC::exvector(factored.begin(), factored.end()) : GiNaC::exvector{factored};
   Pool pool;
   std::set<std::string> names;
   for (const ex& f : factors) {

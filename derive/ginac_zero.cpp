@@ -15,9 +15,7 @@ namespace {
 constexpr int digits = 80;       // of the numbers that decide what algebra does not
 constexpr int random_poses = 6;  // at which they are taken
 
-ex random_fraction(Random& random) {
-  return numeric(static_cast<long>(random.bits() % 2001) - 1000) / numeric(487);
-}
+ex random_fraction(Random& random) { return numeric(static_cast<long>(random.bits() % 2001) - 1000) / numeric(487); }
 
 // A rational point of the unit circle or sphere, by stereographic projection: (1 - t.t, 2 t)/(1 + t.t).
 std::vector<ex> random_direction(Random& random, std::size_t dimension) {
@@ -151,8 +149,7 @@ ex Algebra::turned(bool cosine, const ex& angle) {
     c = c * c_by - s * s_by;
     s = c_before * s_by + s * c_by;
   };
-  const bool split = is_a<GiNaC::add>(angle_sum) &&
-                     std::all_of(angle_sum.begin(), angle_sum.end(), [](const ex& term) {
+  const bool split = is_a<GiNaC::add>(angle_sum) && std::all_of(angle_sum.begin(), angle_sum.end(), [](const ex& term) {
                        return is_a<GiNaC::symbol>(term / numeric_factor(term));
                      });
   const GiNaC::exvector terms = split ? ordered(angle_sum) : GiNaC::exvector{angle_sum};
@@ -246,9 +243,7 @@ bool Algebra::differs_at_random(const ex& e, std::uint64_t seed) try {
   }
   const ex value = e.subs(pose, GiNaC::subs_options::no_pattern).evalf();
   if (!is_a<numeric>(value) || abs(ex_to<numeric>(value)) < pow(numeric(10), -60)) return false;
-  const auto shown = [](const ex& x) {
-    return fmt::format("{:.4g}", real(ex_to<numeric>(x)).to_double());
-  };
+  const auto shown = [](const ex& x) { return fmt::format("{:.4g}", real(ex_to<numeric>(x)).to_double()); };
   witness_ = "by " + shown(value) + " at";
   for (const auto& [name, leaf] : leaves_) {
     if (e.has(leaf.symbol)) witness_ += " " + name + " = " + shown(pose[leaf.symbol]) + ",";

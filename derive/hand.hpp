@@ -49,10 +49,9 @@ struct HandItem {
   enum class Kind { quantity, lambda, update, bound, claim };
   enum class Target { velocity, spin, position, angle };
   Kind kind = Kind::quantity;
-  std::string what;  // quantity: C, Cdot, J, K or b; claim: one of these or `update`
-  std::optional<Matrix>
-      value;  // empty: see `problem`; claim: the left side; update: what is added, sign included
-  std::optional<Matrix> right;        // claim: the right side
+  std::string what;             // quantity: C, Cdot, J, K or b; claim: one of these or `update`
+  std::optional<Matrix> value;  // empty: see `problem`; claim: the left side; update: what is added, sign included
+  std::optional<Matrix> right;  // claim: the right side
   Expr expression, right_expression;  // the same, where the author wrote a number or a vector
   std::string problem;                // why there is no value, in a sentence
   std::vector<HandReading> readings;  // if there is none

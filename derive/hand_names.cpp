@@ -11,9 +11,7 @@ namespace {
 
 constexpr std::array special = {"E", "C", "Cdot", "J", "K", "lambda"};
 
-bool is_special(const std::string& name) {
-  return std::find(special.begin(), special.end(), name) != special.end();
-}
+bool is_special(const std::string& name) { return std::find(special.begin(), special.end(), name) != special.end(); }
 
 }  // namespace
 

@@ -9,8 +9,8 @@ void exchange(Ast& whole, Ast& node, std::vector<OtherAst>& found) {
   if (node.kind == Ast::Kind::call && velocity && node.args.size() == 1) {
     const std::string written = node.text, of = "(" + node.args[0].text + ")";
     node.text = written == "v" ? "w" : "v";
-    found.push_back({whole, "with " + node.text + of + " in place of " + written + of,
-                     node.text + "_" + node.args[0].text});
+    found.push_back(
+        {whole, "with " + node.text + of + " in place of " + written + of, node.text + "_" + node.args[0].text});
     node.text = written;
   }
   for (Ast& arg : node.args) exchange(whole, arg, found);

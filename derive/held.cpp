@@ -64,8 +64,7 @@ Diagnostic held_error(const Coordinate& held) {
 
 std::string held_text(const Coordinate& held) {
   const bool several = held.held_by.size() > 1;
-  return (several ? "the rows " : "the row ") + listed(held.held_by) +
-         (several ? " hold it" : " holds it");
+  return (several ? "the rows " : "the row ") + listed(held.held_by) + (several ? " hold it" : " holds it");
 }
 
 }  // namespace cdot::derive

@@ -19,10 +19,10 @@ struct Parameter {
   ParameterKind kind = ParameterKind::scalar;
   int body = -1;  // the body it is fixed in; -1: the world, or a scalar
   Unit unit;
-  Expr value;         // as it occurs in expressions: point: its place in the world (x_a + ra); frame: its x axis
-  Expr symbol;        // the leaf behind it: the arm `ra`, the direction `t`, the number; what a kernel reads or rotates
-  std::vector<Expr> axes;  // of a frame in space: its three leaves, `symbol` first
-  Expr default_value; // may be empty; of the kind of `value`
+  Expr value;   // as it occurs in expressions: point: its place in the world (x_a + ra); frame: its x axis
+  Expr symbol;  // the leaf behind it: the arm `ra`, the direction `t`, the number; what a kernel reads or rotates
+  std::vector<Expr> axes;          // of a frame in space: its three leaves, `symbol` first
+  Expr default_value;              // may be empty; of the kind of `value`
   std::vector<Expr> default_axes;  // of a frame in space
   Span where;
 };
@@ -41,7 +41,7 @@ enum class RowKind { equality, inequality, velocity };
 struct Row {
   std::string name;  // given by the author, else C1, C2, ... (of the first component: C1_x, C1_y in a vector row)
   RowKind kind = RowKind::equality;
-  Expr C;      // lhs - rhs for equality, rhs - lhs for <=, lhs - rhs for >=; velocity rows: the velocity expression
+  Expr C;  // lhs - rhs for equality, rhs - lhs for <=, lhs - rhs for >=; velocity rows: the velocity expression
   Unit unit;
   Span where;
   std::string text;  // as written, for people
@@ -73,7 +73,7 @@ struct Joint {
   std::vector<Let> lets;
   std::vector<Row> rows;
   std::vector<Coordinate> coordinates;
-  std::vector<Coordinate> dropped;  // that an include brought, but rows hold
+  std::vector<Coordinate> dropped;         // that an include brought, but rows hold
   std::shared_ptr<const SourceFile> file;  // for messages of later stages
   bool uses_world = false;  // some parameter is fixed in the world: momentum is not conserved, and need not be
   bool uses_time = false;

@@ -54,8 +54,7 @@ class BlockPlanner {
   std::size_t bodies() const { return joint_.bodies.size(); }
   void add(std::string name, std::string summary, const std::vector<NamedExpr>& outputs) {
     if (isotropic_) summary += ", for sphere-like bodies";
-    out_.functions.push_back(
-        {std::move(name), std::move(summary), simplify(assemble(outputs)), isotropic_});
+    out_.functions.push_back({std::move(name), std::move(summary), simplify(assemble(outputs)), isotropic_});
   }
 
   // Which numbers Jacobian<T> holds: the factors of J's entries that are neither zero nor one.
@@ -64,8 +63,7 @@ class BlockPlanner {
     for (std::size_t i = 0; i < rows(); ++i) {
       std::vector<StoredEntry> row;
       for (std::size_t b = 0; b < bodies(); ++b) {
-        const std::string suffix =
-            joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
+        const std::string suffix = joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
         const std::vector<Expr> entries = columns_of(out_.block.rows[i].J[b]);
         for (std::size_t k = 0; k < width_; ++k) {
           row.push_back(store(components.of(entries[k]), column_name(k, suffix)));
@@ -89,8 +87,7 @@ class BlockPlanner {
     const bool plain_factors =
         term.e->kind == Kind::product && term.e->name.empty() &&
         std::all_of(term.e->args.begin(), term.e->args.end(), [](Expr f) { return simple(f); }) &&
-        std::all_of(term.e->exponents.begin(), term.e->exponents.end(),
-                    [](int k) { return k == 1; });
+        std::all_of(term.e->exponents.begin(), term.e->exponents.end(), [](int k) { return k == 1; });
     if (!plain_factors) {
       stored.fields.push_back(field(term.e, column));
       return stored;
@@ -139,16 +136,14 @@ class BlockPlanner {
       held.emplace(&*f.value, f.symbol);
       held.emplace(&*(-f.value), -f.symbol);
     }
-    const auto K_of_rows =
-        effective_mass(joint_, out_.block.rows, out_.block.immovable, isotropic_);
+    const auto K_of_rows = effective_mass(joint_, out_.block.rows, out_.block.immovable, isotropic_);
     std::vector<NamedExpr> simplified, plain;
     bool complete = true;
     for (std::size_t i = 0; i < rows(); ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
         const Expr K = substitute(components.of(K_of_rows[i][j]), held);
         for (const Expr e : topological(std::span(&K, 1))) {
-          complete = complete && (e->kind != Kind::symbol || e->role == Role::given ||
-                                  e->role == Role::inverse_mass ||
+          complete = complete && (e->kind != Kind::symbol || e->role == Role::given || e->role == Role::inverse_mass ||
                                   e->role == Role::inverse_inertia || e->role == Role::constant);
         }
         simplified.push_back({triangle_element("K", i, j), K});
@@ -217,8 +212,7 @@ class BlockPlanner {
   Expr force(std::size_t column) const {
     Expr force = pool_.number(0);
     for (std::size_t i = 0; i < rows(); ++i) {
-      force = force +
-              stored(i, column) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
+      force = force + stored(i, column) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
     }
     return force;
   }
@@ -244,13 +238,9 @@ class BlockPlanner {
   void add_dense() {
     std::vector<NamedExpr> J;
     for (std::size_t i = 0; i < rows(); ++i) {
-      for (std::size_t c = 0; c < width_ * bodies(); ++c)
-        J.push_back({element(element("D", i), c), stored(i, c)});
+      for (std::size_t c = 0; c < width_ * bodies(); ++c) J.push_back({element(element("D", i), c), stored(i, c)});
     }
-    add("dense",
-        std::string("J with its zeros: ") + (width_ == 3 ? "v_x, v_y, w" : "v, w") +
-            " of each body",
-        J);
+    add("dense", std::string("J with its zeros: ") + (width_ == 3 ? "v_x, v_y, w" : "v, w") + " of each body", J);
   }
 
   void add_inverse_mass_jacobian() {
@@ -272,8 +262,7 @@ class BlockPlanner {
   void add_other_forms() {
     add_form("local_jacobian", "form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A)",
              Form::local);
-    add_form("euler_jacobian", "form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G)",
-             Form::euler);
+    add_form("euler_jacobian", "form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G)", Form::euler);
   }
 
   void add_form(const std::string& name, const std::string& summary, Form form) {
@@ -303,8 +292,7 @@ class BlockPlanner {
     add_gamma();
     add("time_derivative", "dC/dt at fixed q", C_t);
     add("stiffness",
-        std::string("d(J^T lambda)/dq: ") +
-            (width_ == 3 ? "x, y, angle" : "x, y, z and small turns") + " of each body",
+        std::string("d(J^T lambda)/dq: ") + (width_ == 3 ? "x, y, angle" : "x, y, z and small turns") + " of each body",
         H);
   }
 
@@ -337,8 +325,7 @@ class BlockPlanner {
 
 bool some_row_vanishes(const Block& block) {
   return std::any_of(block.rows.begin(), block.rows.end(), [](const ScalarRow& row) {
-    return std::all_of(row.J.begin(), row.J.end(),
-                       [](const JacobianEntry& e) { return is_zero(e.v) && is_zero(e.w); });
+    return std::all_of(row.J.begin(), row.J.end(), [](const JacobianEntry& e) { return is_zero(e.v) && is_zero(e.w); });
   });
 }
 
@@ -349,8 +336,7 @@ KernelBlock plan_block(const Joint& joint, std::string name, Derive derive) {
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     Block variant = derive(static_cast<int>(b));
     if (some_row_vanishes(variant)) continue;
-    out.variants.push_back(
-        BlockPlanner(joint, std::move(variant), joint.bodies[b] + "_immovable").plan());
+    out.variants.push_back(BlockPlanner(joint, std::move(variant), joint.bodies[b] + "_immovable").plan());
   }
   return out;
 }
@@ -360,12 +346,10 @@ KernelBlock plan_block(const Joint& joint, std::string name, Derive derive) {
 Kernel plan_kernel(const Joint& joint) {
   Kernel kernel;
   kernel.joint = &joint;
-  kernel.rows =
-      plan_block(joint, joint.name, [&](int immovable) { return derive_rows(joint, immovable); });
+  kernel.rows = plan_block(joint, joint.name, [&](int immovable) { return derive_rows(joint, immovable); });
   for (const Coordinate& coordinate : joint.coordinates) {
-    kernel.coordinates.push_back(plan_block(joint, coordinate.name, [&](int immovable) {
-      return derive_coordinate(joint, coordinate, immovable);
-    }));
+    kernel.coordinates.push_back(plan_block(
+        joint, coordinate.name, [&](int immovable) { return derive_coordinate(joint, coordinate, immovable); }));
   }
   for (std::size_t i = 0; i < joint.parameters.size(); ++i) {
     if (joint.parameters[i].default_value) {

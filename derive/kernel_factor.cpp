@@ -23,9 +23,7 @@ bool is_zero_in_factor(const Block& block, std::size_t i, std::size_t j) {
 
 }  // namespace
 
-std::string element(const std::string& array, std::size_t i) {
-  return array + "[" + std::to_string(i) + "]";
-}
+std::string element(const std::string& array, std::size_t i) { return array + "[" + std::to_string(i) + "]"; }
 
 std::string triangle_element(const std::string& array, std::size_t i, std::size_t j) {
   return element(array, i * (i + 1) / 2 + j);
@@ -40,8 +38,7 @@ std::vector<NamedExpr> factor_outputs(const Block& block) {
   std::vector<NamedExpr> factor;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j <= i; ++j) {
-      const Expr K = is_zero(block.K[i][j]) ? pool.number(0)
-                                            : pool.symbol(triangle_element("K", i, j), Role::given);
+      const Expr K = is_zero(block.K[i][j]) ? pool.number(0) : pool.symbol(triangle_element("K", i, j), Role::given);
       Expr e = K;
       for (std::size_t k = 0; k < j; ++k) e = e - L[i][k] * L[j][k] * D[k];
       if (i == j) {
@@ -62,8 +59,7 @@ std::vector<NamedExpr> solve_outputs(const Block& block) {
   if (n == 0) return {};
   Pool& pool = *block.K[0][0]->pool;
   const auto L = [&](std::size_t i, std::size_t j) {
-    return is_zero_in_factor(block, i, j) ? pool.number(0)
-                                          : pool.symbol(triangle_element("F", i, j), Role::given);
+    return is_zero_in_factor(block, i, j) ? pool.number(0) : pool.symbol(triangle_element("F", i, j), Role::given);
   };
   std::vector<Expr> y(n), x(n);
   for (std::size_t i = 0; i < n; ++i) {

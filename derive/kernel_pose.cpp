@@ -10,8 +10,7 @@ namespace cdot::derive {
 std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter) {
   if (parameter.kind == ParameterKind::scalar) return {parameter.name};
   std::vector<std::string> stems = {parameter.name}, fields;
-  if (!parameter.axes.empty())
-    stems = {parameter.name + "_x", parameter.name + "_y", parameter.name + "_z"};
+  if (!parameter.axes.empty()) stems = {parameter.name + "_x", parameter.name + "_y", parameter.name + "_z"};
   for (const std::string& stem : stems) {
     for (int k = 0; k < joint.dimension; ++k) fields.push_back(stem + "_" + "xyz"[k]);
   }
@@ -47,8 +46,7 @@ PoseInputs::PoseInputs(const Joint& joint) {
 void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
   Components components;
   const std::vector<Expr> local = local_symbols(joint, parameter);
-  const std::vector<Expr> leaves =
-      parameter.axes.empty() ? std::vector{parameter.symbol} : parameter.axes;
+  const std::vector<Expr> leaves = parameter.axes.empty() ? std::vector{parameter.symbol} : parameter.axes;
   for (std::size_t n = 0; n < leaves.size(); ++n) {
     const std::vector<Expr> world = components.of_vector(leaves[n]);
     for (std::size_t i = 0; i < world.size(); ++i) {
@@ -56,8 +54,7 @@ void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
       if (parameter.body >= 0) {
         const std::vector<Expr> row = rotation_matrix(joint, parameter.body)[i];
         component = joint.pool->number(0);
-        for (std::size_t k = 0; k < row.size(); ++k)
-          component = component + row[k] * local[n * row.size() + k];
+        for (std::size_t k = 0; k < row.size(); ++k) component = component + row[k] * local[n * row.size() + k];
         joint.pool->name(component, world[i]->symbol, true);
       }
       rotated_.emplace(&*world[i], component);
@@ -78,9 +75,7 @@ DefaultValue plan_default(const Joint& joint, int index) {
   Pool& pool = *joint.pool;
   const std::vector<std::string> fields = fields_of(joint, parameter);
   std::vector<NamedExpr> outputs;
-  const auto output = [&](Expr e) {
-    outputs.push_back({"p." + fields[outputs.size()], pose.of(e)});
-  };
+  const auto output = [&](Expr e) { outputs.push_back({"p." + fields[outputs.size()], pose.of(e)}); };
   if (parameter.kind == ParameterKind::scalar) {
     output(parameter.default_value);
     return {index, simplify(assemble(outputs))};

@@ -13,16 +13,14 @@ void add_functions(const Joint& joint, const KernelBlock& block, const std::stri
                    std::vector<LedgerRow>& rows) {
   for (const KernelFunction& f : block.functions) {
     const std::string quantity = f.name + (f.isotropic ? "_isotropic" : "");
-    rows.push_back({name_of_space(joint.dimension), joint.name, name, quantity, "generated",
-                    count(f.program)});
+    rows.push_back({name_of_space(joint.dimension), joint.name, name, quantity, "generated", count(f.program)});
   }
   for (const KernelBlock& variant : block.variants) {
     add_functions(joint, variant, (name == "rows" ? "" : name + ".") + variant.name, rows);
   }
 }
 
-void add_quantities(const Joint& joint, const Block& block, const std::string& name,
-                    std::vector<LedgerRow>& rows) {
+void add_quantities(const Joint& joint, const Block& block, const std::string& name, std::vector<LedgerRow>& rows) {
   if (block.rows.empty()) return;
   const std::string space = name_of_space(joint.dimension);
   std::vector<Expr> C, J, K;
@@ -32,15 +30,13 @@ void add_quantities(const Joint& joint, const Block& block, const std::string& n
     for (const Expr entry : block.K[i]) K.push_back(entry);
   }
   for (const auto& [quantity, entries] : {std::pair{"C", C}, {"J", J}, {"K", K}}) {
-    rows.push_back({space, joint.name, name, quantity, "generated",
-                    cost_from_poses(joint, quantity, entries)});
+    rows.push_back({space, joint.name, name, quantity, "generated", cost_from_poses(joint, quantity, entries)});
   }
 }
 
 }  // namespace
 
-Count cost_from_poses(const Joint& joint, std::string_view quantity,
-                      const std::vector<Expr>& entries) {
+Count cost_from_poses(const Joint& joint, std::string_view quantity, const std::vector<Expr>& entries) {
   PoseInputs pose(joint);
   std::vector<NamedExpr> outputs;
   for (const Expr entry : entries) {
@@ -67,14 +63,13 @@ std::vector<LedgerRow> ledger_of(const Kernel& kernel) {
 
 std::string emit_ledger(std::vector<LedgerRow> rows) {
   std::stable_sort(rows.begin(), rows.end(), [](const LedgerRow& a, const LedgerRow& b) {
-    return std::tie(a.space, a.joint, a.block, a.quantity) <
-           std::tie(b.space, b.joint, b.block, b.quantity);
+    return std::tie(a.space, a.joint, a.block, a.quantity) < std::tie(b.space, b.joint, b.block, b.quantity);
   });
   std::string s = "space,joint,block,quantity,source,add,multiply,divide,root,compare,call,total\n";
   for (const LedgerRow& r : rows) {
     const Count& c = r.count;
-    s += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", r.space, r.joint, r.block, r.quantity,
-                     r.source, c.add, c.multiply, c.divide, c.root, c.compare, c.call, c.total());
+    s += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}\n", r.space, r.joint, r.block, r.quantity, r.source, c.add,
+                     c.multiply, c.divide, c.root, c.compare, c.call, c.total());
   }
   return s;
 }

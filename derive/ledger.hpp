@@ -29,8 +29,7 @@ std::vector<LedgerRow> ledger_of(const Kernel& kernel);
 
 // The cost of computing "C", "J" or "K", entry by entry, from poses and parameters, after the
 // passes that kernels go through.
-Count cost_from_poses(const Joint& joint, std::string_view quantity,
-                      const std::vector<Expr>& entries);
+Count cost_from_poses(const Joint& joint, std::string_view quantity, const std::vector<Expr>& entries);
 
 std::string emit_ledger(std::vector<LedgerRow> rows);
 

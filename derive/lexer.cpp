@@ -13,9 +13,7 @@ constexpr std::size_t largest_file = 1 << 20;
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
-bool is_control(char c) {
-  return is_ascii(c) && (c < ' ' || c == 0x7F) && c != '\t' && c != '\n' && c != '\r';
-}
+bool is_control(char c) { return is_ascii(c) && (c < ' ' || c == 0x7F) && c != '\t' && c != '\n' && c != '\r'; }
 
 // Characters that a word processor puts in place of those of the language.
 struct LookAlike {
@@ -64,8 +62,7 @@ class Lexer {
       const int length = utf8_length(text_, i);
       const std::size_t end = i + static_cast<std::size_t>(length > 0 ? length : 1);
       if (length == 0 && valid_)
-        diagnostics_.error(span(i, end), "here is a byte that is not UTF-8",
-                           "save the file as UTF-8");
+        diagnostics_.error(span(i, end), "here is a byte that is not UTF-8", "save the file as UTF-8");
       valid_ = valid_ && length > 0;
       if (is_control(text_[i]) && !control)
         diagnostics_.error(span(i, end), "a control character in the text", "remove it");
@@ -116,8 +113,7 @@ class Lexer {
     const std::size_t begin = at_++;
     while (at_ < text_.size() && text_[at_] != '"' && text_[at_] != '\n') ++at_;
     Token token{TokenKind::string, span(begin, at_), text_.substr(begin + 1, at_ - begin - 1)};
-    if (at_ < text_.size() && text_[at_] == '"')
-      token.where = span(begin, ++at_);
+    if (at_ < text_.size() && text_[at_] == '"') token.where = span(begin, ++at_);
     else
       diagnostics_.error(span(begin, begin + 1), "the text that starts here has no end",
                          "close it with \" on the same line");
@@ -128,8 +124,8 @@ class Lexer {
     const std::size_t begin = at_;
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     if (at_ - begin > longest_name)
-      diagnostics_.error(span(begin, at_), "a name of " + std::to_string(at_ - begin) +
-                                               " characters; at most 64 are allowed");
+      diagnostics_.error(span(begin, at_),
+                         "a name of " + std::to_string(at_ - begin) + " characters; at most 64 are allowed");
     const bool opens = tokens_.list.empty() || tokens_.list.back().kind == TokenKind::newline;
     add(TokenKind::name, begin, begin + std::min(at_ - begin, longest_name));
     if (hand_ && opens && tokens_.list.back().text == "entry") id();
@@ -165,40 +161,32 @@ class Lexer {
       }
     }
     add(TokenKind::number, begin, at_);
-    if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.'))
-      junk_after_number(begin);
+    if (at_ < text_.size() && (is_letter(text_[at_]) || text_[at_] == '.')) junk_after_number(begin);
   }
 
   void junk_after_number(std::size_t begin) {
     const std::size_t end_of_number = at_;
-    while (at_ < text_.size() &&
-           (is_letter(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.'))
-      ++at_;
+    while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]) || text_[at_] == '.')) ++at_;
     const std::string digits(text_.substr(begin, std::min<std::size_t>(end_of_number - begin, 20)));
-    const std::string rest(
-        text_.substr(end_of_number, std::min<std::size_t>(at_ - end_of_number, 20)));
+    const std::string rest(text_.substr(end_of_number, std::min<std::size_t>(at_ - end_of_number, 20)));
     tokens_.list.pop_back();
     if (rest.starts_with('.'))
-      reject(begin, "this is not a number",
-             "digits must stand on both sides of the point, as in 1.0");
+      reject(begin, "this is not a number", "digits must stand on both sides of the point, as in 1.0");
     else
       reject(begin, "neither a number nor a name",
-             "names do not start with a digit; a product is " + digits + "*" + rest +
-                 ", and 2 m is 2 [m]");
+             "names do not start with a digit; a product is " + digits + "*" + rest + ", and 2 m is 2 [m]");
   }
 
   void bare_fraction() {
     const std::size_t begin = at_++;
     digits();
-    diagnostics_.error(
-        span(begin, at_), "a number starts with a digit",
-        "write 0" + std::string(text_.substr(begin, std::min<std::size_t>(at_ - begin, 20))));
+    diagnostics_.error(span(begin, at_), "a number starts with a digit",
+                       "write 0" + std::string(text_.substr(begin, std::min<std::size_t>(at_ - begin, 20))));
     add(TokenKind::number, begin + 1, at_);
   }
 
   bool symbol() {
-    static constexpr std::array<std::string_view, 7> pairs = {
-        "==", "<=", ">=", "+=", "-=", "=>", "=<"};
+    static constexpr std::array<std::string_view, 7> pairs = {"==", "<=", ">=", "+=", "-=", "=>", "=<"};
     const auto two = text_.substr(at_, 2);
     const bool pair = std::find(pairs.begin(), pairs.end(), two) != pairs.end();
     static constexpr std::string_view singles = "()[]{},.:;=<>+-*/^'";
@@ -216,8 +204,7 @@ class Lexer {
     for (const LookAlike& l : look_alikes)
       if (text_.substr(at_).starts_with(l.character)) {
         const Span where = span(at_, at_ + l.character.size());
-        diagnostics_.error(where, "this character only looks like " + quote(l.meaning),
-                           "write " + quote(l.meaning));
+        diagnostics_.error(where, "this character only looks like " + quote(l.meaning), "write " + quote(l.meaning));
         at_ += l.character.size();
         return tokens_.list.push_back({TokenKind::symbol, where, l.meaning});
       }
@@ -225,14 +212,12 @@ class Lexer {
     const bool ascii = is_ascii(text_[at_]);
     do ++at_;
     while (at_ < text_.size() && !known(text_[at_]) && is_ascii(text_[at_]) == ascii);
-    if (ascii)
-      reject(begin, "the language has no character " + quote(text_.substr(begin, at_ - begin)));
+    if (ascii) reject(begin, "the language has no character " + quote(text_.substr(begin, at_ - begin)));
     else if (valid_)
       reject(begin, "only plain letters can be used here",
              "names are of a-z, A-Z, 0-9 and _; other letters may stand in comments and "
              "\"texts\"");
-    else
-      tokens_.list.push_back({TokenKind::unknown, span(begin, at_), {}});
+    else tokens_.list.push_back({TokenKind::unknown, span(begin, at_), {}});
   }
 
   // What was read since `begin` is no token.
@@ -247,9 +232,7 @@ class Lexer {
     return is_letter(c) || is_digit(c) || others.find(c) != std::string_view::npos;
   }
 
-  static Span span(std::size_t begin, std::size_t end) {
-    return {static_cast<int>(begin), static_cast<int>(end)};
-  }
+  static Span span(std::size_t begin, std::size_t end) { return {static_cast<int>(begin), static_cast<int>(end)}; }
 
   void add(TokenKind kind, std::size_t begin, std::size_t end) {
     tokens_.list.push_back({kind, span(begin, end), text_.substr(begin, end - begin)});
@@ -266,9 +249,7 @@ class Lexer {
 
 }  // namespace
 
-Tokens lex(const SourceFile& file, bool hand, Diagnostics& diagnostics) {
-  return Lexer(file, hand, diagnostics).run();
-}
+Tokens lex(const SourceFile& file, bool hand, Diagnostics& diagnostics) { return Lexer(file, hand, diagnostics).run(); }
 
 std::string quote(std::string_view word) {
   std::string out = "`";
@@ -277,12 +258,10 @@ std::string quote(std::string_view word) {
 }
 
 const std::vector<std::string>& statement_words(bool hand) {
-  static const std::vector<std::string> joint = {"joint",  "source",   "include",   "point",
-                                                 "vector", "unit",     "frame",     "scalar",
-                                                 "let",    "velocity", "coordinate"};
-  static const std::vector<std::string> entry = {"entry",  "source", "note",  "assume",
-                                                 "let",    "free",   "rows",  "lambda",
-                                                 "update", "bound",  "claim", "form", "listed"};
+  static const std::vector<std::string> joint = {"joint", "source", "include", "point",    "vector",    "unit",
+                                                 "frame", "scalar", "let",     "velocity", "coordinate"};
+  static const std::vector<std::string> entry = {"entry",  "source", "note",  "assume", "let",  "free",  "rows",
+                                                 "lambda", "update", "bound", "claim",  "form", "listed"};
   return hand ? entry : joint;
 }
 

@@ -18,8 +18,7 @@ int main(int argc, char** argv) {
       "  cdot derive                             all specs to generated/, proved\n\n"
       "The language is described in specs/README.md."};
   app.require_subcommand(1);
-  app.footer(
-      "Exit status: 0 all well; 1 the answer is no (differs, not current); 2 bad usage or input.");
+  app.footer("Exit status: 0 all well; 1 the answer is no (differs, not current); 2 bad usage or input.");
   cdot::derive::Command selected;
   cdot::derive::add_derive_command(app, selected);
   cdot::derive::add_explain_command(app, selected);

@@ -14,9 +14,7 @@ struct Matrix {
   std::vector<Expr> entries;  // row by row
 
   bool any_size() const { return rows == 0; }
-  Expr at(int row, int column) const {
-    return entries[static_cast<std::size_t>(row * columns + column)];
-  }
+  Expr at(int row, int column) const { return entries[static_cast<std::size_t>(row * columns + column)]; }
 };
 
 // The component i, j of a symmetric tensor leaf: inv_I_a_xy.

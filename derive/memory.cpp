@@ -54,12 +54,9 @@ std::uint64_t hash_of(std::string_view text) {
   return hash;
 }
 
-Memory::Memory(fs::path folder, std::uintmax_t most_bytes)
-    : folder_(std::move(folder)), most_bytes_(most_bytes) {}
+Memory::Memory(fs::path folder, std::uintmax_t most_bytes) : folder_(std::move(folder)), most_bytes_(most_bytes) {}
 
-fs::path Memory::file_of(const std::string& key) const {
-  return folder_ / (digits(hash_of(key)) + extension);
-}
+fs::path Memory::file_of(const std::string& key) const { return folder_ / (digits(hash_of(key)) + extension); }
 
 std::optional<std::string> Memory::recall(const std::string& key) const {
   if (folder_.empty()) return std::nullopt;

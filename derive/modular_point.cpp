@@ -11,9 +11,7 @@ Rotation rotation_of(Modular t) {
 
 }  // namespace
 
-Rotation operator*(Rotation a, Rotation b) {
-  return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s};
-}
+Rotation operator*(Rotation a, Rotation b) { return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s}; }
 
 Rotation pow(Rotation r, std::int64_t exponent) {
   if (exponent < 0) return pow(Rotation{r.c, Modular(0) - r.s}, -exponent);
@@ -43,29 +41,18 @@ Modular ModularPoint::inverse(Modular x) const {
 Modular ModularPoint::call(Fn fn, std::span<const Modular> args) const {
   const Modular x = args[0];
   switch (fn) {
-    case Fn::sqrt:
-      return root(x);
-    case Fn::sign:
-      return sign(x);
-    case Fn::abs:
-      return sign(x) * x;
-    case Fn::sin:
-      return turn(x).s;
-    case Fn::cos:
-      return turn(x).c;
-    case Fn::tan:
-      return turn(x).s * inverse(turn(x).c);
-    case Fn::exp:
-      return exponential(x);
+    case Fn::sqrt: return root(x);
+    case Fn::sign: return sign(x);
+    case Fn::abs: return sign(x) * x;
+    case Fn::sin: return turn(x).s;
+    case Fn::cos: return turn(x).c;
+    case Fn::tan: return turn(x).s * inverse(turn(x).c);
+    case Fn::exp: return exponential(x);
     case Fn::inverse:
-    case Fn::pivot:
-      return inverse(x);
-    case Fn::select:
-      return sign(x) == Modular(1) ? args[1] : args[2];
-    case Fn::log:
-      return any_for(1, x, x);
-    case Fn::atan2:
-      return any_for(2, x, args[1]);
+    case Fn::pivot: return inverse(x);
+    case Fn::select: return sign(x) == Modular(1) ? args[1] : args[2];
+    case Fn::log: return any_for(1, x, x);
+    case Fn::atan2: return any_for(2, x, args[1]);
   }
   return x;
 }

@@ -33,9 +33,7 @@ class Doubles final : public Arithmetic<double> {
             symbol.pool->dimension() == 2 ? 0 : named(symbol.symbol + "_z")};
   }
 
-  double inverse(const double& x) override {
-    return std::fabs(x) >= std::numeric_limits<double>::min() ? 1 / x : 0;
-  }
+  double inverse(const double& x) override { return std::fabs(x) >= std::numeric_limits<double>::min() ? 1 / x : 0; }
 
   Triple<double> direction(const Triple<double>& u) override {
     const double u_len = length(u);
@@ -46,30 +44,18 @@ class Doubles final : public Arithmetic<double> {
   double call(Fn fn, std::span<const double> args) override {
     const double x = args[0];
     switch (fn) {
-      case Fn::sqrt:
-        return std::sqrt(x);
-      case Fn::sin:
-        return std::sin(x);
-      case Fn::cos:
-        return std::cos(x);
-      case Fn::tan:
-        return std::tan(x);
-      case Fn::exp:
-        return std::exp(x);
-      case Fn::log:
-        return std::log(x);
-      case Fn::abs:
-        return std::fabs(x);
-      case Fn::sign:
-        return x > 0 ? 1 : x < 0 ? -1 : 0;
-      case Fn::atan2:
-        return std::atan2(x, args[1]);
-      case Fn::inverse:
-        return inverse(x);
-      case Fn::select:
-        return x > 0 ? args[1] : args[2];
-      case Fn::pivot:
-        return std::fabs(x) > negligible * std::fabs(args[1]) ? 1 / x : 0;
+      case Fn::sqrt: return std::sqrt(x);
+      case Fn::sin: return std::sin(x);
+      case Fn::cos: return std::cos(x);
+      case Fn::tan: return std::tan(x);
+      case Fn::exp: return std::exp(x);
+      case Fn::log: return std::log(x);
+      case Fn::abs: return std::fabs(x);
+      case Fn::sign: return x > 0 ? 1 : x < 0 ? -1 : 0;
+      case Fn::atan2: return std::atan2(x, args[1]);
+      case Fn::inverse: return inverse(x);
+      case Fn::select: return x > 0 ? args[1] : args[2];
+      case Fn::pivot: return std::fabs(x) > negligible * std::fabs(args[1]) ? 1 / x : 0;
     }
     return 0;
   }
@@ -110,8 +96,8 @@ EulerParameters<double> random_orientation(Random& random) {
 }
 
 bool is_scalar_of_sample(Role role) {
-  return role == Role::parameter || role == Role::time || role == Role::inverse_mass ||
-         role == Role::inverse_inertia || role == Role::multiplier || role == Role::given;
+  return role == Role::parameter || role == Role::time || role == Role::inverse_mass || role == Role::inverse_inertia ||
+         role == Role::multiplier || role == Role::given;
 }
 
 bool is_body_axis(const Joint& joint, const Node& leaf) {
@@ -217,8 +203,7 @@ void draw_leaf(const Joint& joint, Expr leaf, Random& random, Sample& sample) {
       }
     }
   }
-  if (!leaf->vector || leaf->role == Role::position || leaf->role == Role::velocity ||
-      leaf->role == Role::spin) {
+  if (!leaf->vector || leaf->role == Role::position || leaf->role == Role::velocity || leaf->role == Role::spin) {
     return;
   }
   if (is_world_axis(leaf) || is_body_axis(joint, *leaf)) {

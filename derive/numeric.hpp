@@ -36,10 +36,8 @@ using EulerParameters = std::array<T, 4>;
 // The product of quaternions; w in world axes turns e at de/dt = 1/2 (0, w) e, w' in the body's at 1/2 e (0, w').
 template <class T>
 EulerParameters<T> product(const EulerParameters<T>& p, const EulerParameters<T>& q) {
-  return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
-          p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
-          p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3],
-          p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1]};
+  return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+          p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3], p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1]};
 }
 
 // The axes of what is turned by e, as columns of the rotation matrix
@@ -111,10 +109,8 @@ class Evaluation {
 
   T scalar_rule(Expr e) {
     switch (e->kind) {
-      case Kind::number:
-        return arithmetic_.number(e->value);
-      case Kind::symbol:
-        return arithmetic_.scalar_leaf(*e);
+      case Kind::number: return arithmetic_.number(e->value);
+      case Kind::symbol: return arithmetic_.scalar_leaf(*e);
       case Kind::sum: {
         T total = arithmetic_.number(0);
         for (std::size_t i = 0; i < e->args.size(); ++i) {
@@ -122,18 +118,12 @@ class Evaluation {
         }
         return total;
       }
-      case Kind::product:
-        return product_rule(e);
-      case Kind::dot:
-        return inner_product(v(e, 0), v(e, 1));
-      case Kind::cross:
-        return v(e, 0)[0] * v(e, 1)[1] - v(e, 0)[1] * v(e, 1)[0];
-      case Kind::twist:
-        return scalar(twist_as_atan2(e));
-      case Kind::norm:
-        return arithmetic_.length(v(e, 0));
-      default:
-        break;
+      case Kind::product: return product_rule(e);
+      case Kind::dot: return inner_product(v(e, 0), v(e, 1));
+      case Kind::cross: return v(e, 0)[0] * v(e, 1)[1] - v(e, 0)[1] * v(e, 1)[0];
+      case Kind::twist: return scalar(twist_as_atan2(e));
+      case Kind::norm: return arithmetic_.length(v(e, 0));
+      default: break;
     }
     std::vector<T> args;
     for (std::size_t i = 0; i < e->args.size(); ++i) args.push_back(s(e, i));
@@ -160,26 +150,20 @@ class Evaluation {
         }
         return total;
       }
-      case Kind::scale:
-        return {s(e, 0) * v(e, 1)[0], s(e, 0) * v(e, 1)[1], s(e, 0) * v(e, 1)[2]};
-      case Kind::perp:
-        return {arithmetic_.number(-1) * v(e, 0)[1], v(e, 0)[0], arithmetic_.number(0)};
-      case Kind::cross:
-        return cross_product(v(e, 0), v(e, 1));
+      case Kind::scale: return {s(e, 0) * v(e, 1)[0], s(e, 0) * v(e, 1)[1], s(e, 0) * v(e, 1)[2]};
+      case Kind::perp: return {arithmetic_.number(-1) * v(e, 0)[1], v(e, 0)[0], arithmetic_.number(0)};
+      case Kind::cross: return cross_product(v(e, 0), v(e, 1));
       case Kind::tensor: {
         Triple<T> product;
         for (std::size_t i = 0; i < 3; ++i) {
-          const Triple<T> row{arithmetic_.tensor_leaf(*e->args[0], i, 0),
-                              arithmetic_.tensor_leaf(*e->args[0], i, 1),
+          const Triple<T> row{arithmetic_.tensor_leaf(*e->args[0], i, 0), arithmetic_.tensor_leaf(*e->args[0], i, 1),
                               arithmetic_.tensor_leaf(*e->args[0], i, 2)};
           product[i] = inner_product(row, v(e, 1));
         }
         return product;
       }
-      case Kind::unit:
-        return arithmetic_.direction(v(e, 0));
-      default:
-        return arithmetic_.vector_leaf(*e);
+      case Kind::unit: return arithmetic_.direction(v(e, 0));
+      default: return arithmetic_.vector_leaf(*e);
     }
   }
 
@@ -223,8 +207,8 @@ EulerParameters<double> turned_about(std::size_t axis, double amount, const Eule
 // Bodies somewhere, and a value for everything else that some expressions contain.
 struct Sample {
   struct Body {
-    Triple<double> x{}, v{}, w{};  // in the plane w turns about the third axis
-    double theta = 0;              // in the plane
+    Triple<double> x{}, v{}, w{};           // in the plane w turns about the third axis
+    double theta = 0;                       // in the plane
     EulerParameters<double> e{1, 0, 0, 0};  // in space
     // Along column k of J: x, y, angle in the plane; x, y, z and a turn about a world axis in space.
     void move(int dimension, std::size_t k, double amount);

@@ -40,9 +40,7 @@ struct Operator {
   enum class Where { anywhere, velocity, hand } where = Where::anywhere;
   enum class Space { both, planar, spatial } space = Space::both;
 
-  bool is_of(int dimension) const {
-    return space == Space::both || (space == Space::planar) == (dimension == 2);
-  }
+  bool is_of(int dimension) const { return space == Space::both || (space == Space::planar) == (dimension == 2); }
 };
 
 const std::vector<Operator>& operators();

@@ -13,9 +13,7 @@ Matrix matrix_of_rates(Pool& pool, int body) {
 
 }  // namespace
 
-Value build_mass(Pool& pool, std::span<const Value> a) {
-  return scalar(pow(inverse_mass(pool, a[0].body), -1));
-}
+Value build_mass(Pool& pool, std::span<const Value> a) { return scalar(pow(inverse_mass(pool, a[0].body), -1)); }
 
 // In space the leaves are those of the inverse; I is its inverse.
 Value build_inertia(Pool& pool, std::span<const Value> a) {

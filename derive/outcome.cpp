@@ -92,8 +92,8 @@ Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder) {
   return outcome;
 }
 
-Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const Memory& memory,
-                    const std::string& program, bool fresh) {
+Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const Memory& memory, const std::string& program,
+                    bool fresh) {
   if (program.empty()) return derive_spec(spec, folder);
   const std::string key = key_of(spec, folder, program);
   if (!fresh) {
@@ -113,8 +113,8 @@ std::string packed(const Outcome& outcome) {
   Parcel parcel;
   parcel.put(outcome.proved ? 1 : 0);
   parcel.put(outcome.remembered ? 1 : 0);
-  for (const std::string& text : {outcome.said, outcome.complaints, outcome.joint.space, outcome.joint.name,
-                                  outcome.joint.kernel}) {
+  for (const std::string& text :
+       {outcome.said, outcome.complaints, outcome.joint.space, outcome.joint.name, outcome.joint.kernel}) {
     parcel.put(text);
   }
   put(parcel, outcome.joint.ledger);
@@ -127,8 +127,8 @@ Outcome unpacked_outcome(const std::string& content) {
   Outcome outcome;
   outcome.proved = parcel.number() == 1;
   outcome.remembered = parcel.number() == 1;
-  for (std::string* text : {&outcome.said, &outcome.complaints, &outcome.joint.space, &outcome.joint.name,
-                            &outcome.joint.kernel}) {
+  for (std::string* text :
+       {&outcome.said, &outcome.complaints, &outcome.joint.space, &outcome.joint.name, &outcome.joint.kernel}) {
     *text = parcel.text();
   }
   outcome.joint.ledger = ledger_rows(parcel);

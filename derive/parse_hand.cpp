@@ -42,8 +42,7 @@ class HandParser {
   void statement() {
     if (p_.at_word("entry")) return begin_entry();
     if (out_.entries.empty()) {
-      p_.fail(p_.peek().where, "an entry must come first: " + p_.found(),
-              "start with entry ID \"title\"");
+      p_.fail(p_.peek().where, "an entry must come first: " + p_.found(), "start with entry ID \"title\"");
       return out_.entries.push_back({});  // so that this is said once
     }
     if (p_.at_word("source")) return text(entry().source);
@@ -86,8 +85,7 @@ class HandParser {
     const auto same = [&](const HandEntryAst& e) { return e.id == id.text && !id.text.empty(); };
     const auto before = std::find_if(out_.entries.begin(), out_.entries.end(), same);
     if (before != out_.entries.end())
-      p_.fail(id.where, "two entries have the id " + quote(id.text), "choose another id",
-              {before->where});
+      p_.fail(id.where, "two entries have the id " + quote(id.text), "choose another id", {before->where});
     HandEntryAst e;
     e.id = id.text;
     e.where = id.text.empty() ? first.where : id.where;
@@ -116,8 +114,7 @@ class HandParser {
       if (said->kind == Kind::rows) break;
       if (said->kind == Kind::quantity && said->word.text == p_.peek().text)
         p_.fail(p_.peek().where, quote(p_.peek().text) + " is given twice in this entry",
-                "make two entries of it, or say `rows ...` before what is about other rows",
-                {said->word.where});
+                "make two entries of it, or say `rows ...` before what is about other rows", {said->word.where});
     }
     assigned(item);
   }
@@ -196,8 +193,7 @@ class HandParser {
     p_.take();
     item.word = p_.name("what the claim is about");
     if (!p_.failed() && !is_quantity(item.word.text) && item.word.text != "update")
-      p_.fail(item.word.where,
-              "a claim is about C, Cdot, J, K, b or update, not " + quote(item.word.text));
+      p_.fail(item.word.where, "a claim is about C, Cdot, J, K, b or update, not " + quote(item.word.text));
     p_.expect(":", "after what the claim is about");
     equation(item);
   }
@@ -215,16 +211,13 @@ class HandParser {
 
   void remember(const HandItemAst& item) {
     if (item.kind != Kind::assume || item.broken || item.body.text.empty()) return;
-    if (item.flag)
-      entry().immovable.push_back(item.body.text);
-    else
-      entry().anchors[item.word.text] = item.body.text;
+    if (item.flag) entry().immovable.push_back(item.body.text);
+    else entry().anchors[item.word.text] = item.body.text;
   }
 
   void check(const HandEntryAst& e) {
     const auto says = [](const HandItemAst& i) {
-      return i.kind != Kind::assume && i.kind != Kind::let && i.kind != Kind::free &&
-             i.kind != Kind::rows;
+      return i.kind != Kind::assume && i.kind != Kind::let && i.kind != Kind::free && i.kind != Kind::rows;
     };
     const bool empty = std::none_of(e.items.begin(), e.items.end(), says);
     if (e.id.empty() || p_.failed()) return;
@@ -245,10 +238,8 @@ class HandParser {
       const char c = text_[static_cast<std::size_t>(i)];
       comment = c == '#' || (comment && c != '\n');
       const bool blank = comment || c == ' ' || c == '\t' || c == '\n' || c == '\r';
-      if (!blank)
-        out += c;
-      else if (!out.empty() && out.back() != ' ')
-        out += ' ';
+      if (!blank) out += c;
+      else if (!out.empty() && out.back() != ' ') out += ' ';
     }
     return out;
   }

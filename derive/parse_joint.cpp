@@ -11,16 +11,12 @@ namespace {
 class JointParser {
  public:
   JointParser(const SourceFile& file, const Tokens& tokens, Diagnostics& diagnostics)
-      : file_(file),
-        tokens_(tokens),
-        diagnostics_(diagnostics),
-        p_(file, tokens, false, diagnostics) {}
+      : file_(file), tokens_(tokens), diagnostics_(diagnostics), p_(file, tokens, false, diagnostics) {}
 
   JointAst run() {
     skip_blank_lines();
     if (!p_.at_word("joint"))
-      diagnostics_.error(p_.peek().where, "the header is missing: " + p_.found(),
-                         "start with `joint NAME planar`");
+      diagnostics_.error(p_.peek().where, "the header is missing: " + p_.found(), "start with `joint NAME planar`");
     for (; !p_.at_end(); skip_blank_lines()) {
       const std::size_t before = joint_.statements.size();
       statement();
@@ -41,8 +37,7 @@ class JointParser {
     auto& all = joint_.statements;
     for (std::size_t i = first; i < all.size(); ++i) all[i].declared.broken = true;
     const auto is_row = [](const StatementAst& s) { return s.kind == StatementAst::Kind::row; };
-    all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), is_row),
-              all.end());
+    all.erase(std::remove_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(), is_row), all.end());
   }
 
   void statement() {
@@ -61,15 +56,12 @@ class JointParser {
     if (p_.at_word("keep"))
       return p_.fail(p_.peek().where, "`keep` stands at the end of the row that it is about",
                      "write cross(f.x, u) = 0 keep 2, in one line");
-    for (const char* kind :
-         {"point", "vector", "unit", "frame", "scalar", "let", "coordinate", "include", "joint"})
+    for (const char* kind : {"point", "vector", "unit", "frame", "scalar", "let", "coordinate", "include", "joint"})
       if (p_.at_word(kind) && !p_.at_symbol("(", 1) && !p_.at_symbol(":", 1)) {
         p_.take();
-        return p_.fail(p_.peek().where,
-                       "a name is missing after " + quote(kind) + ": " + p_.found());
+        return p_.fail(p_.peek().where, "a name is missing after " + quote(kind) + ": " + p_.found());
       }
-    if (p_.at_name() && (declares || p_.peek(1).kind == TokenKind::string) &&
-        !p_.at_word("velocity"))
+    if (p_.at_name() && (declares || p_.peek(1).kind == TokenKind::string) && !p_.at_word("velocity"))
       return unknown_statement();
     row();
   }
@@ -93,8 +85,7 @@ class JointParser {
   void once(std::string& target, std::string_view what, std::string_view keyword) {
     const Token t = p_.peek();
     const std::string text = keyword.empty() ? std::string(p_.take().text) : p_.string(keyword);
-    if (!target.empty())
-      p_.fail(t.where, std::string(what) + " is said twice", "join the two texts into one");
+    if (!target.empty()) p_.fail(t.where, std::string(what) + " is said twice", "join the two texts into one");
     target = text;
   }
 
@@ -121,8 +112,7 @@ class JointParser {
   void argument(IncludeAst& include) {
     if (!p_.at_symbol("=", 1)) {
       const Word body = p_.name("a body");
-      if (!include.given.empty() && !p_.failed())
-        p_.fail(body.where, "a body after a parameter", "bodies stand first");
+      if (!include.given.empty() && !p_.failed()) p_.fail(body.where, "a body after a parameter", "bodies stand first");
       return include.bodies.push_back(body);
     }
     DeclaredAst given;
@@ -144,8 +134,7 @@ class JointParser {
       finish(s);
     } while (p_.accept(","));
     if (p_.at_name() && !p_.failed())
-      p_.fail(p_.peek().where, "after the " + kind + " comes " + quote(p_.peek().text),
-              "the form is " + form_of(kind));
+      p_.fail(p_.peek().where, "after the " + kind + " comes " + quote(p_.peek().text), "the form is " + form_of(kind));
   }
 
   static std::string form_of(const std::string& kind) {
@@ -189,11 +178,9 @@ class JointParser {
     s.declared.name = p_.name("the name");
     s.declared.unit = p_.unit();
     if (keyword == "let" && s.declared.unit)
-      p_.fail(s.declared.unit->where, "a let takes its unit from its expression",
-              "remove the unit here");
+      p_.fail(s.declared.unit->where, "a let takes its unit from its expression", "remove the unit here");
     if (!p_.failed() && !p_.at_symbol("="))
-      p_.fail(p_.peek().where,
-              "`=` is missing after `" + keyword + " " + s.declared.name.text + "`: " + p_.found(),
+      p_.fail(p_.peek().where, "`=` is missing after `" + keyword + " " + s.declared.name.text + "`: " + p_.found(),
               "write " + keyword + " " + s.declared.name.text + " = ...");
     if (p_.accept("=")) s.declared.value = p_.expression();
     s.declared.broken = p_.failed();
@@ -218,8 +205,7 @@ class JointParser {
     s.right = p_.expression();
     keep(s);
     if (!p_.failed() && (p_.at_symbol("=") || p_.at_symbol("<=") || p_.at_symbol(">=")))
-      p_.fail(p_.peek().where, "a row has one relation, here is a second", "write two rows",
-              {s.relation_where});
+      p_.fail(p_.peek().where, "a row has one relation, here is a second", "write two rows", {s.relation_where});
     finish(s);
   }
 
@@ -229,8 +215,7 @@ class JointParser {
     p_.take();
     const Token t = p_.peek();
     if (t.kind != TokenKind::number)
-      return p_.fail(t.where, "how many rows? a number is missing after `keep`: " + p_.found(),
-                     "write keep 2");
+      return p_.fail(t.where, "how many rows? a number is missing after `keep`: " + p_.found(), "write keep 2");
     p_.take();
     s.keep = {std::string(t.text), t.where};
   }
@@ -241,14 +226,11 @@ class JointParser {
     s.relation = t.text;
     s.relation_where = t.where;
     if (p_.accept("=") || p_.accept("<=") || p_.accept(">=")) return;
-    if (p_.at_symbol("=="))
-      p_.fail(t.where, "`==` is not a relation of this language", "write a single =");
+    if (p_.at_symbol("==")) p_.fail(t.where, "`==` is not a relation of this language", "write a single =");
     else if (p_.at_symbol("=>") || p_.at_symbol("=<"))
-      p_.fail(t.where, quote(t.text) + " is not a relation of this language",
-              t.text == "=>" ? "write >=" : "write <=");
+      p_.fail(t.where, quote(t.text) + " is not a relation of this language", t.text == "=>" ? "write >=" : "write <=");
     else if (p_.at_symbol("<") || p_.at_symbol(">"))
-      p_.fail(t.where, quote(t.text) + " is not a relation of this language",
-              "write " + std::string(t.text) + "=");
+      p_.fail(t.where, quote(t.text) + " is not a relation of this language", "write " + std::string(t.text) + "=");
     else if (p_.at_symbol("+=") || p_.at_symbol("-="))
       p_.fail(t.where, quote(t.text) + " changes something; a row says what holds", "write =");
     else if (p_.at_symbol(")") || p_.at_symbol("]"))
@@ -258,8 +240,7 @@ class JointParser {
               "write ... = 0; to give a part a name: let NAME = ...");
     else if (p_.at_name() || p_.peek().kind == TokenKind::number || p_.at_symbol("("))
       p_.fail(t.where, "an operator is missing before " + quote(t.text), "write * for a product");
-    else
-      p_.fail(t.where, "`=`, `<=` or `>=` is missing: " + p_.found());
+    else p_.fail(t.where, "`=`, `<=` or `>=` is missing: " + p_.found());
   }
 
   void unknown_statement() {
@@ -270,11 +251,9 @@ class JointParser {
       p_.fail(t.where, "no statement starts with " + quote(t.text),
               "statements start with point, vector, unit, frame, scalar, let, include, coordinate, "
               "velocity, source; a row is an equation");
-    else
-      p_.fail(t.where, "no statement starts with " + quote(t.text),
-              "did you mean " + quote(near) + "?");
-    if (p_.at_name() && (near == "point" || near == "vector" || near == "unit" || near == "frame" ||
-                         near == "scalar" || near == "let"))
+    else p_.fail(t.where, "no statement starts with " + quote(t.text), "did you mean " + quote(near) + "?");
+    if (p_.at_name() &&
+        (near == "point" || near == "vector" || near == "unit" || near == "frame" || near == "scalar" || near == "let"))
       declare_broken(near, p_.peek());
   }
 
@@ -317,9 +296,8 @@ class JointParser {
       block.push_back(c);
     }
     for (const Span& c : block) {
-      std::string_view line =
-          std::string_view(file_.text)
-              .substr(static_cast<std::size_t>(c.begin), static_cast<std::size_t>(c.end - c.begin));
+      std::string_view line = std::string_view(file_.text)
+                                  .substr(static_cast<std::size_t>(c.begin), static_cast<std::size_t>(c.end - c.begin));
       line.remove_prefix(line.starts_with("# ") ? 2 : 1);
       if (line.ends_with('\r')) line.remove_suffix(1);
       joint_.comment += std::string(line) + "\n";

@@ -18,8 +18,7 @@ Rational exact_number(std::string_view text) {
   if (e < text.size()) {
     std::string_view digits = text.substr(e + 1);
     if (digits.starts_with('+')) digits.remove_prefix(1);
-    const auto [end, problem] =
-        std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
+    const auto [end, problem] = std::from_chars(digits.data(), digits.data() + digits.size(), exponent);
     if (problem != std::errc() || std::abs(exponent) > largest_exponent) throw NumberTooLarge();
   }
   std::string mantissa(text.substr(0, e));
@@ -49,20 +48,19 @@ const std::array<NamedUnit, 7> known_units = {{{"m", {.m = 1}, 0},
                                                {"deg", {.rad = 1}, 1}}};
 
 std::string unit_fix(std::string_view word) {
-  static const std::array<std::pair<std::string_view, std::string_view>, 13> others = {
-      {{"cm", "0.01 m"},
-       {"mm", "0.001 m"},
-       {"km", "1000 m"},
-       {"g", "0.001 kg"},
-       {"ms", "0.001 s"},
-       {"Hz", "1/s"},
-       {"hz", "1/s"},
-       {"meter", "m"},
-       {"metre", "m"},
-       {"second", "s"},
-       {"radians", "rad"},
-       {"degrees", "deg"},
-       {"Nm", "N*m"}}};
+  static const std::array<std::pair<std::string_view, std::string_view>, 13> others = {{{"cm", "0.01 m"},
+                                                                                        {"mm", "0.001 m"},
+                                                                                        {"km", "1000 m"},
+                                                                                        {"g", "0.001 kg"},
+                                                                                        {"ms", "0.001 s"},
+                                                                                        {"Hz", "1/s"},
+                                                                                        {"hz", "1/s"},
+                                                                                        {"meter", "m"},
+                                                                                        {"metre", "m"},
+                                                                                        {"second", "s"},
+                                                                                        {"radians", "rad"},
+                                                                                        {"degrees", "deg"},
+                                                                                        {"Nm", "N*m"}}};
   for (const auto& [name, meaning] : others)
     if (name == word) return "in the language's units that is " + std::string(meaning);
   std::vector<std::string> names;
@@ -79,14 +77,11 @@ std::optional<WrittenUnit> Parser::unit() {
   if (failed_ || !at_symbol("[")) return {};
   const Token first = take();
   WrittenUnit result;
-  if (peek().kind == TokenKind::number && peek().text == "1")
-    take();
-  else
-    unit_factor(result, false);
+  if (peek().kind == TokenKind::number && peek().text == "1") take();
+  else unit_factor(result, false);
   while (!failed_ && (at_symbol("*") || at_symbol("/"))) unit_factor(result, take().text == "/");
   if (!failed_ && at_name())
-    fail(peek().where, "`*` or `/` is missing between units: " + found(),
-         "write for example [m/s]");
+    fail(peek().where, "`*` or `/` is missing between units: " + found(), "write for example [m/s]");
   expect("]", "after the unit");
   result.where = from(first);
   return result;
@@ -95,10 +90,9 @@ std::optional<WrittenUnit> Parser::unit() {
 void Parser::unit_factor(WrittenUnit& result, bool divided) {
   const Word word = name("a unit such as m, rad or kg*m^2");
   if (failed_) return;
-  const auto known = std::find_if(known_units.begin(), known_units.end(),
-                                  [&](const NamedUnit& u) { return u.name == word.text; });
-  if (known == known_units.end())
-    return fail(word.where, "there is no unit " + quote(word.text), unit_fix(word.text));
+  const auto known =
+      std::find_if(known_units.begin(), known_units.end(), [&](const NamedUnit& u) { return u.name == word.text; });
+  if (known == known_units.end()) return fail(word.where, "there is no unit " + quote(word.text), unit_fix(word.text));
   int exponent = 1;
   if (accept("^")) {
     const int sign = accept("-") ? -1 : 1;

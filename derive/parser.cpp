@@ -28,9 +28,7 @@ bool Parser::at_word(std::string_view text, int ahead) const {
   return peek(ahead).kind == TokenKind::name && peek(ahead).text == text;
 }
 
-bool Parser::at_end_of_statement() const {
-  return peek().kind == TokenKind::newline || peek().kind == TokenKind::end;
-}
+bool Parser::at_end_of_statement() const { return peek().kind == TokenKind::newline || peek().kind == TokenKind::end; }
 
 bool Parser::accept(std::string_view symbol) {
   if (failed_ || !at_symbol(symbol)) return false;
@@ -48,8 +46,7 @@ bool Parser::expect(std::string_view symbol, std::string_view where) {
 void Parser::fail(Span where, std::string message, std::string fix, std::vector<Span> also) {
   // What is no token was reported by the lexer.
   const bool reported = peek().kind == TokenKind::unknown;
-  if (!failed_ && !reported)
-    diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
+  if (!failed_ && !reported) diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
   failed_ = true;
 }
 
@@ -110,8 +107,7 @@ std::string Parser::string(std::string_view after) {
 Ast Parser::expression() {
   if (failed_) return {};
   if (++depth_ > deepest_nesting) {
-    fail(peek().where, "brackets are nested too deeply here",
-         "give parts of the expression names with `let`");
+    fail(peek().where, "brackets are nested too deeply here", "give parts of the expression names with `let`");
     --depth_;
     return {};
   }
@@ -211,17 +207,12 @@ Ast Parser::primary() {
 
 Ast Parser::nothing_here() {
   const Token& t = peek();
-  if (t.kind == TokenKind::string)
-    fail(t.where, "a text in quotes cannot stand in an expression");
+  if (t.kind == TokenKind::string) fail(t.where, "a text in quotes cannot stand in an expression");
   else if (at_symbol("["))
-    fail(t.where, "square brackets stand behind a number, for its unit, as in 2 [m]",
-         "use round brackets to group");
-  else if (at_symbol("+"))
-    fail(t.where, "a sign + is not written", "remove it");
-  else if (at_symbol("-"))
-    fail(t.where, "two signs in a row", "put the negative part into round brackets");
-  else
-    fail(t.where, "a number, a name or a bracket is missing: " + found());
+    fail(t.where, "square brackets stand behind a number, for its unit, as in 2 [m]", "use round brackets to group");
+  else if (at_symbol("+")) fail(t.where, "a sign + is not written", "remove it");
+  else if (at_symbol("-")) fail(t.where, "two signs in a row", "put the negative part into round brackets");
+  else fail(t.where, "a number, a name or a bracket is missing: " + found());
   return {};
 }
 
@@ -233,8 +224,7 @@ void Parser::not_closed(const Token& open, std::string_view closing) {
     fail(open.where, "this bracket is not closed", "add the missing " + std::string(closing));
   else if (at_name() || next.kind == TokenKind::number || at_symbol("("))
     fail(next.where, "an operator or a comma is missing before " + quote(next.text));
-  else
-    fail(next.where, quote(closing) + " is missing here: " + found(), "", {open.where});
+  else fail(next.where, quote(closing) + " is missing here: " + found(), "", {open.where});
 }
 
 Ast Parser::brackets() {
@@ -244,8 +234,7 @@ Ast Parser::brackets() {
     if (at_symbol(","))
       fail(peek().where, "a comma between round brackets without an operator before them",
            "a vector is written with perp, unit vectors or a parameter, not as (x, y)");
-    else
-      not_closed(open, ")");
+    else not_closed(open, ")");
   }
   accept(")");
   inner.where = from(open);

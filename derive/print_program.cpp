@@ -28,8 +28,7 @@ class StatementPrinter {
   std::vector<std::string> print() {
     // Quantities first, then the outputs, so that an argument may be read and written.
     for (std::size_t i = 0; i < program_.ops.size(); ++i) {
-      if (uses_[i] > 0 && !program_.ops[i].name.empty())
-        named_[program_.ops[i].name] = static_cast<int>(i);
+      if (uses_[i] > 0 && !program_.ops[i].name.empty()) named_[program_.ops[i].name] = static_cast<int>(i);
     }
     for (const Output& output : program_.outputs) {
       label_ = plain(output.name);
@@ -84,28 +83,19 @@ class StatementPrinter {
     if (o.kind != OpKind::product || o.args.size() != 2) return "";
     if (o.exponents[0] != 1 || o.exponents[1] != 1) return "";
     const std::string mass = input_text(o.args[0]), other = operand(o.args[1], in_power);
-    const bool inertia =
-        mass.size() == 4 && mass[0] == 'm' && (mass.ends_with(".I") || mass.ends_with(".m"));
+    const bool inertia = mass.size() == 4 && mass[0] == 'm' && (mass.ends_with(".I") || mass.ends_with(".m"));
     const std::size_t dot = other.find("J.") == 0 ? 2 : 0;
     if (!inertia || other.find_first_not_of(letters, dot) != std::string::npos) return "";
     return fmt::format("{}{}_{}", mass[3] == 'I' ? "i" : "m", mass[1], other.substr(dot));
   }
 
-  std::string input_text(int op) const {
-    return at(op).kind == OpKind::input ? expression(op, in_sum) : "";
-  }
+  std::string input_text(int op) const { return at(op).kind == OpKind::input ? expression(op, in_sum) : ""; }
 
-  bool is_atom(const Operation& op) const {
-    return op.kind == OpKind::number || op.kind == OpKind::input;
-  }
+  bool is_atom(const Operation& op) const { return op.kind == OpKind::number || op.kind == OpKind::input; }
   // -x and 2 x of one operand are written where they are used.
-  static bool is_scaling(const Operation& op) {
-    return op.kind == OpKind::sum && op.args.size() == 1;
-  }
+  static bool is_scaling(const Operation& op) { return op.kind == OpKind::sum && op.args.size() == 1; }
 
-  static bool is_negative(const Operation& op) {
-    return is_scaling(op) && op.coefs[0] == Rational(-1);
-  }
+  static bool is_negative(const Operation& op) { return is_scaling(op) && op.coefs[0] == Rational(-1); }
 
   bool wants_variable(int op) const {
     const Operation& o = at(op);
@@ -153,9 +143,7 @@ class StatementPrinter {
     return variable_[index(op)].empty() ? expression(op, level) : variable_[index(op)];
   }
 
-  static std::string parenthesised(std::string s, bool needed) {
-    return needed ? "(" + s + ")" : s;
-  }
+  static std::string parenthesised(std::string s, bool needed) { return needed ? "(" + s + ")" : s; }
 
   static std::string number(Rational value) {
     if (value.is_integer()) return fmt::format("T({})", value.num());
@@ -166,18 +154,14 @@ class StatementPrinter {
     const Operation& o = at(op);
     if (!variable_[index(op)].empty()) return variable_[index(op)];
     switch (o.kind) {
-      case OpKind::number:
-        return number(o.value);
+      case OpKind::number: return number(o.value);
       case OpKind::input: {
         const auto found = printing_.inputs.find(o.input);
         return found == printing_.inputs.end() ? o.input : found->second;
       }
-      case OpKind::sum:
-        return sum_text(o, level);
-      case OpKind::product:
-        return parenthesised(product_text(o), level >= in_power);
-      case OpKind::function:
-        return function_text(o);
+      case OpKind::sum: return sum_text(o, level);
+      case OpKind::product: return parenthesised(product_text(o), level >= in_power);
+      case OpKind::function: return function_text(o);
     }
     return "";
   }
@@ -275,10 +259,9 @@ std::vector<std::string> wrapped(std::string line, Break where) {
     for (std::size_t i = indent; i < end; ++i) {
       if (line[i] == '(' || line[i] == '[') ++depth;
       if (line[i] == ')' || line[i] == ']') --depth;
-      const bool after_operator =
-          i > indent && std::string_view("+-*,|").find(line[i - 1]) != std::string_view::npos;
-      const bool allowed = line[i] == ' ' && i > columns / 3 &&
-                           (where == Break::at_spaces || (after_operator && depth <= best_depth));
+      const bool after_operator = i > indent && std::string_view("+-*,|").find(line[i - 1]) != std::string_view::npos;
+      const bool allowed =
+          line[i] == ' ' && i > columns / 3 && (where == Break::at_spaces || (after_operator && depth <= best_depth));
       if (allowed) best = i, best_depth = depth;
     }
     if (best == std::string::npos) break;

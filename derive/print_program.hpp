@@ -11,9 +11,8 @@
 namespace cdot::derive {
 
 struct Printing {
-  std::map<std::string, std::string>
-      inputs;  // how an input is read: "x_a_x" -> "a.x"; others stand for themselves
-  std::set<std::string> reserved;  // names that a local must not take
+  std::map<std::string, std::string> inputs;  // how an input is read: "x_a_x" -> "a.x"; others stand for themselves
+  std::set<std::string> reserved;             // names that a local must not take
   std::string indent;
   bool zeroed = false;  // the outputs are zero beforehand: those that stay so are not assigned
 };

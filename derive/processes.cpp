@@ -21,12 +21,10 @@ namespace cdot::derive {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double slow = 10;  // seconds that a task may take without a word
+constexpr double slow = 10;         // seconds that a task may take without a word
 const std::string well = "well: ";  // how what a process says begins, if it has a result
 
-[[noreturn]] void raise_errno(const char* what) {
-  throw std::system_error(errno, std::generic_category(), what);
-}
+[[noreturn]] void raise_errno(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
 struct Process {
   std::size_t task;
@@ -66,8 +64,7 @@ void write_all(int file, std::string_view text) {
 
 class Running {
  public:
-  explicit Running(const Tasks& tasks)
-      : tasks_(tasks), progress_(tasks.names.size()), answers_(tasks.names.size()) {}
+  explicit Running(const Tasks& tasks) : tasks_(tasks), progress_(tasks.names.size()), answers_(tasks.names.size()) {}
   ~Running() {  // after an exception; else none is left
     for (const Process& process : processes_) kill(process.id, SIGKILL), waitpid(process.id, nullptr, 0);
   }
@@ -133,8 +130,7 @@ class Running {
     answers_[process.task] = answer(process.said, status);
     ++done_;
     progress_.clear();
-    progress_.finished(tasks_.names[process.task],
-                       std::chrono::duration<double>(Clock::now() - process.begun).count());
+    progress_.finished(tasks_.names[process.task], std::chrono::duration<double>(Clock::now() - process.begun).count());
   }
 
   static Answer answer(const std::string& said, int status) {

@@ -13,10 +13,10 @@ struct Answer {
 };
 
 struct Tasks {
-  std::vector<std::string> names;                          // for people; as many as there are tasks
-  std::vector<std::size_t> order;                          // in which they are begun; empty: as they are
-  std::function<std::string(std::size_t)> run;             // in a process of its own
-  std::function<void(std::size_t, const Answer&)> take;    // here; one by one in the order of `names`
+  std::vector<std::string> names;                        // for people; as many as there are tasks
+  std::vector<std::size_t> order;                        // in which they are begun; empty: as they are
+  std::function<std::string(std::size_t)> run;           // in a process of its own
+  std::function<void(std::size_t, const Answer&)> take;  // here; one by one in the order of `names`
 };
 
 // At most `processes` at once, which die with this one. Tells on stderr how far it is, if that is a terminal;

@@ -230,9 +230,7 @@ Program assemble(const std::vector<NamedExpr>& outputs) {
         op.kind = OpKind::product;
         op.exponents = e->exponents;
         break;
-      default:
-        op.kind = OpKind::function;
-        op.fn = e->fn;
+      default: op.kind = OpKind::function; op.fn = e->fn;
     }
     done.emplace(&*e, builder.rebuild(op, std::move(args)));
   }

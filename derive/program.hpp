@@ -15,11 +15,10 @@ enum class OpKind { number, input, sum, product, function };
 // Operands come before their users. Sums and products have any number of operands.
 struct Operation {
   OpKind kind = OpKind::number;
-  Rational value;     // number
-  std::string input;  // input: the symbol's name
-  bool is_position =
-      false;         // input: a coordinate of a centre of mass (large, so differences come first)
-  Fn fn = Fn::sqrt;  // function
+  Rational value;            // number
+  std::string input;         // input: the symbol's name
+  bool is_position = false;  // input: a coordinate of a centre of mass (large, so differences come first)
+  Fn fn = Fn::sqrt;          // function
   std::vector<int> args;
   std::vector<Rational> coefs;  // sum
   std::vector<int> exponents;   // product, positive

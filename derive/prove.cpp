@@ -51,34 +51,21 @@ class Prover {
  private:
   void check(LawId id) {
     switch (id) {
-      case LawId::rate:
-        return rate();
-      case LawId::linear:
-        return linear();
-      case LawId::jacobian:
-        return jacobian();
-      case LawId::raw:
-        return raw();
-      case LawId::mass:
-        return mass();
-      case LawId::gamma:
-        return gamma();
-      case LawId::stiffness:
-        return stiffness();
-      case LawId::forms:
-        return forms();
-      case LawId::momentum:
-        law_ = conserves_momentum(joint_, block_, names_);
-        return;
-      case LawId::rank:
-        law_ = rows_are_independent(block_);
-        return;
+      case LawId::rate: return rate();
+      case LawId::linear: return linear();
+      case LawId::jacobian: return jacobian();
+      case LawId::raw: return raw();
+      case LawId::mass: return mass();
+      case LawId::gamma: return gamma();
+      case LawId::stiffness: return stiffness();
+      case LawId::forms: return forms();
+      case LawId::momentum: law_ = conserves_momentum(joint_, block_, names_); return;
+      case LawId::rank: law_ = rows_are_independent(block_); return;
     }
   }
 
   // difference = 0, else the law fails at `where`; the first failure is the one that is told.
-  void require_zero(Algebra& algebra, const ex& difference, const ScalarRow& row,
-                    const std::string& where) {
+  void require_zero(Algebra& algebra, const ex& difference, const ScalarRow& row, const std::string& where) {
     if (law_.verdict == Verdict::fails) return;
     const Algebra::Zero zero = algebra.is_zero(difference);
     if (zero == Algebra::Zero::yes) return;
@@ -89,9 +76,9 @@ class Prover {
     law_.row = row.row;
     const bool differs = zero == Algebra::Zero::no;
     law_.verdict = differs ? Verdict::fails : Verdict::undecided;
-    law_.text = row.name + where +
-                (differs ? ", for instance " + algebra.witness()
-                         : ": equal to 60 digits at random poses, but not proved");
+    law_.text =
+        row.name + where +
+        (differs ? ", for instance " + algebra.witness() : ": equal to 60 digits at random poses, but not proved");
   }
 
   bool movable(std::size_t body) const { return static_cast<int>(body) != block_.immovable; }
@@ -102,8 +89,7 @@ class Prover {
       const ScalarRow& row = block_.rows[i];
       if (row.kind == RowKind::velocity) continue;
       if (law_.verdict == Verdict::does_not_apply) law_.verdict = Verdict::holds;
-      require_zero(names_, names_.of(row.Cdot) - Cdot_[i], row,
-                   ": Cdot is not the time derivative of C");
+      require_zero(names_, names_.of(row.Cdot) - Cdot_[i], row, ": Cdot is not the time derivative of C");
     }
   }
 
@@ -114,8 +100,7 @@ class Prover {
       for (std::size_t j = 0; j < v.size(); ++j) {
         const ex slope = derivative(Cdot_[i], v[j]);
         for (std::size_t k = 0; k <= j; ++k) {
-          require_zero(names_, derivative(slope, v[k]), block_.rows[i],
-                       ": Cdot is not linear in the velocities");
+          require_zero(names_, derivative(slope, v[k]), block_.rows[i], ": Cdot is not linear in the velocities");
         }
       }
     }
@@ -144,8 +129,7 @@ class Prover {
         const auto v = raw_.velocities(static_cast<int>(b));
         for (std::size_t k = 0; k < J.size(); ++k) {
           const ex expected = position ? raw_.slope(source, static_cast<int>(b), k) : derivative(source, v[k]);
-          require_zero(raw_, J[k] - expected, row,
-                       ", column " + column(b, k) + ": J is not the derivative of C");
+          require_zero(raw_, J[k] - expected, row, ", column " + column(b, k) + ": J is not the derivative of C");
         }
       }
     }
@@ -155,8 +139,7 @@ class Prover {
   void mass() {
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
-        const std::string where =
-            ": K(" + std::to_string(i + 1) + "," + std::to_string(j + 1) + ") is not J M^-1 J^T";
+        const std::string where = ": K(" + std::to_string(i + 1) + "," + std::to_string(j + 1) + ") is not J M^-1 J^T";
         const ex K = names_.of(block_.K[i][j]);
         require_zero(names_, K - product(i, j), block_.rows[i], where);
         if (i != j) require_zero(names_, K - product(j, i), block_.rows[i], where);
@@ -305,42 +288,27 @@ class Prover {
 
 std::string_view name_of(LawId id) {
   switch (id) {
-    case LawId::rate:
-      return "Cdot is the time derivative of C";
-    case LawId::linear:
-      return "Cdot is linear in v";
-    case LawId::jacobian:
-      return "J v + dC/dt = Cdot";
-    case LawId::raw:
-      return "J agrees with C in raw coordinates";
-    case LawId::mass:
-      return "K is symmetric and J M^-1 J^T";
-    case LawId::gamma:
-      return "gamma = -Jdot v - d/dt dC/dt";
-    case LawId::stiffness:
-      return "the geometric stiffness is the Hessian of lambda . C";
-    case LawId::forms:
-      return "J_b = J diag(E, A) and J_c = J diag(E, 2 G) are derivatives of C";
-    case LawId::momentum:
-      return "momentum is conserved";
-    case LawId::rank:
-      return "the rows are independent";
+    case LawId::rate: return "Cdot is the time derivative of C";
+    case LawId::linear: return "Cdot is linear in v";
+    case LawId::jacobian: return "J v + dC/dt = Cdot";
+    case LawId::raw: return "J agrees with C in raw coordinates";
+    case LawId::mass: return "K is symmetric and J M^-1 J^T";
+    case LawId::gamma: return "gamma = -Jdot v - d/dt dC/dt";
+    case LawId::stiffness: return "the geometric stiffness is the Hessian of lambda . C";
+    case LawId::forms: return "J_b = J diag(E, A) and J_c = J diag(E, 2 G) are derivatives of C";
+    case LawId::momentum: return "momentum is conserved";
+    case LawId::rank: return "the rows are independent";
   }
   return "";
 }
 
 std::string_view name_of(Verdict v) {
   switch (v) {
-    case Verdict::holds:
-      return "holds";
-    case Verdict::shown:
-      return "shown at random points";
-    case Verdict::fails:
-      return "fails";
-    case Verdict::undecided:
-      return "undecided";
-    case Verdict::does_not_apply:
-      return "does not apply";
+    case Verdict::holds: return "holds";
+    case Verdict::shown: return "shown at random points";
+    case Verdict::fails: return "fails";
+    case Verdict::undecided: return "undecided";
+    case Verdict::does_not_apply: return "does not apply";
   }
   return "";
 }

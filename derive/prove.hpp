@@ -12,7 +12,7 @@ namespace cdot::derive {
 
 enum class Verdict {
   holds,
-  shown,          // too much for algebra; true at `exact_points` random points modulo a prime
+  shown,  // too much for algebra; true at `exact_points` random points modulo a prime
   fails,
   undecided,      // algebra does not decide; numbers agree to 60 digits at several poses
   does_not_apply  // no C at velocity level, a joint with the world, ...
@@ -35,8 +35,8 @@ inline constexpr int number_of_laws = 10;
 struct Law {
   LawId id = LawId::rate;
   Verdict verdict = Verdict::holds;
-  std::string text;  // what fails, and where it can be seen; empty if the law holds
-  std::string fix;   // what the author may do about it; empty if it is no matter of the spec
+  std::string text;          // what fails, and where it can be seen; empty if the law holds
+  std::string fix;           // what the author may do about it; empty if it is no matter of the spec
   const Row* row = nullptr;  // that breaks it, if it is a row's doing
   std::vector<Span> parts;   // the terms of the row that break it
 };

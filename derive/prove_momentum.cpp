@@ -20,8 +20,7 @@ Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
   Felt felt{zero_vector(*joint.pool), zero_spin(*joint.pool)};
   for (std::size_t b = 0; b < J.size(); ++b) {
     felt.translation = felt.translation + J[b].v;
-    felt.rotation =
-        felt.rotation + J[b].w + cross(body_symbols(joint, static_cast<int>(b)).x, J[b].v);
+    felt.rotation = felt.rotation + J[b].w + cross(body_symbols(joint, static_cast<int>(b)).x, J[b].v);
   }
   return felt;
 }
@@ -67,9 +66,7 @@ class Momentum {
     only_on_constraint_ = true;
     return true;
   }
-  bool translation_vanishes(const Felt& felt) {
-    return all_vanish(components_of(felt.translation));
-  }
+  bool translation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.translation)); }
   bool rotation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.rotation)); }
   // A vector C that turns with the bodies, dC/dt = w x C, is felt by its components along the axes e
   // of the world, e . (w x C) = w . (C x e), and that only where C is not zero.
@@ -86,8 +83,7 @@ class Momentum {
   bool proved() const { return proved_; }
 
   // The fewest terms of a row whose removal leaves nothing to feel.
-  std::vector<Expr> breaking_terms(const std::vector<Expr>& terms,
-                                   const std::vector<Felt>& felt_by_term) {
+  std::vector<Expr> breaking_terms(const std::vector<Expr>& terms, const std::vector<Felt>& felt_by_term) {
     constexpr std::size_t most_terms = 8;
     if (terms.size() > most_terms) return terms;
     std::vector<unsigned> subsets;
@@ -101,8 +97,7 @@ class Momentum {
         if (subset >> i & 1) {
           removed.push_back(terms[i]);
         } else {
-          rest = {rest.translation + felt_by_term[i].translation,
-                  rest.rotation + felt_by_term[i].rotation};
+          rest = {rest.translation + felt_by_term[i].translation, rest.rotation + felt_by_term[i].rotation};
         }
       }
       if (translation_vanishes(rest) && rotation_vanishes(rest)) return removed;
@@ -148,14 +143,10 @@ std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joi
   };
   for (const Expr leaf : leaves) {
     if (!guilty(leaf)) continue;
-    const std::string body =
-        leaf->body < 0 ? "" : joint.bodies[static_cast<std::size_t>(leaf->body)];
-    if (leaf->role == Role::angle)
-      words.insert("angle(" + body + ")");
-    else if (leaf->role == Role::position)
-      words.insert("x(" + body + ")");
-    else
-      words.insert({".x", ".y", ".z"});
+    const std::string body = leaf->body < 0 ? "" : joint.bodies[static_cast<std::size_t>(leaf->body)];
+    if (leaf->role == Role::angle) words.insert("angle(" + body + ")");
+    else if (leaf->role == Role::position) words.insert("x(" + body + ")");
+    else words.insert({".x", ".y", ".z"});
     for (const Let& let : joint.lets) {
       const std::vector<Expr> inside = leaves_of(std::span(&let.value, 1));
       if (std::find(inside.begin(), inside.end(), leaf) != inside.end()) words.insert(let.name);
@@ -168,8 +159,7 @@ std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joi
   return words;
 }
 
-std::vector<Span> spans_of(const std::vector<Expr>& terms, const Joint& joint, Span where,
-                           bool rotation) {
+std::vector<Span> spans_of(const std::vector<Expr>& terms, const Joint& joint, Span where, bool rotation) {
   if (!joint.file) return {};
   return occurrences(*joint.file, where, spellings(terms, joint, rotation));
 }
@@ -177,15 +167,15 @@ std::vector<Span> spans_of(const std::vector<Expr>& terms, const Joint& joint, S
 std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, const Joint& joint) {
   const char* const changes = row.kind == RowKind::velocity ? " gives " : " changes C by ";
   if (rotation) {
-    return "angular momentum is not conserved: " + row.name + " resists turning all bodies " +
-           "together, which" + changes + said(felt.rotation, joint) + " per radian";
+    return "angular momentum is not conserved: " + row.name + " resists turning all bodies " + "together, which" +
+           changes + said(felt.rotation, joint) + " per radian";
   }
-  return "momentum is not conserved: " + row.name + " resists moving all bodies together, which" +
-         changes + said(felt.translation, joint) + " per metre";
+  return "momentum is not conserved: " + row.name + " resists moving all bodies together, which" + changes +
+         said(felt.translation, joint) + " per metre";
 }
 
-Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt,
-           bool rotation, Momentum& momentum) {
+Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt, bool rotation,
+           Momentum& momentum) {
   Expr written;
   Span where;
   for (const Coordinate& c : joint.coordinates) {
@@ -196,8 +186,7 @@ Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const F
   std::vector<Felt> felt_by_term;
   for (const Expr term : terms) {
     const bool velocity = row.kind == RowKind::velocity;
-    felt_by_term.push_back(
-        felt_by(isolate_velocities(velocity ? term : time_derivative(term, joint), joint), joint));
+    felt_by_term.push_back(felt_by(isolate_velocities(velocity ? term : time_derivative(term, joint), joint), joint));
   }
   const std::vector<Expr> guilty = momentum.breaking_terms(terms, felt_by_term);
   Law law{LawId::momentum, Verdict::fails, {}, {}, row.row, {}};

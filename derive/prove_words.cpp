@@ -34,8 +34,7 @@ std::string vanishing_vector(Expr u, const Joint& joint) {
   return said(u, joint) + " = 0";
 }
 
-std::vector<Span> occurrences(const SourceFile& file, Span where,
-                              const std::set<std::string>& words) {
+std::vector<Span> occurrences(const SourceFile& file, Span where, const std::set<std::string>& words) {
   const std::string& text = file.text;
   const auto end = std::min(static_cast<std::size_t>(where.end), text.size());
   std::vector<Span> spans;

@@ -19,7 +19,6 @@ std::string said(Expr e, const Joint& joint);
 std::string vanishing_vector(Expr u, const Joint& joint);
 
 // Where the words stand in this part of the file, as whole words, in order.
-std::vector<Span> occurrences(const SourceFile& file, Span where,
-                              const std::set<std::string>& words);
+std::vector<Span> occurrences(const SourceFile& file, Span where, const std::set<std::string>& words);
 
 }  // namespace cdot::derive

@@ -46,9 +46,7 @@ Rational operator+(Rational a, Rational b) {
   return reduced(Wide(a.num_) * b.den_ + Wide(b.num_) * a.den_, Wide(a.den_) * b.den_);
 }
 
-Rational operator*(Rational a, Rational b) {
-  return reduced(Wide(a.num_) * b.num_, Wide(a.den_) * b.den_);
-}
+Rational operator*(Rational a, Rational b) { return reduced(Wide(a.num_) * b.num_, Wide(a.den_) * b.den_); }
 
 Rational operator/(Rational a, Rational b) {
   if (b.num_ == 0) throw NumberTooLarge();

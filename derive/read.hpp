@@ -39,7 +39,6 @@ struct ReadResult {
   std::map<std::string, Value> names;  // every parameter, arm and let, typed
 };
 
-ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library,
-                      const ReadOptions& options = {});
+ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library, const ReadOptions& options = {});
 
 }  // namespace cdot::derive

@@ -14,8 +14,8 @@ std::vector<int> use_counts(const Program& program);
 
 // Copies the needed operations; `rewrite` may build something else in the place of an operation (its operands, in
 // terms of the new program, are given), or say nullopt to keep it.
-using Rewrite = std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index,
-                                                 const std::vector<int>& new_index)>;
+using Rewrite =
+    std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index, const std::vector<int>& new_index)>;
 Program rewritten(const Program& program, const Rewrite& rewrite);
 
 // The place of an operand; the number of operands if it is none of them.

@@ -39,8 +39,7 @@ std::vector<Pair> factor_pairs(const Program&, const Operation& op) {
   for (std::size_t i = 0; i < op.args.size(); ++i) {
     if (op.exponents[i] > 1) pairs.push_back({op.args[i], op.args[i], Rational(1)});
     for (std::size_t j = i + 1; j < op.args.size(); ++j) {
-      pairs.push_back({std::min(op.args[i], op.args[j]), std::max(op.args[i], op.args[j]),
-                       Rational(1)});
+      pairs.push_back({std::min(op.args[i], op.args[j]), std::max(op.args[i], op.args[j]), Rational(1)});
     }
   }
   return pairs;
@@ -72,8 +71,7 @@ std::string name_of(const Program& program, const Pair& pair) {
   for (const Operation& op : program.ops) {
     if (op.kind != OpKind::sum || op.args.size() != 2 || op.name.empty()) continue;
     const std::size_t x = index_of(op.args, pair.x), y = 1 - x;
-    if (x < 2 && op.args[y] == pair.y && op.coefs[x] == Rational(1) && op.coefs[y] == pair.ratio)
-      return op.name;
+    if (x < 2 && op.args[y] == pair.y && op.coefs[x] == Rational(1) && op.coefs[y] == pair.ratio) return op.name;
   }
   return {};
 }
@@ -85,49 +83,51 @@ std::optional<Program> share_terms(const Program& program) {
   const std::optional<Pair> pair = most_frequent(program, term_pairs);
   if (!pair) return std::nullopt;
   const std::string name = name_of(program, *pair);
-  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int,
-                           const std::vector<int>& at) -> std::optional<int> {
-    if (op.kind != OpKind::sum) return std::nullopt;
-    const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
-    if (x == op.args.size() || y == op.args.size() || op.coefs[y] / op.coefs[x] != pair->ratio) {
-      return std::nullopt;
-    }
-    const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
-    std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio}, name)};
-    std::vector<Rational> coefs{op.coefs[x]};
-    for (std::size_t i = 0; i < op.args.size(); ++i) {
-      if (i == x || i == y) continue;
-      args.push_back(mapped(i));
-      coefs.push_back(op.coefs[i]);
-    }
-    return builder.sum(std::move(args), std::move(coefs), op.name);
-  });
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
+        if (op.kind != OpKind::sum) return std::nullopt;
+        const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
+        if (x == op.args.size() || y == op.args.size() || op.coefs[y] / op.coefs[x] != pair->ratio) {
+          return std::nullopt;
+        }
+        const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
+        std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio}, name)};
+        std::vector<Rational> coefs{op.coefs[x]};
+        for (std::size_t i = 0; i < op.args.size(); ++i) {
+          if (i == x || i == y) continue;
+          args.push_back(mapped(i));
+          coefs.push_back(op.coefs[i]);
+        }
+        return builder.sum(std::move(args), std::move(coefs), op.name);
+      });
 }
 
 // x y once for all products that contain it.
 std::optional<Program> share_factors(const Program& program) {
   const std::optional<Pair> pair = most_frequent(program, factor_pairs);
   if (!pair) return std::nullopt;
-  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int,
-                           const std::vector<int>& at) -> std::optional<int> {
-    if (op.kind != OpKind::product) return std::nullopt;
-    std::vector<int> exponents = op.exponents;
-    const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
-    if (x == op.args.size() || y == op.args.size()) return std::nullopt;
-    const int times = x == y ? exponents[x] / 2 : std::min(exponents[x], exponents[y]);
-    if (times == 0) return std::nullopt;
-    exponents[x] -= times;
-    exponents[y] -= times;
-    const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
-    std::vector<int> args{builder.product({mapped(x), mapped(y)}, {1, 1})};
-    std::vector<int> powers{times};
-    for (std::size_t i = 0; i < op.args.size(); ++i) {
-      if (exponents[i] == 0) continue;
-      args.push_back(mapped(i));
-      powers.push_back(exponents[i]);
-    }
-    return builder.product(std::move(args), std::move(powers), op.name);
-  });
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
+        if (op.kind != OpKind::product) return std::nullopt;
+        std::vector<int> exponents = op.exponents;
+        const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
+        if (x == op.args.size() || y == op.args.size()) return std::nullopt;
+        const int times = x == y ? exponents[x] / 2 : std::min(exponents[x], exponents[y]);
+        if (times == 0) return std::nullopt;
+        exponents[x] -= times;
+        exponents[y] -= times;
+        const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
+        std::vector<int> args{builder.product({mapped(x), mapped(y)}, {1, 1})};
+        std::vector<int> powers{times};
+        for (std::size_t i = 0; i < op.args.size(); ++i) {
+          if (exponents[i] == 0) continue;
+          args.push_back(mapped(i));
+          powers.push_back(exponents[i]);
+        }
+        return builder.product(std::move(args), std::move(powers), op.name);
+      });
 }
 
 }  // namespace cdot::derive

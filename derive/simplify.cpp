@@ -53,60 +53,60 @@ std::optional<Factoring> best_factoring(const Program& program) {
 std::optional<Program> take_out_factor(const Program& program) {
   const std::optional<Factoring> f = best_factoring(program);
   if (!f) return std::nullopt;
-  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index,
-                           const std::vector<int>& at) -> std::optional<int> {
-    if (index != f->sum) return std::nullopt;
-    std::vector<int> inner, outer;
-    std::vector<Rational> inner_coefs, outer_coefs;
-    for (std::size_t i = 0; i < op.args.size(); ++i) {
-      if (std::find(f->terms.begin(), f->terms.end(), i) == f->terms.end()) {
-        outer.push_back(at[static_cast<std::size_t>(op.args[i])]);
-        outer_coefs.push_back(op.coefs[i]);
-        continue;
-      }
-      const Operation& term = program.ops[static_cast<std::size_t>(op.args[i])];
-      std::vector<int> args, exponents;
-      if (op.args[i] != f->factor) {
-        for (std::size_t k = 0; k < term.args.size(); ++k) {
-          const int left = term.exponents[k] - (term.args[k] == f->factor ? 1 : 0);
-          if (left == 0) continue;
-          args.push_back(at[static_cast<std::size_t>(term.args[k])]);
-          exponents.push_back(left);
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
+        if (index != f->sum) return std::nullopt;
+        std::vector<int> inner, outer;
+        std::vector<Rational> inner_coefs, outer_coefs;
+        for (std::size_t i = 0; i < op.args.size(); ++i) {
+          if (std::find(f->terms.begin(), f->terms.end(), i) == f->terms.end()) {
+            outer.push_back(at[static_cast<std::size_t>(op.args[i])]);
+            outer_coefs.push_back(op.coefs[i]);
+            continue;
+          }
+          const Operation& term = program.ops[static_cast<std::size_t>(op.args[i])];
+          std::vector<int> args, exponents;
+          if (op.args[i] != f->factor) {
+            for (std::size_t k = 0; k < term.args.size(); ++k) {
+              const int left = term.exponents[k] - (term.args[k] == f->factor ? 1 : 0);
+              if (left == 0) continue;
+              args.push_back(at[static_cast<std::size_t>(term.args[k])]);
+              exponents.push_back(left);
+            }
+          }
+          inner.push_back(builder.product(std::move(args), std::move(exponents)));
+          inner_coefs.push_back(op.coefs[i]);
         }
-      }
-      inner.push_back(builder.product(std::move(args), std::move(exponents)));
-      inner_coefs.push_back(op.coefs[i]);
-    }
-    const int rest = builder.sum(std::move(inner), std::move(inner_coefs));
-    const int taken = builder.product({at[static_cast<std::size_t>(f->factor)], rest}, {1, 1});
-    outer.push_back(taken);
-    outer_coefs.push_back(Rational(1));
-    return builder.sum(std::move(outer), std::move(outer_coefs), op.name);
-  });
+        const int rest = builder.sum(std::move(inner), std::move(inner_coefs));
+        const int taken = builder.product({at[static_cast<std::size_t>(f->factor)], rest}, {1, 1});
+        outer.push_back(taken);
+        outer_coefs.push_back(Rational(1));
+        return builder.sum(std::move(outer), std::move(outer_coefs), op.name);
+      });
 }
 
 // -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for whatever uses the sum, not one per term.
 Program take_out_coefficients(const Program& program) {
-  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int,
-                           const std::vector<int>& at) -> std::optional<int> {
-    // What has a name in the spec keeps it.
-    if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
-    const bool alike = std::all_of(op.coefs.begin(), op.coefs.end(),
-                                   [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
-    const bool negative = std::all_of(op.coefs.begin(), op.coefs.end(),
-                                      [](Rational c) { return c.sign() < 0; });
-    const Rational factor = (negative ? Rational(-1) : Rational(1)) *
-                            (alike ? abs(op.coefs[0]) : Rational(1));
-    if (factor == Rational(1)) return std::nullopt;
-    std::vector<int> args;
-    std::vector<Rational> coefs;
-    for (std::size_t i = 0; i < op.args.size(); ++i) {
-      args.push_back(at[static_cast<std::size_t>(op.args[i])]);
-      coefs.push_back(op.coefs[i] / factor);
-    }
-    const int core = builder.sum(std::move(args), std::move(coefs));
-    return builder.sum({core}, {factor});
-  });
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
+        // What has a name in the spec keeps it.
+        if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
+        const bool alike =
+            std::all_of(op.coefs.begin(), op.coefs.end(), [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
+        const bool negative = std::all_of(op.coefs.begin(), op.coefs.end(), [](Rational c) { return c.sign() < 0; });
+        const Rational factor = (negative ? Rational(-1) : Rational(1)) * (alike ? abs(op.coefs[0]) : Rational(1));
+        if (factor == Rational(1)) return std::nullopt;
+        std::vector<int> args;
+        std::vector<Rational> coefs;
+        for (std::size_t i = 0; i < op.args.size(); ++i) {
+          args.push_back(at[static_cast<std::size_t>(op.args[i])]);
+          coefs.push_back(op.coefs[i] / factor);
+        }
+        const int core = builder.sum(std::move(args), std::move(coefs));
+        return builder.sum({core}, {factor});
+      });
 }
 
 // (x + y) + z = x + y + z and -(x - y) = y - x, where the inner sum is nobody else's.
@@ -114,8 +114,7 @@ bool flattens(const Operation& outer, Rational coef, const Operation& inner, int
   if (inner.kind != OpKind::sum || uses != 1) return false;
   if (abs(coef) != Rational(1) && inner.args.size() > 1) return false;  // 2 (x + y) is cheaper
   const bool opens_with_minus = outer.args.size() == 1 && outer.coefs[0] == Rational(-1);
-  const bool has_minus = std::any_of(inner.coefs.begin(), inner.coefs.end(),
-                                     [](Rational c) { return c.sign() < 0; });
+  const bool has_minus = std::any_of(inner.coefs.begin(), inner.coefs.end(), [](Rational c) { return c.sign() < 0; });
   return inner.name.empty() || (opens_with_minus && has_minus);
 }
 
@@ -130,26 +129,27 @@ Program flatten_sums(const Program& program) {
       absorbed[a] = flattens(outer, outer.coefs[k], program.ops[a], uses[a]);
     }
   }
-  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index,
-                           const std::vector<int>& at) -> std::optional<int> {
-    if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // nobody reads it
-    if (op.kind != OpKind::sum) return std::nullopt;
-    std::vector<int> args;
-    std::vector<Rational> coefs;
-    const auto add = [&](auto&& self, const Operation& sum, Rational factor) -> void {
-      for (std::size_t i = 0; i < sum.args.size(); ++i) {
-        const std::size_t arg = static_cast<std::size_t>(sum.args[i]);
-        if (absorbed[arg]) {
-          self(self, program.ops[arg], factor * sum.coefs[i]);
-        } else {
-          args.push_back(at[arg]);
-          coefs.push_back(factor * sum.coefs[i]);
-        }
-      }
-    };
-    add(add, op, Rational(1));
-    return builder.sum(std::move(args), std::move(coefs), op.name);
-  });
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
+        if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // nobody reads it
+        if (op.kind != OpKind::sum) return std::nullopt;
+        std::vector<int> args;
+        std::vector<Rational> coefs;
+        const auto add = [&](auto&& self, const Operation& sum, Rational factor) -> void {
+          for (std::size_t i = 0; i < sum.args.size(); ++i) {
+            const std::size_t arg = static_cast<std::size_t>(sum.args[i]);
+            if (absorbed[arg]) {
+              self(self, program.ops[arg], factor * sum.coefs[i]);
+            } else {
+              args.push_back(at[arg]);
+              coefs.push_back(factor * sum.coefs[i]);
+            }
+          }
+        };
+        add(add, op, Rational(1));
+        return builder.sum(std::move(args), std::move(coefs), op.name);
+      });
 }
 
 // u + r = x_a - x_b where u = x_a - x_b - r: what was taken away and is added again costs an operation and digits.
@@ -177,23 +177,24 @@ std::optional<Cancelling> find_cancelling(const Program& program) {
 std::optional<Program> cancel_terms(const Program& program) {
   const std::optional<Cancelling> found = find_cancelling(program);
   if (!found) return std::nullopt;
-  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index,
-                           const std::vector<int>& at) -> std::optional<int> {
-    if (index != static_cast<int>(found->first)) return std::nullopt;
-    std::vector<int> args;
-    std::vector<Rational> coefs;
-    const auto add = [&](const Operation& sum, Rational factor, std::size_t but) {
-      for (std::size_t i = 0; i < sum.args.size(); ++i) {
-        if (i == but) continue;
-        args.push_back(at[static_cast<std::size_t>(sum.args[i])]);
-        coefs.push_back(factor * sum.coefs[i]);
-      }
-    };
-    const Operation& inner = program.ops[static_cast<std::size_t>(op.args[found->second])];
-    add(inner, op.coefs[found->second], inner.args.size());
-    add(op, Rational(1), found->second);
-    return builder.sum(std::move(args), std::move(coefs), op.name);
-  });
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
+        if (index != static_cast<int>(found->first)) return std::nullopt;
+        std::vector<int> args;
+        std::vector<Rational> coefs;
+        const auto add = [&](const Operation& sum, Rational factor, std::size_t but) {
+          for (std::size_t i = 0; i < sum.args.size(); ++i) {
+            if (i == but) continue;
+            args.push_back(at[static_cast<std::size_t>(sum.args[i])]);
+            coefs.push_back(factor * sum.coefs[i]);
+          }
+        };
+        const Operation& inner = program.ops[static_cast<std::size_t>(op.args[found->second])];
+        add(inner, op.coefs[found->second], inner.args.size());
+        add(op, Rational(1), found->second);
+        return builder.sum(std::move(args), std::move(coefs), op.name);
+      });
 }
 
 using Pass = std::optional<Program> (*)(const Program&);
@@ -204,9 +205,7 @@ Program exhaust(Program program, Pass pass) {
 }
 
 // What an operation costs beside an addition; a division or root weighs as on current processors.
-int weight(const Count& c) {
-  return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call;
-}
+int weight(const Count& c) { return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call; }
 
 // The cheapest that the passes find from here.
 Program searched(const Program& program) {

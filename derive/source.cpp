@@ -19,9 +19,7 @@ struct Character {
 bool is_continuation(char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; }
 
 // The smallest code point that needs so many bytes; smaller ones are overlong and invalid.
-std::uint32_t smallest_of_length(int length) {
-  return length == 2 ? 0x80 : length == 3 ? 0x800 : 0x10000;
-}
+std::uint32_t smallest_of_length(int length) { return length == 2 ? 0x80 : length == 3 ? 0x800 : 0x10000; }
 
 Character character_at(std::string_view s, std::size_t i) {
   const auto lead = static_cast<unsigned char>(s[i]);
@@ -39,8 +37,8 @@ Character character_at(std::string_view s, std::size_t i) {
   }
   const bool surrogate = code >= 0xD800 && code < 0xE000;
   if (code < smallest_of_length(length) || code > 0x10FFFF || surrogate) return {};
-  const bool control = code < 0xA0 || (code >= 0x200B && code <= 0x200F) ||
-                       (code >= 0x2028 && code <= 0x202E) || code == 0xFEFF;
+  const bool control =
+      code < 0xA0 || (code >= 0x200B && code <= 0x200F) || (code >= 0x2028 && code <= 0x202E) || code == 0xFEFF;
   return {length, true, !control};
 }
 
@@ -57,10 +55,8 @@ struct Mark {
 char mark_at(const std::vector<Mark>& marks, int byte) {
   char mark = ' ';
   for (const Mark& m : marks)
-    if (byte == m.begin && m.primary)
-      return '^';
-    else if (byte >= m.begin && byte < m.end)
-      mark = '~';
+    if (byte == m.begin && m.primary) return '^';
+    else if (byte >= m.begin && byte < m.end) mark = '~';
   return mark;
 }
 
@@ -73,13 +69,11 @@ int first_shown(int columns, int focus) {
 // Keeps only the neighbourhood of the first mark of a very long line; whether something is gone on
 // the left.
 bool cut_far_left(std::string_view& line, std::vector<Mark>& marks) {
-  constexpr int kept =
-      8 * shown_columns;  // bytes on either side, plenty for the columns that are shown
+  constexpr int kept = 8 * shown_columns;  // bytes on either side, plenty for the columns that are shown
   const int focus = marks.front().begin, size = static_cast<int>(line.size());
   line = line.substr(0, static_cast<std::size_t>(std::min(size, focus + kept)));
   int begin = std::max(0, focus - kept);
-  while (begin > 0 && begin < focus && is_continuation(line[static_cast<std::size_t>(begin)]))
-    ++begin;
+  while (begin > 0 && begin < focus && is_continuation(line[static_cast<std::size_t>(begin)])) ++begin;
   line.remove_prefix(static_cast<std::size_t>(begin));
   for (Mark& m : marks) {
     m.begin -= begin;
@@ -129,10 +123,9 @@ ShownLine show(std::string_view line, std::vector<Mark> marks) {
 std::string_view line_text(const SourceFile& file, int line) {
   const int begin = file.line_starts[static_cast<std::size_t>(line - 1)];
   const bool last = line == static_cast<int>(file.line_starts.size());
-  const int end = last ? static_cast<int>(file.text.size())
-                       : file.line_starts[static_cast<std::size_t>(line)] - 1;
-  auto text = std::string_view(file.text).substr(static_cast<std::size_t>(begin),
-                                                 static_cast<std::size_t>(end - begin));
+  const int end = last ? static_cast<int>(file.text.size()) : file.line_starts[static_cast<std::size_t>(line)] - 1;
+  auto text =
+      std::string_view(file.text).substr(static_cast<std::size_t>(begin), static_cast<std::size_t>(end - begin));
   if (text.ends_with('\r')) text.remove_suffix(1);
   return text;
 }
@@ -192,28 +185,24 @@ int SourceFile::column(int offset) const {
 }
 
 bool Diagnostics::has_errors() const {
-  return std::any_of(list.begin(), list.end(),
-                     [](const Diagnostic& d) { return d.severity == Severity::error; });
+  return std::any_of(list.begin(), list.end(), [](const Diagnostic& d) { return d.severity == Severity::error; });
 }
 
 void Diagnostics::sort() {
-  std::stable_sort(list.begin(), list.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return a.where.begin < b.where.begin;
-  });
+  std::stable_sort(list.begin(), list.end(),
+                   [](const Diagnostic& a, const Diagnostic& b) { return a.where.begin < b.where.begin; });
 }
 
 void Diagnostics::error(Span where, std::string message, std::string fix, std::vector<Span> also) {
-  const auto errors = std::count_if(
-      list.begin(), list.end(), [](const Diagnostic& d) { return d.severity == Severity::error; });
+  const auto errors =
+      std::count_if(list.begin(), list.end(), [](const Diagnostic& d) { return d.severity == Severity::error; });
   if (errors > max_errors) return;
   if (errors == max_errors)
     list.push_back({Severity::error, where, {}, "more errors follow; these are the first 50", ""});
-  else
-    list.push_back({Severity::error, where, std::move(also), std::move(message), std::move(fix)});
+  else list.push_back({Severity::error, where, std::move(also), std::move(message), std::move(fix)});
 }
 
-void Diagnostics::warning(Span where, std::string message, std::string fix,
-                          std::vector<Span> also) {
+void Diagnostics::warning(Span where, std::string message, std::string fix, std::vector<Span> also) {
   if (static_cast<int>(list.size()) > 2 * max_errors) return;
   list.push_back({Severity::warning, where, std::move(also), std::move(message), std::move(fix)});
 }

@@ -35,10 +35,9 @@ enum class Severity { error, warning };
 struct Diagnostic {
   Severity severity = Severity::error;
   Span where;
-  std::vector<Span>
-      also;             // further spans that get carets (the other operand, the first declaration)
-  std::string message;  // what is wrong
-  std::string fix;      // what to do; may be empty
+  std::vector<Span> also;  // further spans that get carets (the other operand, the first declaration)
+  std::string message;     // what is wrong
+  std::string fix;         // what to do; may be empty
 };
 
 // All that was found in one file, in the order of the text.

@@ -16,7 +16,7 @@ int body_of_letter(std::string_view word);  // "a": 0; -1 if it is none
 Expr body_position(Pool& pool, int body);
 Expr body_velocity(Pool& pool, int body);
 Expr body_angle(Pool& pool, int body);
-Expr body_spin(Pool& pool, int body);  // a vector in space
+Expr body_spin(Pool& pool, int body);               // a vector in space
 std::vector<Expr> body_axes(Pool& pool, int body);  // two or three; the world's for -1
 Expr inverse_mass(Pool& pool, int body);
 Expr inverse_inertia(Pool& pool, int body);

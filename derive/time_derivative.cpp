@@ -109,9 +109,7 @@ class TimeDerivative {
   }
 
   // The angular velocity of what a triad is fixed in.
-  Expr spin_of(Expr axis) {
-    return moves(axis) ? body_symbols(joint_, axis->body).w : zero_vector(*axis->pool);
-  }
+  Expr spin_of(Expr axis) { return moves(axis) ? body_symbols(joint_, axis->body).w : zero_vector(*axis->pool); }
 
   Expr chain_rule(Expr e) {
     const Expr a = e->args[0], rate = of(a);
@@ -137,8 +135,8 @@ class TimeDerivative {
     const Expr y = e->args[0], x = e->args[1];
     const Term cross_part = split_coefficient(y), dot_part = split_coefficient(x);
     const bool angle_between = cross_part.e->kind == Kind::cross && dot_part.e->kind == Kind::dot &&
-                               cross_part.e->args == dot_part.e->args &&
-                               abs(cross_part.coef) == Rational(1) && dot_part.coef == Rational(1);
+                               cross_part.e->args == dot_part.e->args && abs(cross_part.coef) == Rational(1) &&
+                               dot_part.coef == Rational(1);
     if (angle_between) {
       // The angle from u to v grows as v turns and falls as u turns; a vector turns at (u x udot)/(u . u).
       const Expr u = cross_part.e->args[0], v = cross_part.e->args[1];
@@ -169,8 +167,6 @@ class TimeDerivative {
 
 }  // namespace
 
-Expr time_derivative(Expr e, const Joint& joint, const Moving& motion) {
-  return TimeDerivative(joint, motion).of(e);
-}
+Expr time_derivative(Expr e, const Joint& joint, const Moving& motion) { return TimeDerivative(joint, motion).of(e); }
 
 }  // namespace cdot::derive

@@ -57,9 +57,7 @@ class Transposition {
         add(e->args[0], c * e->args[1]);
         add(e->args[1], c * e->args[0]);
         return;
-      case Kind::cross:
-        require(!(moving(e->args[0]) && moving(e->args[1])));
-        return pass_on_cross(e, c);
+      case Kind::cross: require(!(moving(e->args[0]) && moving(e->args[1]))); return pass_on_cross(e, c);
       case Kind::tensor:  // c . (T u) = (T c) . u
         return add(e->args[1], apply(e->args[0], c));
       case Kind::perp:  // c . perp(u) = -perp(c) . u

@@ -26,8 +26,7 @@ Unit operator*(const Unit& a, const Unit& b) {
 Unit operator/(const Unit& a, const Unit& b) { return a * pow(b, -1); }
 
 Unit pow(const Unit& u, Rational exponent) {
-  return without_hidden_radians(
-      {u.m * exponent, u.rad * exponent, u.s * exponent, u.kg * exponent});
+  return without_hidden_radians({u.m * exponent, u.rad * exponent, u.s * exponent, u.kg * exponent});
 }
 
 std::string text(const Unit& u) {

@@ -21,8 +21,7 @@ struct Unit {
 Unit operator*(const Unit& a, const Unit& b);
 Unit operator/(const Unit& a, const Unit& b);
 Unit pow(const Unit& u, Rational exponent);
-std::string text(const Unit& u);  // "m", "rad/s", "kg*m^2", "1"
-std::string spoken(
-    const Unit& u);  // "metres", "radians", "metres per second", "a pure number", else text
+std::string text(const Unit& u);    // "m", "rad/s", "kg*m^2", "1"
+std::string spoken(const Unit& u);  // "metres", "radians", "metres per second", "a pure number", else text
 
 }  // namespace cdot::derive

@@ -6,20 +6,13 @@ namespace cdot::derive {
 
 std::string_view in_words(Type type) {
   switch (type) {
-    case Type::poison:
-      return "a mistake";
-    case Type::scalar:
-      return "a number";
-    case Type::vector:
-      return "a vector";
-    case Type::point:
-      return "a point";
-    case Type::body:
-      return "a body";
-    case Type::frame:
-      return "a frame";
-    case Type::matrix:
-      return "a matrix";
+    case Type::poison: return "a mistake";
+    case Type::scalar: return "a number";
+    case Type::vector: return "a vector";
+    case Type::point: return "a point";
+    case Type::body: return "a body";
+    case Type::frame: return "a frame";
+    case Type::matrix: return "a matrix";
   }
   return "";
 }

@@ -18,17 +18,16 @@ enum class Type { poison, scalar, vector, point, body, frame, matrix };
 
 struct Value {
   Type type = Type::poison;
-  Expr e;  // scalar; vector; point: its place; frame: its x axis
-  std::vector<Expr> axes;  // frame: its axes, two or three
-  std::optional<Unit>
-      unit;               // empty: fits every unit (the literal 0, what an entry declares `free`)
-  bool ratio = false;     // a number in which lengths cancelled: it may stand for an angle, an arc
-                          // over its radius
-  bool zero = false;      // the literal 0, which fits vectors too
-  int body = -1;          // body, anchored point, frame: -1 is the world
-  Expr arm;               // point anchored in a body: place minus centre of mass
-  bool anchored = false;  // point that is known to be fixed in `body`
-  std::vector<Expr> along;  // vector whose components are those along a frame: that frame's axes
+  Expr e;                    // scalar; vector; point: its place; frame: its x axis
+  std::vector<Expr> axes;    // frame: its axes, two or three
+  std::optional<Unit> unit;  // empty: fits every unit (the literal 0, what an entry declares `free`)
+  bool ratio = false;        // a number in which lengths cancelled: it may stand for an angle, an arc
+                             // over its radius
+  bool zero = false;         // the literal 0, which fits vectors too
+  int body = -1;             // body, anchored point, frame: -1 is the world
+  Expr arm;                  // point anchored in a body: place minus centre of mass
+  bool anchored = false;     // point that is known to be fixed in `body`
+  std::vector<Expr> along;   // vector whose components are those along a frame: that frame's axes
   std::shared_ptr<const Matrix> matrix;
   // What a matrix in space means in vectors, if that is known: r of skew(r), n of the row n', the leaf of a tensor.
   Expr skew, row, tensor;

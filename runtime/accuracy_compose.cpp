@@ -88,8 +88,8 @@ bool acts_one_way(Dimension dimension, const SceneJoint& joint) {
 }
 
 bool damped(const SceneBody& body) {
-  return body.definition.linear_damping > 0 || body.definition.angular_damping > 0 ||
-         body.spatial.linear_damping > 0 || body.spatial.angular_damping > 0;
+  return body.definition.linear_damping > 0 || body.definition.angular_damping > 0 || body.spatial.linear_damping > 0 ||
+         body.spatial.angular_damping > 0;
 }
 
 }  // namespace

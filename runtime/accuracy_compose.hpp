@@ -1,5 +1,5 @@
-// A trajectory of order 10 from RATTLE alone: 35 of its steps, of chosen lengths and some of them backwards, make one in
-// which the errors of lower order cancel. It knows the method only by its World, and what comes out owes nothing to
+// A trajectory of order 10 from RATTLE alone: 35 of its steps, of chosen lengths and some of them backwards, make one
+// in which the errors of lower order cancel. It knows the method only by its World, and what comes out owes nothing to
 // accelerations. Nothing is taken apart and weighted, as extrapolation would: round-off stays that of the steps.
 #pragma once
 

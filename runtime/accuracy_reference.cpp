@@ -49,8 +49,7 @@ Nudge nudge_by(double share, const ReferenceRun& reference, unsigned seed) {
   return nudge;
 }
 
-Sensitivity sensitivity_of(const Scene& scene, const ReferenceRun& reference, const Refined& method,
-                           const Stop& stop) {
+Sensitivity sensitivity_of(const Scene& scene, const ReferenceRun& reference, const Refined& method, const Stop& stop) {
   constexpr int starts = 3;  // of each kind
   const auto growth = [&](double share) {
     double worst = 0;
@@ -146,8 +145,8 @@ double ReferenceRun::agreed_until(double bound) const {
   return until;
 }
 
-// By two methods in doubles; where these do not agree as wanted, by the same in extended precision; and where these do not
-// either, a third is asked in the precision in which they agree better.
+// By two methods in doubles; where these do not agree as wanted, by the same in extended precision; and where these do
+// not either, a third is asked in the precision in which they agree better.
 ReferenceRun make_reference_run(const Scene& scene, const Effort& effort, const Stop& stop) {
   const std::vector<double> times = equal_times(scene.duration, sample_count);
   const Purse purse(effort);

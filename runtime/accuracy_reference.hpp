@@ -13,8 +13,8 @@ inline constexpr double wanted_agreement = 1e-12;  // [m, rad], of a reference t
 
 // How far a change of the start takes the motion, at its worst sample.
 struct Sensitivity {
-  double condition = 0;  // the growth of a change by 1e-9 of the largest place, speed and spin, and 1e-9 rad
-  double round_off = 0;  // [m, rad] what one by `slight` of them comes to, on the way through round-off
+  double condition = 0;   // the growth of a change by 1e-9 of the largest place, speed and spin, and 1e-9 rad
+  double round_off = 0;   // [m, rad] what one by `slight` of them comes to, on the way through round-off
   double slight = 1e-15;  // in extended precision less
   bool known() const { return condition > 0; }
 };
@@ -25,13 +25,13 @@ std::string verdict_on(double disagreement, const Sensitivity& sensitivity, bool
 struct ReferenceRun {
   std::vector<double> times;
   std::vector<Frame> frames;
-  std::string made_by;           // "dop853 and composed rattle", "four_bar.csv"
-  std::string settled;           // by how much each of the two still changed
+  std::string made_by;  // "dop853 and composed rattle", "four_bar.csv"
+  std::string settled;  // by how much each of the two still changed
   // At each time, by how much the two methods do, and by how much each changes that no finer step mends [m, rad]; empty
   // if it was given.
   std::vector<double> disagree;
-  Sensitivity sensitivity;       // where they disagree by more than is wanted,
-  std::string verdict;           // and what is to blame for it, in words
+  Sensitivity sensitivity;  // where they disagree by more than is wanted,
+  std::string verdict;      // and what is to blame for it, in words
   // Errors below this are not told apart: ten times what the methods disagree by, 0 if it was given.
   double resolution() const;
   double disagreement() const;  // the largest

@@ -58,9 +58,7 @@ Refined refined(Integrator integrator, bool extended, const Scene& scene, const 
   return refined;
 }
 
-double Refined::change() const {
-  return found() ? largest(changes) : std::numeric_limits<double>::infinity();
-}
+double Refined::change() const { return found() ? largest(changes) : std::numeric_limits<double>::infinity(); }
 
 std::vector<double> distances(const std::vector<Frame>& a, const std::vector<Frame>& b, Dimension dimension) {
   std::vector<double> result;

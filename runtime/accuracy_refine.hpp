@@ -10,7 +10,7 @@ namespace cdot {
 
 // How much may be spent on one method. The evaluations decide the same on every machine; the seconds are for people.
 struct Effort {
-  long long evaluations = 2'000'000;  // of an island's accelerations, or steps of RATTLE
+  long long evaluations = 2'000'000;                     // of an island's accelerations, or steps of RATTLE
   double cpu = std::numeric_limits<double>::infinity();  // [s]
 };
 

@@ -44,7 +44,8 @@ template <class T, class Random>
 void move_body(SpatialWorld<T>& world, int body, const Nudge& by, Random off) {
   const auto q = world.place(body);
   const auto v = world.velocity(body);
-  const auto turned = spatial::turned_by(world.pose(body), {T(by.angle * off()), T(by.angle * off()), T(by.angle * off())});
+  const auto turned =
+      spatial::turned_by(world.pose(body), {T(by.angle * off()), T(by.angle * off()), T(by.angle * off())});
   world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.z + by.speed * off(),
                             v.wx + by.spin * off(), v.wy + by.spin * off(), v.wz + by.spin * off()});
   world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.z + by.position * off(),

@@ -12,12 +12,12 @@ namespace cdot {
 using Stop = std::function<bool()>;  // asked at every sample: shall the run end here?
 
 struct Trajectory {
-  std::vector<Frame> frames;  // at the sample times, until it was stopped or not finite any more
-  double C = 0, Cdot = 0;     // the largest at the samples, or after any step(h) [m, rad], [m/s, rad/s]
+  std::vector<Frame> frames;                 // at the sample times, until it was stopped or not finite any more
+  double C = 0, Cdot = 0;                    // the largest at the samples, or after any step(h) [m, rad], [m/s, rad/s]
   double least_energy = 0, most_energy = 0;  // then [J]
-  double cpu = 0;             // spent in step() [s]
-  double looking = 0;         // and between steps, to find what is above [s]
-  StepCounts counts;          // of rk4 and dop853; of composed RATTLE its steps as evaluations
+  double cpu = 0;                            // spent in step() [s]
+  double looking = 0;                        // and between steps, to find what is above [s]
+  StepCounts counts;                         // of rk4 and dop853; of composed RATTLE its steps as evaluations
   bool finite = true, stopped = false;
 };
 
@@ -36,8 +36,8 @@ struct Nudge {
   unsigned seed = 0;
 };
 
-// `times` ascend and are greater than 0. `watched`: joints and energy are looked at after every step(h), not only at the
-// times.
+// `times` ascend and are greater than 0. `watched`: joints and energy are looked at after every step(h), not only at
+// the times.
 Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
                          const Stop& stop = {}, const Nudge& nudge = {}, bool watched = false);
 

@@ -39,7 +39,7 @@ Json json_of(const Errors& e) { return {e.position, e.angle, e.C, e.Cdot, e.ener
 Errors errors_of(const Json& json) { return {json.at(0), json.at(1), json.at(2), json.at(3), json.at(4)}; }
 
 Json json_of(const Point& p) {
-  return {{"way", json_of(p.way)},       {"level", p.level},     {"failure", p.failure}, {"errors", json_of(p.errors)},
+  return {{"way", json_of(p.way)},  {"level", p.level},     {"failure", p.failure}, {"errors", json_of(p.errors)},
           {"explored", p.explored}, {"looking", p.looking}, {"rounds", p.rounds}};
 }
 Point point_of(const Json& json) {
@@ -55,14 +55,14 @@ Point point_of(const Json& json) {
 Json json_of(const ReferenceRun& reference) {
   Json frames = Json::array();
   for (const Frame& frame : reference.frames) frames.push_back(json_of(frame));
-  return {{"made_by", reference.made_by},
-          {"settled", reference.settled},
-          {"times", reference.times},
-          {"disagree", reference.disagree},
-          {"sensitivity",
-           {reference.sensitivity.condition, reference.sensitivity.round_off, reference.sensitivity.slight}},
-          {"verdict", reference.verdict},
-          {"frames", frames}};
+  return {
+      {"made_by", reference.made_by},
+      {"settled", reference.settled},
+      {"times", reference.times},
+      {"disagree", reference.disagree},
+      {"sensitivity", {reference.sensitivity.condition, reference.sensitivity.round_off, reference.sensitivity.slight}},
+      {"verdict", reference.verdict},
+      {"frames", frames}};
 }
 ReferenceRun reference_of(const Json& json) {
   ReferenceRun reference;

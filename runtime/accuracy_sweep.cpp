@@ -64,14 +64,11 @@ Point explored(const Scene& scene, const Way& way, int level, const ReferenceRun
   point.looking = trajectory.looking;
   const bool whole = trajectory.frames.size() == reference.times.size();
   point.errors = errors_of(trajectory, reference, scene);
-  if (!trajectory.finite)
-    point.failure = "not finite";
-  else if (!whole)
-    point.failure = "takes too long";
+  if (!trajectory.finite) point.failure = "not finite";
+  else if (!whole) point.failure = "takes too long";
   else if (point.errors.position > size_of(reference))
     point.failure = fmt::format("off by {:.2g} m", point.errors.position);
-  else if (point.errors.angle > 1)
-    point.failure = fmt::format("off by {:.2g} rad", point.errors.angle);
+  else if (point.errors.angle > 1) point.failure = fmt::format("off by {:.2g} rad", point.errors.angle);
   return point;
 }
 

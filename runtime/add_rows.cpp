@@ -13,8 +13,7 @@ namespace cdot {
 namespace {
 
 template <class S>
-int find_batch(WorldState<S>& world, const BlockOps<S>* ops, const Law<S>* law,
-               const std::vector<RowKind>& kinds) {
+int find_batch(WorldState<S>& world, const BlockOps<S>* ops, const Law<S>* law, const std::vector<RowKind>& kinds) {
   for (size_t i = 0; i < world.batches.size(); ++i)
     if (world.batches[i]->ops == ops && world.batches[i]->law == law) return static_cast<int>(i);
   world.batches.push_back(std::make_unique<Batch<S>>());
@@ -32,8 +31,8 @@ void grow(std::vector<Item>& array, int by, Item value = Item{}) {
 }  // namespace
 
 template <class S>
-void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law,
-              std::vector<RowKind> kinds, std::span<const double> constants) {
+void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law, std::vector<RowKind> kinds,
+              std::span<const double> constants) {
   using T = typename S::Scalar;
   ops = ops->with(world.settings.kernels);
   const int index = find_batch(world, ops, law, kinds);
@@ -47,8 +46,7 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
   for (int k = 0; k < ops->parameter_size; ++k) batch.parameters.push_back(T(record.parameters[k]));
   grow(batch.jacobian, ops->jacobian_size);
   grow(batch.factor, batch.triangle());
-  for (auto* array : {&batch.C, &batch.bias, &batch.lambda, &batch.correction, &batch.scratch})
-    grow(*array, ops->rows);
+  for (auto* array : {&batch.C, &batch.bias, &batch.lambda, &batch.correction, &batch.scratch}) grow(*array, ops->rows);
   if (law) {
     grow(batch.softness, ops->rows);
     grow(batch.lower, ops->rows, -std::numeric_limits<T>::infinity());
@@ -82,25 +80,23 @@ int coordinate_index(int type, std::string_view name) {
 }
 
 template <class S>
-int add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordinate,
-                       const Law<S>* law, std::span<const double> constants) {
+int add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordinate, const Law<S>* law,
+                       std::span<const double> constants) {
   check_joint(world, joint);
   JointRecord& record = world.joints[joint];
   const int index = coordinate_index<S>(record.type, coordinate);
   if (record.places.empty()) return -1;
   check_value(world, record, index);
   const auto& variants = joint_entries<S>()[record.type].coordinates[index];
-  add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality},
-           constants);
+  add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality}, constants);
   return static_cast<int>(record.places.size()) - 1;
 }
 
-#define CDOT_INSTANTIATE(S)                                                              \
-  template void add_rows(WorldState<S>&, int, const BlockOps<S>*, const Law<S>*,         \
-                         std::vector<RowKind>, std::span<const double>);                 \
-  template int add_coordinate_row(WorldState<S>&, int, std::string_view, const Law<S>*,  \
-                                  std::span<const double>);                              \
-  template void check_joint(const WorldState<S>&, int);                                  \
+#define CDOT_INSTANTIATE(S)                                                                                       \
+  template void add_rows(WorldState<S>&, int, const BlockOps<S>*, const Law<S>*, std::vector<RowKind>,            \
+                         std::span<const double>);                                                                \
+  template int add_coordinate_row(WorldState<S>&, int, std::string_view, const Law<S>*, std::span<const double>); \
+  template void check_joint(const WorldState<S>&, int);                                                           \
   template int coordinate_index<S>(int, std::string_view);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

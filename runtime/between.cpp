@@ -88,7 +88,7 @@ void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                           \
+#define CDOT_INSTANTIATE(S)                                                                \
   template void go_between(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar); \
   template void go_to_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -1,5 +1,5 @@
-// The state between the ends of a Runge-Kutta step, by the method's own interpolant and back onto the constraints: a step
-// of its own length need not end where a state is asked for. Nothing of it flows back into the steps that follow.
+// The state between the ends of a Runge-Kutta step, by the method's own interpolant and back onto the constraints: a
+// step of its own length need not end where a state is asked for. Nothing of it flows back into the steps that follow.
 #pragma once
 
 #include "runtime/runge_kutta.hpp"

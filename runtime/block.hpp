@@ -66,9 +66,7 @@ struct BlockOps {
   const BlockOps *fast, *robust;
 
   const BlockOps* with(Kernels kernels) const {
-    const BlockOps* const other = kernels == Kernels::fast     ? fast
-                                  : kernels == Kernels::robust ? robust
-                                                               : nullptr;
+    const BlockOps* const other = kernels == Kernels::fast ? fast : kernels == Kernels::robust ? robust : nullptr;
     return other ? other : this;
   }
 };
@@ -144,8 +142,8 @@ struct Batch {
   template <class F>
   void for_each_array(F f) {
     f(joint), f(body), f(mode);
-    for (auto* array : {&parameters, &jacobian, &factor, &C, &bias, &lambda, &correction, &scratch,
-                        &counters, &softness, &lower, &upper, &constants})
+    for (auto* array : {&parameters, &jacobian, &factor, &C, &bias, &lambda, &correction, &scratch, &counters,
+                        &softness, &lower, &upper, &constants})
       f(*array);
   }
   int triangle() const { return ops->rows * (ops->rows + 1) / 2; }

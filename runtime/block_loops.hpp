@@ -48,9 +48,7 @@ struct BlockLoops {
     }
   }
 
-  static const int* bodies_of(const Batch<S>& batch, int slot) {
-    return batch.body.data() + slot * bodies;
-  }
+  static const int* bodies_of(const Batch<S>& batch, int slot) { return batch.body.data() + slot * bodies; }
 
   template <class Item>
   static void gather(const std::vector<Item>& from, const int* body, Item (&to)[bodies]) {
@@ -63,8 +61,7 @@ struct BlockLoops {
                               batch.counters.data() + slot * Turns::count);
   }
   static void count_angle(Batch<S>& batch, int slot, T (&C)[rows]) {
-    if constexpr (Turns::is_angle())
-      Turns::count_angle(C[0], batch.counters.data() + slot * Turns::count);
+    if constexpr (Turns::is_angle()) Turns::count_angle(C[0], batch.counters.data() + slot * Turns::count);
   }
   static void start_counting(Batch<S>& batch, int slot, const Bodies<S>& all, T time) {
     Pose q[bodies];
@@ -134,10 +131,8 @@ struct BlockLoops {
       } else {
         T K[triangle];
         Block::effective_mass(J, m, K);
-        if constexpr (kernels == Kernels::fast)
-          invert(K, F);
-        else
-          Block::factor(K, F);
+        if constexpr (kernels == Kernels::fast) invert(K, F);
+        else Block::factor(K, F);
       }
       for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = F[k];
     }
@@ -164,8 +159,7 @@ struct BlockLoops {
     }
   }
 
-  static void apply(const Batch<S>& batch, int begin, int end, const Bodies<S>& all,
-                    const T* impulses, Velocity* to) {
+  static void apply(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, const T* impulses, Velocity* to) {
     for (int slot = begin; slot < end; ++slot) {
       T lambda[rows];
       for (int r = 0; r < rows; ++r) lambda[r] = impulses[slot * rows + r];
@@ -174,8 +168,7 @@ struct BlockLoops {
   }
 
   // to += M^-1 J^T lambda
-  static void push(const Batch<S>& batch, int slot, const Bodies<S>& all, const T (&lambda)[rows],
-                   Velocity* to) {
+  static void push(const Batch<S>& batch, int slot, const Bodies<S>& all, const T (&lambda)[rows], Velocity* to) {
     const int* body = bodies_of(batch, slot);
     Velocity v[bodies];
     InverseMass m[bodies];
@@ -213,8 +206,8 @@ struct BlockLoops {
         const T softness = batch.softness[i], before = batch.lambda[i];
         const T b = -(Jv[r] + batch.bias[i] + softness * before);
         const T wanted = before + b * inverse(K[r * (r + 1) / 2 + r] + softness);
-        const T after = select(wanted < batch.lower[i], batch.lower[i],
-                               select(wanted > batch.upper[i], batch.upper[i], wanted));
+        const T after =
+            select(wanted < batch.lower[i], batch.lower[i], select(wanted > batch.upper[i], batch.upper[i], wanted));
         batch.lambda[i] = after;
         change[r] = after - before;
         for (int s = r + 1; s < rows; ++s) Jv[s] += K[s * (s + 1) / 2 + r] * change[r];
@@ -268,13 +261,11 @@ struct BlockLoops {
     using Exact = typename S::Exact;
     typename Exact::InverseMass m[bodies];
     for (int k = 0; k < bodies; ++k)
-      m[k] = exact<typename Exact::InverseMass, T>(
-          all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
-    const auto entries = exact<typename Block::template Jacobian<Real>, T>(
-        as<Jacobian>(batch.jacobian.data(), slot));
+      m[k] = exact<typename Exact::InverseMass, T>(all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
+    const auto entries = exact<typename Block::template Jacobian<Real>, T>(as<Jacobian>(batch.jacobian.data(), slot));
     Real own[triangle];
-    Block::dense(entries, *reinterpret_cast<Real (*)[rows][width]>(J));
-    Block::inverse_mass_jacobian(entries, m, *reinterpret_cast<Real (*)[rows][width]>(weighted));
+    Block::dense(entries, *reinterpret_cast<Real(*)[rows][width]>(J));
+    Block::inverse_mass_jacobian(entries, m, *reinterpret_cast<Real(*)[rows][width]>(weighted));
     Block::effective_mass(entries, m, own);
     for (int r = 0; r < rows; ++r)
       for (int s = 0; s <= r; ++s) K[r * stride + s] = own[r * (r + 1) / 2 + s];
@@ -290,15 +281,14 @@ struct BlockLoops {
     for (int k = 0; k < bodies; ++k) impulse[k] = sum[k];
   }
 
-  static void stiffness_of(const Batch<S>& batch, int slot, const Bodies<S>& all, T time,
-                           const T (&lambda)[rows], T (&H)[width][width]) {
+  static void stiffness_of(const Batch<S>& batch, int slot, const Bodies<S>& all, T time, const T (&lambda)[rows],
+                           T (&H)[width][width]) {
     Pose q[bodies];
     gather(all.pose, bodies_of(batch, slot), q);
     Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, H);
   }
 
-  static void stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, T time,
-                        const T* impulses, T* to) {
+  static void stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, T time, const T* impulses, T* to) {
     T lambda[rows], H[width][width];
     for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
     stiffness_of(batch, slot, all, time, lambda, H);
@@ -310,18 +300,15 @@ struct BlockLoops {
     for (int slot = begin; slot < end; ++slot) {
       const int* body = bodies_of(batch, slot);
       T lambda[rows], H[width][width];
-      for (int r = 0; r < rows; ++r)
-        lambda[r] = batch.lambda[slot * rows + r] + batch.correction[slot * rows + r];
+      for (int r = 0; r < rows; ++r) lambda[r] = batch.lambda[slot * rows + r] + batch.correction[slot * rows + r];
       stiffness_of(batch, slot, all, time, lambda, H);
       for (int k = 0; k < bodies; ++k) S::subtract(stiffness[body[k]], H, k);
     }
   }
 
   static constexpr auto starter() -> decltype(BlockOps<S>::start_counting) {
-    if constexpr (Turns::count > 0)
-      return start_counting;
-    else
-      return nullptr;
+    if constexpr (Turns::count > 0) return start_counting;
+    else return nullptr;
   }
 
   static constexpr BlockOps<S> ops() {

@@ -1,5 +1,5 @@
-// The table of functions by which the solvers know a row block, one constant for each: its loops; none where a joint has
-// coordinates only; and other ways to solve the same rows where these exist.
+// The table of functions by which the solvers know a row block, one constant for each: its loops; none where a joint
+// has coordinates only; and other ways to solve the same rows where these exist.
 #pragma once
 
 #include "runtime/block_loops.hpp"

@@ -36,14 +36,13 @@ struct Bodies {
   // What the solvers divide by: inverse_mass, unless the geometric stiffness has added to the
   // inertias.
   std::vector<typename S::InverseMass> effective_mass;
-  std::vector<typename S::Velocity> force;  // constant, beside gravity
-  std::vector<typename S::Velocity>
-      acceleration;  // M^-1 force + gravity, constant between calls to set_force
+  std::vector<typename S::Velocity> force;          // constant, beside gravity
+  std::vector<typename S::Velocity> acceleration;   // M^-1 force + gravity, constant between calls to set_force
   std::vector<typename S::Velocity> velocity_rate;  // dv/dt, of integrators at acceleration level
-  std::vector<typename S::Velocity> displacement;  // of the drift correction in this step
-  std::vector<typename S::Velocity> increment;     // scratch: 0 between its uses
-  std::vector<typename S::Stiffness> stiffness;    // of the last step's impulses
-  std::vector<typename S::Pose> start;  // where the body was added: zero of its potential energy
+  std::vector<typename S::Velocity> displacement;   // of the drift correction in this step
+  std::vector<typename S::Velocity> increment;      // scratch: 0 between its uses
+  std::vector<typename S::Stiffness> stiffness;     // of the last step's impulses
+  std::vector<typename S::Pose> start;              // where the body was added: zero of its potential energy
 
   int count() const { return static_cast<int>(pose.size()); }
   bool immovable(int body) const { return S::immovable(inverse_mass[static_cast<size_t>(body)]); }

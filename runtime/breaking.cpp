@@ -13,8 +13,7 @@ namespace {
 template <class Item>
 void swap_slots(std::vector<Item>& array, int count, int i, int j) {
   const auto width = static_cast<std::ptrdiff_t>(array.size()) / count;
-  std::swap_ranges(array.begin() + i * width, array.begin() + (i + 1) * width,
-                   array.begin() + j * width);
+  std::swap_ranges(array.begin() + i * width, array.begin() + (i + 1) * width, array.begin() + j * width);
 }
 
 template <class S>
@@ -31,8 +30,7 @@ void remove_slot(WorldState<S>& world, Island<S>& island, Batch<S>& batch, int s
     if (segment.batch != &batch || slot < segment.begin || slot >= segment.end) continue;
     const int last = --segment.end;
     if (last != slot) {
-      batch.for_each_array(
-          [&, count = batch.count()](auto& array) { swap_slots(array, count, slot, last); });
+      batch.for_each_array([&, count = batch.count()](auto& array) { swap_slots(array, count, slot, last); });
       move_place(world, batch, last, slot);
       move_place(world, batch, slot, last);
     }

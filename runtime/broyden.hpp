@@ -1,7 +1,7 @@
-// Broyden's method: solves F(x) = 0 with the factor of dF/dx at hand, which it corrects by what it learns from each step.
-// Where the directions of a mechanism's joints turn about within a step, as at a pose in which it loses a row, that
-// factor alone leads astray in one direction; two or three steps tell how far. (C. T. Kelley, "Iterative Methods for
-// Linear and Nonlinear Equations", 1995, 7.3.)
+// Broyden's method: solves F(x) = 0 with the factor of dF/dx at hand, which it corrects by what it learns from each
+// step. Where the directions of a mechanism's joints turn about within a step, as at a pose in which it loses a row,
+// that factor alone leads astray in one direction; two or three steps tell how far. (C. T. Kelley, "Iterative Methods
+// for Linear and Nonlinear Equations", 1995, 7.3.)
 #pragma once
 
 #include <cmath>
@@ -37,8 +37,7 @@ class Broyden {
       const Real size = sizes_[static_cast<size_t>(j)], share = size > 0 ? product(step, z) / size : Real(0);
       if (j + 1 < count_)
         for (size_t i = 0; i < n_; ++i) z[i] += step[n_ + i] * share;
-      else
-        lengthen = 1 / (1 - share);
+      else lengthen = 1 / (1 - share);
     }
     if (!(std::abs(lengthen) < longest)) return false;
     Real* step = steps_.data() + static_cast<size_t>(count_) * n_;

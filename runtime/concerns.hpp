@@ -22,6 +22,6 @@ struct Names {
 
 // `h`: of a substep [s].
 std::vector<Concern> concerns_about(const Diagnosis::Island& island, const Settings& settings, bool single, double h,
-                              const Names& names);
+                                    const Names& names);
 
 }  // namespace cdot

@@ -5,8 +5,8 @@
 //   K lambda = b - Z y,  Z^T Z y = Z^T b,  the columns of Z spanning the left null space of K:
 //   z_d = e_d - (K_II^-1 K_Id on the rows I that were kept), for every dropped row d.
 //
-// Z^T b is what the dropped rows miss, so that where nothing contradicts nothing is computed. The small system is solved
-// by conjugate gradients, whose products are a solve and a multiplication with the factor and the K at hand.
+// Z^T b is what the dropped rows miss, so that where nothing contradicts nothing is computed. The small system is
+// solved by conjugate gradients, whose products are a solve and a multiplication with the factor and the K at hand.
 #include <algorithm>
 #include <cmath>
 

@@ -52,8 +52,8 @@ double largest_eigenvalue(Equations<S>& equations) {
   return value;
 }
 
-// Row d = sum of shares of the kept rows: K_II shares = K_Id. Who takes part is found for so many rows, and for all that
-// conflict.
+// Row d = sum of shares of the kept rows: K_II shares = K_Id. Who takes part is found for so many rows, and for all
+// that conflict.
 constexpr int most_explained = 64;
 
 template <class S>
@@ -89,8 +89,9 @@ void look_at_dependent_rows(Equations<S>& equations, std::vector<Diagnosis::Redu
     if (!equations.dependent(r)) continue;
     const bool conflicting = !(std::abs(missed[r]) <= least);
     const bool explained = conflicting || redundant.size() < most_explained;
-    redundant.push_back({equations.joint(r), explained ? joints_of_row(equations, r) : std::vector{equations.joint(r).joint},
-                         missed[r], conflicting});
+    redundant.push_back({equations.joint(r),
+                         explained ? joints_of_row(equations, r) : std::vector{equations.joint(r).joint}, missed[r],
+                         conflicting});
   }
 }
 
@@ -130,8 +131,7 @@ void look_at_bodies(const WorldState<S>& world, const Island<S>& island, Diagnos
     }
     typename S::Scalar numbers[S::pose_numbers];
     S::write(world.bodies.pose[body], numbers);
-    for (int k = 0; k < S::lengths; ++k)
-      found.farthest = std::max(found.farthest, std::abs(double(numbers[k])));
+    for (int k = 0; k < S::lengths; ++k) found.farthest = std::max(found.farthest, std::abs(double(numbers[k])));
     const double spin = spin_of<S>(world.bodies.velocity[body]);
     if (spin > found.fastest_spin) found.fastest_spin = spin, found.spinning = body;
   }

@@ -1,6 +1,6 @@
-// What is known about the equations of each island at the present poses: rank, condition, rows that say nothing new, and
-// those among them that contradict the others; how stiff the motion is that forces and tensions make. The World's state
-// stays as it was.
+// What is known about the equations of each island at the present poses: rank, condition, rows that say nothing new,
+// and those among them that contradict the others; how stiff the motion is that forces and tensions make. The World's
+// state stays as it was.
 #pragma once
 
 #include <vector>
@@ -20,8 +20,9 @@ struct Diagnosis {
     double missed = 0;        // [m, rad]: of C, what stays however the bodies are moved, to first order
     bool conflicting = false;
   };
-  // Small oscillations about the present motion, within the joints, under forces that are taken as they are at the start
-  // of a step: gravity, springs between points (but for Euler's methods also those on coordinates), and the tensions in the joints, whose directions turn with the bodies.
+  // Small oscillations about the present motion, within the joints, under forces that are taken as they are at the
+  // start of a step: gravity, springs between points (but for Euler's methods also those on coordinates), and the
+  // tensions in the joints, whose directions turn with the bodies.
   struct Stiffest {
     double square = 0;   // [1/s^2] omega^2, the largest in size; negative where it grows in place of oscillating
     int body = -1;       // that moves most in it
@@ -30,8 +31,8 @@ struct Diagnosis {
   struct Island {
     std::vector<int> bodies;  // movable ones
     int rows = 0, rank = 0;   // of inequalities those that touch
-    // The largest over the smallest eigenvalue of K with every row scaled to K_ii = 1, of its independent rows: estimated
-    // from below by a few iterations with K and its factors.
+    // The largest over the smallest eigenvalue of K with every row scaled to K_ii = 1, of its independent rows:
+    // estimated from below by a few iterations with K and its factors.
     double condition = 1;
     double smallest_pivot = 1;  // of L D L^T of that K, among the rows that were kept
     Row weakest;                // that pivot's

@@ -1,5 +1,5 @@
-// How fast forces turn round that a step takes as they are at its start. Within the joints, M dv/dt = f(q) + J(q)^T lambda
-// with the lambda of now; a small motion w then feels -G w with
+// How fast forces turn round that a step takes as they are at its start. Within the joints, M dv/dt = f(q) + J(q)^T
+// lambda with the lambda of now; a small motion w then feels -G w with
 //
 //   G w = -d/de [f(q + e w) + J(q + e w)^T lambda],  w <- P M^-1 G w,  P onto J w = 0,
 //
@@ -41,10 +41,12 @@ class Motion {
       batch.ops->gamma(batch, segment.begin, segment.end, world_.bodies, T(world_.time), batch.bias.data());
     }
     std::vector<double> b(equations_.size());
-    equations_.each_row([&](int row, Batch<S>& batch, int i) { b[row] = double(batch.bias[i]) - double(batch.scratch[i]); });
+    equations_.each_row(
+        [&](int row, Batch<S>& batch, int i) { b[row] = double(batch.bias[i]) - double(batch.scratch[i]); });
     const std::vector<double> force = equations_.solve(b);
     // stiffen_bodies() wants the impulses of a step.
-    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]) * h, batch.correction[i] = 0; });
+    equations_.each_row(
+        [&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]) * h, batch.correction[i] = 0; });
     world_.last_step = double(h);
     solves_as_step_ = world_.settings.integrator == Integrator::implicit && world_.settings.solver == Solver::direct;
     if (world_.settings.integrator == Integrator::implicit) stiffen_bodies(world_, island_, h);

@@ -34,10 +34,8 @@ void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   // Otherwise it would be thrown in as energy.
   const bool keep = from_motion && bends_the_path(world, island, double(h));
   const bool was_apart = foreign_error > foreign<T> && std::isfinite(foreign_error);
-  if (!was_apart)
-    tell_joints_apart(world, island, foreign_error);
-  else if (!keep && island.residual > T(2) * std::max(error, foreign_error))
-    island.trouble = StepProblem::joints_apart;
+  if (!was_apart) tell_joints_apart(world, island, foreign_error);
+  else if (!keep && island.residual > T(2) * std::max(error, foreign_error)) island.trouble = StepProblem::joints_apart;
   add_corrections(world, island, keep ? T(1) / h : T(0));
   evaluate_anew(world, island, time);
   hold_velocities(world, island);

@@ -25,8 +25,7 @@ bool nearer_to_lower(T C, const T* limits) {
 }
 
 template <class S>
-void fill_limit(Batch<S>& batch, int begin, int end, typename S::Scalar h,
-                const Settings& settings) {
+void fill_limit(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings& settings) {
   using T = typename S::Scalar;
   for (int i = begin; i < end; ++i) {
     const T* limits = batch.constants.data() + 2 * i;
@@ -46,8 +45,7 @@ template <class S>
 void error_limit(const Batch<S>& batch, int slot, typename S::Scalar* error) {
   using T = typename S::Scalar;
   const T C = batch.C[slot], *limits = batch.constants.data() + 2 * slot;
-  *error =
-      nearer_to_lower(C, limits) ? std::fmin(C - limits[0], T(0)) : std::fmax(C - limits[1], T(0));
+  *error = nearer_to_lower(C, limits) ? std::fmin(C - limits[0], T(0)) : std::fmax(C - limits[1], T(0));
 }
 
 template <class S>
@@ -61,8 +59,7 @@ void guard_limit(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* gua
 // --- lock, a limit whose ends are one: C = at. Constants: at.
 
 template <class S>
-void fill_lock(Batch<S>& batch, int begin, int end, typename S::Scalar h,
-               const Settings& settings) {
+void fill_lock(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings& settings) {
   using T = typename S::Scalar;
   const T share = settings.drift == Drift::baumgarte ? T(settings.baumgarte) / h : T(0);
   for (int i = begin; i < end; ++i) batch.bias[i] += share * (batch.C[i] - batch.constants[i]);
@@ -118,22 +115,19 @@ double energy_spring(const Batch<S>& batch, int slot) {
 }
 
 template <class S>
-void force_of_spring(const Batch<S>& batch, int slot, const typename S::Scalar* rate,
-                     typename S::Scalar* force) {
+void force_of_spring(const Batch<S>& batch, int slot, const typename S::Scalar* rate, typename S::Scalar* force) {
   const auto* constants = batch.constants.data() + 4 * slot;
   *force = spring_force(batch.C[slot] - constants[3], *rate, batch.factor[slot], constants);
 }
 
 template <class S>
-constexpr Law<S> limit_law{2,       false,   fill_limit<S>, error_limit<S>,
-                           nullptr, nullptr, guard_limit<S>};
+constexpr Law<S> limit_law{2, false, fill_limit<S>, error_limit<S>, nullptr, nullptr, guard_limit<S>};
 template <class S>
 constexpr Law<S> lock_law{1, false, fill_lock<S>, error_lock<S>, nullptr, nullptr, guard_lock<S>};
 template <class S>
 constexpr Law<S> motor_law{2, false, fill_motor<S>, nullptr, nullptr, nullptr, guard_motor<S>};
 template <class S>
-constexpr Law<S> spring_law{4,       false, fill_spring<S>, nullptr, energy_spring<S>, force_of_spring<S>,
-                            nullptr};
+constexpr Law<S> spring_law{4, false, fill_spring<S>, nullptr, energy_spring<S>, force_of_spring<S>, nullptr};
 
 // The numbers of an effect, as its law keeps them; throw Error where they make no sense.
 
@@ -182,8 +176,7 @@ void set_constants(BasicWorld<S>& world, int joint, int effect, const Law<S>& la
   const int body = movable_body(state, record);
   if (law.error)  // of where the bodies shall be
     wake(state, body);
-  else
-    wake_pushed(state, body);
+  else wake_pushed(state, body);
 }
 
 }  // namespace
@@ -217,8 +210,7 @@ void set_limit(BasicWorld<S>& world, int joint, int effect, const Limit& limit) 
   if (constants[0] == constants[1])
     set_constants(world, joint, effect, lock_law<S>, "lock (a limit that was added with equal ends)",
                   std::span(constants).first(1));
-  else
-    set_constants(world, joint, effect, limit_law<S>, "limit with two ends", constants);
+  else set_constants(world, joint, effect, limit_law<S>, "limit with two ends", constants);
 }
 
 template <class S>

@@ -34,14 +34,12 @@ std::vector<int> united_without(const std::vector<int>& a, const std::vector<int
   std::vector<int> both;
   both.reserve(a.size() + b.size());
   std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
-  both.erase(std::remove_if(both.begin(), both.end(), [&](int j) { return j == i || j == k; }),
-             both.end());
+  both.erase(std::remove_if(both.begin(), both.end(), [&](int j) { return j == i || j == k; }), both.end());
   return both;
 }
 
 // One block at a time.
-std::vector<Elimination> single_order(const std::vector<int>& rows,
-                                      std::vector<std::vector<int>> neighbours) {
+std::vector<Elimination> single_order(const std::vector<int>& rows, std::vector<std::vector<int>> neighbours) {
   const int count = static_cast<int>(rows.size());
   std::vector<Key> key;
   const auto key_of = [&](int i, int succession) {
@@ -76,14 +74,12 @@ std::vector<int> places(const std::vector<Elimination>& order, size_t blocks) {
 void sort_neighbours(std::vector<Elimination>& order, size_t blocks) {
   const std::vector<int> place = places(order, blocks);
   for (Elimination& one : order)
-    std::sort(one.neighbours.begin(), one.neighbours.end(),
-              [&](int i, int j) { return place[i] < place[j]; });
+    std::sort(one.neighbours.begin(), one.neighbours.end(), [&](int i, int j) { return place[i] < place[j]; });
 }
 
 // A block whose neighbours are the next one's, and that one itself, waits for it: what they leave
 // to others is one update then instead of two. Where they leave nothing they stay apart.
-std::vector<Elimination> joined(std::vector<Elimination> order, const std::vector<int>& rows,
-                                int widest) {
+std::vector<Elimination> joined(std::vector<Elimination> order, const std::vector<int>& rows, int widest) {
   std::vector<int> holder = places(order, rows.size());
   std::vector<Elimination> joined;
   for (Elimination& one : order) {
@@ -91,16 +87,14 @@ std::vector<Elimination> joined(std::vector<Elimination> order, const std::vecto
     if (one.neighbours.size() > 1 && one.neighbours.size() == order[next].neighbours.size() + 1 &&
         rows_of(one.blocks, rows) + rows_of(order[next].blocks, rows) <= widest)
       order[next].blocks.insert(order[next].blocks.begin(), one.blocks.begin(), one.blocks.end());
-    else
-      joined.push_back(std::move(one));
+    else joined.push_back(std::move(one));
   }
   return joined;
 }
 
 }  // namespace
 
-std::vector<Elimination> minimum_degree_order(const std::vector<int>& rows,
-                                              std::vector<std::vector<int>> neighbours,
+std::vector<Elimination> minimum_degree_order(const std::vector<int>& rows, std::vector<std::vector<int>> neighbours,
                                               int widest) {
   auto order = single_order(rows, std::move(neighbours));
   sort_neighbours(order, rows.size());

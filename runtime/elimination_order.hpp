@@ -18,7 +18,7 @@ struct Elimination {
 // eliminated from both its ends and a processor has two divisions under way; then the first.
 // neighbours: of each block, sorted, without itself. Blocks are eliminated together, up to `widest`
 // rows, where that adds nothing to what is computed: in meshes, whose last blocks are all coupled.
-std::vector<Elimination> minimum_degree_order(const std::vector<int>& rows,
-                                              std::vector<std::vector<int>> neighbours, int widest);
+std::vector<Elimination> minimum_degree_order(const std::vector<int>& rows, std::vector<std::vector<int>> neighbours,
+                                              int widest);
 
 }  // namespace cdot

@@ -42,8 +42,8 @@ void each_guarded_row(Island<S>& island, F f) {
 //   C       what a displacement by the island's size and a turn of 1 rad make of it: c
 //   rate    the sum of all |J v|; sqrt(c dJv/dt), what acceleration makes of it on that way; less moves nothing in h
 //   force   dJv/dt + rate^2 / c over K
-// where dJv/dt is the largest of the sum of all |J dv/dt|, a linear acceleration being taken for an angular one too, and
-// of what the row's own force keeps from it, K lambda. A row without a direction here is taken for a length.
+// where dJv/dt is the largest of the sum of all |J dv/dt|, a linear acceleration being taken for an angular one too,
+// and of what the row's own force keeps from it, K lambda. A row without a direction here is taken for a length.
 template <class S>
 void tell_apart(const WorldState<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
                 typename S::Scalar h, Told<S>* told) {
@@ -51,7 +51,8 @@ void tell_apart(const WorldState<S>& world, const Island<S>& island, const Batch
   using Real = ExactNumber<T>;
   const Bodies<S>& all = world.bodies;
   const int rows = batch.ops->rows, bodies = batch.ops->bodies, width = S::freedom * bodies;
-  Real J[most_rows * S::freedom * most_bodies], weighted[most_rows * S::freedom * most_bodies], K[most_rows * most_rows];
+  Real J[most_rows * S::freedom * most_bodies], weighted[most_rows * S::freedom * most_bodies],
+      K[most_rows * most_rows];
   batch.ops->dense(batch, slot, all, J, weighted, K, rows);
   for (int r = 0; r < rows; ++r) {
     T c = 0, rate = 0, acceleration = 0, inverse_mass = 0;
@@ -117,8 +118,8 @@ void solve(WorldState<S>& world, Island<S>& island) {
   solve_iterative(world, island, typename S::Scalar(0));
 }
 
-// Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. What has stopped is `held`: by
-// sweeps its rate is not quite 0. A motor's force is nothing beside an impulse, unless it has no bound.
+// Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. What has stopped is `held`:
+// by sweeps its rate is not quite 0. A motor's force is nothing beside an impulse, unless it has no bound.
 template <class S>
 void stop_what_hits(WorldState<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
@@ -197,20 +198,18 @@ void decide_by_forces(WorldState<S>& world, Island<S>& island, typename S::Scala
 
 // Of one row; infinite where nothing can happen.
 template <class S>
-typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
-                             const Told<S>& told, typename S::Scalar rate) {
+typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard, const Told<S>& told,
+                             typename S::Scalar rate) {
   using T = typename S::Scalar;
   const T force = batch.lambda[i];
   switch (batch.mode[i]) {
-    case Mode::off:
-      return guard.gap() / told.C;
+    case Mode::off: return guard.gap() / told.C;
     case Mode::held:
       return std::min(force - guard.lower, guard.upper - force) / (told.force + slight<T> * std::abs(force));
     case Mode::pushed:
       if (guard.lower == guard.upper) return infinite<T>;
       return (force == guard.upper ? guard.rate - rate : rate - guard.rate) / told.rate;
-    case Mode::bounded:
-      break;
+    case Mode::bounded: break;
   }
   return infinite<T>;
 }
@@ -281,11 +280,11 @@ void drop_modes(Island<S>& island) {
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                          \
-  template void count_guarded_rows(Island<S>&);                      \
+#define CDOT_INSTANTIATE(S)                                                     \
+  template void count_guarded_rows(Island<S>&);                                 \
   template void choose_modes(WorldState<S>&, Island<S>&, S::Scalar, S::Scalar); \
-  template void note_rates(WorldState<S>&, Island<S>&);              \
-  template void measure_margins(Island<S>&);                         \
+  template void note_rates(WorldState<S>&, Island<S>&);                         \
+  template void measure_margins(Island<S>&);                                    \
   template void drop_modes(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

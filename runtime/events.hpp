@@ -11,7 +11,8 @@ template <class S>
 void count_guarded_rows(Island<S>& island);
 
 // What each row does from here on, in steps of about h, after drop_modes(); C and J are evaluated at the present poses.
-// What hits something stops there, by impulses. Ends with velocities that fit, with accelerations, and with the margins.
+// What hits something stops there, by impulses. Ends with velocities that fit, with accelerations, and with the
+// margins.
 template <class S>
 void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h);
 

@@ -47,8 +47,7 @@ Vector<T> newton_step(const Symmetric<T>& I, const Vector<T>& b, const Vector<T>
                   third = Vector<T>{I.xz - v.y, I.yz + v.x, I.zz - diagonal} + u.z * theta, right = I * r;
   const Vector<T> across = cross(second, third);
   const T scale = T(1) / dot(first, across);
-  return scale * Vector<T>{dot(right, across), dot(right, cross(third, first)),
-                           dot(right, cross(first, second))};
+  return scale * Vector<T>{dot(right, across), dot(right, cross(third, first)), dot(right, cross(first, second))};
 }
 
 // W after a step of h by Taylor's series, I dW/dt = I W x W; W itself where the step is too long for that.
@@ -60,14 +59,17 @@ Vector<T> expected_spin(const Symmetric<T>& I, const Symmetric<T>& inverse, cons
   return W + h * (rate + (T(0.5) * h) * bend);
 }
 
-// The axis of the frame about which the body is symmetric: the moments about the others are equal. Zero if there is none.
+// The axis of the frame about which the body is symmetric: the moments about the others are equal. Zero if there is
+// none.
 template <class T>
 Vector<T> symmetry_axis(const Symmetric<T>& I) {
   const T slight = T(8) * std::numeric_limits<T>::epsilon() * (I.xx + I.yy + I.zz);
   if (std::abs(I.xy) + std::abs(I.xz) + std::abs(I.yz) > slight) return {0, 0, 0};
   const auto equal = [&](T a, T b) { return std::abs(a - b) <= slight; };
-  return equal(I.xx, I.yy) ? Vector<T>{0, 0, 1} : equal(I.yy, I.zz) ? Vector<T>{1, 0, 0}
-         : equal(I.xx, I.zz)                    ? Vector<T>{0, 1, 0} : Vector<T>{0, 0, 0};
+  return equal(I.xx, I.yy)   ? Vector<T>{0, 0, 1}
+         : equal(I.yy, I.zz) ? Vector<T>{1, 0, 0}
+         : equal(I.xx, I.zz) ? Vector<T>{0, 1, 0}
+                             : Vector<T>{0, 0, 0};
 }
 
 // Of a symmetric body in closed form: it goes round L at the rate L / I1, and about its axis e at what its spin has

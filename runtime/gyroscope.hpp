@@ -20,9 +20,9 @@ struct Gyroscope {
   Vector<T> lent;  // w, while the mean spin of a step stands in for it
 };
 
-// The angular velocity about which a free body turns during a step of h, in world axes. Of a body that is symmetric about
-// an axis of its frame it is the exact one: the body goes round L at L / I_across and spins about its axis. Else Simo &
-// Wong's algorithm C1 (Int. J. Numer. Methods Eng. 31, 1991). In the body's frame
+// The angular velocity about which a free body turns during a step of h, in world axes. Of a body that is symmetric
+// about an axis of its frame it is the exact one: the body goes round L at L / I_across and spins about its axis. Else
+// Simo & Wong's algorithm C1 (Int. J. Numer. Methods Eng. 31, 1991). In the body's frame
 //   theta = h (W0 + W1) / 2,   I W1 = exp(-theta) I W0
 // keeps the angular momentum, and the energy as well: its change is theta . (I W1 - I W0) / h, and
 // the rotation leaves the part of I W0 along theta alone. Solved by Newton; should that fail

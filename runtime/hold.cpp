@@ -60,8 +60,8 @@ void move_by_newton(WorldState<S>& world, Island<S>& island) {
   }
 }
 
-// `fresh`: J and K are not yet those of the step. Where they leave more than `enough` of the error they are renewed, and
-// where new ones do not halve it the joints contradict each other, round-off is reached, or the step went too far.
+// `fresh`: J and K are not yet those of the step. Where they leave more than `enough` of the error they are renewed,
+// and where new ones do not halve it the joints contradict each other, round-off is reached, or the step went too far.
 template <class S>
 void newton(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   using T = typename S::Scalar;
@@ -84,10 +84,8 @@ void newton(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bo
       island.system.assemble(world.bodies);
       renewed |= slow;
     }
-    if (round == 0 && (fresh || other_rows))
-      factor_rows_with_errors(island);
-    else if (more || slow)
-      island.system.factor();
+    if (round == 0 && (fresh || other_rows)) factor_rows_with_errors(island);
+    else if (more || slow) island.system.factor();
     before = worst;
     move_by_newton(world, island);
   }
@@ -129,10 +127,8 @@ void sweep_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar tim
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
-      if (!batch.law)
-        batch.ops->correct(batch, segment.begin, segment.end, world.bodies, time);
-      else
-        sweep_lawful_poses(world, island, segment, time);
+      if (!batch.law) batch.ops->correct(batch, segment.begin, segment.end, world.bodies, time);
+      else sweep_lawful_poses(world, island, segment, time);
     }
     const T met = errors_met(island);
     if (sweep == 0) first = met;
@@ -197,10 +193,8 @@ void sweep_velocities(WorldState<S>& world, Island<S>& island) {
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
-      if (!batch.law)
-        batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, batch.correction.data());
-      else if (island.continuous)
-        batch.ops->iterate_bounded(batch, segment.begin, segment.end, world.bodies);
+      if (!batch.law) batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, batch.correction.data());
+      else if (island.continuous) batch.ops->iterate_bounded(batch, segment.begin, segment.end, world.bodies);
     }
   }
 }
@@ -228,10 +222,8 @@ typename S::Scalar find_errors(WorldState<S>& world, Island<S>& island, typename
     batch.ops->position(batch, segment.begin, segment.end, world.bodies, time);
     for (int slot = segment.begin; slot < segment.end; ++slot) {
       T* error = batch.scratch.data() + slot * rows;
-      if (!batch.law)
-        std::copy_n(batch.C.data() + slot * rows, rows, error);
-      else
-        error_of_law(island, batch, slot, error);
+      if (!batch.law) std::copy_n(batch.C.data() + slot * rows, rows, error);
+      else error_of_law(island, batch, slot, error);
       for (int r = 0; r < rows; ++r) worst = std::max(worst, std::abs(error[r]));
     }
   }
@@ -262,10 +254,8 @@ void apply_solution(WorldState<S>& world, Island<S>& island, typename S::Velocit
 template <class S>
 void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
   if constexpr (S::has_gyroscopes) {
-    if (island.continuous)
-      set_inertias(world, island);
-    else
-      turn_inertias(world, island);
+    if (island.continuous) set_inertias(world, island);
+    else turn_inertias(world, island);
   }
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, time);
@@ -350,10 +340,8 @@ template <class S>
 void hold_velocities(WorldState<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   if (island.continuous) add_wanted_rates(island, T(-1));
-  if (world.settings.solver == Solver::direct)
-    solve_velocities(world, island);
-  else
-    sweep_velocities(world, island);
+  if (world.settings.solver == Solver::direct) solve_velocities(world, island);
+  else sweep_velocities(world, island);
   if (island.continuous) add_wanted_rates(island, T(1));
 }
 

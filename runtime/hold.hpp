@@ -53,8 +53,8 @@ void hold_poses(WorldState<S>& world, Island<S>& island, typename S::Scalar time
 // far for Newton, or beyond their reach. Of sweeps, which leave what they leave, nothing is said.
 template <class S>
 bool left_the_joints(const WorldState<S>& world, const Island<S>& island, typename S::Scalar at_start);
-// Such a step has failed, where no shorter one takes its place; unless what is left is what the last solve had to leave:
-// joints that contradict each other share it.
+// Such a step has failed, where no shorter one takes its place; unless what is left is what the last solve had to
+// leave: joints that contradict each other share it.
 template <class S>
 void tell_joints_apart(const WorldState<S>& world, Island<S>& island, typename S::Scalar at_start);
 

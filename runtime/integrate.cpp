@@ -31,20 +31,17 @@ template <class S>
 void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
   if constexpr (S::has_gyroscopes)
-    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
-      S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h);
-    });
+    for_each_gyroscope(world, island,
+                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
   for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], S::sum({}, all.velocity[i], h));
   if constexpr (S::has_gyroscopes) {
-    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
-      S::restore_spin(gyroscope, all.velocity[i]);
-    });
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
     turn_inertias(world, island);
   }
   island.evaluated = island.factored = false;
 }
 
-#define CDOT_INSTANTIATE(T)                                                      \
+#define CDOT_INSTANTIATE(T)                                                  \
   template void turn_inertias(WorldState<Spatial<T>>&, Island<Spatial<T>>&); \
   template void set_inertias(WorldState<Spatial<T>>&, Island<Spatial<T>>&);
 CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)

@@ -12,10 +12,8 @@ namespace {
 template <class S>
 double distance(const typename S::Pose& a, const typename S::Pose& b) {
   const auto p = S::place_of(a), q = S::place_of(b);
-  if constexpr (S::dimension == Dimension::planar)
-    return std::hypot(p.x - q.x, p.y - q.y);
-  else
-    return std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
+  if constexpr (S::dimension == Dimension::planar) return std::hypot(p.x - q.x, p.y - q.y);
+  else return std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
 }
 
 // The longest arm of a slot's rows: what a turn of a movable body does to C over what its displacement does. Rows

@@ -18,9 +18,7 @@ namespace {
 // The representative of a set is its smallest body, so that islands are numbered independently of
 // the joints' order.
 struct Sets {
-  explicit Sets(int n) : parent(static_cast<size_t>(n)) {
-    std::iota(parent.begin(), parent.end(), 0);
-  }
+  explicit Sets(int n) : parent(static_cast<size_t>(n)) { std::iota(parent.begin(), parent.end(), 0); }
   int find(int i) {
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
@@ -131,10 +129,8 @@ void list_segments(WorldState<S>& world, const std::vector<int>& places) {
     Batch<S>& batch = *world.batches[run.batch];
     Island<S>& island = world.islands[island_of_slot(world, batch, run.slot)];
     auto& segments = island.segments;
-    if (!segments.empty() && segments.back().batch == &batch && segments.back().end == run.slot)
-      ++segments.back().end;
-    else
-      segments.push_back({&batch, run.slot, run.slot + 1});
+    if (!segments.empty() && segments.back().batch == &batch && segments.back().end == run.slot) ++segments.back().end;
+    else segments.push_back({&batch, run.slot, run.slot + 1});
     island.restless |= batch.ops->explicit_time;
   }
 }
@@ -145,12 +141,10 @@ void give_out_forces(WorldState<S>& world) {
     const int island = std::max(world.island_of[spring.body_a], world.island_of[spring.body_b]);
     if (island >= 0) world.islands[island].springs.push_back(spring);
   }
-  for (const auto& drag : world.drags)
-    world.islands[world.island_of[drag.body]].drags.push_back(drag);
+  for (const auto& drag : world.drags) world.islands[world.island_of[drag.body]].drags.push_back(drag);
   if constexpr (S::has_gyroscopes)
     for (size_t i = 0; i < world.gyroscopes.size(); ++i)
-      world.islands[world.island_of[world.gyroscopes[i].body]].gyroscopes.push_back(
-          static_cast<int>(i));
+      world.islands[world.island_of[world.gyroscopes[i].body]].gyroscopes.push_back(static_cast<int>(i));
 }
 
 template <class S>
@@ -177,8 +171,7 @@ void prepare_topology(WorldState<S>& world) {
   for (int i = 0; i < static_cast<int>(world.islands.size()); ++i) {
     Island<S>& island = world.islands[i];
     measure_size(world, island);
-    if (world.settings.solver == Solver::direct || world.on_failure == OnFailure::retry)
-      build_systems(world, island);
+    if (world.settings.solver == Solver::direct || world.on_failure == OnFailure::retry) build_systems(world, island);
     island.flow.pose.resize(island.bodies.size());
     island.flow.velocity.resize(island.bodies.size());
     if (world.settings.integrator == Integrator::rattle)

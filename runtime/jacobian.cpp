@@ -32,8 +32,7 @@ void list_bodies(const WorldState<S>& world, SystemMatrix& system) {
 
 // Its rows of D and of (M^-1 D^T)^T.
 template <class S>
-void add_joint(const WorldState<S>& world, int joint, SystemMatrix& system,
-               std::vector<double>& weighted) {
+void add_joint(const WorldState<S>& world, int joint, SystemMatrix& system, std::vector<double>& weighted) {
   const JointRecord& record = world.joints[joint];
   Probe<S> probe(world);
   probe.look_at(record);
@@ -43,11 +42,9 @@ void add_joint(const WorldState<S>& world, int joint, SystemMatrix& system,
   SystemMatrix::Joint entry{joint, system.rows, rows, {}};
   const auto first = static_cast<size_t>(system.rows * system.columns);
   system.rows += rows;
-  for (auto* matrix : {&system.D, &weighted})
-    matrix->resize(static_cast<size_t>(system.rows * system.columns), 0.0);
+  for (auto* matrix : {&system.D, &weighted}) matrix->resize(static_cast<size_t>(system.rows * system.columns), 0.0);
   for (size_t k = 0; k < record.bodies.size(); ++k) {
-    const auto found =
-        std::lower_bound(system.bodies.begin(), system.bodies.end(), record.bodies[k]);
+    const auto found = std::lower_bound(system.bodies.begin(), system.bodies.end(), record.bodies[k]);
     if (found == system.bodies.end() || *found != record.bodies[k]) continue;
     const auto at = static_cast<int>(found - system.bodies.begin());
     entry.body.push_back(at);
@@ -97,8 +94,7 @@ SystemMatrix system_matrix(BasicWorld<S>& world) {
   list_bodies(state, system);
   std::vector<double> weighted;
   for (int joint = 0; joint < world.joint_count(); ++joint)
-    if (!state.joints[joint].places.empty() && !state.joints[joint].broken)
-      add_joint(state, joint, system, weighted);
+    if (!state.joints[joint].places.empty() && !state.joints[joint].broken) add_joint(state, joint, system, weighted);
   const Eigen::Map<const Matrix> D(system.D.data(), system.rows, system.columns);
   const Eigen::Map<const Matrix> W(weighted.data(), system.rows, system.columns);
   system.K.resize(static_cast<size_t>(system.rows) * static_cast<size_t>(system.rows));
@@ -118,8 +114,7 @@ ConflictGraph conflicts(const SystemMatrix& system) {
       graph.edges.emplace_back(j, i);
       taken[graph.colour[j]] = 1;
     }
-    graph.colour.push_back(
-        static_cast<int>(std::find(taken.begin(), taken.end(), 0) - taken.begin()));
+    graph.colour.push_back(static_cast<int>(std::find(taken.begin(), taken.end(), 0) - taken.begin()));
     graph.colours = std::max(graph.colours, graph.colour.back() + 1);
   }
   std::sort(graph.edges.begin(), graph.edges.end());

@@ -33,8 +33,8 @@ struct BlockVariants {
     const auto is = [&](const BlockOps<S>* one) {
       return ops == one || (ops && (ops == one->fast || ops == one->robust));
     };
-    return is(general) || std::any_of(immovable.begin(), immovable.end(),
-                                      [&](const auto& one) { return is(one.second); });
+    return is(general) ||
+           std::any_of(immovable.begin(), immovable.end(), [&](const auto& one) { return is(one.second); });
   }
 };
 
@@ -44,8 +44,7 @@ struct JointEntry {
   std::vector<BlockVariants<S>> coordinates;  // in the order of JointType::coordinates
   // Writes the default of parameter `index`, computed from the poses, the parameters before it and
   // the time.
-  void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters,
-                        typename S::Scalar time);
+  void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters, typename S::Scalar time);
 };
 
 template <class S, class Joint, class Block>
@@ -72,8 +71,7 @@ JointEntry<S> joint_entry() {
   entry.default_value = [](int index, const typename S::Pose* q, T* parameters, T time) {
     using Parameters = typename Joint::template Parameters<T>;
     using Poses = const typename S::Pose[Joint::bodies];
-    Joint::default_value(index, reinterpret_cast<Poses&>(*q),
-                         *reinterpret_cast<Parameters*>(parameters), time);
+    Joint::default_value(index, reinterpret_cast<Poses&>(*q), *reinterpret_cast<Parameters*>(parameters), time);
   };
   return entry;
 }

@@ -37,8 +37,7 @@ void add_joint_type(Dimension dimension, JointType type) {
 
 const JointType* find_joint_type(Dimension dimension, std::string_view name) {
   const auto types = joint_types(dimension);
-  const auto found = std::find_if(types.begin(), types.end(),
-                                  [&](const JointType& type) { return type.name == name; });
+  const auto found = std::find_if(types.begin(), types.end(), [&](const JointType& type) { return type.name == name; });
   return found == types.end() ? nullptr : &*found;
 }
 

@@ -13,7 +13,7 @@ namespace {
 // One list for both directions, to and from what is kept. A call of memcpy costs more than a few numbers.
 template <bool keep, class Number>
 inline Number* copy(Number* here, Number* kept, int count) {
-  Number *__restrict to = keep ? kept : here, *__restrict from = keep ? here : kept;
+  Number* __restrict to = keep ? kept : here, * __restrict from = keep ? here : kept;
   if (static_cast<size_t>(count) * sizeof(Number) > 48)
     std::memcpy(to, from, static_cast<size_t>(count) * sizeof(Number));
   else

@@ -12,8 +12,7 @@ template <class T>
 constexpr T unbounded = std::numeric_limits<T>::infinity();
 
 template <class S>
-void fill_unilateral(Batch<S>& batch, int begin, int end, typename S::Scalar h,
-                     const Settings& settings) {
+void fill_unilateral(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings& settings) {
   using T = typename S::Scalar;
   const int rows = batch.ops->rows;
   const T share = settings.drift == Drift::baumgarte ? T(settings.baumgarte) : T(0);
@@ -56,18 +55,16 @@ void fill_soft(Batch<S>& batch, int begin, int end, typename S::Scalar h, const 
     const bool inequality = batch.kinds[static_cast<size_t>(r)] == RowKind::inequality;
     batch.lower[i] = inequality ? T(0) : -unbounded<T>;
     batch.upper[i] = unbounded<T>;
-    const SpringRow<T> row =
-        inequality && C > T(0)
-            ? SpringRow<T>{C / h, T(0)}
-            : spring_row(C, K, batch.constants.data() + slot * spring_constants_count, h);
+    const SpringRow<T> row = inequality && C > T(0)
+                                 ? SpringRow<T>{C / h, T(0)}
+                                 : spring_row(C, K, batch.constants.data() + slot * spring_constants_count, h);
     batch.bias[i] += row.bias;
     batch.softness[i] = row.softness;
   }
 }
 
 template <class S>
-void force_of_soft(const Batch<S>& batch, int slot, const typename S::Scalar* rate,
-                   typename S::Scalar* force) {
+void force_of_soft(const Batch<S>& batch, int slot, const typename S::Scalar* rate, typename S::Scalar* force) {
   using T = typename S::Scalar;
   for (int r = 0; r < batch.ops->rows; ++r) {
     const T C = batch.C[slot * batch.ops->rows + r];
@@ -96,15 +93,14 @@ double energy_soft(const Batch<S>& batch, int slot) {
 
 template <class S>
 const Law<S>& unilateral_law() {
-  static constexpr Law<S> law{0,       true,    fill_unilateral<S>, error_unilateral<S>,
-                              nullptr, nullptr, guard_unilateral<S>};
+  static constexpr Law<S> law{0, true, fill_unilateral<S>, error_unilateral<S>, nullptr, nullptr, guard_unilateral<S>};
   return law;
 }
 
 template <class S>
 const Law<S>& soft_law() {
-  static constexpr Law<S> law{spring_constants_count, false, fill_soft<S>, nullptr, energy_soft<S>,
-                              force_of_soft<S>, nullptr};
+  static constexpr Law<S> law{spring_constants_count, false,  fill_soft<S>, nullptr, energy_soft<S>,
+                              force_of_soft<S>,       nullptr};
   return law;
 }
 

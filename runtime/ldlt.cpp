@@ -8,9 +8,9 @@
 namespace cdot {
 namespace {
 
-// Of one factor(), at rows whose noise is in doubt; each that is cleared costs an elimination. Of a large grid thousands
-// are in doubt: where an elimination takes more multiplications than that, they stay dropped, and what that leaves unmet
-// is refined (soften.cpp).
+// Of one factor(), at rows whose noise is in doubt; each that is cleared costs an elimination. Of a large grid
+// thousands are in doubt: where an elimination takes more multiplications than that, they stay dropped, and what that
+// leaves unmet is refined (soften.cpp).
 constexpr int most_looks = 8;
 constexpr long affordable = 1'000'000;
 
@@ -25,8 +25,7 @@ constexpr auto update = dense::all_update<Real, false>(dense::Sizes{});
 template <class Real>
 constexpr auto update_of_square = dense::all_update<Real, true>(dense::Sizes{});
 
-std::vector<std::vector<int>> neighbours_of(int count,
-                                            const std::vector<std::pair<int, int>>& coupled) {
+std::vector<std::vector<int>> neighbours_of(int count, const std::vector<std::pair<int, int>>& coupled) {
   std::vector<std::vector<int>> neighbours(static_cast<size_t>(count));
   for (const auto& [i, j] : coupled) {
     if (i == j) continue;
@@ -44,7 +43,7 @@ std::vector<std::vector<int>> neighbours_of(int count,
 
 template <class Real>
 void BasicLdlt<Real>::analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
-                   double share) {
+                              double share) {
   share_ = share;
   const auto neighbours = neighbours_of(static_cast<int>(rows.size()), coupled);
   lay_out(rows, minimum_degree_order(rows, neighbours, dense::largest));
@@ -115,10 +114,8 @@ void BasicLdlt<Real>::list_updates(Column& column) {
   const int* row = panel_row_.data() + column.rows;
   std::vector<std::pair<int, int>> runs;  // from row to row of the panel
   for (int h = 0; h < column.height; ++h) {
-    if (h > 0 && row[h] == row[h - 1] + 1 && column_of_[row[h]] == column_of_[row[h - 1]])
-      runs.back().second = h + 1;
-    else
-      runs.emplace_back(h, h + 1);
+    if (h > 0 && row[h] == row[h - 1] + 1 && column_of_[row[h]] == column_of_[row[h - 1]]) runs.back().second = h + 1;
+    else runs.emplace_back(h, h + 1);
   }
   column.updates_begin = static_cast<int>(updates_.size());
   for (size_t j = 0; j < runs.size(); ++j) {
@@ -138,8 +135,7 @@ template <class Real>
 typename BasicLdlt<Real>::Place BasicLdlt<Real>::place(int row, int column) const {
   const Column& of = columns_[column_of_[column]];
   const int within = column - of.first;
-  if (column_of_[row] == column_of_[column])
-    return {of.square + (row - of.first) * of.width + within, of.width};
+  if (column_of_[row] == column_of_[column]) return {of.square + (row - of.first) * of.width + within, of.width};
   const auto begin = panel_row_.begin() + of.rows;
   const auto below = std::lower_bound(begin, begin + of.height, row) - begin;
   return {of.panel + static_cast<int>(below) * of.width + within, of.width};
@@ -166,15 +162,12 @@ template <class Real>
 int BasicLdlt<Real>::eliminate_columns(const dense::Numbers<Real>& all, const char* out) {
   std::copy(values_.begin(), values_.end(), l_.begin());
   any_out_ = out != nullptr;
-  if (out)
-    std::copy_n(out, out_.size(), out_.begin());
-  else
-    std::fill(out_.begin(), out_.end(), 0);
+  if (out) std::copy_n(out, out_.size(), out_.begin());
+  else std::fill(out_.begin(), out_.end(), 0);
   int dependent = 0;
   for (const Column& column : columns_) {
     dependent += column.eliminate(column, all);
-    for (int k = column.updates_begin; k < column.updates_end; ++k)
-      updates_[k].run(column, updates_[k], all);
+    for (int k = column.updates_begin; k < column.updates_end; ++k) updates_[k].run(column, updates_[k], all);
   }
   return dependent;
 }
@@ -246,8 +239,7 @@ void BasicLdlt<Real>::solve(const Real* b, Real* x) {
   if (x != b) std::copy_n(b, n, x);
   const dense::Numbers<Real> all = numbers(nullptr);
   for (const Column& column : columns_) column.forward(column, all, x);
-  for (auto column = columns_.rbegin(); column != columns_.rend(); ++column)
-    column->backward(*column, all, x);
+  for (auto column = columns_.rbegin(); column != columns_.rend(); ++column) column->backward(*column, all, x);
   if (!any_out_) return;
   for (size_t k = 0; k < n; ++k)
     if (out_[k]) x[k] = given_[k];

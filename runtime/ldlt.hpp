@@ -44,13 +44,13 @@ struct Part {
 
 template <class Real>
 struct Numbers {
-  Real* l;               // K; in its place L
-  const Real* K;         // as it was before any elimination
-  const Real* added;     // on K's diagonal, by unknown
-  const char* out;       // unknowns that do not take part
-  Real* inverse;         // D^-1 by unknown; 0 where it is out or its row depends on others
-  Real* unscaled;        // L D of the panel at hand, column by column
-  const int* panel_row;  // unknown of each row of each panel
+  Real* l;                   // K; in its place L
+  const Real* K;             // as it was before any elimination
+  const Real* added;         // on K's diagonal, by unknown
+  const char* out;           // unknowns that do not take part
+  Real* inverse;             // D^-1 by unknown; 0 where it is out or its row depends on others
+  Real* unscaled;            // L D of the panel at hand, column by column
+  const int* panel_row;      // unknown of each row of each panel
   unsigned char* dependent;  // in how many factorisations on end, by unknown
   int counts;                // for how many this one counts
   double share, soft_share;  // Ldlt's; soft_share: of rows with something added
@@ -75,12 +75,12 @@ class BasicLdlt {
   // says nothing: its row depends on those before it, and its unknown is 0.
   //
   // With y = K_II^-1 k_i, what row i has of the rows I before it, round-off eps sqrt(K_aa K_bb) in every entry ab moves
-  // its pivot by eps (sqrt(K_ii) + sum |y_a| sqrt(K_aa))^2 at most, which is at most (m + 1) eps (K_ii + sum y_a^2 K_aa)
-  // where m rows take part. The second factor is what dense::pivot_noise follows from row to row, as the sum of what each
-  // pivot before adds, whatever their signs; where only that speaks against a row, y is found, and the factor as it is.
-  // The share is m + 1 = 10 times it, as many rows as a loop too many has. More is no round-off: a body 1e10 times
-  // lighter than the two that it joins leaves 1e-10 of the second joint's rows, and they are as good as any. K from
-  // floats is further off. T is what J and the masses are in.
+  // its pivot by eps (sqrt(K_ii) + sum |y_a| sqrt(K_aa))^2 at most, which is at most (m + 1) eps (K_ii + sum y_a^2
+  // K_aa) where m rows take part. The second factor is what dense::pivot_noise follows from row to row, as the sum of
+  // what each pivot before adds, whatever their signs; where only that speaks against a row, y is found, and the factor
+  // as it is. The share is m + 1 = 10 times it, as many rows as a loop too many has. More is no round-off: a body 1e10
+  // times lighter than the two that it joins leaves 1e-10 of the second joint's rows, and they are as good as any. K
+  // from floats is further off. T is what J and the masses are in.
   template <class T>
   static constexpr double pivot_share = std::is_same_v<T, float> ? 1e-7 : 10 * dense::pivot_noise<T>;
   // Of a soft row: below it the softness is not told from none. Dropped, the row is rigid beside those that it depends
@@ -147,7 +147,7 @@ class BasicLdlt {
   void lay_out(const std::vector<int>& rows, const std::vector<Elimination>& order);
   void list_updates(Column& column);
 
-  std::vector<int> first_;  // by block
+  std::vector<int> first_;      // by block
   std::vector<int> diagonal_;   // by unknown, into values_
   std::vector<int> column_of_;  // by unknown
   std::vector<Column> columns_;

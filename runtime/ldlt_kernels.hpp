@@ -19,10 +19,8 @@ using Known = std::integral_constant<int, n>;
 
 template <int A>
 constexpr auto size(int otherwise) {
-  if constexpr (A > 0)
-    return Known<A>{};
-  else
-    return otherwise;
+  if constexpr (A > 0) return Known<A>{};
+  else return otherwise;
 }
 constexpr int next(int i) { return i + 1; }
 template <int i>
@@ -147,13 +145,10 @@ void update(const Column& column, const Part& part, const Numbers<Real>& numbers
   Real* __restrict target = numbers.l + part.target;
   const auto subtract = [&](int r, auto count) {
     auto row = few(count, target + r * part.stride);
-    times(a, [&](auto k) {
-      times(count, [&](auto s) { row[s] -= left[r * a + k] * above[k * column.height + s]; });
-    });
+    times(a, [&](auto k) { times(count, [&](auto s) { row[s] -= left[r * a + k] * above[k * column.height + s]; }); });
     row.store(target + r * part.stride);
   };
-  if constexpr (lower)
-    times(b, [&](auto r) { subtract(r, next(r)); });
+  if constexpr (lower) times(b, [&](auto r) { subtract(r, next(r)); });
   else
     for (int r = 0; r < part.rows; ++r) subtract(r, b);
 }

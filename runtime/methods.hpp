@@ -1,5 +1,5 @@
-// The names of solvers, drift corrections, integrators, forms of kernels, precisions and answers to a step that fails, as
-// scenes, commands and reports spell them: one table each.
+// The names of solvers, drift corrections, integrators, forms of kernels, precisions and answers to a step that fails,
+// as scenes, commands and reports spell them: one table each.
 #pragma once
 
 #include <array>

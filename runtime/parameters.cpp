@@ -13,24 +13,23 @@ namespace {
 
 std::string list_of_parameters(const JointType& type) {
   std::string text;
-  for (const ParameterInfo& info : type.parameters)
-    text += fmt::format("{}`{}`", text.empty() ? "" : ", ", info.name);
+  for (const ParameterInfo& info : type.parameters) text += fmt::format("{}`{}`", text.empty() ? "" : ", ", info.name);
   return text.empty() ? "none" : text;
 }
 
 const ParameterInfo& find_parameter(const JointType& type, const std::string& name) {
   for (const ParameterInfo& info : type.parameters)
     if (info.name == name) return info;
-  throw Error(fmt::format("joint `{}` has no parameter `{}`; its parameters are {}", type.name,
-                          name, list_of_parameters(type)));
+  throw Error(fmt::format("joint `{}` has no parameter `{}`; its parameters are {}", type.name, name,
+                          list_of_parameters(type)));
 }
 
 void check_numbers(const JointType& type, const ParameterInfo& info, const NamedValue& value) {
   const int count = static_cast<int>(value.numbers.size());
   const bool part_of_a_triad = info.kind == ParameterKind::frame && (count == 3 || count == 6);
   if (count != info.size && !(part_of_a_triad && info.size == 9))
-    throw Error(fmt::format("parameter `{}` of joint `{}` takes {} number{}, not {}", info.name,
-                            type.name, info.size, info.size == 1 ? "" : "s", value.numbers.size()));
+    throw Error(fmt::format("parameter `{}` of joint `{}` takes {} number{}, not {}", info.name, type.name, info.size,
+                            info.size == 1 ? "" : "s", value.numbers.size()));
   for (double number : value.numbers)
     if (!std::isfinite(number))
       throw Error(fmt::format("parameter `{}` of joint `{}` is not finite", info.name, type.name));
@@ -42,15 +41,13 @@ void normalise(const JointType& type, const ParameterInfo& info, double* numbers
   for (int k = 0; k < size; ++k) square += numbers[k] * numbers[k];
   const double length = size == 2 ? std::hypot(numbers[0], numbers[1]) : std::sqrt(square);
   if (!(length >= std::numeric_limits<double>::min()))
-    throw Error(fmt::format("parameter `{}` of joint `{}` is a direction and must not be zero",
-                            info.name, type.name));
+    throw Error(fmt::format("parameter `{}` of joint `{}` is a direction and must not be zero", info.name, type.name));
   for (int k = 0; k < size; ++k) numbers[k] /= length;
 }
 
 // The triad of which the x axis is given, or the x axis and where y roughly points: x stays, y is
 // made perpendicular to it, z = x cross y. Without y the world's axis furthest from x serves.
-void complete_triad(const JointType& type, const ParameterInfo& info, double* numbers,
-                    bool with_y) {
+void complete_triad(const JointType& type, const ParameterInfo& info, double* numbers, bool with_y) {
   using Vector = spatial::Vector<double>;
   normalise(type, info, numbers, 3);
   const Vector x = {numbers[0], numbers[1], numbers[2]};
@@ -62,18 +59,16 @@ void complete_triad(const JointType& type, const ParameterInfo& info, double* nu
   }
   y = y - spatial::dot(x, y) * x;
   if (!(spatial::norm(y) >= 1e-9))
-    throw Error(fmt::format("the y axis of parameter `{}` of joint `{}` is parallel to its x axis",
-                            info.name, type.name));
+    throw Error(
+        fmt::format("the y axis of parameter `{}` of joint `{}` is parallel to its x axis", info.name, type.name));
   y = (1 / spatial::norm(y)) * y;
   const Vector z = spatial::cross(x, y);
   const double triad[] = {x.x, x.y, x.z, y.x, y.y, y.z, z.x, z.y, z.z};
   std::copy_n(triad, 9, numbers);
 }
 
-void make_directions(const JointType& type, const ParameterInfo& info, double* numbers,
-                     size_t given) {
-  if (info.kind == ParameterKind::frame && info.size == 9)
-    complete_triad(type, info, numbers, given > 3);
+void make_directions(const JointType& type, const ParameterInfo& info, double* numbers, size_t given) {
+  if (info.kind == ParameterKind::frame && info.size == 9) complete_triad(type, info, numbers, given > 3);
   else if (info.kind == ParameterKind::unit || info.kind == ParameterKind::frame)
     normalise(type, info, numbers, info.size);
 }
@@ -84,8 +79,7 @@ std::vector<const NamedValue*> match(const JointType& type, const std::vector<Na
   for (const NamedValue& value : given) {
     const ParameterInfo& info = find_parameter(type, value.name);
     const NamedValue*& slot = value_of[static_cast<size_t>(&info - type.parameters.data())];
-    if (slot)
-      throw Error(fmt::format("parameter `{}` of joint `{}` is given twice", info.name, type.name));
+    if (slot) throw Error(fmt::format("parameter `{}` of joint `{}` is given twice", info.name, type.name));
     check_numbers(type, info, value);
     slot = &value;
   }
@@ -115,13 +109,12 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
     } else if (info.has_default) {
       entry.default_value(static_cast<int>(i), poses, numbers.data(), time);
     } else {
-      throw Error(fmt::format("joint `{}` needs its parameter `{}` (it has no default)", type.name,
-                              info.name));
+      throw Error(fmt::format("joint `{}` needs its parameter `{}` (it has no default)", type.name, info.name));
     }
     for (int k = 0; k < info.size; ++k)
       if (!std::isfinite(at[k]))
-        throw Error(fmt::format("the default of parameter `{}` of joint `{}` is not finite here",
-                                info.name, type.name));
+        throw Error(
+            fmt::format("the default of parameter `{}` of joint `{}` is not finite here", info.name, type.name));
   }
   return numbers;
 }
@@ -142,7 +135,6 @@ std::vector<const ParameterInfo*> change_parameters(const JointType& type, const
 template std::vector<double> parameter_numbers<Planar<double>>(int, const std::vector<NamedValue>&,
                                                                const planar::Pose<double>*, double);
 template std::vector<double> parameter_numbers<Spatial<double>>(int, const std::vector<NamedValue>&,
-                                                                const spatial::Pose<double>*,
-                                                                double);
+                                                                const spatial::Pose<double>*, double);
 
 }  // namespace cdot

@@ -12,8 +12,8 @@ namespace cdot {
 // S computes in doubles. All numbers of Parameters<double>: given ones checked and normalised, the
 // others by the spec's default from the poses of the joint's bodies. Throws Error.
 template <class S>
-std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given,
-                                      const typename S::Pose* poses, double time);
+std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given, const typename S::Pose* poses,
+                                      double time);
 
 // Those given take the place of what stood in `numbers`; the others stay. Returns those given. Throws Error.
 std::vector<const ParameterInfo*> change_parameters(const JointType& type, const std::vector<NamedValue>& given,

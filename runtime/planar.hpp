@@ -35,8 +35,7 @@ struct Planar {
   static constexpr bool has_gyroscopes = false;  // an inertia is one number and never turns
   struct Gyroscope {};
   using Pose = planar::Pose<T>;
-  using Velocity =
-      planar::Velocity<T>;  // also a displacement, an acceleration, or an impulse by components
+  using Velocity = planar::Velocity<T>;  // also a displacement, an acceleration, or an impulse by components
   using InverseMass = planar::InverseMass<T>;
   static constexpr int freedom = 3;  // numbers in a Velocity
 
@@ -62,9 +61,7 @@ struct Planar {
 
   // c and s are recomputed from the angle: composing rotations would let them leave the unit
   // circle.
-  static Pose moved(const Pose& q, const Velocity& d) {
-    return pose(q.x + d.x, q.y + d.y, q.angle + d.w);
-  }
+  static Pose moved(const Pose& q, const Velocity& d) { return pose(q.x + d.x, q.y + d.y, q.angle + d.w); }
 
   // A pose as plain numbers, for integrators that combine them: {x, y, angle}, and their rates of change.
   static constexpr int pose_numbers = 3;
@@ -73,9 +70,7 @@ struct Planar {
   static Pose read(const T* from) { return pose(from[0], from[1], from[2]); }
   static void write(const Velocity& v, T* to) { to[0] = v.x, to[1] = v.y, to[2] = v.w; }
   static Velocity read_velocity(const T* from) { return {from[0], from[1], from[2]}; }
-  static void write_rate(const Pose&, const Velocity& v, T* to) {
-    to[0] = v.x, to[1] = v.y, to[2] = v.w;
-  }
+  static void write_rate(const Pose&, const Velocity& v, T* to) { to[0] = v.x, to[1] = v.y, to[2] = v.w; }
 
   // v + scale * d
   static Velocity sum(const Velocity& v, const Velocity& d, T scale) {
@@ -87,18 +82,14 @@ struct Planar {
   }
 
   // M^-1 f
-  static Velocity weighted(const InverseMass& m, const Velocity& f) {
-    return {m.m * f.x, m.m * f.y, m.I * f.w};
-  }
+  static Velocity weighted(const InverseMass& m, const Velocity& f) { return {m.m * f.x, m.m * f.y, m.I * f.w}; }
 
   // M a: what a force would have to be
   static Velocity force(const InverseMass& m, const Velocity& a) {
     return {inverse(m.m) * a.x, inverse(m.m) * a.y, inverse(m.I) * a.w};
   }
 
-  static Velocity damped(const Velocity& v, T linear, T angular) {
-    return {v.x * linear, v.y * linear, v.w * angular};
-  }
+  static Velocity damped(const Velocity& v, T linear, T angular) { return {v.x * linear, v.y * linear, v.w * angular}; }
 
   static double dot(const Velocity& f, const Velocity& v) {
     return double(f.x) * double(v.x) + double(f.y) * double(v.y) + double(f.w) * double(v.w);
@@ -115,8 +106,7 @@ struct Planar {
     T stiffness, rest_length, damping;
   };
   static PointSpring point_spring(const SpringDefinition& d) {
-    return {d.body_a, d.body_b,       T(d.ax),          T(d.ay),     T(d.bx),
-            T(d.by),  T(d.stiffness), T(d.rest_length), T(d.damping)};
+    return {d.body_a, d.body_b, T(d.ax), T(d.ay), T(d.bx), T(d.by), T(d.stiffness), T(d.rest_length), T(d.damping)};
   }
   // Length, and the direction from a to b together with the arms: what its force and its energy
   // need.
@@ -133,8 +123,7 @@ struct Planar {
     return {length, x, y, ra_x * y - ra_y * x, rb_x * y - rb_y * x};
   }
   // The pull on a; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
-  static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a,
-                   const Velocity& b) {
+  static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a, const Velocity& b) {
     const T rate = s.x * (b.x - a.x) + s.y * (b.y - a.y) + s.arm_b * b.w - s.arm_a * a.w;
     return spring.stiffness * (s.length - spring.rest_length) + spring.damping * rate;
   }

@@ -27,11 +27,9 @@ class Probe {
     batch_.ops = ops_;
     batch_.parameters.assign(joint.parameters.begin(), joint.parameters.end());
     batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
-    for (auto* array : {&batch_.C, &batch_.bias, &batch_.scratch})
-      array->assign(static_cast<size_t>(ops_->rows), T(0));
+    for (auto* array : {&batch_.C, &batch_.bias, &batch_.scratch}) array->assign(static_cast<size_t>(ops_->rows), T(0));
     batch_.body.resize(joint.bodies.size());
-    for (auto* array : {&bodies_.velocity, &bodies_.displacement})
-      array->resize(joint.bodies.size());
+    for (auto* array : {&bodies_.velocity, &bodies_.displacement}) array->resize(joint.bodies.size());
     bodies_.pose.resize(joint.bodies.size());
     bodies_.effective_mass.resize(joint.bodies.size());
     for (size_t k = 0; k < joint.bodies.size(); ++k) {
@@ -171,8 +169,7 @@ class Probe {
 
 // lambda of a joint's rows in the last substep, drift correction included; zeros where it has none.
 template <class S>
-std::vector<typename S::Scalar> total_impulse(const WorldState<S>& world,
-                                              const JointRecord& joint) {
+std::vector<typename S::Scalar> total_impulse(const WorldState<S>& world, const JointRecord& joint) {
   const auto rows = joint_types(S::dimension)[joint.type].row_kinds.size();
   std::vector<typename S::Scalar> lambda(rows, 0);
   if (joint.places.empty() || joint.broken) return lambda;

@@ -13,16 +13,15 @@ namespace {
 constexpr int newton_rounds = 50;
 
 template <class S>
-void solve_and_apply(WorldState<S>& world, Island<S>& island,
-                     std::vector<typename S::Velocity>& to) {
+void solve_and_apply(WorldState<S>& world, Island<S>& island, std::vector<typename S::Velocity>& to) {
   using T = typename S::Scalar;
   island.system.assemble(world.bodies);
   island.system.factor();
   island.system.solve();
   island.system.store([](Batch<S>& batch, int i, auto lambda) { batch.scratch[i] = T(lambda); });
   for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies,
-                              segment.batch->scratch.data(), to.data());
+    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, segment.batch->scratch.data(),
+                              to.data());
 }
 
 template <class S>
@@ -40,8 +39,7 @@ void errors_into_scratch(Island<S>& island) {
     const int rows = batch.ops->rows;
     for (int slot = segment.begin; slot < segment.end; ++slot) {
       auto* error = batch.scratch.data() + slot * rows;
-      if (batch.law && batch.law->error)
-        batch.law->error(batch, slot, error);
+      if (batch.law && batch.law->error) batch.law->error(batch, slot, error);
       else
         for (int r = 0; r < rows; ++r) error[r] = batch.law ? 0 : batch.C[slot * rows + r];
     }
@@ -79,8 +77,7 @@ void project_poses(WorldState<S>& world, Island<S>& island) {
     // Down to round-off: from there on it does not get smaller.
     if (worst == 0 || (worst < 1e-6 && worst >= before)) return;
     before = worst;
-    island.system.choose(
-        [](const Batch<S>& batch, int i) { return !batch.law || batch.scratch[i] != 0; });
+    island.system.choose([](const Batch<S>& batch, int i) { return !batch.law || batch.scratch[i] != 0; });
     move_poses(world, island);
   }
 }
@@ -97,8 +94,7 @@ void project_velocities(WorldState<S>& world, Island<S>& island, double toleranc
   island.system.choose([&](const Batch<S>& batch, int i) {
     if (!batch.law) return true;
     if (!batch.law->reported) return false;
-    return batch.kinds[i % batch.ops->rows] != RowKind::inequality ||
-           (batch.C[i] <= tolerance && rate(batch, i) < 0);
+    return batch.kinds[i % batch.ops->rows] != RowKind::inequality || (batch.C[i] <= tolerance && rate(batch, i) < 0);
   });
   solve_and_apply(world, island, all.velocity);
 }

@@ -14,12 +14,8 @@ template <class T>
 struct Vector {
   T x, y, z;
 
-  friend Vector operator+(const Vector& a, const Vector& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-  }
-  friend Vector operator-(const Vector& a, const Vector& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-  }
+  friend Vector operator+(const Vector& a, const Vector& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend Vector operator-(const Vector& a, const Vector& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
   friend Vector operator*(T s, const Vector& a) { return {s * a.x, s * a.y, s * a.z}; }
 };
 
@@ -65,15 +61,10 @@ template <class T>
 Symmetric<T> inverse(const Symmetric<T>& tensor) {
   const T unit = unit_of(tensor);
   const Symmetric<T> S = unit * tensor;
-  const T cxx = S.yy * S.zz - S.yz * S.yz, cxy = S.xz * S.yz - S.xy * S.zz,
-          cxz = S.xy * S.yz - S.xz * S.yy;
+  const T cxx = S.yy * S.zz - S.yz * S.yz, cxy = S.xz * S.yz - S.xy * S.zz, cxz = S.xy * S.yz - S.xz * S.yy;
   const T scale = unit * cdot::inverse(S.xx * cxx + S.xy * cxy + S.xz * cxz);
-  return {scale * cxx,
-          scale * (S.xx * S.zz - S.xz * S.xz),
-          scale * (S.xx * S.yy - S.xy * S.xy),
-          scale * cxy,
-          scale * cxz,
-          scale * (S.xy * S.xz - S.xx * S.yz)};
+  return {scale * cxx, scale * (S.xx * S.zz - S.xz * S.xz), scale * (S.xx * S.yy - S.xy * S.xy), scale * cxy,
+          scale * cxz, scale * (S.xy * S.xz - S.xx * S.yz)};
 }
 
 // S without its negative eigenvalues: Jacobi's rotations, each of which makes one entry beside the
@@ -87,8 +78,8 @@ Symmetric<T> positive_part(const Symmetric<T>& S) {
       for (int j = i + 1; j < 3; ++j) {
         if (A[i][j] == T(0)) continue;
         const T half = (A[j][j] - A[i][i]) / (T(2) * A[i][j]);
-        const T t = (half < T(0) ? T(-1) : T(1)) /
-                    (std::fabs(half) + std::sqrt(half * half + T(1)));  // tan of the angle
+        const T t =
+            (half < T(0) ? T(-1) : T(1)) / (std::fabs(half) + std::sqrt(half * half + T(1)));  // tan of the angle
         const T c = T(1) / std::sqrt(t * t + T(1)), s = t * c;
         for (int k = 0; k < 3; ++k) {
           const T a = A[k][i], b = A[k][j], u = V[k][i], v = V[k][j];
@@ -169,10 +160,8 @@ Pose<T> turned_by(const Pose<T>& q, const Vector<T>& turn) {
   if (angle == T(0)) return q;
   const T c = std::cos(angle / 2), s = half_sinc(angle);
   const T x = s * turn.x, y = s * turn.y, z = s * turn.z;
-  return oriented(q.x, q.y, q.z, c * q.e0 - x * q.e1 - y * q.e2 - z * q.e3,
-                  c * q.e1 + x * q.e0 + y * q.e3 - z * q.e2,
-                  c * q.e2 + y * q.e0 + z * q.e1 - x * q.e3,
-                  c * q.e3 + z * q.e0 + x * q.e2 - y * q.e1);
+  return oriented(q.x, q.y, q.z, c * q.e0 - x * q.e1 - y * q.e2 - z * q.e3, c * q.e1 + x * q.e0 + y * q.e3 - z * q.e2,
+                  c * q.e2 + y * q.e0 + z * q.e1 - x * q.e3, c * q.e3 + z * q.e0 + x * q.e2 - y * q.e1);
 }
 
 // The vector of the rotation that takes `from` to `to`, the shorter way round: |turn| <= pi.

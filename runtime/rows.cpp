@@ -15,15 +15,14 @@ void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar 
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.stiffness[i] = {};
   for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all,
-                                      T(world.time), all.stiffness.data());
+    segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all, T(world.time),
+                                      all.stiffness.data());
   tighten_tensions(world, island, share);
   // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq, an implicit Euler step of the
   // turning forces: v starts as (M + h G)^-1 M v.
   for (int i : island.bodies) {
     all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.stiffness[i], share);
-    all.velocity[i] =
-        S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
+    all.velocity[i] = S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
   }
   island.factored = false;
 }
@@ -44,8 +43,7 @@ void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   using T = typename S::Scalar;
   if (!island.evaluated)
     for (const Segment<S>& segment : island.segments)
-      segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies,
-                                   T(world.time));
+      segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, T(world.time));
   island.evaluated = true;
   factorize_rows(world, island);
   const T share = T(world.settings.baumgarte) / h;

@@ -102,10 +102,8 @@ void write_files(const std::string& output, const AccuracyReport& report) {
 // What there is to say about the start of a scene, once: the ways share it.
 std::string warnings_of(const Scene& scene) {
   std::string warnings;
-  if (scene.dimension == Dimension::planar)
-    world_at_start<Planar<double>>(scene, warnings);
-  else
-    world_at_start<Spatial<double>>(scene, warnings);
+  if (scene.dimension == Dimension::planar) world_at_start<Planar<double>>(scene, warnings);
+  else world_at_start<Spatial<double>>(scene, warnings);
   return warnings;
 }
 
@@ -135,9 +133,8 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
   Companion companion(state_path, fingerprint, state, options.progress);
   if (state.reference.frames.empty()) {
     companion.say("making the reference");
-    state.reference = options.reference.empty()
-                          ? make_reference_run(scene, effort_of(options), stop)
-                          : read_reference_run(options.reference, scene);
+    state.reference = options.reference.empty() ? make_reference_run(scene, effort_of(options), stop)
+                                                : read_reference_run(options.reference, scene);
     if (stop()) state.reference = {};  // half of one is none
   }
   const SweepHooks hooks{

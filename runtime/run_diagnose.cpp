@@ -44,7 +44,8 @@ std::string at_time(double time) { return time > 0 ? fmt::format(" at t = {:.4g}
 
 std::string island_text(const Scene& scene, const WorstOfIsland& worst, int number) {
   const Diagnosis::Island& island = worst.island;
-  std::string text = fmt::format("island {}: {} {}", number, island.bodies.size(), island.bodies.size() == 1 ? "body" : "bodies");
+  std::string text =
+      fmt::format("island {}: {} {}", number, island.bodies.size(), island.bodies.size() == 1 ? "body" : "bodies");
   if (!island.bodies.empty()) text += fmt::format(", from {}", body_name(scene, island.bodies.front()));
   text += "\n";
   if (island.rows > 0) {
@@ -53,7 +54,8 @@ std::string island_text(const Scene& scene, const WorstOfIsland& worst, int numb
                         island.condition, at_time(worst.condition_time), island.smallest_pivot, island.weakest.row,
                         joint_name(scene, island.weakest.joint));
   }
-  if (island.heaviest > 0) text += fmt::format("  masses          {:.4g} to {:.4g} kg\n", island.lightest, island.heaviest);
+  if (island.heaviest > 0)
+    text += fmt::format("  masses          {:.4g} to {:.4g} kg\n", island.lightest, island.heaviest);
   if (island.stiffest.square > 0) {
     const bool tension = island.stiffest.tension > 0.5 * island.stiffest.square;
     text += fmt::format("  stiffest        {:.4g} rad/s of {}{}, by {}\n", std::sqrt(island.stiffest.square),
@@ -61,8 +63,8 @@ std::string island_text(const Scene& scene, const WorstOfIsland& worst, int numb
                         tension ? "the tension of the joints" : "its springs");
   }
   if (island.fastest_spin > 0)
-    text += fmt::format("  fastest turn    {:.4g} rad/s of {}{}\n", island.fastest_spin, body_name(scene, island.spinning),
-                        at_time(worst.spin_time));
+    text += fmt::format("  fastest turn    {:.4g} rad/s of {}{}\n", island.fastest_spin,
+                        body_name(scene, island.spinning), at_time(worst.spin_time));
   return text;
 }
 
@@ -110,11 +112,13 @@ nlohmann::ordered_json island_json(const Scene& scene, const WorstOfIsland& wors
 }  // namespace
 
 std::string diagnosis_text(const Scene& scene, const RunResult& result) {
-  std::string text = fmt::format("{}\nmethod: {}\n", scene.title.empty() ? scene.file : scene.title, method_text(scene));
+  std::string text =
+      fmt::format("{}\nmethod: {}\n", scene.title.empty() ? scene.file : scene.title, method_text(scene));
   if (result.diagnoses == 1 && !result.diagnosis.empty())
     text += fmt::format("at t = {:.4g} s\n", result.diagnosis.front().rank_time);
   else
-    text += fmt::format("the worst of {} poses from t = {:.4g} to {:.4g} s\n", result.diagnoses, result.start, result.time);
+    text +=
+        fmt::format("the worst of {} poses from t = {:.4g} to {:.4g} s\n", result.diagnoses, result.start, result.time);
   for (std::size_t k = 0; k < result.diagnosis.size() && k < most_islands; ++k)
     text += island_text(scene, result.diagnosis[k], static_cast<int>(k));
   if (result.diagnosis.size() > most_islands)

@@ -11,8 +11,7 @@ namespace {
 // it.
 double cubic(double p, double u, double q, double v, double h, double s) {
   const double s2 = s * s, s3 = s2 * s;
-  return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * h * u + (3 * s2 - 2 * s3) * q +
-         (s3 - s2) * h * v;
+  return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * h * u + (3 * s2 - 2 * s3) * q + (s3 - s2) * h * v;
 }
 
 double linear(double p, double q, double s) { return (1 - s) * p + s * q; }
@@ -24,8 +23,8 @@ BodyState state_of(const planar::Place& q, const planar::Velocity<T>& v) {
 
 template <class T>
 BodyState state_of(const spatial::Place& q, const spatial::Velocity<T>& v) {
-  return {q.x, q.y,  0,    double(v.x), double(v.y), 0,    q.z,          double(v.z),
-          q.e0, q.e1, q.e2, q.e3,        double(v.wx), double(v.wy), double(v.wz)};
+  return {q.x,  q.y,  0,    double(v.x),  double(v.y),  0,           q.z, double(v.z), q.e0,
+          q.e1, q.e2, q.e3, double(v.wx), double(v.wy), double(v.wz)};
 }
 
 spatial::Pose<double> orientation_of(const BodyState& b) {
@@ -41,9 +40,8 @@ void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState&
   const Vector r = spatial::turn_between(from, orientation_of(b)), w = {b.wx, b.wy, b.wz};
   const Vector across = spatial::cross(r, w);
   const Vector end = w - 0.5 * across + (1.0 / 12) * spatial::cross(r, across);
-  const auto q = spatial::turned_by(
-      from, Vector{cubic(0, a.wx, r.x, end.x, h, s), cubic(0, a.wy, r.y, end.y, h, s),
-                   cubic(0, a.wz, r.z, end.z, h, s)});
+  const auto q = spatial::turned_by(from, Vector{cubic(0, a.wx, r.x, end.x, h, s), cubic(0, a.wy, r.y, end.y, h, s),
+                                                 cubic(0, a.wz, r.z, end.z, h, s)});
   to.e0 = q.e0, to.e1 = q.e1, to.e2 = q.e2, to.e3 = q.e3;
   to.wx = linear(a.wx, b.wx, s), to.wy = linear(a.wy, b.wy, s), to.wz = linear(a.wz, b.wz, s);
 }
@@ -58,8 +56,7 @@ Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
   Frame frame;
   frame.time = time;
   frame.bodies.reserve(static_cast<std::size_t>(bodies));
-  for (int k = 0; k < bodies; ++k)
-    frame.bodies.push_back(state_of(world.place(k), world.velocity(k)));
+  for (int k = 0; k < bodies; ++k) frame.bodies.push_back(state_of(world.place(k), world.velocity(k)));
   frame.energy = world.energy();
   frame.worst = world.worst_position_error();
   return frame;

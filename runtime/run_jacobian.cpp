@@ -30,14 +30,12 @@ std::string plural(int count, const char* one, const char* many) {
 }
 
 int entries_of_K(const SystemMatrix& system) {
-  return static_cast<int>(
-      std::count_if(system.K.begin(), system.K.end(), [](double x) { return x != 0; }));
+  return static_cast<int>(std::count_if(system.K.begin(), system.K.end(), [](double x) { return x != 0; }));
 }
 
 std::size_t joint_width(const Scene& scene, const SystemMatrix& system) {
   std::size_t width = 5;
-  for (const auto& joint : system.joints)
-    width = std::max(width, source_of(scene, joint).name.size());
+  for (const auto& joint : system.joints) width = std::max(width, source_of(scene, joint).name.size());
   return width;
 }
 
@@ -48,15 +46,13 @@ std::string blocks_text(const Scene& scene, const SystemMatrix& system) {
   const int bodies = static_cast<int>(system.bodies.size());
   for (int k = 0; k < bodies; ++k) width = std::max(width, body_name(scene, system, k).size() + 2);
   std::string text = fmt::format("  {:{}}  rows ", "joint", name_width);
-  for (int k = 0; k < bodies; ++k)
-    text += fmt::format("{:>{}}", body_name(scene, system, k), width);
+  for (int k = 0; k < bodies; ++k) text += fmt::format("{:>{}}", body_name(scene, system, k), width);
   for (const auto& joint : system.joints) {
     const SceneJoint& source = source_of(scene, joint);
     text += fmt::format("\n  {:{}}  {:4} ", source.name, name_width, joint.rows);
     for (int k = 0; k < bodies; ++k) {
       const bool empty = system.empty_block(joint, k);
-      text += fmt::format("{:>{}}", empty ? "." : fmt::format("{}x{}", joint.rows, system.freedom),
-                          width);
+      text += fmt::format("{:>{}}", empty ? "." : fmt::format("{}x{}", joint.rows, system.freedom), width);
     }
     text += "  " + source.definition.type;
   }
@@ -69,8 +65,7 @@ std::string list_text(const Scene& scene, const SystemMatrix& system) {
   std::string text = fmt::format("  {:{}}  rows  bodies", "joint", name_width);
   for (const auto& joint : system.joints) {
     const SceneJoint& source = source_of(scene, joint);
-    text += fmt::format("\n  {:{}}  {:4}  {}", source.name, name_width, joint.rows,
-                        source.definition.type);
+    text += fmt::format("\n  {:{}}  {:4}  {}", source.name, name_width, joint.rows, source.definition.type);
     for (int body : joint.body) text += " " + body_name(scene, system, body);
   }
   return text + "\n";
@@ -94,8 +89,7 @@ std::string numbers_text(const Scene& scene, const SystemMatrix& system) {
       for (int r = 0; r < joint.rows; ++r) {
         text += fmt::format("  {:20}", fmt::format("{}.{}", source.name, type.row_names[r]));
         for (int c = 0; c < system.freedom; ++c)
-          text += fmt::format(" {:12.6g}", without_round_off(system.entry(
-                                               joint.first + r, system.freedom * k + c)));
+          text += fmt::format(" {:12.6g}", without_round_off(system.entry(joint.first + r, system.freedom * k + c)));
         text += "\n";
       }
     }
@@ -115,22 +109,18 @@ SystemMatrix system_matrix(const Scene& scene) {
 }
 
 std::string jacobian_text(const Scene& scene, const SystemMatrix& system) {
-  const int frozen =
-      static_cast<int>(std::count(system.frozen.begin(), system.frozen.end(), char{1}));
+  const int frozen = static_cast<int>(std::count(system.frozen.begin(), system.frozen.end(), char{1}));
   std::string text =
-      fmt::format("D v = 0: {} x {}, {} of {}, columns of {}\nrank {}: {} left, {}\n", system.rows,
-                  system.columns, plural(system.rows, "row", "rows"),
-                  plural(static_cast<int>(system.joints.size()), "joint", "joints"),
+      fmt::format("D v = 0: {} x {}, {} of {}, columns of {}\nrank {}: {} left, {}\n", system.rows, system.columns,
+                  plural(system.rows, "row", "rows"), plural(static_cast<int>(system.joints.size()), "joint", "joints"),
                   plural(static_cast<int>(system.bodies.size()), "body", "bodies"), system.rank,
                   plural(system.degrees_of_freedom, "degree of freedom", "degrees of freedom"),
-                  system.rank == system.rows
-                      ? std::string("no redundant rows")
-                      : plural(system.rows - system.rank, "redundant row", "redundant rows"));
+                  system.rank == system.rows ? std::string("no redundant rows")
+                                             : plural(system.rows - system.rank, "redundant row", "redundant rows"));
   if (frozen > 0)
-    text += fmt::format("{} of bodies that may not turn count as no freedom\n",
-                        plural(frozen, "column", "columns"));
-  text += fmt::format("K = D M^-1 D^T: {0} x {0}, {1} of {2} entries are not 0\n", system.rows,
-                      entries_of_K(system), system.rows * system.rows);
+    text += fmt::format("{} of bodies that may not turn count as no freedom\n", plural(frozen, "column", "columns"));
+  text += fmt::format("K = D M^-1 D^T: {0} x {0}, {1} of {2} entries are not 0\n", system.rows, entries_of_K(system),
+                      system.rows * system.rows);
   const ConflictGraph graph = conflicts(system);
   text += fmt::format("{} of joints share a body: {} of joints that do not\n\n",
                       plural(static_cast<int>(graph.edges.size()), "pair", "pairs"),
@@ -150,8 +140,7 @@ std::string jacobian_json(const Scene& scene, const SystemMatrix& system) {
                {"degrees_of_freedom", system.degrees_of_freedom}};
   json["bodies"] = json["joints"] = json["D"] = json["K"] = json["conflicts"] = Json::array();
   for (int k = 0; k < static_cast<int>(system.bodies.size()); ++k)
-    json["bodies"].push_back(
-        {{"name", body_name(scene, system, k)}, {"first_column", system.freedom * k}});
+    json["bodies"].push_back({{"name", body_name(scene, system, k)}, {"first_column", system.freedom * k}});
   const ConflictGraph graph = conflicts(system);
   for (std::size_t i = 0; i < system.joints.size(); ++i) {
     const auto& joint = system.joints[i];
@@ -163,13 +152,11 @@ std::string jacobian_json(const Scene& scene, const SystemMatrix& system) {
                               {"colour", graph.colour[i]}});
   }
   for (const auto& [a, b] : graph.edges)
-    json["conflicts"].push_back(
-        {source_of(scene, system.joints[static_cast<std::size_t>(a)]).name,
-         source_of(scene, system.joints[static_cast<std::size_t>(b)]).name});
+    json["conflicts"].push_back({source_of(scene, system.joints[static_cast<std::size_t>(a)]).name,
+                                 source_of(scene, system.joints[static_cast<std::size_t>(b)]).name});
   const auto add_rows = [&](const char* key, const std::vector<double>& matrix, int columns) {
     for (int r = 0; r < system.rows; ++r)
-      json[key].push_back(
-          std::vector<double>(matrix.begin() + r * columns, matrix.begin() + (r + 1) * columns));
+      json[key].push_back(std::vector<double>(matrix.begin() + r * columns, matrix.begin() + (r + 1) * columns));
   };
   add_rows("D", system.D, system.columns);
   add_rows("K", system.K, system.rows);

@@ -16,9 +16,7 @@ constexpr double picture = 640, gap = 60, margin = 70;
 constexpr const char* palette[] = {"#3b82f6", "#f59e0b", "#10b981", "#ef4444",
                                    "#8b5cf6", "#06b6d4", "#84cc16", "#ec4899"};
 
-const char* colour(const ConflictGraph& graph, std::size_t joint) {
-  return palette[graph.colour[joint] % 8];
-}
+const char* colour(const ConflictGraph& graph, std::size_t joint) { return palette[graph.colour[joint] % 8]; }
 
 std::string name_of(const Scene& scene, const SystemMatrix& system, std::size_t joint) {
   const auto index = static_cast<std::size_t>(system.joints[joint].joint);
@@ -40,19 +38,18 @@ std::string sparsity(const Scene& scene, const SystemMatrix& system, const Confl
         "<rect x=\"{0:.2f}\" y=\"{0:.2f}\" width=\"{1:.2f}\" height=\"{1:.2f}\" fill=\"{2}\" "
         "opacity=\".25\"/>\n",
         at, size, colour(graph, i));
-    svg += fmt::format("<path class=\"line\" d=\"M0 {0:.2f}H{1:.0f}M{0:.2f} 0V{1:.0f}\"/>\n", at,
-                       picture);
+    svg += fmt::format("<path class=\"line\" d=\"M0 {0:.2f}H{1:.0f}M{0:.2f} 0V{1:.0f}\"/>\n", at, picture);
     if (size >= 10)
-      svg += fmt::format("<text x=\"-8\" y=\"{:.2f}\" text-anchor=\"end\">{}</text>\n",
-                         at + size / 2 + 4, name_of(scene, system, i));
+      svg += fmt::format("<text x=\"-8\" y=\"{:.2f}\" text-anchor=\"end\">{}</text>\n", at + size / 2 + 4,
+                         name_of(scene, system, i));
   }
   std::string cells;
   for (int r = 0; r < system.rows; ++r)
     for (int c = 0; c < system.rows; ++c)
-      if (system.K[static_cast<std::size_t>(r) * static_cast<std::size_t>(system.rows) +
-                   static_cast<std::size_t>(c)] != 0)
-        cells += fmt::format("M{0:.2f} {1:.2f}h{2:.2f}v{2:.2f}h-{2:.2f}z", cell * (c + 0.1),
-                             cell * (r + 0.1), 0.8 * cell);
+      if (system.K[static_cast<std::size_t>(r) * static_cast<std::size_t>(system.rows) + static_cast<std::size_t>(c)] !=
+          0)
+        cells +=
+            fmt::format("M{0:.2f} {1:.2f}h{2:.2f}v{2:.2f}h-{2:.2f}z", cell * (c + 0.1), cell * (r + 0.1), 0.8 * cell);
   return svg + fmt::format("<path class=\"entry\" d=\"{}\"/>\n</g>\n", cells);
 }
 
@@ -63,9 +60,8 @@ std::string graph_svg(const Scene& scene, const SystemMatrix& system, const Conf
     const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
     return std::pair{radius * std::sin(angle), -radius * std::cos(angle)};
   };
-  std::string svg =
-      fmt::format("<g transform=\"translate({:.0f} {:.0f})\">\n",
-                  margin + picture + gap + margin + picture / 2, margin + picture / 2);
+  std::string svg = fmt::format("<g transform=\"translate({:.0f} {:.0f})\">\n",
+                                margin + picture + gap + margin + picture / 2, margin + picture / 2);
   for (const auto& [a, b] : graph.edges) {
     const auto [x, y] = place(static_cast<std::size_t>(a));
     const auto [u, v] = place(static_cast<std::size_t>(b));
@@ -73,11 +69,11 @@ std::string graph_svg(const Scene& scene, const SystemMatrix& system, const Conf
   }
   for (std::size_t i = 0; i < count; ++i) {
     const auto [x, y] = place(i);
-    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", x, y,
-                       count > 60 ? 4 : 9, colour(graph, i));
+    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", x, y, count > 60 ? 4 : 9,
+                       colour(graph, i));
     if (count <= 60)
-      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n",
-                         x * 1.09, y * 1.09 + 4, name_of(scene, system, i));
+      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", x * 1.09, y * 1.09 + 4,
+                         name_of(scene, system, i));
   }
   return svg + "</g>\n";
 }
@@ -100,11 +96,9 @@ text, .entry { fill: var(--ink); }
 .edge { stroke-width: 1; }
 </style>
 )";
-  svg += fmt::format("<text x=\"{:.0f}\" y=\"30\">K = D M^-1 D^T, {} x {}</text>\n", margin,
-                     system.rows, system.rows);
-  svg += fmt::format(
-      "<text x=\"{:.0f}\" y=\"30\">joints that share a body, in {} groups without</text>\n",
-      margin + picture + gap + margin, graph.colours);
+  svg += fmt::format("<text x=\"{:.0f}\" y=\"30\">K = D M^-1 D^T, {} x {}</text>\n", margin, system.rows, system.rows);
+  svg += fmt::format("<text x=\"{:.0f}\" y=\"30\">joints that share a body, in {} groups without</text>\n",
+                     margin + picture + gap + margin, graph.colours);
   svg += sparsity(scene, system, graph) + graph_svg(scene, system, graph);
   return svg + "</svg>\n";
 }

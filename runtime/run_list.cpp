@@ -11,28 +11,20 @@ namespace {
 
 const char* kind_name(ParameterKind kind) {
   switch (kind) {
-    case ParameterKind::point:
-      return "point";
-    case ParameterKind::vector:
-      return "vector";
-    case ParameterKind::unit:
-      return "unit";
-    case ParameterKind::frame:
-      return "frame";
-    case ParameterKind::scalar:
-      return "scalar";
+    case ParameterKind::point: return "point";
+    case ParameterKind::vector: return "vector";
+    case ParameterKind::unit: return "unit";
+    case ParameterKind::frame: return "frame";
+    case ParameterKind::scalar: return "scalar";
   }
   return "";
 }
 
 const char* kind_name(RowKind kind) {
   switch (kind) {
-    case RowKind::equality:
-      return "equality";
-    case RowKind::inequality:
-      return "inequality";
-    case RowKind::velocity:
-      return "velocity";
+    case RowKind::equality: return "equality";
+    case RowKind::inequality: return "inequality";
+    case RowKind::velocity: return "velocity";
   }
   return "";
 }
@@ -49,18 +41,16 @@ namespace {
 std::string list_text(Dimension dimension) {
   std::string text;
   for (const JointType& type : joint_types(dimension)) {
-    text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies,
-                        type.bodies == 1 ? "body" : "bodies", type.row_kinds.size(),
-                        type.row_kinds.size() == 1 ? "" : "s");
+    text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, type.bodies == 1 ? "body" : "bodies",
+                        type.row_kinds.size(), type.row_kinds.size() == 1 ? "" : "s");
     for (const ParameterInfo& parameter : type.parameters) {
       const std::string body = body_name(parameter);
-      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_name(parameter.kind),
-                          parameter.unit, body.empty() ? "" : " on " + body,
-                          parameter.has_default ? ", optional" : "");
+      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_name(parameter.kind), parameter.unit,
+                          body.empty() ? "" : " on " + body, parameter.has_default ? ", optional" : "");
     }
     for (const CoordinateInfo& coordinate : type.coordinates) {
-      text += fmt::format("    {:<12} coordinate [{}]: limit, motor, spring, damper, friction\n",
-                          coordinate.name, coordinate.unit);
+      text += fmt::format("    {:<12} coordinate [{}]: limit, motor, spring, damper, friction\n", coordinate.name,
+                          coordinate.unit);
     }
   }
   return text;
@@ -68,9 +58,8 @@ std::string list_text(Dimension dimension) {
 
 void add_to(nlohmann::ordered_json& list, Dimension dimension) {
   for (const JointType& type : joint_types(dimension)) {
-    nlohmann::ordered_json joint = {{"type", type.name},
-                                    {"dimension", dimension == Dimension::planar ? 2 : 3},
-                                    {"bodies", type.bodies}};
+    nlohmann::ordered_json joint = {
+        {"type", type.name}, {"dimension", dimension == Dimension::planar ? 2 : 3}, {"bodies", type.bodies}};
     for (const RowKind kind : type.row_kinds) joint["rows"].push_back(kind_name(kind));
     joint["parameters"] = nlohmann::ordered_json::array();
     for (const ParameterInfo& parameter : type.parameters) {
@@ -91,8 +80,8 @@ void add_to(nlohmann::ordered_json& list, Dimension dimension) {
 }  // namespace
 
 std::string list_text() {
-  return "In the plane (dimension = 2)\n\n" + list_text(Dimension::planar) +
-         "\nIn space (dimension = 3)\n\n" + list_text(Dimension::spatial);
+  return "In the plane (dimension = 2)\n\n" + list_text(Dimension::planar) + "\nIn space (dimension = 3)\n\n" +
+         list_text(Dimension::spatial);
 }
 
 std::string list_json() {

@@ -70,9 +70,7 @@ void add_method(CLI::App* command, Arguments& arguments) {
       ->check(CLI::IsMember(cdot::names_of(cdot::kernel_forms)));
   command->add_option("--precision", arguments.precision, "compute in double or float")
       ->check(CLI::IsMember(cdot::names_of(cdot::precisions)));
-  command
-      ->add_option("--drift", arguments.drift,
-                   "what keeps joints together: projection, baumgarte or none")
+  command->add_option("--drift", arguments.drift, "what keeps joints together: projection, baumgarte or none")
       ->check(CLI::IsMember(cdot::names_of(cdot::drifts)));
   command->add_option("--iterations", arguments.iterations, "of the iterative solver, per substep")
       ->check(CLI::PositiveNumber);
@@ -82,9 +80,7 @@ void add_method(CLI::App* command, Arguments& arguments) {
 void add_simulate(CLI::App& app, Arguments& arguments) {
   CLI::App* simulate = app.add_subcommand("simulate", "Run a scene and say how it went");
   simulate->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
-  simulate
-      ->add_option("--until", arguments.until,
-                   "end at this time [s], in place of the scene's duration")
+  simulate->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
       ->check(CLI::PositiveNumber);
   add_method(simulate, arguments);
   simulate
@@ -96,28 +92,21 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
       ->excludes("--solver")
       ->excludes("--kernels")
       ->excludes("--precision");
-  simulate
-      ->add_option("--tolerance", arguments.tolerance,
-                   "joint error from which the run has failed [m, rad]")
+  simulate->add_option("--tolerance", arguments.tolerance, "joint error from which the run has failed [m, rad]")
       ->check(CLI::PositiveNumber);
-  simulate->add_flag("--project", arguments.project,
-                     "move a start that does not fit onto its joints");
+  simulate->add_flag("--project", arguments.project, "move a start that does not fit onto its joints");
   simulate->add_option("-o,--output", arguments.csv,
                        "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by "
                        "name; in space x, y, "
                        "z, e0..e3, vx, vy, vz, wx, wy, wz");
-  auto* every = simulate
-                    ->add_option("--every", arguments.every,
-                                 "a CSV row each so many seconds; else one per step")
+  auto* every = simulate->add_option("--every", arguments.every, "a CSV row each so many seconds; else one per step")
                     ->check(CLI::PositiveNumber);
   simulate->add_option("--times", arguments.times, "CSV rows at these times: 0,0.5,2")
       ->delimiter(',')
       ->check(CLI::NonNegativeNumber)
       ->excludes(every);
-  simulate->add_option("--html", arguments.html,
-                       "write a page that plays the mechanism, all in one file");
-  simulate->add_option("--svg", arguments.svg,
-                       "write a picture of the mechanism at several times, with its traces");
+  simulate->add_option("--html", arguments.html, "write a page that plays the mechanism, all in one file");
+  simulate->add_option("--svg", arguments.svg, "write a picture of the mechanism at several times, with its traces");
   auto* save = simulate->add_option("--save-state", arguments.save_state,
                                     "write the state at the end to a file, for --from-state to go on from");
   simulate->add_option("--at", arguments.state_time, "save the state at this time [s] instead")
@@ -126,17 +115,14 @@ void add_simulate(CLI::App& app, Arguments& arguments) {
   simulate->add_option("--from-state", arguments.from_state,
                        "go on from a saved state of this scene, with the bits of a run that was never interrupted");
   simulate->add_flag("--json", arguments.json, "the summary as JSON");
-  simulate->add_flag("--progress", arguments.progress,
-                     "show progress even where stderr is no terminal");
+  simulate->add_flag("--progress", arguments.progress, "show progress even where stderr is no terminal");
   simulate->footer(footer);
 }
 
 CLI::App* add_jacobian(CLI::App& app, Arguments& arguments) {
-  CLI::App* jacobian =
-      app.add_subcommand("jacobian", "Show the whole system's D with D v = 0 at a scene's start");
+  CLI::App* jacobian = app.add_subcommand("jacobian", "Show the whole system's D with D v = 0 at a scene's start");
   jacobian->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
-  jacobian->add_option("--svg", arguments.svg,
-                       "write a picture: the sparsity of K, and which joints share a body");
+  jacobian->add_option("--svg", arguments.svg, "write a picture: the sparsity of K, and which joints share a body");
   jacobian->add_flag("--json", arguments.json, "as JSON, with all numbers of D and K");
   jacobian->footer(footer);
   return jacobian;
@@ -144,12 +130,13 @@ CLI::App* add_jacobian(CLI::App& app, Arguments& arguments) {
 
 CLI::App* add_diagnose(CLI::App& app, Arguments& arguments) {
   CLI::App* diagnose = app.add_subcommand(
-      "diagnose", "Run a scene and say what its equations are like: rank, redundant and conflicting rows, condition, "
-                  "stiffness; and where the scene's method is the wrong one");
+      "diagnose",
+      "Run a scene and say what its equations are like: rank, redundant and conflicting rows, condition, "
+      "stiffness; and where the scene's method is the wrong one");
   diagnose->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
-  auto* until = diagnose
-                    ->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
-                    ->check(CLI::PositiveNumber);
+  auto* until =
+      diagnose->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
+          ->check(CLI::PositiveNumber);
   add_method(diagnose, arguments);
   diagnose->add_option("--at", arguments.diagnose_time, "look at this time [s] only; else at many from start to end")
       ->check(CLI::NonNegativeNumber)
@@ -161,8 +148,8 @@ CLI::App* add_diagnose(CLI::App& app, Arguments& arguments) {
 }
 
 CLI::App* add_accuracy(CLI::App& app, Arguments& arguments) {
-  CLI::App* accuracy = app.add_subcommand(
-      "accuracy", "Solve a scene in every way at every step, and show what accuracy costs in time");
+  CLI::App* accuracy =
+      app.add_subcommand("accuracy", "Solve a scene in every way at every step, and show what accuracy costs in time");
   cdot::AccuracyOptions& options = arguments.accuracy;
   accuracy->add_option("SCENE", arguments.scene, "the scene, a TOML file")->required();
   accuracy->add_option("--until", arguments.until, "end at this time [s], in place of the scene's duration")
@@ -195,10 +182,8 @@ void override_scene(const Arguments& arguments, cdot::Scene& scene) {
   if (arguments.substeps > 0) scene.settings.substeps = arguments.substeps;
   if (arguments.project) scene.project = true;
   cdot::Settings& settings = scene.settings;
-  if (!arguments.solver.empty())
-    settings.solver = cdot::method_called(cdot::solvers, arguments.solver);
-  if (!arguments.integrator.empty())
-    settings.integrator = cdot::method_called(cdot::integrators, arguments.integrator);
+  if (!arguments.solver.empty()) settings.solver = cdot::method_called(cdot::solvers, arguments.solver);
+  if (!arguments.integrator.empty()) settings.integrator = cdot::method_called(cdot::integrators, arguments.integrator);
   if (!arguments.drift.empty()) settings.drift = cdot::method_called(cdot::drifts, arguments.drift);
   if (!arguments.kernels.empty()) settings.kernels = cdot::method_called(cdot::kernel_forms, arguments.kernels);
   if (!arguments.precision.empty()) scene.single = cdot::method_called(cdot::precisions, arguments.precision);
@@ -206,20 +191,16 @@ void override_scene(const Arguments& arguments, cdot::Scene& scene) {
   if (arguments.wanted_accuracy > 0) scene.accuracy = arguments.wanted_accuracy;
 }
 
-cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene,
-                            cdot::OutputFile* csv) {
+cdot::RunOptions options_of(const Arguments& arguments, const cdot::Scene& scene, cdot::OutputFile* csv) {
   cdot::RunOptions options;
   if (csv) {
     csv->write(cdot::csv_head(scene));
-    options.row = [csv, &scene](const cdot::Frame& frame) {
-      csv->write(cdot::csv_row(scene, frame));
-    };
+    options.row = [csv, &scene](const cdot::Frame& frame) { csv->write(cdot::csv_row(scene, frame)); };
   }
   options.row_times = arguments.times;
   std::sort(options.row_times.begin(), options.row_times.end());
   if (arguments.every > 0) options.row_times = cdot::every(arguments.every, scene.duration);
-  if (!arguments.html.empty() || !arguments.svg.empty())
-    options.film_times = cdot::film_times(scene);
+  if (!arguments.html.empty() || !arguments.svg.empty()) options.film_times = cdot::film_times(scene);
   options.diagnose_times = cdot::diagnose_times(scene.duration, poses_diagnosed_beside);
   options.progress = arguments.progress || ::isatty(STDERR_FILENO) != 0;
   if (!arguments.from_state.empty()) options.from = cdot::read_state(arguments.from_state);
@@ -243,11 +224,9 @@ int simulate(const Arguments& arguments) {
 
   if (csv) csv->commit();
   if (!result.state.empty()) cdot::write_state(arguments.save_state, result.state);
-  if (!arguments.html.empty())
-    cdot::write_file(arguments.html, cdot::html_page(scene, result.film));
+  if (!arguments.html.empty()) cdot::write_file(arguments.html, cdot::html_page(scene, result.film));
   if (!arguments.svg.empty()) cdot::write_file(arguments.svg, cdot::svg_still(scene, result.film));
-  fmt::print(
-      "{}", arguments.json ? cdot::summary_json(scene, result) : cdot::summary_text(scene, result));
+  fmt::print("{}", arguments.json ? cdot::summary_json(scene, result) : cdot::summary_text(scene, result));
   return cdot::failure(scene, result).empty() ? well : answer_is_no;
 }
 
@@ -287,8 +266,7 @@ int jacobian(const Arguments& arguments) {
   const cdot::Scene scene = cdot::read_scene(arguments.scene);
   const cdot::SystemMatrix system = cdot::system_matrix(scene);
   if (!arguments.svg.empty()) cdot::write_file(arguments.svg, cdot::jacobian_svg(scene, system));
-  fmt::print("{}", arguments.json ? cdot::jacobian_json(scene, system)
-                                  : cdot::jacobian_text(scene, system));
+  fmt::print("{}", arguments.json ? cdot::jacobian_json(scene, system) : cdot::jacobian_text(scene, system));
   return well;
 }
 
@@ -306,8 +284,7 @@ int main(int argc, char** argv) {
   const CLI::App* shown = add_jacobian(app, arguments);
   const CLI::App* diagnosed = add_diagnose(app, arguments);
   const CLI::App* costs = add_accuracy(app, arguments);
-  CLI::App* list =
-      app.add_subcommand("list", "Show the joints that a scene may name, with their parameters");
+  CLI::App* list = app.add_subcommand("list", "Show the joints that a scene may name, with their parameters");
   list->add_flag("--json", arguments.json, "as JSON");
   try {
     app.parse(argc, argv);
@@ -320,8 +297,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? well : bad_input;
   } catch (const cdot::SceneError& error) {
-    fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes,
-               error.mistakes == 1 ? "" : "s");
+    fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes, error.mistakes == 1 ? "" : "s");
   } catch (const std::exception& error) {
     fmt::print(stderr, "cdot-run: {}\n", error.what());
   }

@@ -9,8 +9,7 @@
 
 namespace cdot {
 
-OutputFile::OutputFile(const std::string& path)
-    : path_(path), temporary_(fmt::format("{}.{}.part", path, ::getpid())) {
+OutputFile::OutputFile(const std::string& path) : path_(path), temporary_(fmt::format("{}.{}.part", path, ::getpid())) {
   file_ = std::fopen(temporary_.c_str(), "wb");
   if (!file_) fail("cannot be written");
 }
@@ -65,10 +64,9 @@ std::string csv_row(const Scene& scene, const Frame& frame) {
   auto out = fmt::format_to(std::back_inserter(row), "{}", frame.time);
   for (const BodyState& b : frame.bodies) {
     if (in_space)
-      out = fmt::format_to(out, ",{},{},{},{},{},{},{},{},{},{},{},{},{}", b.x, b.y, b.z, b.e0,
-                           b.e1, b.e2, b.e3, b.vx, b.vy, b.vz, b.wx, b.wy, b.wz);
-    else
-      out = fmt::format_to(out, ",{},{},{},{},{},{}", b.x, b.y, b.angle, b.vx, b.vy, b.w);
+      out = fmt::format_to(out, ",{},{},{},{},{},{},{},{},{},{},{},{},{}", b.x, b.y, b.z, b.e0, b.e1, b.e2, b.e3, b.vx,
+                           b.vy, b.vz, b.wx, b.wy, b.wz);
+    else out = fmt::format_to(out, ",{},{},{},{},{},{}", b.x, b.y, b.angle, b.vx, b.vy, b.w);
   }
   row += '\n';
   return row;

@@ -91,8 +91,8 @@ class Steps {
  public:
   Steps(const Scene& scene, const RunOptions& options) : step_(scene.step), start_(options.from.time()) {
     if (!(start_ < scene.duration * (1 - 1e-12)))
-      throw Error(fmt::format("the state is that at {:.6g} s and the run ends at {:.6g} s: nothing is left to do", start_,
-                              scene.duration));
+      throw Error(fmt::format("the state is that at {:.6g} s and the run ends at {:.6g} s: nothing is left to do",
+                              start_, scene.duration));
     if (scene.settings.local_error > 0) {
       ends_ = own_ends(scene, options);
       const auto later = std::upper_bound(ends_.begin(), ends_.end(), start_ + same_time * scene.duration);
@@ -108,7 +108,8 @@ class Steps {
   long long count() const { return count_; }
   // Of the end of so many steps.
   double time(long long k) const {
-    return ends_.empty() ? offset_ + static_cast<double>(first_ + k) * step_ : ends_[static_cast<std::size_t>(first_ + k)];
+    return ends_.empty() ? offset_ + static_cast<double>(first_ + k) * step_
+                         : ends_[static_cast<std::size_t>(first_ + k)];
   }
   double length(long long k) const { return ends_.empty() ? step_ : time(k) - time(k - 1); }
 
@@ -148,8 +149,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   BasicWorld<S> world = world_of_run<S>(scene, options, warnings);
   const Steps steps(scene, options);
   result.start = steps.time(0);
-  Sampler rows(from_time(options.row_times, result.start, scene.step),
-               options.row ? options.row : [](const Frame&) {});
+  Sampler rows(
+      from_time(options.row_times, result.start, scene.step), options.row ? options.row : [](const Frame&) {});
   Sampler film(from_time(options.film_times, result.start, scene.step),
                [&](const Frame& frame) { result.film.push_back(frame); });
   const bool every_step = options.row && options.row_times.empty();
@@ -168,7 +169,8 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     film.step(before, after);
     if (options.keep_state && result.state.empty() && after.time >= *options.keep_state * (1 - 1e-12))
       result.state = world.snapshot();
-    const auto due = std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
+    const auto due =
+        std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
     if (due != next_diagnosis) look(scene, world, result);
     next_diagnosis = due;
     if (k == steps.count() || Interrupt::asked()) break;
@@ -197,8 +199,7 @@ BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
   BasicWorld<S> world = build_world_in<S>(scene);
   if (scene.project && !world.project(start_projected<typename S::Scalar>)) {
     warnings +=
-        fmt::format("{}: warning: the start could not be projected: joints contradict each other\n",
-                    scene.file);
+        fmt::format("{}: warning: the start could not be projected: joints contradict each other\n", scene.file);
   }
   warnings += inconsistency_report(scene, world, start_tolerance<typename S::Scalar>);
   world.prepare();

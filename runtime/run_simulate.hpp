@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "runtime/choose_method.hpp"
-#include "runtime/run_worst.hpp"
 #include "runtime/run_frame.hpp"
+#include "runtime/run_worst.hpp"
 #include "runtime/scene.hpp"
 #include "runtime/snapshot.hpp"
 
@@ -18,8 +18,8 @@ struct RunOptions {
   std::vector<double> row_times;          // when; empty: after every step
   std::vector<double> film_times;
   std::vector<double> diagnose_times;  // after the first step that ends then or later, and before one that fails
-  bool progress = false;  // on stderr
-  Snapshot from;          // goes on from there; empty: from the scene's start
+  bool progress = false;               // on stderr
+  Snapshot from;                       // goes on from there; empty: from the scene's start
   // When to keep the state in RunResult::state: after the first step that ends then or later.
   std::optional<double> keep_state;
 };
@@ -27,8 +27,8 @@ struct RunOptions {
 struct RunResult {
   std::optional<Choice> choice;  // of a scene that asks for an accuracy
   StepCounts counts;             // of rk4 and dop853
-  double time = 0;  // reached [s]
-  double start = 0;  // [s]; above 0 if the run went on from a state
+  double time = 0;               // reached [s]
+  double start = 0;              // [s]; above 0 if the run went on from a state
   long long steps = 0;
   Snapshot state;  // the one that was to be kept
   double cpu = 0;  // spent in step() [s]

@@ -50,18 +50,16 @@ void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>
     const auto known = std::find_if(worst.begin(), worst.end(), [&](const WorstOfIsland& one) {
       return !one.island.bodies.empty() && !island.bodies.empty() && one.island.bodies.front() == island.bodies.front();
     });
-    if (known != worst.end())
-      add_island(island, time, *known);
-    else
-      worst.push_back({island, time, time, time, time});
+    if (known != worst.end()) add_island(island, time, *known);
+    else worst.push_back({island, time, time, time, time});
   }
 }
 
 std::vector<Concern> concerns_about(const Scene& scene, const std::vector<WorstOfIsland>& worst, bool warnings_only) {
   std::vector<Concern> all;
   for (const WorstOfIsland& one : worst)
-    for (Concern& concern :
-         concerns_about(one.island, scene.settings, scene.single, scene.step / scene.settings.substeps, names_of(scene)))
+    for (Concern& concern : concerns_about(one.island, scene.settings, scene.single,
+                                           scene.step / scene.settings.substeps, names_of(scene)))
       if ((concern.warning || !warnings_only) && std::find(all.begin(), all.end(), concern) == all.end())
         all.push_back(std::move(concern));
   return all;

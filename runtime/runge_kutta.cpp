@@ -132,11 +132,13 @@ void settle_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
 template <class S>
 double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed) {
   constexpr double epsilon = std::numeric_limits<typename S::Scalar>::epsilon();
-  return estimated_error(island.flow, method, h, [&](size_t k) {
-    const double size = std::abs(double(island.flow.start[k]));
-    const bool velocity = k % numbers_per_body<S> >= S::pose_numbers;
-    return std::max(velocity ? 1 + size : 1.0, epsilon * size / allowed);
-  }) / allowed;
+  return estimated_error(island.flow, method, h,
+                         [&](size_t k) {
+                           const double size = std::abs(double(island.flow.start[k]));
+                           const bool velocity = k % numbers_per_body<S> >= S::pose_numbers;
+                           return std::max(velocity ? 1 + size : 1.0, epsilon * size / allowed);
+                         }) /
+         allowed;
 }
 
 template <class S>

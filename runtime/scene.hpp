@@ -71,7 +71,7 @@ struct Scene {
   double accuracy = 0;      // [m], [rad] that the trajectory shall have, by a method of the runtime's choice; 0: as set
   double tolerance = 0.01;  // [m], [rad]: the joint error from which a run has failed
   OnFailure on_failure = OnFailure::stop;  // of a step
-  bool project = false;     // move an inconsistent start onto the joints
+  bool project = false;                    // move an inconsistent start onto the joints
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;
   std::vector<SpringDefinition> springs;
@@ -96,8 +96,8 @@ World<T> build_world(const Scene& scene) {
   return build_world_in<Planar<T>>(scene);
 }
 
-// The rows that the start violates beyond `tolerance`, a paragraph for each of the first joints, and how many more there
-// are; empty if there are none.
+// The rows that the start violates beyond `tolerance`, a paragraph for each of the first joints, and how many more
+// there are; empty if there are none.
 template <class S>
 std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance);
 

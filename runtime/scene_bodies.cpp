@@ -22,22 +22,18 @@ Shape read_shape(Entry& body, Dimension dimension) {
              ball = in_space && entry->has("ball");
   if (rod + box + disc + ball != 1) {
     entry->error(entry->header(),
-                 in_space ? "a shape is one of rod, box, disc and ball"
-                          : "a shape is one of rod, box and disc",
+                 in_space ? "a shape is one of rod, box, disc and ball" : "a shape is one of rod, box and disc",
                  "shape = { rod = 1.0 }");
   }
   const Quantity size{Sign::positive};
-  if (const auto length = entry->number("rod", size))
-    shape = {Shape::rod, *length, 0.06 * *length, 0.06 * *length};
+  if (const auto length = entry->number("rod", size)) shape = {Shape::rod, *length, 0.06 * *length, 0.06 * *length};
   if (const auto sides = entry->numbers("box", in_space ? 3 : 2, size))
     shape = {Shape::box, (*sides)[0], (*sides)[1], in_space ? (*sides)[2] : 0};
-  if (const auto radius = entry->number("disc", size))
-    shape = {Shape::disc, 2 * *radius, 2 * *radius, 0.2 * *radius};
+  if (const auto radius = entry->number("disc", size)) shape = {Shape::disc, 2 * *radius, 2 * *radius, 0.2 * *radius};
   if (const auto radius = ball ? entry->number("ball", size) : std::nullopt)
     shape = {Shape::ball, 2 * *radius, 2 * *radius, 2 * *radius};
   if (const auto width = entry->number("width", size)) {
-    if (!rod && !(in_space && disc))
-      entry->error(entry->where("width"), "`width` belongs to a rod");
+    if (!rod && !(in_space && disc)) entry->error(entry->where("width"), "`width` belongs to a rod");
     (rod ? shape.width : shape.depth) = *width;
   }
   entry->close();
@@ -47,15 +43,11 @@ Shape read_shape(Entry& body, Dimension dimension) {
 // Moment of inertia about the centre of a body of uniform density.
 double uniform_inertia(const Shape& shape, double mass) {
   switch (shape.kind) {
-    case Shape::rod:
-      return mass * shape.length * shape.length / 12;
-    case Shape::box:
-      return mass * (shape.length * shape.length + shape.width * shape.width) / 12;
-    case Shape::disc:
-      return mass * shape.length * shape.length / 8;
+    case Shape::rod: return mass * shape.length * shape.length / 12;
+    case Shape::box: return mass * (shape.length * shape.length + shape.width * shape.width) / 12;
+    case Shape::disc: return mass * shape.length * shape.length / 8;
     case Shape::ball:
-    case Shape::none:
-      return 0;
+    case Shape::none: return 0;
   }
   return 0;
 }
@@ -66,10 +58,8 @@ void read_planar_mass(Entry& body, const Shape& shape, BodyDefinition& definitio
   definition.mass = body.number("mass", {Sign::positive}).value_or(0);
   const std::optional<double> inertia = body.number("inertia", {Sign::not_negative});
   if (definition.is_static) return;
-  if (!mass_given)
-    body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
-  definition.inertia =
-      inertia_given ? inertia.value_or(1) : uniform_inertia(shape, definition.mass);
+  if (!mass_given) body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
+  definition.inertia = inertia_given ? inertia.value_or(1) : uniform_inertia(shape, definition.mass);
   if (definition.fixed_rotation || definition.inertia > 0) return;
   if (inertia_given) {
     body.error(body.where("inertia"), "`inertia` is 0, but the body is free to turn",
@@ -126,16 +116,13 @@ void read_bodies(Entry& top, Scene& scene) {
     body.name = read_name(entry, used, std::nullopt).value_or("");
     body.shape = read_shape(entry, scene.dimension);
     body.is_static = entry.flag("static").value_or(false);
-    if (scene.dimension == Dimension::planar)
-      read_planar_body(entry, body);
-    else
-      read_spatial_body(entry, body);
+    if (scene.dimension == Dimension::planar) read_planar_body(entry, body);
+    else read_spatial_body(entry, body);
     body.traces = read_trace(entry, scene.dimension);
     entry.close();
     scene.bodies.push_back(std::move(body));
   }
-  if (!top.has("body"))
-    top.error({}, "a scene needs at least one body", "start with a line [[body]]");
+  if (!top.has("body")) top.error({}, "a scene needs at least one body", "start with a line [[body]]");
 }
 
 }  // namespace cdot

@@ -39,8 +39,7 @@ std::optional<Inertia> read_inertia(Entry& body) {
     if (!m) return {};
     const std::vector<double>& I = *m;
     if (I[1] != I[3] || I[2] != I[6] || I[5] != I[7])
-      body.error(body.where("inertia"), "the inertia tensor is not symmetric",
-                 "row i, column j as row j, column i");
+      body.error(body.where("inertia"), "the inertia tensor is not symmetric", "row i, column j as row j, column i");
     return Inertia{I[0], I[4], I[8], I[1], I[2], I[5]};
   }
   if (body.is_array("inertia")) {
@@ -59,8 +58,7 @@ void read_mass(Entry& body, const Shape& shape, SpatialBodyDefinition& definitio
   definition.mass = body.number("mass", {Sign::positive}).value_or(0);
   const std::optional<Inertia> inertia = read_inertia(body);
   if (definition.is_static) return;
-  if (!mass_given)
-    body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
+  if (!mass_given) body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
   if (inertia_given) {
     if (!inertia) return;  // said already
     definition.inertia = *inertia;
@@ -79,31 +77,25 @@ void read_mass(Entry& body, const Shape& shape, SpatialBodyDefinition& definitio
 
 // orientation = [e0, e1, e2, e3], or axis = [x, y, z] and angle
 void read_orientation(Entry& body, SpatialBodyDefinition& definition) {
-  const bool quaternion = body.has("orientation"), axis = body.has("axis"),
-             angle = body.has("angle");
+  const bool quaternion = body.has("orientation"), axis = body.has("axis"), angle = body.has("angle");
   if (quaternion && (axis || angle))
-    body.error(body.where("orientation"), "`orientation` and `axis`, `angle` say the same",
-               "keep one of them");
+    body.error(body.where("orientation"), "`orientation` and `axis`, `angle` say the same", "keep one of them");
   else if (axis != angle)
-    body.error(body.where(axis ? "axis" : "angle"),
-               axis ? "`axis` without `angle`" : "`angle` without `axis`",
+    body.error(body.where(axis ? "axis" : "angle"), axis ? "`axis` without `angle`" : "`angle` without `axis`",
                "axis = [0, 0, 1] and angle = \"30 deg\"");
   const auto e = body.numbers("orientation", 4);
   const auto n = read_vector(body, "axis", Dimension::spatial);
   const auto turn = body.number("angle", {Sign::any, true});
   if (e) {
-    const double length =
-        std::sqrt((*e)[0] * (*e)[0] + (*e)[1] * (*e)[1] + (*e)[2] * (*e)[2] + (*e)[3] * (*e)[3]);
-    if (!(length > 1e-50))
-      body.error(body.where("orientation"), "the quaternion has length 0", "[1, 0, 0, 0]");
+    const double length = std::sqrt((*e)[0] * (*e)[0] + (*e)[1] * (*e)[1] + (*e)[2] * (*e)[2] + (*e)[3] * (*e)[3]);
+    if (!(length > 1e-50)) body.error(body.where("orientation"), "the quaternion has length 0", "[1, 0, 0, 0]");
     definition.e0 = (*e)[0], definition.e1 = (*e)[1];
     definition.e2 = (*e)[2], definition.e3 = (*e)[3];
   }
   if (n && turn) {
     const double length = std::hypot((*n)[0], (*n)[1], (*n)[2]);
     if (!(length > 0)) {
-      body.error(body.where("axis"), "the direction `axis` has length 0",
-                 "any other length will do: [0, 0, 1]");
+      body.error(body.where("axis"), "the direction `axis` has length 0", "any other length will do: [0, 0, 1]");
       return;
     }
     const double c = std::cos(*turn / 2), s = std::sin(*turn / 2) / length;
@@ -113,9 +105,7 @@ void read_orientation(Entry& body, SpatialBodyDefinition& definition) {
 }
 
 void read_motion(Entry& body, SpatialBodyDefinition& definition) {
-  const auto vector = [&](const char* key) {
-    return read_vector(body, key, Dimension::spatial).value_or(Vec3{});
-  };
+  const auto vector = [&](const char* key) { return read_vector(body, key, Dimension::spatial).value_or(Vec3{}); };
   const Vec3 position = vector("position"), velocity = vector("velocity");
   definition.x = position[0], definition.y = position[1], definition.z = position[2];
   definition.vx = velocity[0], definition.vy = velocity[1], definition.vz = velocity[2];

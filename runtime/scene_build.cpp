@@ -35,8 +35,7 @@ void add_joint(BasicWorld<S>& world, const SceneJoint& source) {
 
 template <class S>
 void add_spring(BasicWorld<S>& world, SpringDefinition spring) {
-  for (int* body : {&spring.body_a, &spring.body_b})
-    *body = *body == world_body ? world.ground() : *body;
+  for (int* body : {&spring.body_a, &spring.body_b}) *body = *body == world_body ? world.ground() : *body;
   world.add_spring(spring);
 }
 
@@ -47,8 +46,7 @@ std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::si
     for (const Inconsistency& row : rows) {
       if (row.joint != joint || row.velocity != velocity) continue;
       const std::string number = joint_rows > 1 ? std::to_string(row.row + 1) : "";
-      list += fmt::format("{}{}{} = {:.3g}", list.empty() ? "" : ", ", velocity ? "Cdot" : "C",
-                          number, row.value);
+      list += fmt::format("{}{}{} = {:.3g}", list.empty() ? "" : ", ", velocity ? "Cdot" : "C", number, row.value);
     }
   }
   return list;
@@ -91,10 +89,8 @@ BasicWorld<S> build_world_in(const Scene& scene) {
   choose_origin(scene, world);
   world.on_failure(scene.on_failure);
   for (const SceneBody& body : scene.bodies) {
-    if constexpr (S::dimension == Dimension::planar)
-      world.add_body(body.definition);
-    else
-      world.add_body(body.spatial);
+    if constexpr (S::dimension == Dimension::planar) world.add_body(body.definition);
+    else world.add_body(body.spatial);
   }
   std::string report;
   int mistakes = 0;
@@ -102,8 +98,7 @@ BasicWorld<S> build_world_in(const Scene& scene) {
     try {
       add_joint(world, joint);
     } catch (const Error& error) {
-      report += scene.source->paragraph("error", joint.where,
-                                        fmt::format("{}: {}", joint.name, error.what()), "");
+      report += scene.source->paragraph("error", joint.where, fmt::format("{}: {}", joint.name, error.what()), "");
       ++mistakes;
     }
   }
@@ -123,13 +118,12 @@ std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world,
     if (list.empty() || ++told > most_told) continue;
     report += scene.source->paragraph(
         "warning", source.where,
-        fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name,
-                    list),
+        fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name, list),
         "correct the pose or velocity, or let project = true move the bodies onto their joints");
   }
   if (told > most_told)
-    report += fmt::format("warning: nor does it fit {} more joint{}\n", told - most_told,
-                          told == most_told + 1 ? "" : "s");
+    report +=
+        fmt::format("warning: nor does it fit {} more joint{}\n", told - most_told, told == most_told + 1 ? "" : "s");
   return report;
 }
 

@@ -14,8 +14,7 @@ constexpr int most_copies = 100000;
 }  // namespace
 
 Span span_of(const toml::source_region& region) {
-  const int line = static_cast<int>(region.begin.line),
-            begin = static_cast<int>(region.begin.column);
+  const int line = static_cast<int>(region.begin.line), begin = static_cast<int>(region.begin.column);
   // A value over several lines is marked from its start to the end of that line.
   const bool one_line = region.end.line == region.begin.line;
   return {line, begin, one_line ? static_cast<int>(region.end.column) : 1 << 20};
@@ -43,14 +42,12 @@ std::vector<Entry> Entry::list(const std::string& key) {
     return entries;
   }
   for (const toml::node& element : *node->as_array()) {
-    Entry entry(*element.as_table(), span_of(element.source()), fmt::format("[[{}]]", key),
-                *mistakes_);
+    Entry entry(*element.as_table(), span_of(element.source()), fmt::format("[[{}]]", key), *mistakes_);
     const toml::node* repeat = entry.find("repeat");
     const int copies = repeat ? entry.whole("repeat", 1).value_or(1) : 1;
     entry.repeated_ = repeat != nullptr;
     entry.check_repeat(copies);
-    for (entry.copy_ = 0; entry.copy_ < std::min(copies, most_copies); ++entry.copy_)
-      entries.push_back(entry);
+    for (entry.copy_ = 0; entry.copy_ < std::min(copies, most_copies); ++entry.copy_) entries.push_back(entry);
   }
   return entries;
 }
@@ -61,12 +58,10 @@ void Entry::check_repeat(int copies) {
   for (const char* key : {"shift", "each"}) {
     const toml::node* node = find(key);
     if (!node) continue;
-    if (!repeated_)
-      error(where(key), fmt::format("`{}` without `repeat`", key), "say how often: repeat = 10");
+    if (!repeated_) error(where(key), fmt::format("`{}` without `repeat`", key), "say how often: repeat = 10");
     if (!node->is_table()) wrong_type(*node, key, "a table, as { position = [1, 0] }");
   }
-  if (copies > most_copies)
-    error(where("repeat"), fmt::format("`repeat` is more than {}", most_copies));
+  if (copies > most_copies) error(where("repeat"), fmt::format("`repeat` is more than {}", most_copies));
   const toml::table* each = table_->get_as<toml::table>("each");
   if (!each) return;
   for (auto&& [key, values] : *each) {
@@ -75,8 +70,7 @@ void Entry::check_repeat(int copies) {
     if (!array) {
       wrong_type(values, name, "a list with one value per copy");
     } else if (static_cast<int>(array->size()) != copies) {
-      error(span_of(values.source()),
-            fmt::format("`{}` has {} values for {} copies", name, array->size(), copies));
+      error(span_of(values.source()), fmt::format("`{}` has {} values for {} copies", name, array->size(), copies));
     }
   }
 }
@@ -85,8 +79,7 @@ const toml::node* Entry::find(const std::string& key) {
   asked_.insert(key);
   const toml::table* each = repeated_ ? table_->get_as<toml::table>("each") : nullptr;
   const toml::array* values = each ? each->get_as<toml::array>(key) : nullptr;
-  if (values && copy_ < static_cast<int>(values->size()))
-    return values->get(static_cast<std::size_t>(copy_));
+  if (values && copy_ < static_cast<int>(values->size())) return values->get(static_cast<std::size_t>(copy_));
   return table_->get(key);
 }
 
@@ -114,10 +107,8 @@ void Entry::error(Span where, const std::string& cause, const std::string& fix) 
   mistakes_->add(where, cause, fix);
 }
 
-void Entry::wrong_type(const toml::node& node, const std::string& key,
-                       const std::string& wanted) const {
-  error(span_of(node.source()),
-        fmt::format("`{}` must be {}, but is {}", key, wanted, type_of(node)));
+void Entry::wrong_type(const toml::node& node, const std::string& key, const std::string& wanted) const {
+  error(span_of(node.source()), fmt::format("`{}` must be {}, but is {}", key, wanted, type_of(node)));
 }
 
 std::optional<bool> Entry::flag(const std::string& key) {
@@ -136,15 +127,12 @@ std::optional<std::string> Entry::substituted(const std::string& text, Span wher
     result += text.substr(at, open - at);
     if (open == text.size()) break;
     const std::size_t close = text.find('}', open);
-    const std::string inside =
-        close == std::string::npos ? "" : text.substr(open + 1, close - open - 1);
+    const std::string inside = close == std::string::npos ? "" : text.substr(open + 1, close - open - 1);
     int offset = 0;
-    const char *first = inside.data() + (inside.starts_with("i+") ? 2 : 1),
-               *last = inside.data() + inside.size();
+    const char *first = inside.data() + (inside.starts_with("i+") ? 2 : 1), *last = inside.data() + inside.size();
     const bool plain = inside == "i";
     const bool offset_fine = inside.size() > 2 && inside.size() < 10 && inside[0] == 'i' &&
-                             (inside[1] == '+' || inside[1] == '-') &&
-                             std::from_chars(first, last, offset).ptr == last;
+                             (inside[1] == '+' || inside[1] == '-') && std::from_chars(first, last, offset).ptr == last;
     if (!repeated_ || !(plain || offset_fine)) {
       error(where, fmt::format("\"{}\": braces stand for the number of a copy", text),
             repeated_ ? "write {i}, {i+1} or {i-1}" : "add `repeat = 10`, or leave the braces out");
@@ -209,12 +197,10 @@ bool Entry::is_array(const std::string& key) {
 
 bool Entry::is_array_of_arrays(const std::string& key) {
   const toml::node* node = find(key);
-  return node && node->is_array() && node->as_array()->get(0) &&
-         node->as_array()->get(0)->is_array();
+  return node && node->is_array() && node->as_array()->get(0) && node->as_array()->get(0)->is_array();
 }
 
-std::optional<std::string> Entry::choice(const std::string& key,
-                                         const std::vector<std::string>& allowed) {
+std::optional<std::string> Entry::choice(const std::string& key, const std::vector<std::string>& allowed) {
   const std::optional<std::string> value = text(key);
   if (!value || std::find(allowed.begin(), allowed.end(), *value) != allowed.end()) return value;
   error(where(key), fmt::format("unknown {} \"{}\"", key, *value), did_you_mean(*value, allowed));
@@ -234,8 +220,7 @@ void Entry::close(const std::vector<std::string>& also_known) const {
   for (auto&& [key, node] : *table_) {
     const std::string name(key.str());
     if (asked_.contains(name)) continue;
-    error(span_of(key.source()), fmt::format("unknown key `{}` in {}", name, what_),
-          did_you_mean(name, known));
+    error(span_of(key.source()), fmt::format("unknown key `{}` in {}", name, what_), did_you_mean(name, known));
   }
   const std::vector<std::string> shiftable(asked_.begin(), asked_.end());
   for (const char* list : {"shift", "each"}) {

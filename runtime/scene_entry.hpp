@@ -35,8 +35,8 @@ class Entry {
   std::vector<Entry> list(const std::string& key);
 
   bool has(const std::string& key);
-  bool leaves_table_unread(const std::string& key) const;  // nobody has asked for it
-  Span where(const std::string& key) const;  // of its value; of the entry's header if it is absent
+  bool leaves_table_unread(const std::string& key) const;   // nobody has asked for it
+  Span where(const std::string& key) const;                 // of its value; of the entry's header if it is absent
   Span element(const std::string& key, std::size_t index);  // of one value of a list
   Span header() const { return header_; }
   const std::string& what() const { return what_; }
@@ -46,19 +46,16 @@ class Entry {
   std::optional<int> whole(const std::string& key, int least);
   std::optional<bool> flag(const std::string& key);
   std::optional<std::string> text(const std::string& key);
-  std::string written(
-      const std::string& key);  // the text as it stands, {i} and all; empty if there is none
+  std::string written(const std::string& key);  // the text as it stands, {i} and all; empty if there is none
   std::optional<std::vector<std::string>> texts(const std::string& key);
-  std::optional<std::vector<double>> numbers(const std::string& key, std::size_t size,
-                                             Quantity = {});
+  std::optional<std::vector<double>> numbers(const std::string& key, std::size_t size, Quantity = {});
   // `count` lists of three numbers, one after the other.
   std::optional<std::vector<double>> rows(const std::string& key, std::size_t count);
   // Nothing if it is no table, which is a mistake if there is an example of one.
   std::optional<Entry> table(const std::string& key, const std::string& example = "");
   bool is_array(const std::string& key);
   bool is_array_of_arrays(const std::string& key);
-  std::optional<std::string> choice(const std::string& key,
-                                    const std::vector<std::string>& allowed);
+  std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& allowed);
   void required(const std::string& key, const std::string& fix);  // complains if it is absent
 
   void error(Span where, const std::string& cause, const std::string& fix = {}) const;
@@ -69,8 +66,7 @@ class Entry {
   const toml::node* find(const std::string& key);
   std::optional<double> plain_number(const toml::node& node, const std::string& key, Quantity);
   std::optional<std::string> plain_text(const toml::node& node);
-  std::optional<double> shifted_number(const toml::node& node, const std::string& key,
-                                       std::size_t index, Quantity);
+  std::optional<double> shifted_number(const toml::node& node, const std::string& key, std::size_t index, Quantity);
   std::optional<double> shift_of(const std::string& key, std::size_t index);
   std::optional<std::string> substituted(const std::string& text, Span where) const;
   void wrong_type(const toml::node& node, const std::string& key, const std::string& wanted) const;

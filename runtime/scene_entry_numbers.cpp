@@ -34,15 +34,13 @@ std::optional<double> number_in_text(std::string_view text, bool angle) {
 
 }  // namespace
 
-std::optional<double> Entry::plain_number(const toml::node& node, const std::string& key,
-                                          Quantity quantity) {
+std::optional<double> Entry::plain_number(const toml::node& node, const std::string& key, Quantity quantity) {
   if (node.is_number()) return node.value<double>();
   if (!node.is_string()) {
     wrong_type(node, key, "a number");
     return {};
   }
-  const std::optional<double> value =
-      number_in_text(*node.value<std::string_view>(), quantity.angle);
+  const std::optional<double> value = number_in_text(*node.value<std::string_view>(), quantity.angle);
   if (!value) {
     error(span_of(node.source()), fmt::format("`{}` must be a number, but is a text", key),
           quantity.angle ? "0.5 (rad) or \"30 deg\"" : "0.5, or a fraction as \"1/60\"");
@@ -67,10 +65,9 @@ std::optional<double> Entry::shift_of(const std::string& key, std::size_t index)
 }
 
 // `node` as a number in its range; `index` says which element of a list it is.
-std::optional<double> Entry::shifted_number(const toml::node& node, const std::string& key,
-                                            std::size_t index, Quantity quantity) {
-  const std::optional<double> start = plain_number(node, key, quantity),
-                              shift = shift_of(key, index);
+std::optional<double> Entry::shifted_number(const toml::node& node, const std::string& key, std::size_t index,
+                                            Quantity quantity) {
+  const std::optional<double> start = plain_number(node, key, quantity), shift = shift_of(key, index);
   if (!start || !shift) return {};
   const double value = *start + *shift;
   const char* wrong = nullptr;
@@ -88,15 +85,13 @@ std::optional<double> Entry::number(const std::string& key, Quantity quantity) {
   return shifted_number(*node, key, 0, quantity);
 }
 
-std::optional<std::vector<double>> Entry::numbers(const std::string& key, std::size_t size,
-                                                  Quantity quantity) {
+std::optional<std::vector<double>> Entry::numbers(const std::string& key, std::size_t size, Quantity quantity) {
   const toml::node* node = find(key);
   if (!node) return {};
   const toml::array* array = node->as_array();
   if (!array || array->size() != size) {
     const std::string found = array ? fmt::format("has {}", array->size()) : "is " + type_of(*node);
-    error(span_of(node->source()),
-          fmt::format("`{}` must be a list of {} numbers, but {}", key, size, found));
+    error(span_of(node->source()), fmt::format("`{}` must be a list of {} numbers, but {}", key, size, found));
     return {};
   }
   std::vector<double> values;
@@ -122,8 +117,7 @@ std::optional<std::vector<double>> Entry::rows(const std::string& key, std::size
     }
   }
   if (values.size() == 3 * count && lists->size() == count) return values;
-  error(span_of(node->source()),
-        fmt::format("`{}` must be {} lists of three numbers", key, count));
+  error(span_of(node->source()), fmt::format("`{}` must be {} lists of three numbers", key, count));
   return {};
 }
 
@@ -132,15 +126,13 @@ std::optional<int> Entry::whole(const std::string& key, int least) {
   if (!node) return {};
   const std::optional<std::int64_t> value = node->value_exact<std::int64_t>();
   if (!value && node->is_number()) {
-    error(span_of(node->source()),
-          fmt::format("`{}` is {}: it must be a whole number", key, *node->value<double>()));
+    error(span_of(node->source()), fmt::format("`{}` is {}: it must be a whole number", key, *node->value<double>()));
   } else if (!value) {
     wrong_type(*node, key, "a whole number");
   }
   if (!value) return {};
   if (*value >= least && *value <= 1'000'000'000) return static_cast<int>(*value);
-  error(span_of(node->source()),
-        fmt::format("`{}` is {}: it must be {} or more", key, *value, least));
+  error(span_of(node->source()), fmt::format("`{}` is {}: it must be {} or more", key, *value, least));
   return {};
 }
 

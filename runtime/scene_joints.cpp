@@ -14,18 +14,13 @@ constexpr const char* soft_example = "{ frequency = 2, damping_ratio = 0.5 }";
 
 // "the point pa on body a", "the direction t on the world", "the scalar l [m]"
 std::string described(const ParameterInfo& parameter) {
-  if (parameter.kind == ParameterKind::scalar)
-    return fmt::format("the scalar {} [{}]", parameter.name, parameter.unit);
+  if (parameter.kind == ParameterKind::scalar) return fmt::format("the scalar {} [{}]", parameter.name, parameter.unit);
   const bool on_world = parameter.body < 0;
-  return fmt::format(
-      "the {} {} on {}", parameter.kind == ParameterKind::point ? "point" : "direction",
-      parameter.name,
-      on_world ? "the world" : fmt::format("body {}", static_cast<char>('a' + parameter.body)));
+  return fmt::format("the {} {} on {}", parameter.kind == ParameterKind::point ? "point" : "direction", parameter.name,
+                     on_world ? "the world" : fmt::format("body {}", static_cast<char>('a' + parameter.body)));
 }
 
-std::string number_named(std::size_t count) {
-  return fmt::format("{} {}", count, count == 1 ? "is" : "are");
-}
+std::string number_named(std::size_t count) { return fmt::format("{} {}", count, count == 1 ? "is" : "are"); }
 
 const JointType* read_type(Entry& joint, Dimension dimension) {
   joint.required("type", "type = \"revolute\"");
@@ -36,33 +31,28 @@ const JointType* read_type(Entry& joint, Dimension dimension) {
   std::vector<std::string> known;
   for (const JointType& other : joint_types(dimension)) known.emplace_back(other.name);
   const bool in_space = dimension == Dimension::spatial;
-  const bool elsewhere =
-      find_joint_type(in_space ? Dimension::planar : Dimension::spatial, *name) != nullptr;
+  const bool elsewhere = find_joint_type(in_space ? Dimension::planar : Dimension::spatial, *name) != nullptr;
   joint.error(joint.where("type"),
               elsewhere ? fmt::format("\"{}\" is a joint {}, and this scene is {}", *name,
-                                      in_space ? "of the plane" : "in space",
-                                      in_space ? "in space" : "planar")
+                                      in_space ? "of the plane" : "in space", in_space ? "in space" : "planar")
                         : fmt::format("no joint is called \"{}\"", *name),
               elsewhere ? "`cdot-run list` shows the joints of both" : did_you_mean(*name, known));
   return nullptr;
 }
 
 // The bodies in the order of the spec; nothing if their number is wrong.
-std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType& type,
-                                                  const BodyNames& names) {
+std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType& type, const BodyNames& names) {
   const bool one = type.bodies == 1;
   joint.required("bodies", one ? "bodies = [\"rod\"]" : "bodies = [\"world\", \"rod\"]");
   const std::optional<std::vector<int>> bodies = names.find(joint, "bodies");
   if (!bodies) return {};
   if (static_cast<int>(bodies->size()) != type.bodies) {
-    joint.error(joint.where("bodies"),
-                fmt::format("a joint of type {} has {} {}, but {} named", type.name, type.bodies,
-                            one ? "body" : "bodies", number_named(bodies->size())));
+    joint.error(joint.where("bodies"), fmt::format("a joint of type {} has {} {}, but {} named", type.name, type.bodies,
+                                                   one ? "body" : "bodies", number_named(bodies->size())));
     return {};
   }
   if (type.bodies == 2 && (*bodies)[0] == (*bodies)[1]) {
-    joint.error(joint.where("bodies"),
-                fmt::format("a joint between \"{}\" and itself", names.name((*bodies)[0])));
+    joint.error(joint.where("bodies"), fmt::format("a joint between \"{}\" and itself", names.name((*bodies)[0])));
     return {};
   }
   return bodies;
@@ -73,19 +63,16 @@ std::optional<std::vector<double>> read_two_axes(Entry& joint, const std::string
   const auto numbers = joint.rows(key, 2);
   if (!numbers) return {};
   const std::vector<double>& n = *numbers;
-  const double x = n[1] * n[5] - n[2] * n[4], y = n[2] * n[3] - n[0] * n[5],
-               z = n[0] * n[4] - n[1] * n[3];
+  const double x = n[1] * n[5] - n[2] * n[4], y = n[2] * n[3] - n[0] * n[5], z = n[0] * n[4] - n[1] * n[3];
   if (std::hypot(x, y, z) == 0)
-    joint.error(joint.where(key), fmt::format("the two axes of `{}` are parallel", key),
-                "[[1, 0, 0], [0, 1, 0]]");
+    joint.error(joint.where(key), fmt::format("the two axes of `{}` are parallel", key), "[[1, 0, 0], [0, 1, 0]]");
   return numbers;
 }
 
 // The numbers of one parameter in the frame of its body; nothing if it is left to its default, or
 // wrong.
-std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter,
-                                                  int body, std::optional<Vec3> at,
-                                                  const BodyNames& names) {
+std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter, int body,
+                                                  std::optional<Vec3> at, const BodyNames& names) {
   const std::string key(parameter.name);
   if (parameter.kind == ParameterKind::scalar) {
     const std::optional<double> value = joint.number(key, {Sign::any, parameter.unit == "rad"});
@@ -102,24 +89,21 @@ std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterI
     vector = read_direction(joint, key, body, names);
     const bool direction = parameter.kind != ParameterKind::vector;
     if (direction && vector && std::hypot((*vector)[0], (*vector)[1], (*vector)[2]) == 0) {
-      joint.error(
-          joint.where(key), fmt::format("the direction `{}` has length 0", key),
-          in_space ? "any other length will do: [1, 0, 0]" : "any other length will do: [1, 0]");
+      joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key),
+                  in_space ? "any other length will do: [1, 0, 0]" : "any other length will do: [1, 0]");
     }
   }
   if (!vector) return {};
   return std::vector<double>(vector->begin(), vector->begin() + (in_space ? 3 : 2));
 }
 
-void read_parameters(Entry& joint, const JointType& type, const BodyNames& names,
-                     JointDefinition& definition) {
+void read_parameters(Entry& joint, const JointType& type, const BodyNames& names, JointDefinition& definition) {
   const std::optional<Vec3> at = read_vector(joint, "at", names.dimension());
   const bool in_space = names.dimension() == Dimension::spatial;
   bool has_point = false;
   for (const ParameterInfo& parameter : type.parameters) {
     const bool on_body = parameter.body >= 0;
-    const int body =
-        on_body ? definition.bodies[static_cast<std::size_t>(parameter.body)] : world_body;
+    const int body = on_body ? definition.bodies[static_cast<std::size_t>(parameter.body)] : world_body;
     const bool point = parameter.kind == ParameterKind::point;
     const bool scalar = parameter.kind == ParameterKind::scalar;
     const bool given = joint.has(std::string(parameter.name)) || (point && joint.has("at"));
@@ -127,19 +111,16 @@ void read_parameters(Entry& joint, const JointType& type, const BodyNames& names
     if (const auto numbers = read_parameter(joint, parameter, body, at, names)) {
       definition.parameters.push_back({std::string(parameter.name), *numbers});
     } else if (!given && !parameter.has_default) {
-      joint.error(
-          joint.header(),
-          fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
-          point    ? fmt::format("{0} = [{1}] in the frame of its body, {0} = {{ world = [{1}] }}, "
-                                    "or at = [{1}]",
-                                 parameter.name, in_space ? "x, y, z" : "x, y")
-          : scalar ? fmt::format("{} = 1", parameter.name)
-                   : fmt::format("{} = [{}]", parameter.name, in_space ? "1, 0, 0" : "1, 0"));
+      joint.error(joint.header(), fmt::format("{} has no `{}`: {}", joint.what(), parameter.name, described(parameter)),
+                  point    ? fmt::format("{0} = [{1}] in the frame of its body, {0} = {{ world = [{1}] }}, "
+                                            "or at = [{1}]",
+                                         parameter.name, in_space ? "x, y, z" : "x, y")
+                  : scalar ? fmt::format("{} = 1", parameter.name)
+                           : fmt::format("{} = [{}]", parameter.name, in_space ? "1, 0, 0" : "1, 0"));
     }
   }
   if (joint.has("at") && !has_point) {
-    joint.error(joint.where("at"),
-                fmt::format("a joint of type {} has no points that `at` could place", type.name));
+    joint.error(joint.where("at"), fmt::format("a joint of type {} has no points that `at` could place", type.name));
   }
 }
 
@@ -153,15 +134,13 @@ std::optional<Limit> read_limit(Entry& effects, Quantity quantity) {
       table->error(table->header(), "a limit without `lower` or `upper`");
     table->close();
   } else if (effects.has("limit") && !effects.is_array("limit")) {
-    effects.error(effects.where("limit"), "`limit` needs two ends",
-                  "[lower, upper], { lower = 0 } or { upper = 1 }");
+    effects.error(effects.where("limit"), "`limit` needs two ends", "[lower, upper], { lower = 0 } or { upper = 1 }");
   } else if (const auto both = effects.numbers("limit", 2, quantity)) {
     limit = {(*both)[0], (*both)[1]};
   }
   if (limit.lower && limit.upper && *limit.lower > *limit.upper) {
     effects.error(effects.where("limit"),
-                  fmt::format("the lower limit {:.6g} is above the upper limit {:.6g}",
-                              *limit.lower, *limit.upper));
+                  fmt::format("the lower limit {:.6g} is above the upper limit {:.6g}", *limit.lower, *limit.upper));
   }
   if (!limit.lower && !limit.upper) return {};
   return limit;
@@ -211,8 +190,7 @@ void read_effects(Entry& joint, const JointType& type, std::vector<SceneEffects>
     effects.limit = read_limit(*entry, quantity);
     effects.motor = read_motor(*entry, quantity);
     effects.springs = read_coordinate_springs(*entry, quantity);
-    if (const auto force = entry->number("friction", {Sign::not_negative}))
-      effects.friction = DryFriction{*force};
+    if (const auto force = entry->number("friction", {Sign::not_negative})) effects.friction = DryFriction{*force};
     entry->close();
     all.push_back(std::move(effects));
   }
@@ -234,8 +212,7 @@ void refuse_other_coordinates(Entry& joint, const JointType& type, Dimension dim
     std::string own;
     for (const CoordinateInfo& c : type.coordinates)
       own += fmt::format("{}`{}`", own.empty() ? "it has " : ", ", c.name);
-    joint.error(joint.where(coordinate),
-                fmt::format("`{}` has no coordinate `{}`", type.name, coordinate),
+    joint.error(joint.where(coordinate), fmt::format("`{}` has no coordinate `{}`", type.name, coordinate),
                 fmt::format("{}{}joints that have it: {}", own, own.empty() ? "" : "; ", names));
     joint.has(coordinate);  // read now: one complaint is enough
   }
@@ -262,8 +239,7 @@ void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
     if (!type) continue;  // what else it may say depends on the type
     joint.definition.type = type->name;
     const std::optional<std::vector<int>> bodies = read_joint_bodies(entry, *type, names);
-    joint.definition.bodies =
-        bodies.value_or(std::vector<int>(static_cast<std::size_t>(type->bodies), world_body));
+    joint.definition.bodies = bodies.value_or(std::vector<int>(static_cast<std::size_t>(type->bodies), world_body));
     read_parameters(entry, *type, names, joint.definition);
     read_effects(entry, *type, joint.effects);
     joint.definition.soft = read_soft(entry);

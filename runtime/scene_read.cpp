@@ -13,8 +13,7 @@ namespace {
 
 bool fits_a_column(const std::string& name) {
   const auto fits = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
-           c == '-';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   };
   return !name.empty() && std::all_of(name.begin(), name.end(), fits);
 }
@@ -127,8 +126,7 @@ namespace {
 
 // [x, y] as it stands, or { world = [x, y] } through `from_world`.
 template <class FromWorld>
-std::optional<Vec3> in_body_or_world(Entry& entry, const std::string& key, Dimension dimension,
-                                     FromWorld from_world) {
+std::optional<Vec3> in_body_or_world(Entry& entry, const std::string& key, Dimension dimension, FromWorld from_world) {
   std::optional<Entry> table = entry.table(key);
   if (!table) return read_vector(entry, key, dimension);
   const std::optional<Vec3> world = read_vector(*table, "world", dimension);
@@ -142,14 +140,11 @@ std::optional<Vec3> in_body_or_world(Entry& entry, const std::string& key, Dimen
 
 }  // namespace
 
-std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body,
-                               const BodyNames& names) {
-  return in_body_or_world(entry, key, names.dimension(),
-                          [&](Vec3 position) { return names.to_body(body, position); });
+std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names) {
+  return in_body_or_world(entry, key, names.dimension(), [&](Vec3 position) { return names.to_body(body, position); });
 }
 
-std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body,
-                                   const BodyNames& names) {
+std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names) {
   return in_body_or_world(entry, key, names.dimension(),
                           [&](Vec3 direction) { return names.turned_to_body(body, direction); });
 }
@@ -164,8 +159,7 @@ std::optional<Softness> read_softness(Entry& entry) {
   softness.damping = entry.number("damping", {Sign::not_negative}).value_or(0);
   const bool mixed = frequency ? stiffness || entry.has("damping") : entry.has("damping_ratio");
   if (frequency == stiffness || mixed) {
-    entry.error(entry.header(),
-                fmt::format("{} needs either a frequency or a stiffness", entry.what()),
+    entry.error(entry.header(), fmt::format("{} needs either a frequency or a stiffness", entry.what()),
                 "{ frequency = 2, damping_ratio = 0.5 } or { stiffness = 100, damping = 1 }");
     return {};
   }
@@ -192,9 +186,8 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
   const bool same_place = first == where;
   entry.error(where,
               first.line == 0 ? fmt::format("\"{}\" is the name of what never moves", *name)
-              : same_place
-                  ? fmt::format("all copies are called \"{}\"", *name)
-                  : fmt::format("\"{}\" is the name of line {} already", *name, first.line),
+              : same_place    ? fmt::format("all copies are called \"{}\"", *name)
+                              : fmt::format("\"{}\" is the name of line {} already", *name, first.line),
               same_place && first.line > 0 ? fmt::format("name = \"{}{{i}}\"", *name) : "");
   return {};
 }

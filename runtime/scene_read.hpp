@@ -38,10 +38,8 @@ class BodyNames {
 std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension dimension);
 
 // A point of a body: [x, y] in its frame, or { world = [x, y] } where it is at the start.
-std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body,
-                               const BodyNames& names);
-std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body,
-                                   const BodyNames& names);
+std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names);
+std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names);
 
 // { frequency, damping_ratio } or { stiffness, damping }; the entry stays open for more keys.
 std::optional<Softness> read_softness(Entry& entry);

@@ -59,8 +59,7 @@ std::string lower(std::string_view text) {
 }
 
 bool same_start(std::string_view word, std::string_view candidate) {
-  const auto [end, other] =
-      std::mismatch(word.begin(), word.end(), candidate.begin(), candidate.end());
+  const auto [end, other] = std::mismatch(word.begin(), word.end(), candidate.begin(), candidate.end());
   const auto common = static_cast<std::size_t>(end - word.begin());
   return common >= 4 && 2 * common >= candidate.size();
 }
@@ -92,8 +91,7 @@ std::string_view called_here(std::string_view word) {
 
 }  // namespace
 
-Mistakes::Mistakes(std::string file, std::string_view text)
-    : file_(std::move(file)), lines_(split_lines(text)) {}
+Mistakes::Mistakes(std::string file, std::string_view text) : file_(std::move(file)), lines_(split_lines(text)) {}
 
 void Mistakes::add(Span where, std::string cause, std::string fix) {
   found_.push_back({where, std::move(cause), std::move(fix)});
@@ -120,20 +118,16 @@ std::string Mistakes::report() const {
   return text;
 }
 
-std::string Mistakes::paragraph(std::string_view kind, Span where, std::string_view cause,
-                                std::string_view fix) const {
+std::string Mistakes::paragraph(std::string_view kind, Span where, std::string_view cause, std::string_view fix) const {
   const std::string last = fix.empty() ? "" : fmt::format("  fix: {}\n", fix);
   if (where.line < 1) return fmt::format("{}: {}: {}\n{}", file_, kind, cause, last);
-  const std::string head =
-      fmt::format("{}:{}:{}: {}: {}\n", file_, where.line, where.begin, kind, cause);
+  const std::string head = fmt::format("{}:{}:{}: {}: {}\n", file_, where.line, where.begin, kind, cause);
   if (where.line > static_cast<int>(lines_.size())) return head + last;
 
-  const std::vector<std::string> line =
-      characters(lines_[static_cast<std::size_t>(where.line - 1)]);
-  const std::size_t begin =
-      std::min(static_cast<std::size_t>(std::max(where.begin, 1) - 1), line.size());
-  const std::size_t end = std::clamp(static_cast<std::size_t>(std::max(where.end, 1) - 1),
-                                     begin + 1, std::max(line.size(), begin + 1));
+  const std::vector<std::string> line = characters(lines_[static_cast<std::size_t>(where.line - 1)]);
+  const std::size_t begin = std::min(static_cast<std::size_t>(std::max(where.begin, 1) - 1), line.size());
+  const std::size_t end =
+      std::clamp(static_cast<std::size_t>(std::max(where.end, 1) - 1), begin + 1, std::max(line.size(), begin + 1));
   // A long line is cut to a window that starts a little before the mistake.
   const std::size_t first = end <= longest_shown ? 0 : begin - std::min<std::size_t>(begin, 20);
   const std::size_t stop = std::min(line.size(), first + longest_shown);

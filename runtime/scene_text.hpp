@@ -29,8 +29,7 @@ class Mistakes {
   // is wrong.
   std::string report() const;
   // One such paragraph: `kind` is "error" or "warning".
-  std::string paragraph(std::string_view kind, Span where, std::string_view cause,
-                        std::string_view fix) const;
+  std::string paragraph(std::string_view kind, Span where, std::string_view cause, std::string_view fix) const;
 
  private:
   struct Mistake {

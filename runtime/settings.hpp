@@ -58,18 +58,17 @@ struct Settings {
   double baumgarte = 0.2;  // share of C removed per step, 0 to 1
   Kernels kernels = Kernels::balanced;
   bool warm_start = true;  // the iterative solver starts from the impulses of the step before
-  double gravity_x = 0;  // [m/s^2]
+  double gravity_x = 0;    // [m/s^2]
   double gravity_y = 0;
-  double gravity_z = 0;    // in space
-  double sleep_after = 0;  // [s] that an island must rest before it sleeps; 0: nothing ever sleeps
+  double gravity_z = 0;       // in space
+  double sleep_after = 0;     // [s] that an island must rest before it sleeps; 0: nothing ever sleeps
   double sleep_speed = 1e-3;  // [m/s] and [rad/s] below which a body counts as resting
 };
 
 // Why these methods do not go together; nullptr if they do.
 constexpr const char* wrong_with_methods(const Settings& s) {
   const bool accelerations = works_on_accelerations(s.integrator);
-  if (s.local_error > 0 && !accelerations)
-    return "local_error chooses the steps of rk4 and dop853 only";
+  if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4 and dop853 only";
   if (s.integrator == Integrator::rattle && s.drift != Drift::projection)
     return "rattle holds the joints by itself: it needs drift = projection";
   if (!accelerations) return nullptr;
@@ -81,10 +80,10 @@ constexpr const char* wrong_with_methods(const Settings& s) {
 }
 
 struct BodyDefinition {
-  double x = 0, y = 0, angle = 0;  // centre of mass [m], [rad]
-  double vx = 0, vy = 0, w = 0;    // [m/s], [rad/s]
-  double mass = 0;                 // [kg]; must be > 0 unless is_static
-  double inertia = 0;  // about the centre of mass [kg m^2]; 0: a point mass, which does not turn
+  double x = 0, y = 0, angle = 0;   // centre of mass [m], [rad]
+  double vx = 0, vy = 0, w = 0;     // [m/s], [rad/s]
+  double mass = 0;                  // [kg]; must be > 0 unless is_static
+  double inertia = 0;               // about the centre of mass [kg m^2]; 0: a point mass, which does not turn
   bool is_static = false;           // immovable: inverse mass and inertia exactly 0
   bool fixed_rotation = false;      // inverse inertia exactly 0
   double force_x = 0, force_y = 0;  // constant, at the centre of mass [N]
@@ -102,15 +101,15 @@ struct Inertia {
 const char* wrong_with(const Inertia& inertia);
 
 struct SpatialBodyDefinition {
-  double x = 0, y = 0, z = 0;                    // centre of mass [m]
-  double e0 = 1, e1 = 0, e2 = 0, e3 = 0;         // orientation as a quaternion of any length but 0
-  double vx = 0, vy = 0, vz = 0;                 // [m/s]
-  double wx = 0, wy = 0, wz = 0;                 // in world axes [rad/s]
-  double mass = 0;                               // [kg]; must be > 0 unless is_static
-  Inertia inertia = {};                          // all 0: a point mass, which does not turn
-  bool is_static = false;                        // immovable
-  bool fixed_rotation = false;                   // inverse inertia exactly 0
-  double force_x = 0, force_y = 0, force_z = 0;  // constant, at the centre of mass [N]
+  double x = 0, y = 0, z = 0;                       // centre of mass [m]
+  double e0 = 1, e1 = 0, e2 = 0, e3 = 0;            // orientation as a quaternion of any length but 0
+  double vx = 0, vy = 0, vz = 0;                    // [m/s]
+  double wx = 0, wy = 0, wz = 0;                    // in world axes [rad/s]
+  double mass = 0;                                  // [kg]; must be > 0 unless is_static
+  Inertia inertia = {};                             // all 0: a point mass, which does not turn
+  bool is_static = false;                           // immovable
+  bool fixed_rotation = false;                      // inverse inertia exactly 0
+  double force_x = 0, force_y = 0, force_z = 0;     // constant, at the centre of mass [N]
   double torque_x = 0, torque_y = 0, torque_z = 0;  // constant, in world axes [N m]
   double linear_damping = 0, angular_damping = 0;   // [1/s]
 };

@@ -42,16 +42,14 @@ void put_to_sleep(WorldState<S>& world, double h) {
   const T speed = T(world.settings.sleep_speed);
   const auto falls_asleep = [&](int index) {
     Island<S>& island = world.islands[index];
-    const bool resting =
-        !island.restless && std::all_of(island.bodies.begin(), island.bodies.end(),
-                                        [&](int i) { return S::slower(all.velocity[i], speed); });
+    const bool resting = !island.restless && std::all_of(island.bodies.begin(), island.bodies.end(),
+                                                         [&](int i) { return S::slower(all.velocity[i], speed); });
     island.rested = resting ? island.rested + h : 0.0;
     if (island.rested < world.settings.sleep_after) return false;
     for (int i : island.bodies) all.velocity[i] = {};
     return island.asleep = true;
   };
-  world.awake.erase(std::remove_if(world.awake.begin(), world.awake.end(), falls_asleep),
-                    world.awake.end());
+  world.awake.erase(std::remove_if(world.awake.begin(), world.awake.end(), falls_asleep), world.awake.end());
 }
 
 template <class S>

@@ -86,10 +86,8 @@ struct Copy : Visitor<T, Copy<T, save>> {
     if (!fits || count == 0) return;
     left -= count;
     const std::size_t bytes = count * Snapshot::size_of(type);
-    if constexpr (save)
-      std::memcpy(at, here, bytes);
-    else
-      std::memcpy(here, at, bytes);
+    if constexpr (save) std::memcpy(at, here, bytes);
+    else std::memcpy(here, at, bytes);
     at += bytes;
   }
   bool all() const { return fits && left == 0 && next == items.size(); }
@@ -102,8 +100,7 @@ std::uint64_t hash_of_bodies(const WorldState<S>& world) {
   for (const auto& m : world.bodies.inverse_mass) hash.add(m.m), hash.add(S::immovable(m));
   if constexpr (S::has_gyroscopes)
     for (const auto& gyroscope : world.gyroscopes) hash.add(gyroscope.body), hash.add(gyroscope.inertia);
-  else
-    hash.add(world.bodies.inverse_mass);
+  else hash.add(world.bodies.inverse_mass);
   return hash.value;
 }
 

@@ -13,9 +13,9 @@ namespace cdot {
 struct StateList {
   template <class S, class Visitor>
   static void each(WorldState<S>& world, Visitor& visit) {
-    auto& [settings, time, last_step, origin, bodies, ground, joints, batches, springs, drags, gyroscopes, breaking_loads,
-           after_substep, notes, counts, on_failure, kept_time, kept_last_step, kept_counts, broken_in_step, prepared,
-           islands, island_of, awake] = world;
+    auto& [settings, time, last_step, origin, bodies, ground, joints, batches, springs, drags, gyroscopes,
+           breaking_loads, after_substep, notes, counts, on_failure, kept_time, kept_last_step, kept_counts,
+           broken_in_step, prepared, islands, island_of, awake] = world;
     visit.item("time", -1);
     visit(time), visit(last_step);
     each_joint(joints, visit);  // must come second: restoring begins with it
@@ -100,8 +100,8 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool direct, Visitor& visit) {
-    auto& [bodies, segments, springs, drags, gyroscopes, system, rescue, redundant_rows, size, scale, restless, residual,
-           evaluated, factored, continuous, flow, asleep, rested, kept, trouble] = island;
+    auto& [bodies, segments, springs, drags, gyroscopes, system, rescue, redundant_rows, size, scale, restless,
+           residual, evaluated, factored, continuous, flow, asleep, rested, kept, trouble] = island;
     visit.item("island.flags", index);
     visit(evaluated), visit(factored), visit(continuous), visit(asleep);
     visit.item("island.rows", index);
@@ -117,7 +117,8 @@ struct StateList {
   template <class S, class Visitor>
   static void each_of_flow(Flow<S>& flow, int index, Visitor& visit) {
     auto& [pose, velocity, search, start, now, rates, guarded, told, row_rates, margins, margins_chosen, low, high,
-           at_start, next_step, longest, slivers, known, ahead, length, end_kept, end, end_forces, further_terms] = flow;
+           at_start, next_step, longest, slivers, known, ahead, length, end_kept, end, end_forces, further_terms] =
+        flow;
     visit.item("flow.told", index), visit(told);
     visit.item("flow.row_rates", index), visit(row_rates);
     visit.item("flow.margins", index), visit(margins), visit(margins_chosen);
@@ -136,9 +137,9 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_system(System<S>& system, int index, Visitor& visit) {
-    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, tensions, built, lawful, taut, any_out, contradicted,
-           softened, rows, dependent, ldlt, products, jacobian, weighted, right_side, product, shared, unmet, tension_of,
-           out, held] = system;
+    auto& [b, lambda, softness, lower, upper, fixed, broken, blocks, tensions, built, lawful, taut, any_out,
+           contradicted, softened, rows, dependent, ldlt, products, jacobian, weighted, right_side, product, shared,
+           unmet, tension_of, out, held] = system;
     visit.item("system.slots", index);
     for (auto& block : blocks) visit(block.slot);
     for (auto& tension : tensions) visit(tension.slot);  // whose rows are slack between steps
@@ -155,8 +156,8 @@ struct StateList {
 
   template <class Real, class Visitor>
   static void each_of_factor(BasicLdlt<Real>& ldlt, int index, Visitor& visit) {
-    auto& [first, diagonal, column_of, columns, panel_row, updates, values, l, inverse, noise, doubtful, overstated, out,
-           dependent, definite, any_out, factored, share, unscaled, given] = ldlt;
+    auto& [first, diagonal, column_of, columns, panel_row, updates, values, l, inverse, noise, doubtful, overstated,
+           out, dependent, definite, any_out, factored, share, unscaled, given] = ldlt;
     visit.item("factor.K", index), visit(values);
     visit.item("factor.L", index), visit(l);
     visit.item("factor.inverse", index), visit(inverse), visit(noise);

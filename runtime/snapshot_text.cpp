@@ -18,16 +18,11 @@ constexpr std::string_view first_line = "cdot state 1";
 template <class F>
 bool with_number_type(char type, F f) {
   switch (type) {
-    case 'd':
-      return f(double{}), true;
-    case 'f':
-      return f(float{}), true;
-    case 'i':
-      return f(int{}), true;
-    case 'l':
-      return f(0ll), true;
-    case 'c':
-      return f(static_cast<signed char>(0)), true;
+    case 'd': return f(double{}), true;
+    case 'f': return f(float{}), true;
+    case 'i': return f(int{}), true;
+    case 'l': return f(0ll), true;
+    case 'c': return f(static_cast<signed char>(0)), true;
   }
   return false;
 }
@@ -44,8 +39,7 @@ void write(std::string& text, Number number) {
   auto out = std::back_inserter(text);
   if constexpr (std::is_floating_point_v<Number>)
     number == 0 && !std::signbit(number) ? fmt::format_to(out, " 0") : fmt::format_to(out, " {:a}", number);
-  else
-    fmt::format_to(out, " {}", static_cast<long long>(number));
+  else fmt::format_to(out, " {}", static_cast<long long>(number));
 }
 
 // Lines and the words on them, and where that is when something is wrong.

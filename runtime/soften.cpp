@@ -5,9 +5,9 @@
 //
 //   lambda <- lambda + (K + eps D)^-1 (b - K lambda),   D the diagonal of K
 //
-// Each round leaves eps / (eps + kappa) of what b has along an eigenvector, K x = kappa D x. Of rows that contradict each
-// other (kappa = 0) all is left. That adds 1 / eps of itself to lambda in every round, and as much round-off to the rest:
-// for such rows eps is larger, and D the same for all, which makes the motion that of least squares.
+// Each round leaves eps / (eps + kappa) of what b has along an eigenvector, K x = kappa D x. Of rows that contradict
+// each other (kappa = 0) all is left. That adds 1 / eps of itself to lambda in every round, and as much round-off to
+// the rest: for such rows eps is larger, and D the same for all, which makes the motion that of least squares.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -101,11 +101,11 @@ void System<S>::solve_softly() {
   refine(aim, scale);
 }
 
-#define CDOT_INSTANTIATE(S)                                                                  \
-  template bool System<S>::drops_rows_by_round_off();                                        \
-  template void System<S>::soften(Softened);                                                 \
+#define CDOT_INSTANTIATE(S)                                                                    \
+  template bool System<S>::drops_rows_by_round_off();                                          \
+  template void System<S>::soften(Softened);                                                   \
   template System<S>::Real System<S>::find_rest(const std::vector<Real>&, std::vector<Real>&); \
-  template System<S>::Real System<S>::refine(const std::vector<Real>&, Real);                \
+  template System<S>::Real System<S>::refine(const std::vector<Real>&, Real);                  \
   template void System<S>::solve_softly();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

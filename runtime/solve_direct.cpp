@@ -27,8 +27,8 @@ void solve_direct(WorldState<S>& world, Island<S>& island) {
   }
   system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = T(lambda); });
   for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all,
-                              segment.batch->lambda.data(), all.velocity.data());
+    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all, segment.batch->lambda.data(),
+                              all.velocity.data());
   system.pull(all, all.velocity.data());
 }
 

@@ -23,10 +23,8 @@ void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
-      if (batch.law)
-        batch.ops->iterate_bounded(batch, segment.begin, segment.end, world.bodies);
-      else
-        batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, batch.lambda.data());
+      if (batch.law) batch.ops->iterate_bounded(batch, segment.begin, segment.end, world.bodies);
+      else batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, batch.lambda.data());
     }
   }
 }

@@ -13,9 +13,8 @@
 #define CDOT_FOR_EACH_NUMBER(declaration) declaration(long double)
 #define CDOT_EXACT_NUMBER long double  // what their K is formed in
 #else
-#define CDOT_FOR_EACH_SPACE(declaration)                                              \
-  declaration(Planar<double>) declaration(Planar<float>) declaration(Spatial<double>) \
-      declaration(Spatial<float>)
+#define CDOT_FOR_EACH_SPACE(declaration) \
+  declaration(Planar<double>) declaration(Planar<float>) declaration(Spatial<double>) declaration(Spatial<float>)
 #define CDOT_FOR_EACH_NUMBER(declaration) declaration(double) declaration(float)
 #define CDOT_EXACT_NUMBER double
 #endif

@@ -60,9 +60,7 @@ struct Spatial {
     const Inertia& I = d.inertia;
     return {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz};
   }
-  static bool turns(const BodyDefinition& d) {
-    return !d.is_static && !d.fixed_rotation && d.inertia.xx > 0;
-  }
+  static bool turns(const BodyDefinition& d) { return !d.is_static && !d.fixed_rotation && d.inertia.xx > 0; }
   static bool isotropic(const Inertia& I) {
     return I.xx == I.yy && I.yy == I.zz && I.xy == 0 && I.xz == 0 && I.yz == 0;
   }
@@ -77,12 +75,8 @@ struct Spatial {
     const Gyroscope gyroscope = gyroscope_of(0, d);
     return inverse_mass(m, spatial::turned(placed(place_of(d)), gyroscope.inverse));
   }
-  static InverseMass inverse_mass(T m, const Symmetric& I) {
-    return {m, I.xx, I.yy, I.zz, I.xy, I.xz, I.yz};
-  }
-  static Symmetric inverse_inertia(const InverseMass& m) {
-    return {m.Ixx, m.Iyy, m.Izz, m.Ixy, m.Ixz, m.Iyz};
-  }
+  static InverseMass inverse_mass(T m, const Symmetric& I) { return {m, I.xx, I.yy, I.zz, I.xy, I.xz, I.yz}; }
+  static Symmetric inverse_inertia(const InverseMass& m) { return {m.Ixx, m.Iyy, m.Izz, m.Ixy, m.Ixz, m.Iyz}; }
 
   // --- bodies whose inertia tensor turns with them ---
 
@@ -167,9 +161,7 @@ struct Spatial {
   static void write(const Velocity& v, T* to) {
     to[0] = v.x, to[1] = v.y, to[2] = v.z, to[3] = v.wx, to[4] = v.wy, to[5] = v.wz;
   }
-  static Velocity read_velocity(const T* from) {
-    return {from[0], from[1], from[2], from[3], from[4], from[5]};
-  }
+  static Velocity read_velocity(const T* from) { return {from[0], from[1], from[2], from[3], from[4], from[5]}; }
   // de/dt = (0, w) e / 2, w in world axes
   static void write_rate(const Pose& q, const Velocity& v, T* to) {
     const T x = T(0.5) * v.wx, y = T(0.5) * v.wy, z = T(0.5) * v.wz;
@@ -205,8 +197,7 @@ struct Spatial {
   }
 
   static Velocity damped(const Velocity& v, T linear, T angular) {
-    return {v.x * linear,   v.y * linear,   v.z * linear,
-            v.wx * angular, v.wy * angular, v.wz * angular};
+    return {v.x * linear, v.y * linear, v.z * linear, v.wx * angular, v.wy * angular, v.wz * angular};
   }
 
   static double dot(const Velocity& f, const Velocity& v) {
@@ -215,8 +206,7 @@ struct Spatial {
   }
 
   static bool slower(const Velocity& v, T speed) {
-    return v.x * v.x + v.y * v.y + v.z * v.z < speed * speed &&
-           spatial::dot(angular(v), angular(v)) < speed * speed;
+    return v.x * v.x + v.y * v.y + v.z * v.z < speed * speed && spatial::dot(angular(v), angular(v)) < speed * speed;
   }
 
   // A spring with damping from a point of body a to a point of body b, given in their frames.
@@ -226,13 +216,8 @@ struct Spatial {
     T stiffness, rest_length, damping;
   };
   static PointSpring point_spring(const SpringDefinition& d) {
-    return {d.body_a,
-            d.body_b,
-            {T(d.ax), T(d.ay), T(d.az)},
-            {T(d.bx), T(d.by), T(d.bz)},
-            T(d.stiffness),
-            T(d.rest_length),
-            T(d.damping)};
+    return {d.body_a,         d.body_b,    {T(d.ax), T(d.ay), T(d.az)}, {T(d.bx), T(d.by), T(d.bz)}, T(d.stiffness),
+            T(d.rest_length), T(d.damping)};
   }
   // Length, and the direction from a to b together with the arms.
   struct Stretch {
@@ -248,16 +233,13 @@ struct Spatial {
     return {length, n, spatial::cross(ra, n), spatial::cross(rb, n)};
   }
   // The pull on a; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
-  static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a,
-                   const Velocity& b) {
+  static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a, const Velocity& b) {
     const T rate = spatial::dot(s.direction, Vector{b.x - a.x, b.y - a.y, b.z - a.z}) +
                    spatial::dot(s.arm_b, angular(b)) - spatial::dot(s.arm_a, angular(a));
     return spring.stiffness * (s.length - spring.rest_length) + spring.damping * rate;
   }
   static Velocity pull_on_a(const Stretch& s, T f) { return impulse(f * s.direction, f * s.arm_a); }
-  static Velocity pull_on_b(const Stretch& s, T f) {
-    return impulse(-f * s.direction, -f * s.arm_b);
-  }
+  static Velocity pull_on_b(const Stretch& s, T f) { return impulse(-f * s.direction, -f * s.arm_b); }
 
   // What a row block's d(J^T lambda)/dq says about one body's turning.
   using Stiffness = Symmetric;
@@ -285,9 +267,7 @@ struct Spatial {
 
   static InverseMass unit_mass() { return {T(1), T(1), T(1), T(1), T(0), T(0), T(0)}; }
 
-  static bool immovable(const InverseMass& m) {
-    return m.m == 0 && m.Ixx == 0 && m.Iyy == 0 && m.Izz == 0;
-  }
+  static bool immovable(const InverseMass& m) { return m.m == 0 && m.Ixx == 0 && m.Iyy == 0 && m.Izz == 0; }
 
  private:
   static Vector angular(const Velocity& v) { return {v.wx, v.wy, v.wz}; }

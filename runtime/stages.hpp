@@ -25,8 +25,8 @@ void push_free_bodies(WorldState<S>& world, Island<S>& island);
 template <class S>
 void free_accelerations(WorldState<S>& world, Island<S>& island);
 
-// Forces of springs on coordinates, from C and its rate, become both bounds of their rows: slots [begin, end) of a batch
-// under such a law.
+// Forces of springs on coordinates, from C and its rate, become both bounds of their rows: slots [begin, end) of a
+// batch under such a law.
 template <class S>
 void find_known_forces(WorldState<S>& world, Batch<S>& batch, int begin, int end);
 

@@ -10,13 +10,13 @@ template <class S>
 void move_velocities(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   evaluate_rows(world, island, h);
   apply_forces(world, island, h);
-  if (world.settings.solver == Solver::direct)
-    solve_direct(world, island);
+  if (world.settings.solver == Solver::direct) solve_direct(world, island);
   else  // the same forces over another time
     solve_iterative(world, island, world.last_step > 0 ? h / typename S::Scalar(world.last_step) : 0);
 }
 
-// The linearly implicit step wants the impulses of the one before. The first one takes those that it would have without.
+// The linearly implicit step wants the impulses of the one before. The first one takes those that it would have
+// without.
 template <class S>
 void rehearse(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;

@@ -17,7 +17,8 @@ template <class T>
 constexpr T round_off = T(by_precision<T>(1e-7, 1e-15));
 
 // Rows without a position tell the first half of a step nothing: it repeats what they exerted in the second half of the
-// one before. From 0 on that would be nothing and twice their share by turns, for ever. Here half of what they exert in h.
+// one before. From 0 on that would be nothing and twice their share by turns, for ever. Here half of what they exert in
+// h.
 template <class S>
 void exert_at_start(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -124,8 +125,8 @@ bool turned_round(const WorldState<S>& world, const Island<S>& island) {
 }
 
 // From the factor of the start: K lambda = -C / h, velocity += M^-1 J^T lambda, and the drift again, with what Broyden
-// learns on the way. False if the error does not shrink, the step being too long for it; or if it did so by throwing the
-// bodies back, where a joint's directions turn round as those of a rope do whose length passes through 0.
+// learns on the way. False if the error does not shrink, the step being too long for it; or if it did so by throwing
+// the bodies back, where a joint's directions turn round as those of a rope do whose length passes through 0.
 template <class S>
 bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -138,12 +139,10 @@ bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scal
     drift(world, island, h);
     island.residual = find_errors(world, island, time);
     if (!(island.residual > round_off<T> * island.scale)) return !astray || !turned_round(world, island);
-    if (island.residual < T(0.7) * least)
-      least = island.residual, vain = 0;
+    if (island.residual < T(0.7) * least) least = island.residual, vain = 0;
     else if (island.residual <= converged<T> * island.scale)  // round-off may stop it earlier than that
       return !astray || !turned_round(world, island);
-    else if (++vain > most_in_vain)
-      return island.residual <= T(10) * converged<T> * island.scale;
+    else if (++vain > most_in_vain) return island.residual <= T(10) * converged<T> * island.scale;
     astray |= vain > 0;
     solve_errors(island, T(-1) / h);
     if (!island.flow.search.next(system.lambda.data())) return false;
@@ -171,10 +170,8 @@ void solve_bounded_rows(WorldState<S>& world, Island<S>& island, typename S::Sca
     }
   }
   island.factored = false;
-  if (world.settings.solver == Solver::direct)
-    solve_direct(world, island);
-  else
-    solve_iterative(world, island, T(1));
+  if (world.settings.solver == Solver::direct) solve_direct(world, island);
+  else solve_iterative(world, island, T(1));
 }
 
 template <class S>
@@ -196,8 +193,7 @@ void hold_end(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 // Half a kick at the start, and what the joints are expected to exert there.
 template <class S>
 void start_half(WorldState<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
-  for (size_t k = 0; k < island.bodies.size(); ++k)
-    world.bodies.velocity[island.bodies[k]] = island.flow.velocity[k];
+  for (size_t k = 0; k < island.bodies.size(); ++k) world.bodies.velocity[island.bodies[k]] = island.flow.velocity[k];
   clear_correction(world, island);
   kick(world, island, h / 2);
   guess_impulses(world, island, share);

@@ -7,13 +7,10 @@ namespace {
 
 const char* what_went_wrong(StepProblem problem) {
   switch (problem) {
-    case StepProblem::not_finite:
-      return "a pose or velocity came out not finite";
-    case StepProblem::joints_apart:
-      return "Newton did not bring the joints together that the motion drew apart";
+    case StepProblem::not_finite: return "a pose or velocity came out not finite";
+    case StepProblem::joints_apart: return "Newton did not bring the joints together that the motion drew apart";
     case StepProblem::bad_step:
-    case StepProblem::none:
-      break;
+    case StepProblem::none: break;
   }
   return "";
 }
@@ -25,26 +22,19 @@ std::string likely_fix(StepProblem problem, OnFailure tried) {
   switch (problem) {
     case StepProblem::not_finite:
       return "a shorter step; the direct solver; integrator implicit where loads are heavy or springs stiff" + or_retry;
-    case StepProblem::joints_apart:
-      return "a shorter step: at most a tenth of a radian in each" + or_retry;
-    case StepProblem::bad_step:
-      return "a step is a finite number of seconds above 0";
-    case StepProblem::none:
-      break;
+    case StepProblem::joints_apart: return "a shorter step: at most a tenth of a radian in each" + or_retry;
+    case StepProblem::bad_step: return "a step is a finite number of seconds above 0";
+    case StepProblem::none: break;
   }
   return "";
 }
 
 const char* name_of(StepProblem problem) {
   switch (problem) {
-    case StepProblem::not_finite:
-      return "not_finite";
-    case StepProblem::joints_apart:
-      return "joints_apart";
-    case StepProblem::bad_step:
-      return "bad_step";
-    case StepProblem::none:
-      break;
+    case StepProblem::not_finite: return "not_finite";
+    case StepProblem::joints_apart: return "joints_apart";
+    case StepProblem::bad_step: return "bad_step";
+    case StepProblem::none: break;
   }
   return "none";
 }

@@ -16,7 +16,7 @@ namespace {
 
 // In one step(), and in a row; beyond them its rest is left to Euler's: something chatters, or jams.
 constexpr int most_events = 32, most_slivers = 1000;
-constexpr double sliver = 1e-4;  // of the longest step so far
+constexpr double sliver = 1e-4;      // of the longest step so far
 constexpr int most_rejections = 30;  // in a row
 // The same of attempts that do not end on the joints, or only where these undo the motion: at steps hundreds of times
 // shorter too. Then no length is to blame, but velocities that contradict each other, as a motor's and a bar's.
@@ -28,8 +28,8 @@ constexpr double absurd = 0.3;
 constexpr double smallest_part = 1.0 / 16;
 template <class S>
 constexpr auto slight_displacement = typename S::Scalar(1e-6);  // of its size, and [rad]
-constexpr int most_searches = 60;    // for one event
-constexpr int furthest_reach = 64;   // of a step of its own length, in step()s
+constexpr int most_searches = 60;                               // for one event
+constexpr int furthest_reach = 64;                              // of a step of its own length, in step()s
 
 // In units of what is not told apart, from where a row stood when its mode was chosen, which is steps ago for one that
 // creeps: an event is behind us, and just behind us.
@@ -121,8 +121,9 @@ double try_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
   return lost ? std::numeric_limits<double>::infinity() : error;
 }
 
-// Of a fixed step of `whole` what is `left`, or the largest of its halves, quarters ... whose error is not absurd: those
-// of all parts of the step add up. Returns its length; Flow::margins are those of its end. 0 if none is short enough.
+// Of a fixed step of `whole` what is `left`, or the largest of its halves, quarters ... whose error is not absurd:
+// those of all parts of the step add up. Returns its length; Flow::margins are those of its end. 0 if none is short
+// enough.
 template <class S>
 typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                    typename S::Scalar time, typename S::Scalar left, typename S::Scalar whole) {
@@ -149,9 +150,8 @@ typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, c
   T h = length_of_step(proposed, left, reach);
   int astray = 0;
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
-    const double error = try_step(world, island, method, time, h, [&] {
-      return error_of_step(island, method, h, world.settings.local_error);
-    });
+    const double error = try_step(world, island, method, time, h,
+                                  [&] { return error_of_step(island, method, h, world.settings.local_error); });
     // 0.9 of the step that would just do; a NaN shrinks like the worst.
     const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
@@ -246,9 +246,8 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
     flow.end_kept = false;
     // Whoever looks at the loads after every step may change what follows.
     const T reach = world.after_substep.empty() ? furthest_reach * h : left;
-    flow.length = world.settings.local_error > 0
-                      ? take_adaptive_step(world, island, method, time, left, reach)
-                      : take_fixed_step(world, island, method, time, left, h);
+    flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, left, reach)
+                                                 : take_fixed_step(world, island, method, time, left, h);
     if (!(flow.length > T(0))) {
       leave_to_euler(world, island, time, left);
       return h;

@@ -78,8 +78,7 @@ class System {
   template <class F>
   void each_row(F f) {
     for (const Block& block : blocks)
-      for (int r = 0; r < block.rows; ++r)
-        f(block.first + r, *block.batch, block.slot * block.rows + r);
+      for (int r = 0; r < block.rows; ++r) f(block.first + r, *block.batch, block.slot * block.rows + r);
   }
 
   // Vectors over all rows, in the order of the blocks; the caller's to fill between the calls.
@@ -114,13 +113,14 @@ class System {
     Batch<S>* batch;
     int slot;
     int first, rows;
-    int jacobian;     // into jacobian_ and weighted_
+    int jacobian;                         // into jacobian_ and weighted_
     typename BasicLdlt<Real>::Place own;  // its square in K
   };
   std::vector<Block> blocks, tensions;
 
-  // Rows that the tension of a slot adds (runtime/tension.hpp): the impulse -stiffness W v along W^T, as soft rows. They
-  // are no joint's, so each_row() leaves them out, and their b is 0 but after load_tensions(). Slack until tightened.
+  // Rows that the tension of a slot adds (runtime/tension.hpp): the impulse -stiffness W v along W^T, as soft rows.
+  // They are no joint's, so each_row() leaves them out, and their b is 0 but after load_tensions(). Slack until
+  // tightened.
   void slacken();
   // Takes over from the system of the same blocks without tensions what changed since both were built, and forgets the
   // rest.
@@ -181,8 +181,8 @@ class System {
   std::vector<Real> right_side_, product_;
   std::array<std::vector<Real>, 4> shared_;  // by row, while contradictions are shared out or rows refined
   std::vector<Real> unmet_;                  // by row
-  std::vector<int> tension_of_;  // which of `blocks`
-  std::vector<char> out_, held_;  // held_: the active set of the last solve_bounded()
+  std::vector<int> tension_of_;              // which of `blocks`
+  std::vector<char> out_, held_;             // held_: the active set of the last solve_bounded()
 };
 
 }  // namespace cdot

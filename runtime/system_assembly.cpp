@@ -155,9 +155,8 @@ void System<S>::list_products(const Bodies<S>& bodies) {
         const Block &row = *u.block, &column = *v.block;
         if (row.first <= column.first) continue;
         products_.push_back({products<S>[dense::kind(row.rows)][dense::kind(column.rows)],
-                             row.jacobian + S::freedom * u.position,
-                             column.jacobian + S::freedom * v.position, width(row), width(column),
-                             row.rows, column.rows, ldlt_.place(row.first, column.first)});
+                             row.jacobian + S::freedom * u.position, column.jacobian + S::freedom * v.position,
+                             width(row), width(column), row.rows, column.rows, ldlt_.place(row.first, column.first)});
       }
     }
   }
@@ -169,11 +168,9 @@ void System<S>::assemble(const Bodies<S>& bodies) {
   std::fill(K.begin(), K.end(), 0.0);
   for (const Block& block : blocks)
     block.batch->ops->dense(*block.batch, block.slot, bodies, jacobian_.data() + block.jacobian,
-                            weighted_.data() + block.jacobian, K.data() + block.own.at,
-                            block.own.stride);
+                            weighted_.data() + block.jacobian, K.data() + block.own.at, block.own.stride);
   assemble_tensions(bodies);
-  for (const Product& product : products_)
-    product.add(product, jacobian_.data(), weighted_.data(), K.data());
+  for (const Product& product : products_) product.add(product, jacobian_.data(), weighted_.data(), K.data());
 }
 
 #define CDOT_INSTANTIATE(S) template class System<S>;

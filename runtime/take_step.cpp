@@ -14,13 +14,10 @@ template <class S>
 void advance(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   switch (world.settings.integrator) {
     case Integrator::euler:
-    case Integrator::implicit:
-      return step_euler(world, island, h);
-    case Integrator::rattle:
-      return step_rattle(world, island, h);
+    case Integrator::implicit: return step_euler(world, island, h);
+    case Integrator::rattle: return step_rattle(world, island, h);
     case Integrator::rk4:
-    case Integrator::dop853:
-      return step_runge_kutta(world, island, h);
+    case Integrator::dop853: return step_runge_kutta(world, island, h);
   }
 }
 

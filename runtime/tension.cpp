@@ -152,13 +152,14 @@ void tighten_tensions(WorldState<S>& world, Island<S>& island, typename S::Scala
       if (r + 1 < tension.rows) stiffness.eliminate(w, pivot);
       system.tighten(tension, r, w.data(), pivot * double(h));
       for (int k = 0; k < bodies; ++k)
-        leave_to_row<S>(world.bodies.stiffness[batch.body[tension.slot * bodies + k]], w.data() + S::freedom * k, pivot);
+        leave_to_row<S>(world.bodies.stiffness[batch.body[tension.slot * bodies + k]], w.data() + S::freedom * k,
+                        pivot);
     }
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                            \
-  template std::vector<int> tension_rows(const WorldState<S>&, const Island<S>&);      \
+#define CDOT_INSTANTIATE(S)                                                       \
+  template std::vector<int> tension_rows(const WorldState<S>&, const Island<S>&); \
   template void tighten_tensions(WorldState<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

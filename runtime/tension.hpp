@@ -4,9 +4,9 @@
 //
 //   -h d(J^T lambda)/dq = W^T D W + (own turning),   impulse mu = -D W v',
 //
-// so that K gets the rows W and D^-1 on the diagonal, and M stays as simple as it is. That impulse turns the joint's own,
-// J^T lambda, from the direction that it has at the start of the step into that of the end, so it is none beside it: with
-// J at the end, where reactions are asked for, J^T lambda is all that the joint exerts.
+// so that K gets the rows W and D^-1 on the diagonal, and M stays as simple as it is. That impulse turns the joint's
+// own, J^T lambda, from the direction that it has at the start of the step into that of the end, so it is none beside
+// it: with J at the end, where reactions are asked for, J^T lambda is all that the joint exerts.
 #pragma once
 
 #include "runtime/world_state.hpp"

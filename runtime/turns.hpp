@@ -27,8 +27,7 @@ template <class Joint>
 constexpr int turns_parameter(std::string_view coordinate) {
   for (const ParameterInfo& info : Joint::parameters) {
     const std::string_view name = info.name;
-    if (info.unit == "rad" && name.ends_with("_turns") &&
-        name.substr(0, name.size() - 6) == coordinate)
+    if (info.unit == "rad" && name.ends_with("_turns") && name.substr(0, name.size() - 6) == coordinate)
       return info.offset;
   }
   return -1;
@@ -43,8 +42,7 @@ struct TurnCounters {
   using Parameters = typename Joint::template Parameters<T>;
 
   static constexpr bool is_angle() {
-    if constexpr (S::dimension == Dimension::spatial && requires { Block::unit; })
-      return Block::unit == "rad";
+    if constexpr (S::dimension == Dimension::spatial && requires { Block::unit; }) return Block::unit == "rad";
     return false;
   }
   static constexpr int of_parameters() {

@@ -6,7 +6,7 @@
 
 namespace cdot {
 
-extern const std::string_view viewer_html, viewer_css, viewer_marks_css, viewer_film_js,
-    viewer_plane_js, viewer_space_js, viewer_js;
+extern const std::string_view viewer_html, viewer_css, viewer_marks_css, viewer_film_js, viewer_plane_js,
+    viewer_space_js, viewer_js;
 
 }  // namespace cdot

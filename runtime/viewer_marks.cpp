@@ -71,8 +71,7 @@ class Painter {
   void pin(const JointPoint& p, const JointPoint& q, bool grounded, bool welded);
   void link(const JointPoint& p, const JointPoint& q, const char* svg);
   double slide_direction(int joint, const CoordinateInfo& coordinate, int body);
-  void rail(int joint, const CoordinateInfo& coordinate, const JointPoint& base,
-            const JointPoint& rider);
+  void rail(int joint, const CoordinateInfo& coordinate, const JointPoint& base, const JointPoint& rider);
   void between_points(int joint, const std::vector<JointPoint>& points);
   bool is_still(int body) const;
   void mark_ground(const JointPoint& point);
@@ -90,8 +89,7 @@ class Painter {
 
 Anchor Painter::anchor(int body, double x, double y) const {
   const double s = drawing_.view.scale;
-  if (body == world_body)
-    return {body, {s * (x - drawing_.view.left), s * (drawing_.view.top - y)}};
+  if (body == world_body) return {body, {s * (x - drawing_.view.left), s * (drawing_.view.top - y)}};
   return {body, {s * x, -s * y}};
 }
 
@@ -105,8 +103,7 @@ std::vector<JointPoint> Painter::points(int joint) const {
   std::vector<JointPoint> result;
   for (const ParameterInfo& info : world_.joint_type(joint).parameters) {
     if (info.kind != ParameterKind::point) continue;
-    const int body =
-        info.body < 0 ? world_body : source.definition.bodies[static_cast<std::size_t>(info.body)];
+    const int body = info.body < 0 ? world_body : source.definition.bodies[static_cast<std::size_t>(info.body)];
     const auto at = static_cast<std::size_t>(info.offset);
     const Anchor place = anchor(body, numbers[at], numbers[at + 1]);
     result.push_back({place, position(place, start_), info.body < 0});
@@ -115,19 +112,17 @@ std::vector<JointPoint> Painter::points(int joint) const {
 }
 
 void Painter::mark_ground(const JointPoint& point) {
-  drawing_.pins.push_back(
-      {world_body, fmt::format(R"svg(<g transform="translate({:.2f} {:.2f})">{}</g>)svg",
-                               point.at[0], point.at[1], ground_mark)});
+  drawing_.pins.push_back({world_body, fmt::format(R"svg(<g transform="translate({:.2f} {:.2f})">{}</g>)svg",
+                                                   point.at[0], point.at[1], ground_mark)});
 }
 
 void Painter::pin(const JointPoint& p, const JointPoint& q, bool grounded, bool welded) {
   const JointPoint& moving = is_still(p.anchor.body) ? q : p;
   if (grounded && (is_still(p.anchor.body) || is_still(q.anchor.body))) mark_ground(moving);
   const Vec2 at = moving.anchor.local;
-  const char* svg = welded
-                        ? R"svg(<rect class="pin" x="{0:.2f}" y="{1:.2f}" width="9" height="9" )svg"
-                          R"svg(transform="translate(-4.5 -4.5)"/>)svg"
-                        : R"(<circle class="pin" cx="{0:.2f}" cy="{1:.2f}" r="5"/>)";
+  const char* svg = welded ? R"svg(<rect class="pin" x="{0:.2f}" y="{1:.2f}" width="9" height="9" )svg"
+                             R"svg(transform="translate(-4.5 -4.5)"/>)svg"
+                           : R"(<circle class="pin" cx="{0:.2f}" cy="{1:.2f}" r="5"/>)";
   drawing_.pins.push_back({moving.anchor.body, fmt::format(fmt::runtime(svg), at[0], at[1])});
 }
 
@@ -142,8 +137,7 @@ void Painter::link(const JointPoint& p, const JointPoint& q, const char* svg) {
 // by differences.
 double Painter::slide_direction(int joint, const CoordinateInfo& coordinate, int body) {
   const planar::Place pose = world_.place(body);
-  const double step = 1e-3 / drawing_.view.scale,
-               before = world_.coordinate(joint, coordinate.name);
+  const double step = 1e-3 / drawing_.view.scale, before = world_.coordinate(joint, coordinate.name);
   world_.set_pose(body, {pose.x + step, pose.y, pose.angle});
   const double along_x = world_.coordinate(joint, coordinate.name) - before;
   world_.set_pose(body, {pose.x, pose.y + step, pose.angle});
@@ -153,13 +147,10 @@ double Painter::slide_direction(int joint, const CoordinateInfo& coordinate, int
 }
 
 // A line on the body of `base` through its point, as long as `rider` uses it in the film.
-void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint& base,
-                   const JointPoint& rider) {
+void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint& base, const JointPoint& rider) {
   if (is_still(rider.anchor.body)) return;
   const auto turned_by = [&](const std::vector<Place>& places) {
-    return base.anchor.body == world_body
-               ? 0
-               : places[static_cast<std::size_t>(base.anchor.body)].degrees;
+    return base.anchor.body == world_body ? 0 : places[static_cast<std::size_t>(base.anchor.body)].degrees;
   };
   const double degrees = slide_direction(joint, coordinate, rider.anchor.body) - turned_by(start_);
   double least = 0, most = 0;
@@ -175,8 +166,7 @@ void Painter::rail(int joint, const CoordinateInfo& coordinate, const JointPoint
       {base.anchor.body,
        fmt::format(R"svg(<line class="rail" x1="{:.0f}" x2="{:.0f}" )svg"
                    R"svg(transform="translate({:.2f} {:.2f}) rotate({:.2f})"/>)svg",
-                   least - rail_overhang, most + rail_overhang, base.anchor.local[0],
-                   base.anchor.local[1], degrees)});
+                   least - rail_overhang, most + rail_overhang, base.anchor.local[0], base.anchor.local[1], degrees)});
 }
 
 // Two points apart are linked; points of bodies with as many points fixed in the world hang on a
@@ -193,9 +183,8 @@ void Painter::between_points(int joint, const std::vector<JointPoint>& all) {
     drawing_.links.push_back({fixed[0].anchor, fixed[1].anchor, rope_link});
     drawing_.links.push_back({riding[1].anchor, fixed[1].anchor, rope_link});
     for (const JointPoint& wheel : fixed) {
-      drawing_.pins.push_back(
-          {world_body, fmt::format(R"(<circle class="pin" cx="{:.2f}" cy="{:.2f}" r="9"/>)",
-                                   wheel.at[0], wheel.at[1])});
+      drawing_.pins.push_back({world_body, fmt::format(R"(<circle class="pin" cx="{:.2f}" cy="{:.2f}" r="9"/>)",
+                                                       wheel.at[0], wheel.at[1])});
     }
   } else if (all.size() == 2) {
     link(all[0], all[1], svg);
@@ -207,8 +196,7 @@ void Painter::joints() {
     const JointType& type = world_.joint_type(joint);
     const std::vector<JointPoint> all = points(joint);
     for (const JointPoint& point : all) {
-      if (point.anchor.body != world_body)
-        joint_points_[point.anchor.body].push_back(point.anchor.local);
+      if (point.anchor.body != world_body) joint_points_[point.anchor.body].push_back(point.anchor.local);
     }
     bool slides = false;
     for (const CoordinateInfo& coordinate : type.coordinates) {
@@ -218,15 +206,13 @@ void Painter::joints() {
       rail(joint, coordinate, all[first_carries ? 0 : 1], all[first_carries ? 1 : 0]);
     }
     const bool pair = all.size() == 2;
-    const double apart =
-        pair ? std::hypot(all[0].at[0] - all[1].at[0], all[0].at[1] - all[1].at[1]) : 0;
+    const double apart = pair ? std::hypot(all[0].at[0] - all[1].at[0], all[0].at[1] - all[1].at[1]) : 0;
     if (pair && (slides || apart < coincident)) {
       pin(all[0], all[1], !slides, !slides && type.row_kinds.size() == 3 && !type.explicit_time);
     } else if (!all.empty()) {
       between_points(joint, all);
     } else if (type.bodies >= 2) {
-      const std::vector<int>& bodies =
-          scene_.joints[static_cast<std::size_t>(joint)].definition.bodies;
+      const std::vector<int>& bodies = scene_.joints[static_cast<std::size_t>(joint)].definition.bodies;
       if (!is_still(bodies[0]) && !is_still(bodies[1]))
         drawing_.links.push_back({{bodies[0], {}}, {bodies[1], {}}, gear_link});
     }
@@ -235,8 +221,7 @@ void Painter::joints() {
 
 void Painter::springs() {
   for (const SpringDefinition& spring : scene_.springs) {
-    const Anchor from = anchor(spring.body_a, spring.ax, spring.ay),
-                 to = anchor(spring.body_b, spring.bx, spring.by);
+    const Anchor from = anchor(spring.body_a, spring.ax, spring.ay), to = anchor(spring.body_b, spring.bx, spring.by);
     link({from, position(from, start_), false}, {to, position(to, start_), false}, spring_link);
   }
 }
@@ -248,24 +233,20 @@ std::string Painter::body_svg(std::size_t body) const {
   switch (shape.kind) {
     case Shape::rod: {
       const double bar = std::clamp(width, 5.0, 26.0);
-      return fmt::format(
-          R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" rx="{:.2f}"/>)",
-          -length / 2 - bar / 2, -bar / 2, length + bar, bar, bar / 2);
+      return fmt::format(R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" rx="{:.2f}"/>)",
+                         -length / 2 - bar / 2, -bar / 2, length + bar, bar, bar / 2);
     }
     case Shape::box:
-      return fmt::format(R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" rx="2"/>)",
-                         -length / 2, -width / 2, length, width);
-    case Shape::disc:
-      return fmt::format(R"(<circle r="{0:.2f}"/><line x2="{0:.2f}"/>)", std::max(length / 2, 3.0));
+      return fmt::format(R"(<rect x="{:.2f}" y="{:.2f}" width="{:.2f}" height="{:.2f}" rx="2"/>)", -length / 2,
+                         -width / 2, length, width);
+    case Shape::disc: return fmt::format(R"(<circle r="{0:.2f}"/><line x2="{0:.2f}"/>)", std::max(length / 2, 3.0));
     case Shape::ball:
-    case Shape::none:
-      break;
+    case Shape::none: break;
   }
   std::string svg;
   const auto found = joint_points_.find(static_cast<int>(body));
   if (found != joint_points_.end()) {
-    for (const Vec2& p : found->second)
-      svg += fmt::format(R"(<line x2="{:.2f}" y2="{:.2f}"/>)", p[0], p[1]);
+    for (const Vec2& p : found->second) svg += fmt::format(R"(<line x2="{:.2f}" y2="{:.2f}"/>)", p[0], p[1]);
   }
   return svg + R"(<circle r="9"/>)";
 }
@@ -274,9 +255,8 @@ void Painter::bodies() {
   for (std::size_t k = 0; k < scene_.bodies.size(); ++k) {
     const SceneBody& body = scene_.bodies[k];
     const std::string kind = body.is_static ? "still" : fmt::format("c{}", colours_.of(body.name));
-    drawing_.bodies.push_back(
-        {static_cast<int>(k), fmt::format(R"(<g class="body {}"><title>{}</title>{}</g>)", kind,
-                                          escaped(body.name), body_svg(k))});
+    drawing_.bodies.push_back({static_cast<int>(k), fmt::format(R"(<g class="body {}"><title>{}</title>{}</g>)", kind,
+                                                                escaped(body.name), body_svg(k))});
   }
 }
 

@@ -20,9 +20,7 @@ constexpr int most_frames = 3000;
 constexpr double most_poses = 200000;  // frames times bodies that a page carries
 constexpr int snapshots = 7;           // of a still
 
-double rounded(double value, double steps_per_unit) {
-  return std::round(value * steps_per_unit) / steps_per_unit;
-}
+double rounded(double value, double steps_per_unit) { return std::round(value * steps_per_unit) / steps_per_unit; }
 
 Json anchor_json(const Anchor& anchor) {
   return {anchor.body, rounded(anchor.local[0], 100), rounded(anchor.local[1], 100)};
@@ -39,12 +37,11 @@ std::string group(const Mark& mark, const std::vector<Place>& places) {
 }
 
 // All marks at one time; of a snapshot among others only what moves.
-std::string placed(const Drawing& drawing, const std::vector<Place>& places,
-                   bool with_world = true) {
+std::string placed(const Drawing& drawing, const std::vector<Place>& places, bool with_world = true) {
   std::string svg;
   for (std::size_t k = 0; k < drawing.links.size(); ++k) {
-    svg += fmt::format("<g data-link=\"{}\" transform=\"{}\">{}</g>\n", k,
-                       link_transform(drawing.links[k], places), drawing.links[k].svg);
+    svg += fmt::format("<g data-link=\"{}\" transform=\"{}\">{}</g>\n", k, link_transform(drawing.links[k], places),
+                       drawing.links[k].svg);
   }
   for (const std::vector<Mark>* marks : {&drawing.bodies, &drawing.pins}) {
     for (const Mark& mark : *marks) {
@@ -66,8 +63,7 @@ double playing_speed(double duration) {
 
 // The poses of the bodies that move, frame by frame, and what the page plots.
 template <class NumbersOf>
-void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf numbers_of,
-                Json& run) {
+void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf numbers_of, Json& run) {
   Json moving = Json::array(), times = Json::array(), poses = Json::array(), energy = Json::array(),
        error = Json::array();
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
@@ -78,15 +74,10 @@ void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf nu
     energy.push_back(frame.energy);
     error.push_back(frame.worst.value);
     for (const Json& body : moving) {
-      for (const Json& number : numbers_of(frame.bodies[body.get<std::size_t>()]))
-        poses.push_back(number);
+      for (const Json& number : numbers_of(frame.bodies[body.get<std::size_t>()])) poses.push_back(number);
     }
   }
-  run.update({{"moving", moving},
-              {"times", times},
-              {"poses", poses},
-              {"energy", energy},
-              {"error", error}});
+  run.update({{"moving", moving}, {"times", times}, {"poses", poses}, {"energy", energy}, {"error", error}});
 }
 
 Json film_json(const std::vector<Frame>& film) {
@@ -100,16 +91,13 @@ Json planar_run(const Scene& scene, const Drawing& drawing, const std::vector<Fr
   Json run = film_json(film);
   run["view"] = {drawing.view.left, drawing.view.top, drawing.view.scale};
   run["start"] = run["links"] = run["traces"] = Json::array();
-  for (const Place& place : places_of(drawing.view, film.front()))
-    run["start"].push_back(place_json(place));
-  for (const Link& link : drawing.links)
-    run["links"].push_back({anchor_json(link.from), anchor_json(link.to)});
+  for (const Place& place : places_of(drawing.view, film.front())) run["start"].push_back(place_json(place));
+  for (const Link& link : drawing.links) run["links"].push_back({anchor_json(link.from), anchor_json(link.to)});
   for (const Trace& trace : drawing.traces) {
     run["traces"].push_back({{"point", anchor_json(trace.point)}, {"colour", trace.colour}});
   }
   add_frames(
-      scene, film, [&](const BodyState& body) { return place_json(place_of(drawing.view, body)); },
-      run);
+      scene, film, [&](const BodyState& body) { return place_json(place_of(drawing.view, body)); }, run);
   return run;
 }
 
@@ -118,12 +106,8 @@ Json point_json(const SpacePoint& p) { return {p.body, p.local[0], p.local[1], p
 Json space_json(const SpaceDrawing& drawing) {
   Json bodies = Json::array(), links = Json::array(), pins = Json::array(), traces = Json::array();
   for (const SpaceBody& body : drawing.bodies)
-    bodies.push_back({{"kind", body.kind},
-                      {"faces", body.faces},
-                      {"lines", body.lines},
-                      {"ball", body.ball}});
-  for (const SpaceLink& link : drawing.links)
-    links.push_back({point_json(link.from), point_json(link.to), link.kind});
+    bodies.push_back({{"kind", body.kind}, {"faces", body.faces}, {"lines", body.lines}, {"ball", body.ball}});
+  for (const SpaceLink& link : drawing.links) links.push_back({point_json(link.from), point_json(link.to), link.kind});
   for (const SpacePoint& pin : drawing.pins) pins.push_back(point_json(pin));
   for (const SpaceTrace& trace : drawing.traces)
     traces.push_back({{"point", point_json(trace.point)}, {"colour", trace.colour}});
@@ -155,14 +139,12 @@ Json spatial_run(const Scene& scene, const SpaceDrawing& drawing, const std::vec
 // "</script>" in a name must not end the element.
 std::string in_a_script(const Json& json) {
   std::string text = json.dump();
-  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;)
-    text.replace(at, 1, "\\u003c");
+  for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   return text;
 }
 
 // Fills the places {{name}} of the template, each once and from left to right.
-std::string filled(std::string_view page,
-                   const std::vector<std::pair<std::string, std::string>>& values) {
+std::string filled(std::string_view page, const std::vector<std::pair<std::string, std::string>>& values) {
   std::string result;
   while (!page.empty()) {
     const std::size_t open = std::min(page.find("{{"), page.size());
@@ -179,9 +161,8 @@ std::string filled(std::string_view page,
 }
 
 std::string svg_head(double width, double height, const std::string& attributes) {
-  return fmt::format(
-      "<svg {} xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n", attributes,
-      width, height);
+  return fmt::format("<svg {} xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0f} {:.0f}\">\n", attributes, width,
+                     height);
 }
 
 std::string still_head(double width, double height) {
@@ -223,9 +204,7 @@ std::string planar_still(const Drawing& drawing, const std::vector<Frame>& film)
 
 std::string spatial_still(const SpaceDrawing& drawing, const std::vector<Frame>& film) {
   return still_head(drawing.width, drawing.height) + space_background(drawing, film) +
-         snapshots_of(film, [&](const Frame& frame, bool last) {
-           return space_snapshot(drawing, frame, last);
-         });
+         snapshots_of(film, [&](const Frame& frame, bool last) { return space_snapshot(drawing, frame, last); });
 }
 
 }  // namespace
@@ -255,8 +234,8 @@ std::string html_page(const Scene& scene, const std::vector<Frame>& film) {
     script += viewer_space_js;
   }
   const std::string title = escaped(scene.title.empty() ? scene.file : scene.title);
-  const std::string facts = fmt::format("{} bodies, {} joints, step {:.4g} s", scene.bodies.size(),
-                                        scene.joints.size(), scene.step);
+  const std::string facts =
+      fmt::format("{} bodies, {} joints, step {:.4g} s", scene.bodies.size(), scene.joints.size(), scene.step);
   return filled(viewer_html, {{"title", title},
                               {"style", std::string(viewer_marks_css) + std::string(viewer_css)},
                               {"facts", facts},

@@ -40,17 +40,14 @@ Box box_of(const Scene& scene, const std::vector<Frame>& film) {
     for (const BodyState& b : frame.bodies) {
       const Vec3 p = {b.x, b.y, b.z};
       bool near = true;
-      for (std::size_t k = 0; k < 3; ++k)
-        near = near && p[k] > start.low[k] - most && p[k] < start.high[k] + most;
+      for (std::size_t k = 0; k < 3; ++k) near = near && p[k] > start.low[k] - most && p[k] < start.high[k] + most;
       if (near) box.add(p);
     }
   return box;
 }
 
 std::vector<SpaceFace> box_faces(double x, double y, double z) {
-  const auto corner = [&](int i) {
-    return Vec3{(i & 1 ? x : -x) / 2, (i & 2 ? y : -y) / 2, (i & 4 ? z : -z) / 2};
-  };
+  const auto corner = [&](int i) { return Vec3{(i & 1 ? x : -x) / 2, (i & 2 ? y : -y) / 2, (i & 4 ? z : -z) / 2}; };
   std::vector<SpaceFace> faces;
   for (const auto& face : {std::array{0, 2, 3, 1}, std::array{4, 5, 7, 6}, std::array{0, 1, 5, 4},
                            std::array{2, 6, 7, 3}, std::array{0, 4, 6, 2}, std::array{1, 3, 7, 5}})
@@ -68,8 +65,7 @@ std::vector<SpaceFace> disc_faces(double radius, double height) {
   for (int k = 0; k < sides_of_a_disc; ++k) {
     top.push_back(at(k, height / 2));
     bottom.push_back(at(-k, -height / 2));
-    faces.push_back(
-        {at(k, -height / 2), at(k + 1, -height / 2), at(k + 1, height / 2), at(k, height / 2)});
+    faces.push_back({at(k, -height / 2), at(k + 1, -height / 2), at(k + 1, height / 2), at(k, height / 2)});
   }
   faces.push_back(top);
   faces.push_back(bottom);
@@ -103,12 +99,8 @@ class SpacePainter {
     SpaceBody look;
     look.kind = kind(k);
     switch (shape.kind) {
-      case Shape::rod:
-        look.faces = box_faces(shape.length, shape.width, shape.width);
-        break;
-      case Shape::box:
-        look.faces = box_faces(shape.length, shape.width, shape.depth);
-        break;
+      case Shape::rod: look.faces = box_faces(shape.length, shape.width, shape.width); break;
+      case Shape::box: look.faces = box_faces(shape.length, shape.width, shape.depth); break;
       case Shape::disc:
         look.faces = disc_faces(shape.length / 2, shape.depth);
         look.lines = {{Vec3{0, 0, shape.depth / 2}, Vec3{shape.length / 2, 0, shape.depth / 2}}};
@@ -117,9 +109,7 @@ class SpacePainter {
         look.ball = shape.length / 2;
         look.lines = {{Vec3{}, Vec3{shape.length / 2, 0, 0}}};
         break;
-      case Shape::none:
-        look.ball = 0.02 * size_;
-        break;
+      case Shape::none: look.ball = 0.02 * size_; break;
     }
     for (const SpacePoint& point : drawing_.pins) {
       const Vec3& p = point.local;
@@ -143,10 +133,7 @@ class SpacePainter {
     drawing_.pins.insert(drawing_.pins.end(), points.begin(), points.end());
     const bool rope = !type.row_kinds.empty() && type.row_kinds[0] == RowKind::inequality;
     if (points.size() == 2)
-      drawing_.links.push_back({points[0], points[1],
-                                source.definition.soft ? "spring"
-                                : rope                 ? "rope"
-                                                       : "rigid"});
+      drawing_.links.push_back({points[0], points[1], source.definition.soft ? "spring" : rope ? "rope" : "rigid"});
     for (const ParameterInfo& info : type.parameters) {
       const bool direction = info.kind == ParameterKind::frame || info.kind == ParameterKind::unit;
       if (!direction || points.empty() || body_of(source, info.body) != points[0].body) continue;
@@ -200,8 +187,7 @@ std::vector<SpaceLine> floor_of(const Box& box) {
 SpaceDrawing draw_in_space(const Scene& scene, const std::vector<Frame>& film) {
   const Box box = box_of(scene, film);
   SpaceDrawing drawing = SpacePainter(scene, box.size()).draw();
-  drawing.centre = {(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2,
-                    (box.low[2] + box.high[2]) / 2};
+  drawing.centre = {(box.low[0] + box.high[0]) / 2, (box.low[1] + box.high[1]) / 2, (box.low[2] + box.high[2]) / 2};
   drawing.radius = std::max(0.65 * box.size(), 1e-9);
   drawing.floor = floor_of(box);
   return drawing;

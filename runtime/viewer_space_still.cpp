@@ -30,8 +30,8 @@ class Projection {
     const double u = p[0] - d.centre[0], v = p[1] - d.centre[1], w = p[2] - d.centre[2];
     const double right = c_ * u + s_ * v, into = -s_ * u + c_ * v;
     const double up = cp_ * w + sp_ * into, depth = cp_ * into - sp_ * w;
-    const double scale = d.camera.zoom * 0.42 * std::min(d.width, d.height) / d.radius /
-                         (1 + 0.2 * std::max(-4.0, depth / d.radius));
+    const double scale =
+        d.camera.zoom * 0.42 * std::min(d.width, d.height) / d.radius / (1 + 0.2 * std::max(-4.0, depth / d.radius));
     return {d.width / 2 + scale * right, d.height / 2 - scale * up, depth, scale};
   }
 
@@ -55,9 +55,8 @@ std::string path_of(const std::vector<Seen>& points, bool closed) {
 }
 
 std::string circle(const Seen& p, double r) {
-  return fmt::format(
-      "M{0:.1f} {1:.1f}a{2:.1f} {2:.1f} 0 1 0 {3:.1f} 0a{2:.1f} {2:.1f} 0 1 0 {4:.1f} 0Z", p.x - r,
-      p.y, r, 2 * r, -2 * r);
+  return fmt::format("M{0:.1f} {1:.1f}a{2:.1f} {2:.1f} 0 1 0 {3:.1f} 0a{2:.1f} {2:.1f} 0 1 0 {4:.1f} 0Z", p.x - r, p.y,
+                     r, 2 * r, -2 * r);
 }
 
 double mean_depth(const std::vector<Seen>& points) {
@@ -74,8 +73,7 @@ struct Item {
 
 class Still {
  public:
-  Still(const SpaceDrawing& drawing, const Frame& frame)
-      : drawing_(drawing), frame_(frame), project_(drawing) {}
+  Still(const SpaceDrawing& drawing, const Frame& frame) : drawing_(drawing), frame_(frame), project_(drawing) {}
 
   std::string svg(bool with_still) {
     for (std::size_t k = 0; k < drawing_.bodies.size(); ++k)
@@ -85,12 +83,11 @@ class Still {
       const Seen at = project_(placed(frame_, pin));
       items_.push_back({at.depth - 1e-3 * drawing_.radius, circle(at, 5), "pin", 1});
     }
-    std::stable_sort(items_.begin(), items_.end(),
-                     [](const Item& p, const Item& q) { return p.depth > q.depth; });
+    std::stable_sort(items_.begin(), items_.end(), [](const Item& p, const Item& q) { return p.depth > q.depth; });
     std::string svg;
     for (const Item& item : items_)
-      svg += fmt::format("<path class=\"body {}\" style=\"fill-opacity:{:.2f}\" d=\"{}\"/>\n",
-                         item.kind, item.opacity, item.path);
+      svg += fmt::format("<path class=\"body {}\" style=\"fill-opacity:{:.2f}\" d=\"{}\"/>\n", item.kind, item.opacity,
+                         item.path);
     return svg;
   }
 
@@ -100,11 +97,9 @@ class Still {
     for (const SpaceFace& face : look.faces) add_face(body, face, look.kind);
     if (look.ball > 0) {
       const Seen at = project_(placed(frame_, {body, {}}));
-      items_.push_back(
-          {at.depth, circle(at, std::max(3.0, at.scale * look.ball)), look.kind, 0.45});
+      items_.push_back({at.depth, circle(at, std::max(3.0, at.scale * look.ball)), look.kind, 0.45});
     }
-    for (const SpaceLine& line : look.lines)
-      add_line({body, line[0]}, {body, line[1]}, look.kind + " line");
+    for (const SpaceLine& line : look.lines) add_line({body, line[0]}, {body, line[1]}, look.kind + " line");
   }
 
   // A face that shows its front: brighter where it looks at the eye.
@@ -138,8 +133,7 @@ class Still {
 std::string space_background(const SpaceDrawing& drawing, const std::vector<Frame>& film) {
   const Projection project(drawing);
   std::string floor;
-  for (const SpaceLine& line : drawing.floor)
-    floor += path_of({project(line[0]), project(line[1])}, false);
+  for (const SpaceLine& line : drawing.floor) floor += path_of({project(line[0]), project(line[1])}, false);
   std::string svg = fmt::format("<path class=\"floor\" d=\"{}\"/>\n", floor);
   for (const SpaceTrace& trace : drawing.traces) {
     svg += fmt::format("<polyline class=\"trace {}\" points=\"", trace.colour);

@@ -40,8 +40,7 @@ void add_world_points(const Scene& scene, Box& box) {
     for (const NamedValue& value : joint.definition.parameters) {
       for (const ParameterInfo& info : type->parameters) {
         const bool in_world =
-            info.body < 0 ||
-            joint.definition.bodies[static_cast<std::size_t>(info.body)] == world_body;
+            info.body < 0 || joint.definition.bodies[static_cast<std::size_t>(info.body)] == world_body;
         if (info.name == value.name && info.kind == ParameterKind::point && in_world) {
           box.add(value.numbers[0], value.numbers[1], 0);
         }
@@ -78,8 +77,7 @@ View view_of(const Scene& scene, const std::vector<Frame>& film) {
 }
 
 Place place_of(const View& view, const BodyState& state) {
-  return {view.scale * (state.x - view.left), view.scale * (view.top - state.y),
-          -state.angle * 180 / std::numbers::pi};
+  return {view.scale * (state.x - view.left), view.scale * (view.top - state.y), -state.angle * 180 / std::numbers::pi};
 }
 
 std::vector<Place> places_of(const View& view, const Frame& frame) {
@@ -95,10 +93,8 @@ std::string transform(const Place& place) {
 Vec2 position(const Anchor& anchor, const std::vector<Place>& places) {
   if (anchor.body == world_body) return anchor.local;
   const Place& place = places[static_cast<std::size_t>(anchor.body)];
-  const double angle = place.degrees * std::numbers::pi / 180, c = std::cos(angle),
-               s = std::sin(angle);
-  return {place.x + c * anchor.local[0] - s * anchor.local[1],
-          place.y + s * anchor.local[0] + c * anchor.local[1]};
+  const double angle = place.degrees * std::numbers::pi / 180, c = std::cos(angle), s = std::sin(angle);
+  return {place.x + c * anchor.local[0] - s * anchor.local[1], place.y + s * anchor.local[0] + c * anchor.local[1]};
 }
 
 std::string link_transform(const Link& link, const std::vector<Place>& places) {
@@ -112,17 +108,10 @@ std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
     switch (c) {
-      case '<':
-        result += "&lt;";
-        break;
-      case '&':
-        result += "&amp;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
+      case '<': result += "&lt;"; break;
+      case '&': result += "&amp;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += c;
     }
   }
   return result;

@@ -79,9 +79,10 @@ std::string line_through(const std::vector<Spot>& spots) {
 }
 
 std::string power(double x, double y, const char* anchor, int decade) {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">10<tspan dy=\"-6\" font-size=\"11\">{}</tspan>"
-                     "</text>\n",
-                     x, y, anchor, decade);
+  return fmt::format(
+      "<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">10<tspan dy=\"-6\" font-size=\"11\">{}</tspan>"
+      "</text>\n",
+      x, y, anchor, decade);
 }
 
 std::string ring(const Spot& at) {
@@ -113,7 +114,8 @@ class Drawing {
   std::string svg() const {
     return fmt::format(
                "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" viewBox=\"0 0 {0:.0f} {1:.0f}\">\n{2}"
-               "<text class=\"title\" x=\"{3}\" y=\"30\">{4}</text>\n<text class=\"small\" x=\"{3}\" y=\"54\">{5}</text>\n",
+               "<text class=\"title\" x=\"{3}\" y=\"30\">{4}</text>\n<text class=\"small\" x=\"{3}\" "
+               "y=\"54\">{5}</text>\n",
                width_, height_, style, left, escaped(diagram_.title), escaped(diagram_.subtitle)) +
            grid() + resolution() + frontier() + curves() + names() + "</svg>\n";
   }
@@ -131,12 +133,12 @@ class Drawing {
       svg += fmt::format("<path class=\"grid\" d=\"M{} {:.1f}h{}\"/>\n", left, y_.decade(decade), plot_width);
       svg += power(left - 10, y_.decade(decade) + 5, "end", decade);
     }
-    return svg + fmt::format(
-                     "<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"middle\">{}: more accurate to the right</text>\n"
-                     "<text transform=\"translate(26 {:.0f}) rotate(-90)\" text-anchor=\"middle\">CPU time per simulated "
-                     "second [us]</text>\n",
-                     left + plot_width / 2, top + plot_height + 48, escaped(diagram_.error_label),
-                     top + plot_height / 2);
+    return svg +
+           fmt::format(
+               "<text x=\"{:.0f}\" y=\"{:.0f}\" text-anchor=\"middle\">{}: more accurate to the right</text>\n"
+               "<text transform=\"translate(26 {:.0f}) rotate(-90)\" text-anchor=\"middle\">CPU time per simulated "
+               "second [us]</text>\n",
+               left + plot_width / 2, top + plot_height + 48, escaped(diagram_.error_label), top + plot_height / 2);
   }
 
   std::string resolution() const {
@@ -189,7 +191,8 @@ class Drawing {
       if (all.size() <= few)
         svg += fmt::format("<path class=\"lead\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\"/>\n",
                            all[k].end.x + 9, all[k].end.y, x - 4, y, all[k].series->colour);
-      svg += fmt::format("<path class=\"curve\" d=\"M{:.0f} {:.1f}h24\" stroke=\"{}\"/>\n", x, y, all[k].series->colour);
+      svg +=
+          fmt::format("<path class=\"curve\" d=\"M{:.0f} {:.1f}h24\" stroke=\"{}\"/>\n", x, y, all[k].series->colour);
       svg += mark(*all[k].series, {x + 12, y}, "");
       svg += fmt::format("<text x=\"{:.0f}\" y=\"{:.1f}\">{}</text>\n", x + 34, y + 5, escaped(all[k].series->name));
       above = y;

@@ -34,8 +34,7 @@ void check(const Settings& s) {
 // What bodies of both dimensions have in common.
 template <class Definition>
 void check_common(const Definition& d, bool moves, std::initializer_list<double> numbers) {
-  for (double number : numbers)
-    require(std::isfinite(number), "every number of a body must be finite");
+  for (double number : numbers) require(std::isfinite(number), "every number of a body must be finite");
   require(d.is_static || d.mass > 0, "a body needs a mass > 0, or to be static");
   require(d.mass >= 0, "mass and inertia must not be negative");
   require(!d.is_static || !moves, "a static body has no velocity");
@@ -44,18 +43,19 @@ void check_common(const Definition& d, bool moves, std::initializer_list<double>
 
 void check(const BodyDefinition& d) {
   check_common(d, d.vx != 0 || d.vy != 0 || d.w != 0,
-               {d.x, d.y, d.angle, d.vx, d.vy, d.w, d.mass, d.inertia, d.force_x, d.force_y,
-                d.torque, d.linear_damping, d.angular_damping});
+               {d.x, d.y, d.angle, d.vx, d.vy, d.w, d.mass, d.inertia, d.force_x, d.force_y, d.torque, d.linear_damping,
+                d.angular_damping});
   require(d.inertia >= 0, "mass and inertia must not be negative");
 }
 
 void check(const SpatialBodyDefinition& d) {
   const bool moves = d.vx != 0 || d.vy != 0 || d.vz != 0 || d.wx != 0 || d.wy != 0 || d.wz != 0;
-  check_common(d, moves,
-               {d.x, d.y, d.z, d.e0, d.e1, d.e2, d.e3, d.vx, d.vy, d.vz, d.wx, d.wy, d.wz, d.mass,
-                d.inertia.xx, d.inertia.yy, d.inertia.zz, d.inertia.xy, d.inertia.xz, d.inertia.yz,
-                d.force_x, d.force_y, d.force_z, d.torque_x, d.torque_y, d.torque_z, d.linear_damping,
-                d.angular_damping});
+  // clang-format off
+  check_common(d, moves, {d.x, d.y, d.z, d.e0, d.e1, d.e2, d.e3, d.vx, d.vy, d.vz, d.wx, d.wy, d.wz, d.mass,
+                          d.inertia.xx, d.inertia.yy, d.inertia.zz, d.inertia.xy, d.inertia.xz, d.inertia.yz,
+                          d.force_x, d.force_y, d.force_z, d.torque_x, d.torque_y, d.torque_z,
+                          d.linear_damping, d.angular_damping});
+  // clang-format on
   if (const char* wrong = wrong_with(d.inertia)) throw Error(wrong);
   require(d.e0 * d.e0 + d.e1 * d.e1 + d.e2 * d.e2 + d.e3 * d.e3 > 1e-100,
           "an orientation must not be the zero quaternion");
@@ -93,13 +93,11 @@ void check_in_precision(const typename S::BodyDefinition& d) {
 
 template <class S>
 void check_body(const WorldState<S>& world, int body) {
-  if (body < 0 || body >= world.bodies.count())
-    throw Error(fmt::format("there is no body number {}", body));
+  if (body < 0 || body >= world.bodies.count()) throw Error(fmt::format("there is no body number {}", body));
 }
 
 template <class S>
-void check_joint_bodies(const WorldState<S>& world, const JointType& type,
-                        const std::vector<int>& bodies) {
+void check_joint_bodies(const WorldState<S>& world, const JointType& type, const std::vector<int>& bodies) {
   if (static_cast<int>(bodies.size()) != type.bodies)
     throw Error(fmt::format("joint `{}` connects {} bod{}, not {}", type.name, type.bodies,
                             type.bodies == 1 ? "y" : "ies", bodies.size()));
@@ -185,13 +183,11 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   if (is_extended<T> && type - joint_types(S::dimension).data() >= std::ssize(joint_entries<S>()))
     throw Error(fmt::format("joint `{}` was not made for extended precision", type->name));
   check_joint_bodies(*state_, *type, definition.bodies);
-  JointRecord record{
-      static_cast<int>(type - joint_types(S::dimension).data()), definition.bodies, {}, {}, false};
+  JointRecord record{static_cast<int>(type - joint_types(S::dimension).data()), definition.bodies, {}, {}, false};
   using InDoubles = typename S::InDoubles;
   std::vector<typename InDoubles::Pose> poses;
   for (int body : record.bodies) poses.push_back(InDoubles::placed(place_in_world(*state_, body)));
-  record.parameters =
-      parameter_numbers<InDoubles>(record.type, definition.parameters, poses.data(), state_->time);
+  record.parameters = parameter_numbers<InDoubles>(record.type, definition.parameters, poses.data(), state_->time);
   move_world_points(
       *type, record.bodies, [&](int body) { return body == state_->ground; }, state_->origin, -1, record.parameters);
   double spring[spring_constants_count] = {};
@@ -209,9 +205,7 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   }
   const auto& kinds = type->row_kinds;
   const bool unilateral = std::count(kinds.begin(), kinds.end(), RowKind::inequality) > 0;
-  const Law<S>* law = definition.soft ? &soft_law<S>()
-                      : unilateral    ? &unilateral_law<S>()
-                                      : nullptr;
+  const Law<S>* law = definition.soft ? &soft_law<S>() : unilateral ? &unilateral_law<S>() : nullptr;
   const auto* ops = joint_entries<S>()[record.type].rows.choose(state_->bodies, record.bodies);
   add_rows(*state_, joint, ops, law, kinds,
            {spring, definition.soft ? static_cast<size_t>(spring_constants_count) : 0});

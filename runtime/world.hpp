@@ -1,11 +1,12 @@
-// A World: bodies, joints by name, and step(). What a scene asks for beyond joints (limits, motors,
-// ...) is added by runtime/effects.hpp, so that a program which never asks does not even link it.
+// A World: bodies, joints by name, and step(). What a scene asks for beyond joints (limits, motors, ...) is added by
+// runtime/effects.hpp, so that a program which never asks does not even link it.
 //
 //   cdot::World<double> world(settings);
 //   int rod = world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
-//   world.add_joint({.type = "revolute", .bodies = {world.ground(), rod}, .parameters = {{"pa", {0,
-//   0}},
-//   {"pb", {-1, 0}}}, .soft = {}});
+//   world.add_joint({.type = "revolute",
+//                    .bodies = {world.ground(), rod},
+//                    .parameters = {{"pa", {0, 0}}, {"pb", {-1, 0}}},
+//                    .soft = {}});
 //   world.step(1.0 / 60);
 #pragma once
 
@@ -50,8 +51,7 @@ class BasicWorld {
  public:
   using T = typename S::Scalar;
   using BodyDefinition = typename S::BodyDefinition;
-  using Place =
-      typename S::Place;  // in the plane {x, y, angle}, in space {x, y, z, e0, e1, e2, e3}
+  using Place = typename S::Place;    // in the plane {x, y, angle}, in space {x, y, z, e0, e1, e2, e3}
   using Wrench = typename S::Wrench;  // force [N] and torque about the centre of mass [N m]
 
   explicit BasicWorld(const Settings& settings = {});
@@ -91,10 +91,10 @@ class BasicWorld {
 
   // What it held together is free of it from the next step on, which analyses islands anew. Its number stays taken.
   void remove_joint(int joint);
-  // These parameters of a joint get other numbers, the rest keeps its own: from the next step on, which moves the bodies
-  // to where C = 0 now is and leaves their velocities, but for what J v = 0 takes of them. A length that shall change
-  // with a velocity belongs into the joint's spec, as a function of t. Throws cdot::Error and changes nothing where
-  // add_joint() would not take them.
+  // These parameters of a joint get other numbers, the rest keeps its own: from the next step on, which moves the
+  // bodies to where C = 0 now is and leaves their velocities, but for what J v = 0 takes of them. A length that shall
+  // change with a velocity belongs into the joint's spec, as a function of t. Throws cdot::Error and changes nothing
+  // where add_joint() would not take them.
   void set_parameters(int joint, const std::vector<NamedValue>& parameters);
 
   // Each of these wakes the body's island.
@@ -131,7 +131,7 @@ class BasicWorld {
   // All numbers of Parameters<T>, given or defaulted, units normalised, laid out by
   // ParameterInfo::offset.
   std::vector<double> joint_parameters(int joint) const;
-  bool broken(int joint) const;  // or removed
+  bool broken(int joint) const;                         // or removed
   std::vector<double> position_error(int joint) const;  // C
   std::vector<double> velocity_error(int joint) const;  // Cdot = J v + dC/dt
   std::vector<double> impulse(int joint) const;         // lambda of the last (sub)step [N s, N m s]

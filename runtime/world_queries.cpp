@@ -120,8 +120,9 @@ template <class S>
 std::vector<double> BasicWorld<S>::joint_parameters(int joint) const {
   const JointRecord& record = state_->joints.at(joint);
   std::vector<double> numbers = record.parameters;
-  move_world_points(joint_types(S::dimension)[record.type], record.bodies,
-                    [&](int body) { return body == state_->ground; }, state_->origin, 1, numbers);
+  move_world_points(
+      joint_types(S::dimension)[record.type], record.bodies, [&](int body) { return body == state_->ground; },
+      state_->origin, 1, numbers);
   return numbers;
 }
 template <class S>
@@ -225,8 +226,7 @@ double BasicWorld<S>::energy() const {
   }
   for (const auto& spring : state_->springs) {
     const double stretch =
-        S::stretch(spring, all.pose[spring.body_a], all.pose[spring.body_b]).length -
-        spring.rest_length;
+        S::stretch(spring, all.pose[spring.body_a], all.pose[spring.body_b]).length - spring.rest_length;
     energy += 0.5 * double(spring.stiffness) * stretch * stretch;
   }
   return energy;
@@ -257,8 +257,7 @@ std::uint64_t BasicWorld<S>::hash() const {
   std::uint64_t hash = 14695981039346656037ull;
   const auto add = [&](const auto& items) {
     const auto* bytes = reinterpret_cast<const unsigned char*>(items.data());
-    for (size_t i = 0; i < items.size() * sizeof(items[0]); ++i)
-      hash = (hash ^ bytes[i]) * 1099511628211ull;
+    for (size_t i = 0; i < items.size() * sizeof(items[0]); ++i) hash = (hash ^ bytes[i]) * 1099511628211ull;
   };
   add(state_->bodies.pose);
   add(state_->bodies.velocity);

@@ -32,10 +32,9 @@ struct JointRecord {
   int type;  // index into joint_types()
   std::vector<int> bodies;
   std::vector<double> parameters;
-  std::vector<Place>
-      places;  // its own rows first, then its effects; none if all its bodies are immovable
-  bool broken = false;  // or removed
-  Hash added{};         // of what it was added as, with its effects
+  std::vector<Place> places;  // its own rows first, then its effects; none if all its bodies are immovable
+  bool broken = false;        // or removed
+  Hash added{};               // of what it was added as, with its effects
 };
 
 template <class S>
@@ -61,20 +60,20 @@ struct Flow {
     T C, rate, force;
   };
   std::vector<Told> told;
-  std::vector<T> row_rates;   // [guarded] J v + dC/dt
+  std::vector<T> row_rates;                // [guarded] J v + dC/dt
   std::vector<T> margins, margins_chosen;  // [guarded] how far from their next event; when their modes were chosen
   std::vector<T> low, high;                // the same at the start of a step, then on both sides of an event
-  T residual = 0;             // of C where the step starts
-  T next_step = 0;            // [s] that the error control proposes; 0: none yet
-  T longest = 0;              // [s] of the steps so far
-  int slivers = 0;            // steps in a row that were far shorter
-  bool known = false;         // C, J, forces and dv/dt belong to the end of the last step
+  T residual = 0;                          // of C where the step starts
+  T next_step = 0;                         // [s] that the error control proposes; 0: none yet
+  T longest = 0;                           // [s] of the steps so far
+  int slivers = 0;                         // steps in a row that were far shorter
+  bool known = false;                      // C, J, forces and dv/dt belong to the end of the last step
   // A step of its own length may end beyond the time asked for. The bodies then stand between its ends.
-  T ahead = 0;                      // [s] how far beyond; 0: they stand at its end
-  T length = 0;                     // [s] of that step
-  bool end_kept = false;            // the following belong to it
-  std::vector<T> end, end_forces;   // the end, as `now`, and the joints' forces there, [row]
-  std::vector<T> further_terms;     // of the interpolant, [term][...]
+  T ahead = 0;                     // [s] how far beyond; 0: they stand at its end
+  T length = 0;                    // [s] of that step
+  bool end_kept = false;           // the following belong to it
+  std::vector<T> end, end_forces;  // the end, as `now`, and the joints' forces there, [row]
+  std::vector<T> further_terms;    // of the interpolant, [term][...]
   // The present state is not one that the last step led to.
   void forget() {
     known = end_kept = false;
@@ -111,15 +110,15 @@ struct Island {
   std::vector<Segment<S>> segments;
   std::vector<typename S::PointSpring> springs;
   std::vector<Drag<S>> drags;
-  std::vector<int> gyroscopes;                      // into WorldState::gyroscopes
-  System<S> system;                                 // of the direct solver and of projections
+  std::vector<int> gyroscopes;  // into WorldState::gyroscopes
+  System<S> system;             // of the direct solver and of projections
   // The same with rows of tension, for steps that a method at acceleration level leaves to the linearly implicit one;
   // built where there are such rows.
   System<S> rescue;
-  int redundant_rows = 0;                           // of the last factorisation
-  T size = 1;   // its longest arm or distance between joined bodies [m]
-  T scale = 1;  // ten times that, but at most 1: by how much less than for others C must be to be small
-  bool restless = false;                            // driven by time: never sleeps
+  int redundant_rows = 0;  // of the last factorisation
+  T size = 1;              // its longest arm or distance between joined bodies [m]
+  T scale = 1;             // ten times that, but at most 1: by how much less than for others C must be to be small
+  bool restless = false;   // driven by time: never sleeps
   T residual = std::numeric_limits<T>::infinity();  // largest C left by the last correction
   bool evaluated = false;                           // C and J belong to the present poses
   bool factored = false;                            // and system to that J, all rows free
@@ -143,8 +142,7 @@ struct WorldState {
 
   Settings settings;
   double time = 0;
-  double last_step =
-      0;  // [s], the substep before: impulses kept for warm starting are scaled by h / last_step
+  double last_step = 0;  // [s], the substep before: impulses kept for warm starting are scaled by h / last_step
   std::array<double, 3> origin{};  // [m] where the poses are counted from
   Bodies<S> bodies;
   int ground = -1;
@@ -152,7 +150,7 @@ struct WorldState {
   std::vector<std::unique_ptr<Batch<S>>> batches;
   std::vector<typename S::PointSpring> springs;
   std::vector<Drag<S>> drags;
-  std::vector<typename S::Gyroscope> gyroscopes;  // bodies whose inertia tensor turns with them
+  std::vector<typename S::Gyroscope> gyroscopes;       // bodies whose inertia tensor turns with them
   std::vector<std::pair<int, double>> breaking_loads;  // by joint
   std::vector<Hook> after_substep;
   std::vector<Note> notes;

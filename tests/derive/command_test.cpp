@@ -38,8 +38,7 @@ TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
   EXPECT_EQ(names,
             "ledger.csv\nplanar/angle.hpp\nplanar/line.hpp\nplanar/registry.hpp\n"
             "spatial/registry.hpp\n");
-  EXPECT_EQ(read("generated/planar/line.hpp"),
-            content_of(fs::path(CDOT_GENERATED) / "planar/line.hpp"))
+  EXPECT_EQ(read("generated/planar/line.hpp"), content_of(fs::path(CDOT_GENERATED) / "planar/line.hpp"))
       << "what is generated for a joint does not depend on the others";
 }
 
@@ -144,8 +143,7 @@ TEST_F(Derive, NeverShowsHalfAFile) {
       ++halves;
     }
   }
-  std::printf("read %d times the one, %d times the other, %d times half of one\n", seen[0], seen[1],
-              halves);
+  std::printf("read %d times the one, %d times the other, %d times half of one\n", seen[0], seen[1], halves);
   EXPECT_EQ(halves, 0);
   EXPECT_GT(std::min(seen[0], seen[1]), 0);
 }

@@ -76,8 +76,8 @@ Compared compare(const std::string& space) {
   Compared compared;
   for (const Hand& hand : ledger.hand) {
     if (hand.of[0] != space) continue;
-    const std::string what = hand.of[0] + " " + hand.of[1] + ", " + hand.of[2] + hand.of[4] + ": " +
-                             hand.of[3] + " against " + hand.source;
+    const std::string what =
+        hand.of[0] + " " + hand.of[1] + ", " + hand.of[2] + hand.of[4] + ": " + hand.of[3] + " against " + hand.source;
     const auto ours = ledger.generated.find(hand.of);
     if (ours == ledger.generated.end()) {
       ADD_FAILURE() << what << ": nothing is generated of the same";

@@ -20,8 +20,7 @@ void expect_close(double actual, double expected, Expr e) {
 
 struct Plane {
   Pool pool;
-  Expr u = pool.vector_symbol("u", Role::body_vector, 0),
-       v = pool.vector_symbol("v", Role::body_vector, 1);
+  Expr u = pool.vector_symbol("u", Role::body_vector, 0), v = pool.vector_symbol("v", Role::body_vector, 1);
   Expr t = pool.vector_symbol("t", Role::body_vector, 1, true);
   Expr s = pool.symbol("s", Role::parameter), w = pool.symbol("w_a", Role::spin, 0);
   Expr number(std::int64_t n, std::int64_t d = 1) { return pool.number(Rational(n, d)); }
@@ -54,8 +53,7 @@ TEST_P(Expressions, in_components_keep_their_values) {
     random.grow(steps);
     Components components;
     Numbers numbers(random.leaves());
-    for (const auto& [e, value] : random.scalars())
-      expect_close(numbers.scalar(components.of(e)), value, e);
+    for (const auto& [e, value] : random.scalars()) expect_close(numbers.scalar(components.of(e)), value, e);
     for (const auto& [e, value] : random.vectors()) {
       const std::vector<Expr> parts = components.of_vector(e);
       ASSERT_EQ(static_cast<int>(parts.size()), GetParam());
@@ -93,8 +91,7 @@ TEST(Identities, hold_in_the_plane) {
 
 TEST(Identities, hold_in_space) {
   Pool pool(3);
-  const Expr u = pool.vector_symbol("u", Role::body_vector, 0),
-             v = pool.vector_symbol("v", Role::body_vector, 1),
+  const Expr u = pool.vector_symbol("u", Role::body_vector, 0), v = pool.vector_symbol("v", Role::body_vector, 1),
              t = pool.vector_symbol("t", Role::body_vector, 1, true);
   const Expr s = pool.symbol("s", Role::parameter);
   EXPECT_TRUE(is_one(dot(t, t)));

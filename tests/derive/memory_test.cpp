@@ -14,8 +14,7 @@ class Remembered : public Derive {
     Derive::SetUp();
     fs::remove(place_ / "specs/planar/line.joint");  // others take less time
     for (const char* spec : {"angle.hand", "gear.joint", "target.joint"}) take(std::string("planar/") + spec);
-    write("specs/planar/pair.joint",
-          "joint pair planar\n  \"Two angles.\"\n  include angle\n  angle(b) = angle(c)\n");
+    write("specs/planar/pair.joint", "joint pair planar\n  \"Two angles.\"\n  include angle\n  angle(b) = angle(c)\n");
     first_ = cdot("derive");
     ASSERT_EQ(first_.status, 0) << first_.said;
     right_ = files("generated");

@@ -19,8 +19,7 @@ std::string joined(const std::vector<std::string>& lines) {
 
 struct Symbols {
   Pool pool;
-  Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given),
-       c = pool.symbol("c", Role::given);
+  Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given), c = pool.symbol("c", Role::given);
 };
 
 }  // namespace
@@ -36,8 +35,8 @@ TEST(Print, gives_a_named_quantity_its_own_line) {
 TEST(Print, numbers_nameless_shared_work_by_output) {
   Symbols s;
   const Expr shared = s.a * s.b;
-  const std::string text = joined(print_statements(
-      assemble({{"C[0]", call(Fn::sin, shared)}, {"C[1]", call(Fn::cos, shared)}}), {}));
+  const std::string text =
+      joined(print_statements(assemble({{"C[0]", call(Fn::sin, shared)}, {"C[1]", call(Fn::cos, shared)}}), {}));
   EXPECT_EQ(text, "const T C1_1 = a * b;\nC[0] = sin(C1_1);\nC[1] = cos(C1_1);\n");
 }
 
@@ -65,30 +64,25 @@ TEST(Print, reads_inputs_by_their_place) {
 TEST(Print, computes_nothing_twice) {
   Symbols s;
   const Expr square = s.a * s.b;
-  const Program program =
-      assemble({{"H[0]", -square}, {"H[1]", -square}, {"H[2]", square * square}});
+  const Program program = assemble({{"H[0]", -square}, {"H[1]", -square}, {"H[2]", square * square}});
   const std::string text = joined(print_statements(program, {}));
   const std::regex multiply(R"( \* )"), minus(R"(-)");
-  EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), multiply), {}),
-            count(program).multiply)
+  EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), multiply), {}), count(program).multiply)
       << text;
-  EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), minus), {}),
-            count(program).add)
-      << text;
+  EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), minus), {}), count(program).add) << text;
 }
 
 // For a type that counts, -T(2) * a would be a negation more than the ledger says.
 TEST(Print, has_no_minus_sign_that_a_number_can_take) {
   Symbols s;
   const Rational minus_one(-1), minus_two(-2);
-  const std::vector<std::tuple<Expr, std::string, int>> cases = {
-      {minus_two * s.a, "T(-2) * a", 0},
-      {minus_two * s.a - s.b, "T(-2) * a - b", 1},
-      {-s.a + minus_two * s.b, "T(-2) * b - a", 1},
-      {s.a + minus_two * s.b, "a - T(2) * b", 1},
-      {-s.a - s.pool.number(3), "T(-3) - a", 1},
-      {-s.a - s.b, "-a - b", 2},
-      {minus_one * s.a, "-a", 1}};
+  const std::vector<std::tuple<Expr, std::string, int>> cases = {{minus_two * s.a, "T(-2) * a", 0},
+                                                                 {minus_two * s.a - s.b, "T(-2) * a - b", 1},
+                                                                 {-s.a + minus_two * s.b, "T(-2) * b - a", 1},
+                                                                 {s.a + minus_two * s.b, "a - T(2) * b", 1},
+                                                                 {-s.a - s.pool.number(3), "T(-3) - a", 1},
+                                                                 {-s.a - s.b, "-a - b", 2},
+                                                                 {minus_one * s.a, "-a", 1}};
   for (const auto& [e, text, additions] : cases) {
     const Program program = assemble({{"C[0]", e}});
     EXPECT_EQ(joined(print_statements(program, {})), "C[0] = " + text + ";\n");
@@ -115,6 +109,5 @@ TEST(Print, breaks_long_lines_at_outer_operators) {
     again += line.substr(std::min(line.size(), line.find_first_not_of(' '))) + " ";
   }
   EXPECT_EQ(again, sum + "; ") << "only spaces were changed";
-  for (std::size_t i = 1; i < lines.size(); ++i)
-    EXPECT_EQ(lines[i].find_first_not_of(' '), 6u) << lines[i];
+  for (std::size_t i = 1; i < lines.size(); ++i) EXPECT_EQ(lines[i].find_first_not_of(' '), 6u) << lines[i];
 }

@@ -62,8 +62,7 @@ TEST_P(Programs, compute_the_expressions_that_they_are_assembled_from) {
     const std::vector<double> values = run(program, random.leaves());
     for (std::size_t i = 0; i < values.size(); ++i) {
       const KnownScalar& known = random.scalars()[i];
-      EXPECT_NEAR(values[i], known.value, 1e-8 * (1 + std::abs(known.value)))
-          << text_unnamed(known.e);
+      EXPECT_NEAR(values[i], known.value, 1e-8 * (1 + std::abs(known.value))) << text_unnamed(known.e);
     }
   }
 }
@@ -77,8 +76,7 @@ TEST_P(Programs, keep_their_values_through_the_passes_and_never_cost_more) {
     for (std::size_t from = 0; from < random.scalars().size(); from += 6) {
       const Program before = assembled(random.scalars(), from, 6), after = simplify(before);
       expect_same_outputs(before, after, random.leaves());
-      EXPECT_LE(count(after).total(), count(before).total())
-          << "seed " << seed << ", from " << from;
+      EXPECT_LE(count(after).total(), count(before).total()) << "seed " << seed << ", from " << from;
       cheaper += count(after).total() < count(before).total();
     }
   }
@@ -99,16 +97,14 @@ INSTANTIATE_TEST_SUITE_P(in, Programs, testing::Values(2, 3), testing::PrintToSt
 
 TEST(Simplify, takes_common_factors_out) {
   Pool pool;
-  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given),
-             c = pool.symbol("c", Role::given);
+  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given), c = pool.symbol("c", Role::given);
   const Program program = simplify(assemble({{"C[0]", a * b + a * c}}));
   EXPECT_EQ(count(program), (Count{1, 1, 0, 0, 0, 0})) << text(count(program));
 }
 
 TEST(Simplify, shares_sums_and_products) {
   Pool pool;
-  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given),
-             c = pool.symbol("c", Role::given);
+  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given), c = pool.symbol("c", Role::given);
   const Program sums = simplify(assemble({{"C[0]", a + b}, {"C[1]", a + b + c}}));
   EXPECT_EQ(count(sums), (Count{2, 0, 0, 0, 0, 0})) << text(count(sums));
   const Program products = simplify(assemble({{"C[0]", a * b}, {"C[1]", a * b * c}}));
@@ -117,16 +113,15 @@ TEST(Simplify, shares_sums_and_products) {
 
 TEST(Simplify, takes_minus_signs_out_where_that_costs_nothing) {
   Pool pool;
-  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given),
-             c = pool.symbol("c", Role::given), d = pool.symbol("d", Role::given);
+  const Expr a = pool.symbol("a", Role::given), b = pool.symbol("b", Role::given), c = pool.symbol("c", Role::given),
+             d = pool.symbol("d", Role::given);
   // a + b (-2 c - b d) costs the same as a - b (2 c + b d).
   const Expr e = a - Rational(2) * b * c - b * b * d;
   const Program program = simplify(assemble({{"C[0]", e}}));
   EXPECT_EQ(count(program), (Count{2, 3, 0, 0, 0, 0})) << text(count(program));
   for (const Operation& op : program.ops) {
     if (op.kind != OpKind::sum) continue;
-    EXPECT_TRUE(std::any_of(op.coefs.begin(), op.coefs.end(),
-                            [](Rational coef) { return coef.sign() > 0; }));
+    EXPECT_TRUE(std::any_of(op.coefs.begin(), op.coefs.end(), [](Rational coef) { return coef.sign() > 0; }));
   }
 }
 
@@ -151,11 +146,8 @@ TEST(Simplify, has_positions_first_in_every_sum) {
     for (const KernelFunction& f : kernel.rows.functions) {
       for (const Operation& op : f.program.ops) {
         if (op.kind != OpKind::sum) continue;
-        const auto is_position = [&](int arg) {
-          return f.program.ops[static_cast<std::size_t>(arg)].is_position;
-        };
-        EXPECT_TRUE(std::is_partitioned(op.args.begin(), op.args.end(), is_position))
-            << name << ' ' << f.name;
+        const auto is_position = [&](int arg) { return f.program.ops[static_cast<std::size_t>(arg)].is_position; };
+        EXPECT_TRUE(std::is_partitioned(op.args.begin(), op.args.end(), is_position)) << name << ' ' << f.name;
       }
     }
   }
@@ -163,8 +155,8 @@ TEST(Simplify, has_positions_first_in_every_sum) {
 
 TEST(Simplify, cancels_what_is_taken_away_and_added_again) {
   Pool pool;
-  const Expr x = pool.symbol("x", Role::given), r = pool.symbol("r", Role::given),
-             c = pool.symbol("c", Role::given), u = x - r;
+  const Expr x = pool.symbol("x", Role::given), r = pool.symbol("r", Role::given), c = pool.symbol("c", Role::given),
+             u = x - r;
   pool.name(u, "u", true);
   const Program program = simplify(assemble({{"C[0]", c * u}, {"C[1]", c * (u + r)}}));
   EXPECT_EQ(count(program), (Count{1, 2, 0, 0, 0, 0})) << text(count(program));
@@ -191,9 +183,7 @@ TEST(Cost, of_the_point_joint_is_that_of_a_careful_person) {
 TEST(Cost, of_a_negative_in_J_is_left_to_whoever_uses_it) {
   const Joint joint = joint_of("revolute");
   const Expr ra = joint.parameters.front().symbol, square = dot(ra, ra);
-  const auto cost_of = [&](const char* quantity, Expr e) {
-    return cost_from_poses(joint, quantity, {e}).add;
-  };
+  const auto cost_of = [&](const char* quantity, Expr e) { return cost_from_poses(joint, quantity, {e}).add; };
   EXPECT_EQ(cost_of("J", -square), cost_of("J", square));
   EXPECT_EQ(cost_of("C", -square), cost_of("C", square) + 1);
   EXPECT_EQ(cost_of("K", -square), cost_of("K", square) + 1);

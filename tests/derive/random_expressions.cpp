@@ -29,8 +29,7 @@ RandomExpressions::RandomExpressions(Pool& pool, std::uint64_t seed) : pool_(poo
   }
   for (const char* name : {"theta_a", "l", "k"}) {
     leaves_[name] = random_.between(-2, 2);
-    scalars_.push_back(
-        {pool.symbol(name, name[0] == 't' ? Role::angle : Role::parameter), leaves_[name]});
+    scalars_.push_back({pool.symbol(name, name[0] == 't' ? Role::angle : Role::parameter), leaves_[name]});
   }
   for (const Rational number : {Rational(2), Rational(-1), Rational(1, 2), Rational(0)}) {
     scalars_.push_back({pool.number(number), number.value()});
@@ -41,8 +40,7 @@ void RandomExpressions::add_leaf(const char* name, Role role, int body, bool of_
   const double angle = random_.between(-3, 3), size = of_unit_length ? 1 : random_.between(0.3, 3);
   const double height = pool_.dimension() == 2 ? 0 : random_.between(-0.9, 0.9);
   const double across = std::sqrt(1 - height * height);
-  const Triple<double> value =
-      scaled(size, {across * std::cos(angle), across * std::sin(angle), height});
+  const Triple<double> value = scaled(size, {across * std::cos(angle), across * std::sin(angle), height});
   for (int k = 0; k < pool_.dimension(); ++k) {
     leaves_[std::string(name) + "_" + "xyz"[k]] = value[static_cast<std::size_t>(k)];
   }
@@ -59,14 +57,9 @@ void RandomExpressions::keep(KnownVector v) {
 void RandomExpressions::grow(int steps) {
   for (int i = 0; i < steps; ++i) {
     switch (pick(3)) {
-      case 0:
-        grow_scalar();
-        break;
-      case 1:
-        grow_vector();
-        break;
-      default:
-        grow_function();
+      case 0: grow_scalar(); break;
+      case 1: grow_vector(); break;
+      default: grow_function();
     }
   }
 }
@@ -75,21 +68,15 @@ void RandomExpressions::grow_scalar() {
   const KnownScalar a = scalar(), b = scalar();
   const KnownVector u = vector(), v = vector();
   switch (pick(8)) {
-    case 0:
-      return keep(KnownScalar{a.e + b.e, a.value + b.value});
-    case 1:
-      return keep(KnownScalar{a.e - b.e, a.value - b.value});
-    case 2:
-      return keep(KnownScalar{a.e * b.e, a.value * b.value});
+    case 0: return keep(KnownScalar{a.e + b.e, a.value + b.value});
+    case 1: return keep(KnownScalar{a.e - b.e, a.value - b.value});
+    case 2: return keep(KnownScalar{a.e * b.e, a.value * b.value});
     case 3:
       if (away_from_zero(b.value)) keep(KnownScalar{a.e / b.e, a.value / b.value});
       return;
-    case 4:
-      return keep(KnownScalar{pow(a.e, 3), a.value * a.value * a.value});
-    case 5:
-      return keep(KnownScalar{cdot::derive::norm(u.e), length(u.value)});
-    case 6:
-      return keep(KnownScalar{dot(u.e, v.e), inner_product(u.value, v.value)});
+    case 4: return keep(KnownScalar{pow(a.e, 3), a.value * a.value * a.value});
+    case 5: return keep(KnownScalar{cdot::derive::norm(u.e), length(u.value)});
+    case 6: return keep(KnownScalar{dot(u.e, v.e), inner_product(u.value, v.value)});
     default: {
       const Triple<double> value = cross_product(u.value, v.value);
       if (pool_.dimension() == 2) return keep(KnownScalar{cross(u.e, v.e), value[2]});
@@ -103,14 +90,10 @@ void RandomExpressions::grow_vector() {
   const KnownScalar a = scalar();
   const KnownVector u = vector(), v = vector();
   switch (pick(7)) {
-    case 0:
-      return keep(KnownVector{u.e + v.e, summed(u.value, v.value)});
-    case 1:
-      return keep(KnownVector{u.e - v.e, summed(u.value, scaled(-1, v.value))});
-    case 2:
-      return keep(KnownVector{a.e * u.e, scaled(a.value, u.value)});
-    case 3:
-      return grow_turned(u, v);
+    case 0: return keep(KnownVector{u.e + v.e, summed(u.value, v.value)});
+    case 1: return keep(KnownVector{u.e - v.e, summed(u.value, scaled(-1, v.value))});
+    case 2: return keep(KnownVector{a.e * u.e, scaled(a.value, u.value)});
+    case 3: return grow_turned(u, v);
     case 4:
       if (pool_.dimension() == 2) {
         keep(KnownVector{cross(a.e, u.e), {-a.value * u.value[1], a.value * u.value[0], 0}});
@@ -136,14 +119,10 @@ void RandomExpressions::grow_function() {
   const KnownScalar a = scalar(), b = scalar();
   if (std::abs(a.value) > 3) return;
   switch (pick(7)) {
-    case 0:
-      return keep(KnownScalar{call(Fn::sin, a.e), std::sin(a.value)});
-    case 1:
-      return keep(KnownScalar{call(Fn::cos, a.e), std::cos(a.value)});
-    case 2:
-      return keep(KnownScalar{call(Fn::exp, a.e), std::exp(a.value)});
-    case 3:
-      return keep(KnownScalar{call(Fn::abs, a.e), std::abs(a.value)});
+    case 0: return keep(KnownScalar{call(Fn::sin, a.e), std::sin(a.value)});
+    case 1: return keep(KnownScalar{call(Fn::cos, a.e), std::cos(a.value)});
+    case 2: return keep(KnownScalar{call(Fn::exp, a.e), std::exp(a.value)});
+    case 3: return keep(KnownScalar{call(Fn::abs, a.e), std::abs(a.value)});
     case 4:
       if (a.value > 0.05) keep(KnownScalar{call(Fn::sqrt, a.e), std::sqrt(a.value)});
       return;
@@ -162,30 +141,18 @@ namespace {
 
 double apply(const Operation& op, const std::vector<double>& x) {
   switch (op.fn) {
-    case Fn::sqrt:
-      return std::sqrt(x[0]);
-    case Fn::sin:
-      return std::sin(x[0]);
-    case Fn::cos:
-      return std::cos(x[0]);
-    case Fn::tan:
-      return std::tan(x[0]);
-    case Fn::exp:
-      return std::exp(x[0]);
-    case Fn::log:
-      return std::log(x[0]);
-    case Fn::abs:
-      return std::abs(x[0]);
-    case Fn::sign:
-      return (x[0] > 0) - (x[0] < 0);
-    case Fn::atan2:
-      return std::atan2(x[0], x[1]);
-    case Fn::inverse:
-      return x[0] == 0 ? 0 : 1 / x[0];
-    case Fn::select:
-      return x[0] > 0 ? x[1] : x[2];
-    case Fn::pivot:
-      return x[0] > 1e-14 * x[1] ? 1 / x[0] : 0;
+    case Fn::sqrt: return std::sqrt(x[0]);
+    case Fn::sin: return std::sin(x[0]);
+    case Fn::cos: return std::cos(x[0]);
+    case Fn::tan: return std::tan(x[0]);
+    case Fn::exp: return std::exp(x[0]);
+    case Fn::log: return std::log(x[0]);
+    case Fn::abs: return std::abs(x[0]);
+    case Fn::sign: return (x[0] > 0) - (x[0] < 0);
+    case Fn::atan2: return std::atan2(x[0], x[1]);
+    case Fn::inverse: return x[0] == 0 ? 0 : 1 / x[0];
+    case Fn::select: return x[0] > 0 ? x[1] : x[2];
+    case Fn::pivot: return x[0] > 1e-14 * x[1] ? 1 / x[0] : 0;
   }
   throw std::logic_error("an unknown function");
 }
@@ -193,18 +160,15 @@ double apply(const Operation& op, const std::vector<double>& x) {
 double compute(const Operation& op, const std::vector<double>& x, const Values& inputs) {
   double result = op.kind == OpKind::product ? 1 : 0;
   switch (op.kind) {
-    case OpKind::number:
-      return op.value.value();
-    case OpKind::input:
-      return inputs.at(op.input);
+    case OpKind::number: return op.value.value();
+    case OpKind::input: return inputs.at(op.input);
     case OpKind::sum:
       for (std::size_t i = 0; i < x.size(); ++i) result += op.coefs[i].value() * x[i];
       return result;
     case OpKind::product:
       for (std::size_t i = 0; i < x.size(); ++i) result *= std::pow(x[i], op.exponents[i]);
       return result;
-    case OpKind::function:
-      return apply(op, x);
+    case OpKind::function: return apply(op, x);
   }
   throw std::logic_error("an unknown operation");
 }
@@ -219,8 +183,7 @@ std::vector<double> run(const Program& program, const Values& inputs) {
     value.push_back(compute(op, x, inputs));
   }
   std::vector<double> outputs;
-  for (const Output& output : program.outputs)
-    outputs.push_back(value.at(static_cast<std::size_t>(output.op)));
+  for (const Output& output : program.outputs) outputs.push_back(value.at(static_cast<std::size_t>(output.op)));
   return outputs;
 }
 

@@ -25,8 +25,7 @@ TEST(Repetition, no_joint_is_another_by_a_second_name) {
   int kernels = 0;
   for (const char* space : {"planar", "spatial"}) {
     std::map<std::string, std::string> joint_of;
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(CDOT_GENERATED "/") + space)) {
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(CDOT_GENERATED "/") + space)) {
       if (entry.path().stem() == "registry") continue;
       const std::string name = entry.path().stem().string();
       const auto [same, first] = joint_of.emplace(kernel_without_names(entry.path()), name);

@@ -21,27 +21,22 @@ struct Result {
   std::string out;  // with what went to the standard error, where that was asked for
 };
 
-Result diff(const std::string& arguments, bool errors_too = true,
-            const std::filesystem::path& specs = specs_folder()) {
+Result diff(const std::string& arguments, bool errors_too = true, const std::filesystem::path& specs = specs_folder()) {
   const std::string command = std::string(CDOT_COMMAND) + " diff --specs '" + specs.string() + "' " + arguments +
                               (errors_too ? " 2>&1" : " 2>/dev/null");
   Result result;
   FILE* pipe = popen(command.c_str(), "r");
   if (pipe == nullptr) return result;
   std::array<char, 4096> buffer;
-  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;)
-    result.out.append(buffer.data(), n);
+  for (std::size_t n; (n = fread(buffer.data(), 1, buffer.size(), pipe)) > 0;) result.out.append(buffer.data(), n);
   const int status = pclose(pipe);
   if (WIFEXITED(status)) result.status = WEXITSTATUS(status);
   return result;
 }
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+bool contains(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-void expect_strings(const json& object, const std::vector<std::string>& names,
-                    const std::string& where) {
+void expect_strings(const json& object, const std::vector<std::string>& names, const std::string& where) {
   for (const std::string& name : names) {
     ASSERT_TRUE(object.contains(name)) << where << " has no " << name;
     EXPECT_TRUE(object[name].is_string()) << where << ": " << name;
@@ -50,18 +45,14 @@ void expect_strings(const json& object, const std::vector<std::string>& names,
 
 void expect_item(const json& item, const std::string& where) {
   static const std::set<std::string> whats = {"C", "Cdot", "J", "K", "b", "update"};
-  static const std::set<std::string> kinds = {
-      "sign",       "factor",     "wrong body",           "missing term",
-      "extra term", "transposed", "undeclared assumption"};
-  expect_strings(
-      item,
-      {"what", "row", "column", "kind", "generated", "hand", "difference", "sentence", "confirmed"},
-      where);
+  static const std::set<std::string> kinds = {"sign",       "factor",     "wrong body",           "missing term",
+                                              "extra term", "transposed", "undeclared assumption"};
+  expect_strings(item, {"what", "row", "column", "kind", "generated", "hand", "difference", "sentence", "confirmed"},
+                 where);
   EXPECT_EQ(item.size(), 9u) << where;
   EXPECT_TRUE(whats.contains(item["what"])) << where << item["what"];
   EXPECT_TRUE(kinds.contains(item["kind"])) << where << item["kind"];
-  for (const char* name : {"hand", "sentence", "confirmed"})
-    EXPECT_NE(item[name], "") << where << name;
+  for (const char* name : {"hand", "sentence", "confirmed"}) EXPECT_NE(item[name], "") << where << name;
   // Where one of two numbers does not exist, there is no difference either.
   EXPECT_EQ(item["generated"] == "", item["difference"] == "") << where;
 }
@@ -77,8 +68,7 @@ TEST(Command, JsonHasEveryFieldOfEveryEntry) {
     const std::string where = entry.value("id", "?") + ": ";
     expect_strings(entry, {"id", "joint", "title", "source", "verdict", "condition"}, where);
     EXPECT_EQ(entry.size(), 8u) << where;
-    for (const char* name : {"id", "joint", "title", "source"})
-      EXPECT_NE(entry[name], "") << where << name;
+    for (const char* name : {"id", "joint", "title", "source"}) EXPECT_NE(entry[name], "") << where << name;
     const std::string verdict = entry["verdict"];
     ++verdicts[verdict];
     ASSERT_TRUE(entry["items"].is_array()) << where;

@@ -62,8 +62,7 @@ TEST(Cost, OfSomeRowsOrOtherDirectionsStandsBesideWhatIsGeneratedOfThem) {
   rows line
   C = dot(t, u)
 )");
-  EXPECT_EQ(rows_of(some),
-            (Rows{"rows C X-1 of line with t on a", "rows C generated of line with t on a"}));
+  EXPECT_EQ(rows_of(some), (Rows{"rows C X-1 of line with t on a", "rows C generated of line with t on a"}));
   const Judgement fixed = judged("spatial/hinge", R"(
   assume fa on b
   assume fb on a

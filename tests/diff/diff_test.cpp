@@ -46,20 +46,17 @@ TEST_P(Teaching, NamesTermRowBodyAndReason) {
 
 INSTANTIATE_TEST_SUITE_P(
     Prismatic, Teaching,
-    testing::Values(Lesson{"WithoutTheTermOfTheTurningAxis",
-                           "[ t', cross(ra, t), -t', -cross(rb, t) ; 0, 1, 0, -1 ]", "w_b",
-                           "missing term", "-cross(rb + u, t)", "-cross(rb, t)", "cross(u, t)",
+    testing::Values(Lesson{"WithoutTheTermOfTheTurningAxis", "[ t', cross(ra, t), -t', -cross(rb, t) ; 0, 1, 0, -1 ]",
+                           "w_b", "missing term", "-cross(rb + u, t)", "-cross(rb, t)", "cross(u, t)",
                            "J, row 1, w_b: the hand derivation lacks -cross(u, t): t turns with b "
                            "(dt/dt = w_b x t), so the "
                            "product rule has a term for it; equal only where u = 0"},
-                    Lesson{"AFlippedSign",
-                           "[ t', cross(ra, t), -t', -cross(rb - u, t) ; 0, 1, 0, -1 ]", "w_b",
-                           "sign", "-cross(rb + u, t)", "-cross(rb - u, t)", "2*cross(u, t)",
+                    Lesson{"AFlippedSign", "[ t', cross(ra, t), -t', -cross(rb - u, t) ; 0, 1, 0, -1 ]", "w_b", "sign",
+                           "-cross(rb + u, t)", "-cross(rb - u, t)", "2*cross(u, t)",
                            "J, row 1, w_b: the term -cross(u, t) has the wrong sign: t turns with "
                            "b (dt/dt = w_b x t), so the "
                            "product rule has a term for it"},
-                    Lesson{"ASwappedBody",
-                           "[ t', cross(rb, t), -t', -cross(rb + u, t) ; 0, 1, 0, -1 ]", "w_a",
+                    Lesson{"ASwappedBody", "[ t', cross(rb, t), -t', -cross(rb + u, t) ; 0, 1, 0, -1 ]", "w_a",
                            "wrong body", "cross(ra, t)", "cross(rb, t)", "-cross(ra - rb, t)",
                            "J, row 1, w_a: rb stands where ra belongs"}),
     [](const auto& info) { return info.param.mistake; });
@@ -73,22 +70,18 @@ struct Kind {
 
 TEST(Diff, NamesTheKindOfEveryMistake) {
   const Kind table[] = {
-      {"line", "  J = [ t', -cross(ra, t), -t', -cross(rb + u, t) ]\n", "sign",
-       "J, row 1, w_a: the sign is wrong"},
+      {"line", "  J = [ t', -cross(ra, t), -t', -cross(rb + u, t) ]\n", "sign", "J, row 1, w_a: the sign is wrong"},
       {"line", "  J = [ t', 2 * cross(ra, t), -t', -cross(rb + u, t) ]\n", "factor",
        "J, row 1, w_a: it is 2 times what it should be"},
       {"line", "  J = [ t', -cross(rb + u, t), -t', -cross(rb + u, t) ]\n", "wrong body",
        "J, row 1, w_a: -cross(rb + u, t) is what belongs to another body's column"},
-      {"line", "  J = [ t', 0, -t', -cross(rb + u, t) ]\n", "missing term",
-       "J, row 1, w_a: nothing stands here"},
-      {"angle", "  J = [ 0, 1, [1, 0], -1 ]\n", "extra term",
-       "J, row 1, v_b.x: nothing belongs here"},
+      {"line", "  J = [ t', 0, -t', -cross(rb + u, t) ]\n", "missing term", "J, row 1, w_a: nothing stands here"},
+      {"angle", "  J = [ 0, 1, [1, 0], -1 ]\n", "extra term", "J, row 1, v_b.x: nothing belongs here"},
       {"line", "  J = [ t ; cross(ra, t) ; -t ; -cross(rb + u, t) ]\n", "transposed",
        "J: 6 x 1 numbers stand where 1 x 6 belong: it is transposed"},
       {"prismatic", "  J = [ t', cross(ra, t), -t', -cross(rb + u, t) ]\n", "missing term",
        "J, row 2: 1 x 6 numbers stand where 2 x 6 belong: this row (0, 0, 1, 0, 0, -1) is missing"},
-      {"line", "  K = 1/m(a) + 1/m(b) + cross(ra, t)^2/I(b) + cross(rb + u, t)^2/I(b)\n",
-       "wrong body",
+      {"line", "  K = 1/m(a) + 1/m(b) + cross(ra, t)^2/I(b) + cross(rb + u, t)^2/I(b)\n", "wrong body",
        "K, row 1, column 1: it has inv_I_b*cross(ra, t)^2 where inv_I_a*cross(ra, t)^2 belongs: "
        "inv_I_b stands "
        "where inv_I_a belongs"},
@@ -111,8 +104,7 @@ TEST(Diff, NamesTheKindOfEveryMistake) {
 }
 
 TEST(Diff, ForgivesTheSignOfCAndSaysSo) {
-  const Judgement j =
-      judged("line", "  C = -dot(t, u)\n  J = [ -t', -cross(ra, t), t', cross(rb + u, t) ]\n");
+  const Judgement j = judged("line", "  C = -dot(t, u)\n  J = [ -t', -cross(ra, t), t', cross(rb + u, t) ]\n");
   EXPECT_EQ(j.agreement, Agreement::agrees);
   ASSERT_EQ(j.remarks.size(), 1u);
   EXPECT_EQ(j.remarks[0], "C is counted the other way round: J flips its sign, K does not");
@@ -120,8 +112,7 @@ TEST(Diff, ForgivesTheSignOfCAndSaysSo) {
 
 // C and J with one sign, b with that of the other: b is what differs, and it alone.
 TEST(Diff, ChoosesTheSignWithWhichTheFewestItemsDiffer) {
-  const Judgement b = judged(
-      "angle", "  C = angle(b) - angle(a) + phi\n  J = [ 0, -1, 0, 1 ]\n  b = w(b) - w(a)\n");
+  const Judgement b = judged("angle", "  C = angle(b) - angle(a) + phi\n  J = [ 0, -1, 0, 1 ]\n  b = w(b) - w(a)\n");
   ASSERT_EQ(b.differences.size(), 1u);
   EXPECT_EQ(b.differences[0].what, "b");
   EXPECT_EQ(b.differences[0].kind, "sign");
@@ -147,10 +138,8 @@ TEST(Diff, AnInequalityNeedsItsBound) {
 }
 
 TEST(Diff, UpdatesMustMakeTheVelocityConstraintHold) {
-  const std::string right =
-      "  lambda = -(w(a) - w(b)) / (1/I(a) + 1/I(b))\n  update w(a) += lambda / I(a)\n";
-  EXPECT_EQ(judged("angle", right + "  update w(b) -= lambda / I(b)\n").agreement,
-            Agreement::agrees);
+  const std::string right = "  lambda = -(w(a) - w(b)) / (1/I(a) + 1/I(b))\n  update w(a) += lambda / I(a)\n";
+  EXPECT_EQ(judged("angle", right + "  update w(b) -= lambda / I(b)\n").agreement, Agreement::agrees);
   const Judgement wrong = judged("angle", right + "  update w(b) += lambda / I(b)\n");
   ASSERT_EQ(wrong.differences.size(), 1u);
   EXPECT_EQ(wrong.differences[0].column, "w_b");
@@ -168,8 +157,7 @@ TEST(Diff, LooksForConditionsWithinWhatIsAssumed) {
   EXPECT_NE(anywhere.differences[0].sentence.find("equal only where ratio = 1"), std::string::npos);
   const Judgement negative = judged("angle_ratio", "  free s\n  assume ratio = -s\n" + K);
   ASSERT_EQ(negative.differences.size(), 1u);
-  EXPECT_NE(negative.differences[0].sentence.find("equal only where ratio = -1"),
-            std::string::npos);
+  EXPECT_NE(negative.differences[0].sentence.find("equal only where ratio = -1"), std::string::npos);
 }
 
 // Vector rows in world axes turn with the bodies: J v = w x C, which is zero where the joint holds.

@@ -42,16 +42,14 @@ bool breaks_momentum(const Judgement& j) {
 }
 
 TEST(Published, EveryDifferenceHasItsNumbers) {
-  const std::regex measured(
-      ".* at \\d+ poses: generated off by ([-+.e0-9]+), published by ([-+.e0-9]+)");
+  const std::regex measured(".* at \\d+ poses: generated off by ([-+.e0-9]+), published by ([-+.e0-9]+)");
   const std::regex claimed(
       "both sides at \\d+ poses: they differ by up to ([-+.e0-9]+); at the first ([-+.e0-9]+) "
       "stands where ([-+.e0-9]+) belongs");
   const std::regex read(
       "no value as published; with .* it is off by ([-+.e0-9]+) from central differences of C at "
       "\\d+ poses");
-  const std::regex sizes(
-      "\\d+ x \\d+ and \\d+ x \\d+ numbers have no difference; .* at \\d+ poses");
+  const std::regex sizes("\\d+ x \\d+ and \\d+ x \\d+ numbers have no difference; .* at \\d+ poses");
   int counts[4] = {};
   for (const Judgement& j : published()) {
     EXPECT_EQ(j.agreement == Agreement::differs, !j.differences.empty()) << j.id;
@@ -68,8 +66,7 @@ TEST(Published, EveryDifferenceHasItsNumbers) {
         EXPECT_LT(std::stod(numbers[1]), 1e-8) << j.id << " " << d.confirmed;
         ++counts[2];
       } else {
-        EXPECT_TRUE(std::regex_match(d.confirmed, sizes))
-            << j.id << " is not confirmed: " << d.confirmed;
+        EXPECT_TRUE(std::regex_match(d.confirmed, sizes)) << j.id << " is not confirmed: " << d.confirmed;
         ++counts[3];
       }
     }
@@ -98,10 +95,8 @@ TEST(Published, MomentumIsMissedOnlyWhereSomethingDiffers) {
     EXPECT_EQ(j.agreement, Agreement::differs) << j.id;
   }
   // Exact though in world axes: J of a common rotation is w x C.
-  for (const char* id : {"P2P-1", "P2P-3", "P2P-4", "WLD-1", "WLD-4", "MOT-1"})
-    EXPECT_FALSE(broken.contains(id)) << id;
-  for (const char* id : {"PRI-5", "GEA-3", "LIN-7", "FRI-1"})
-    EXPECT_TRUE(broken.contains(id)) << id;
+  for (const char* id : {"P2P-1", "P2P-3", "P2P-4", "WLD-1", "WLD-4", "MOT-1"}) EXPECT_FALSE(broken.contains(id)) << id;
+  for (const char* id : {"PRI-5", "GEA-3", "LIN-7", "FRI-1"}) EXPECT_TRUE(broken.contains(id)) << id;
 }
 
 // A sentence can be read in one breath; long formulas stand in the lines below it.
@@ -135,8 +130,7 @@ TEST(Published, SentencesNameWhatIsWrong) {
   for (const auto& [id, sentence] : expected) {
     bool found = false;
     for (const Judgement& j : published()) {
-      for (const Difference& d : j.differences)
-        found = found || (j.id == id && d.kind + ": " + d.sentence == sentence);
+      for (const Difference& d : j.differences) found = found || (j.id == id && d.kind + ": " + d.sentence == sentence);
     }
     EXPECT_TRUE(found) << id << ": " << sentence;
   }

@@ -28,8 +28,7 @@ const char* const square =
     "  angular: dot(na, nb) = 0\n";
 
 Judgement judged_beside(const std::string& spec, const std::string& items) {
-  const fs::path folder =
-      fs::path(testing::TempDir()) / ("cdot_diff_spatial_" + std::to_string(getpid()));
+  const fs::path folder = fs::path(testing::TempDir()) / ("cdot_diff_spatial_" + std::to_string(getpid()));
   fs::create_directories(folder);
   std::ofstream(folder / "own.joint") << spec;
   std::ofstream(folder / "own.hand") << "entry X-1 \"own\"\n  source \"own\"\n" << items;
@@ -43,8 +42,7 @@ Judgement judged_beside(const std::string& spec, const std::string& items) {
 
 void expect_proved(const Judgement& j) {
   EXPECT_EQ(j.agreement, Agreement::agrees);
-  for (const std::string& remark : j.remarks)
-    EXPECT_EQ(remark.find("algebra alone"), std::string::npos) << remark;
+  for (const std::string& remark : j.remarks) EXPECT_EQ(remark.find("algebra alone"), std::string::npos) << remark;
 }
 
 TEST(Spatial, BlocksAreThreeWide) {
@@ -57,34 +55,30 @@ TEST(Spatial, BlocksAreThreeWide) {
 }
 
 TEST(Spatial, JIsComparedInAllThreeForms) {
-  expect_proved(
-      judged_beside(square, "  form global\n  J = [ 0, -nb' * skew(na), 0, nb' * skew(na) ]\n"));
+  expect_proved(judged_beside(square, "  form global\n  J = [ 0, -nb' * skew(na), 0, nb' * skew(na) ]\n"));
   expect_proved(judged_beside(square,
                               "  form local\n"
                               "  J = [ 0, -nb' * skew(na) * R(a), 0, nb' * skew(na) * R(b) ]\n"));
-  expect_proved(
-      judged_beside(square,
-                    "  form euler\n"
-                    "  J = [ 0, -2 * nb' * skew(na) * G(a), 0, 2 * nb' * skew(na) * G(b) ]\n"));
-  expect_proved(judged_beside(
-      ball, "  form euler\n  J = [ E, -2 * skew(ra) * G(a), -E, 2 * skew(rb) * G(b) ]\n"));
+  expect_proved(judged_beside(square,
+                              "  form euler\n"
+                              "  J = [ 0, -2 * nb' * skew(na) * G(a), 0, 2 * nb' * skew(na) * G(b) ]\n"));
+  expect_proved(judged_beside(ball, "  form euler\n  J = [ E, -2 * skew(ra) * G(a), -E, 2 * skew(rb) * G(b) ]\n"));
 }
 
 TEST(Spatial, WrongFormsDifferAndAreMeasured) {
-  const Judgement local = judged_beside(
-      square, "  form local\n  J = [ 0, -nb' * skew(na), 0, nb' * skew(na) * R(b) ]\n");
+  const Judgement local =
+      judged_beside(square, "  form local\n  J = [ 0, -nb' * skew(na), 0, nb' * skew(na) * R(b) ]\n");
   EXPECT_EQ(local.agreement, Agreement::differs);
   for (const auto& d : local.differences) {
     EXPECT_EQ(d.column.substr(0, 4), "w'_a");
     EXPECT_NE(d.confirmed.find("central differences"), std::string::npos);
   }
-  const Judgement euler = judged_beside(
-      square, "  form euler\n  J = [ 0, -nb' * skew(na) * G(a), 0, 2 * nb' * skew(na) * G(b) ]\n");
+  const Judgement euler =
+      judged_beside(square, "  form euler\n  J = [ 0, -nb' * skew(na) * G(a), 0, 2 * nb' * skew(na) * G(b) ]\n");
   ASSERT_EQ(euler.differences.size(), 1u);
   EXPECT_EQ(euler.differences[0].column, "edot_a");
   EXPECT_EQ(euler.differences[0].kind, "factor");
-  EXPECT_NE(euler.differences[0].sentence.find("it is 0.5 times what it should be"),
-            std::string::npos);
+  EXPECT_NE(euler.differences[0].sentence.find("it is 0.5 times what it should be"), std::string::npos);
 }
 
 TEST(Spatial, EulerParametersTurnTheirBody) {

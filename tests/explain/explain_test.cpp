@@ -30,8 +30,7 @@ void check_chain(const std::string& heading, const Chain& chain, const Values& v
   for (std::size_t i = 1; i < known.size(); ++i) {
     ++told.equations;
     if (difference(known[0], known[i]) > 1e-9) {
-      told.wrong +=
-          heading + ": formula " + std::to_string(i) + " of a chain differs from its first\n";
+      told.wrong += heading + ": formula " + std::to_string(i) + " of a chain differs from its first\n";
     }
   }
 }
@@ -52,8 +51,7 @@ std::vector<double> J_times_v(const Formula& J, const Joint& joint, const Values
   return blocks_times(J, velocities, values);
 }
 
-void check_J(const Formula& J, const Joint& joint, const Block& block, const Values& values,
-             Told& told) {
+void check_J(const Formula& J, const Joint& joint, const Block& block, const Values& values, Told& told) {
   const std::vector<double> Jv = J_times_v(J, joint, values);
   if (Jv.size() != block.rows.size()) {
     told.wrong += "J has " + std::to_string(Jv.size()) + " rows\n";
@@ -62,8 +60,7 @@ void check_J(const Formula& J, const Joint& joint, const Block& block, const Val
   for (std::size_t i = 0; i < Jv.size(); ++i) {
     const double Cdot = evaluate(block.rows[i].Cdot, values) - evaluate(block.rows[i].C_t, values);
     ++told.equations;
-    if (std::abs(Jv[i] - Cdot) > 1e-9 * (1 + std::abs(Cdot)))
-      told.wrong += "J v differs from Cdot\n";
+    if (std::abs(Jv[i] - Cdot) > 1e-9 * (1 + std::abs(Cdot))) told.wrong += "J v differs from Cdot\n";
   }
 }
 
@@ -130,9 +127,8 @@ TEST(Explain, AFlippedSignIsFound) {
       if (item.kind != Item::Kind::chain || item.chain.left.name.starts_with("J_")) continue;
       Explanation wrong = right;
       Formula& f = wrong.steps[s].items[i].chain.links.back().formula;
-      f = f.shape == Shape::matrix
-              ? matrix(f.columns, {negative(f.args[0]), f.args[1], f.args[2], f.args[3]})
-              : negative(f);
+      f = f.shape == Shape::matrix ? matrix(f.columns, {negative(f.args[0]), f.args[1], f.args[2], f.args[3]})
+                                   : negative(f);
       ++flipped;
       if (!check(joint, wrong).wrong.empty()) ++found;
     }
@@ -161,8 +157,6 @@ TEST(Explain, ReadsAsItWasRead) {
 // The same text from every run: nothing depends on addresses or on what was derived before.
 TEST(Explain, SaysTheSameTwice) {
   for (const std::string& name : spec_names()) {
-    EXPECT_EQ(explanation_text(explain(read_spec(name))),
-              explanation_text(explain(read_spec(name))))
-        << name;
+    EXPECT_EQ(explanation_text(explain(read_spec(name))), explanation_text(explain(read_spec(name)))) << name;
   }
 }

@@ -24,8 +24,7 @@ Ran run(const std::string& command) {
   FILE* pipe = popen((command + " 2>&1").c_str(), "r");
   if (pipe == nullptr) return ran;
   char buffer[4096];
-  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-    ran.output.append(buffer, n);
+  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) ran.output.append(buffer, n);
   const int status = pclose(pipe);
   ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   return ran;
@@ -33,16 +32,13 @@ Ran run(const std::string& command) {
 
 // An empty folder of this test's own.
 fs::path folder(const std::string& name) {
-  const fs::path path =
-      fs::temp_directory_path() / ("cdot_explain_" + name + "_" + std::to_string(getpid()));
+  const fs::path path = fs::temp_directory_path() / ("cdot_explain_" + name + "_" + std::to_string(getpid()));
   fs::remove_all(path);
   fs::create_directories(path);
   return path;
 }
 
-void write(const fs::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
+void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
 
 // Braces, environments and \left ... \right open and close in order.
 std::string imbalance(const std::string& latex) {
@@ -51,24 +47,16 @@ std::string imbalance(const std::string& latex) {
   for (std::sregex_iterator it(latex.begin(), latex.end(), token), end; it != end; ++it) {
     const std::string text = it->str();
     std::string opens, closes;
-    if (text.starts_with("\\begin{"))
-      opens = (*it)[1];
-    else if (text.starts_with("\\end{"))
-      closes = (*it)[2];
-    else if (text == "\\left")
-      opens = "left";
-    else if (text == "\\right")
-      closes = "left";
-    else if (text == "{")
-      opens = "{";
-    else if (text == "}")
-      closes = "{";
-    else if (text == "$")
-      (!open.empty() && open.back() == "$" ? closes : opens) = "$";
+    if (text.starts_with("\\begin{")) opens = (*it)[1];
+    else if (text.starts_with("\\end{")) closes = (*it)[2];
+    else if (text == "\\left") opens = "left";
+    else if (text == "\\right") closes = "left";
+    else if (text == "{") opens = "{";
+    else if (text == "}") closes = "{";
+    else if (text == "$") (!open.empty() && open.back() == "$" ? closes : opens) = "$";
     if (!opens.empty()) open.push_back(opens);
     if (closes.empty()) continue;
-    if (open.empty() || open.back() != closes)
-      return "`" + text + "` at " + std::to_string(it->position());
+    if (open.empty() || open.back() != closes) return "`" + text + "` at " + std::to_string(it->position());
     open.pop_back();
   }
   return open.empty() ? "" : "`" + open.back() + "` stays open";
@@ -80,8 +68,7 @@ const std::string python = CDOT_PYTHON;
 
 // By sympy, in a process of its own.
 Ran check_json(const fs::path& files) {
-  return run(python + " " + quoted(fs::path(CDOT_EXPLAIN_TESTS) / "check_json.py") + " " +
-             quoted(files));
+  return run(python + " " + quoted(fs::path(CDOT_EXPLAIN_TESTS) / "check_json.py") + " " + quoted(files));
 }
 
 }  // namespace
@@ -114,13 +101,11 @@ TEST(ExplainLatex, BalancesAndCompilesWhereATexIsInstalled) {
   for (const std::string& name : spec_names()) {
     const std::string latex = explanation_latex(explain(read_spec(name)));
     EXPECT_EQ(imbalance(latex), "") << name;
-    for (const char c : latex)
-      ASSERT_LT(static_cast<unsigned char>(c), 128) << name << ": not ASCII";
+    for (const char c : latex) ASSERT_LT(static_cast<unsigned char>(c), 128) << name << ": not ASCII";
     if (!has_tex) continue;
     write(papers / (flat(name) + ".tex"), latex);
     const Ran compiled =
-        run("cd " + quoted(papers) + " && pdflatex -interaction=nonstopmode -halt-on-error " +
-            flat(name) + ".tex");
+        run("cd " + quoted(papers) + " && pdflatex -interaction=nonstopmode -halt-on-error " + flat(name) + ".tex");
     EXPECT_EQ(compiled.status, 0) << compiled.output;
   }
   std::cout << (has_tex ? "compiled by pdflatex\n" : "no pdflatex here: balance checked only\n");
@@ -179,8 +164,7 @@ TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
   const Ran text = run(cdot + " explain line" + specs);
   EXPECT_EQ(text.status, 0);
   EXPECT_EQ(text.output, explanation_text(explain(read_spec("line"))));
-  const Ran page =
-      run(cdot + " explain line --format html -o " + quoted(out / "line.html") + specs);
+  const Ran page = run(cdot + " explain line --format html -o " + quoted(out / "line.html") + specs);
   EXPECT_EQ(page.status, 0) << page.output;
   EXPECT_TRUE(fs::exists(out / "line.html"));
   const Ran json = run(cdot + " explain line --json" + specs);
@@ -196,13 +180,10 @@ TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
   const Ran form = run(cdot + " explain line --form local" + specs);
   EXPECT_EQ(form.status, 2);
   EXPECT_NE(form.output.find("for spatial joints"), std::string::npos) << form.output;
-  write(out / "ball.joint",
-        "joint ball spatial\n  \"pin\"\n  point pa on a\n  point pb on b\n  pa = pb\n");
+  write(out / "ball.joint", "joint ball spatial\n  \"pin\"\n  point pa on a\n  point pb on b\n  pa = pb\n");
   const Ran ball = run(cdot + " explain " + quoted(out / "ball.joint") + " --form euler" + specs);
   EXPECT_EQ(ball.status, 0);
-  EXPECT_NE(ball.output.find("J_euler = [ E | -2 S(ra) G_a | -E | 2 S(rb) G_b ]"),
-            std::string::npos)
-      << ball.output;
+  EXPECT_NE(ball.output.find("J_euler = [ E | -2 S(ra) G_a | -E | 2 S(rb) G_b ]"), std::string::npos) << ball.output;
   write(out / "bad.joint", "joint bad planar\n  point pa on\n");
   EXPECT_EQ(run(cdot + " explain " + quoted(out / "bad.joint") + specs).status, 2);
   fs::remove_all(out);

@@ -58,8 +58,7 @@ std::vector<std::vector<double>> velocities(const Shown& s) {
     const Array M = value_of_formula(leaf({}, letter + "_" + s.joint.bodies[b]), s.values);
     std::vector<double> rates(M.columns);
     for (std::size_t j = 0; j < M.columns; ++j) {
-      for (std::size_t i = 0; i < 3; ++i)
-        rates[j] += (s.form == Form::local ? 1 : 0.5) * M.at(i, j) * body.w[i];
+      for (std::size_t i = 0; i < 3; ++i) rates[j] += (s.form == Form::local ? 1 : 0.5) * M.at(i, j) * body.w[i];
     }
     all.push_back(rates);
   }
@@ -88,8 +87,7 @@ int check_partial_derivatives(const Shown& s) {
   for (const Step& step : s.explanation.steps) {
     for (const Item& item : step.items) {
       const Formula& left = item.chain.left;
-      if (item.kind != Item::Kind::chain || left.shape != Shape::quotient ||
-          !left.args[1].name.starts_with("de_"))
+      if (item.kind != Item::Kind::chain || left.shape != Shape::quotient || !left.args[1].name.starts_with("de_"))
         continue;
       const std::string row = left.args[0].name.size() > 3 ? left.args[0].name.substr(3) : "";
       const std::size_t body = static_cast<std::size_t>(left.args[1].name.back() - 'a');
@@ -97,8 +95,7 @@ int check_partial_derivatives(const Shown& s) {
       const std::vector<double> seen = slopes(s, row, body);
       EXPECT_EQ(told.entries.size(), seen.size()) << s.joint.name << " " << row;
       for (std::size_t i = 0; i < std::min(seen.size(), told.entries.size()); ++i) {
-        EXPECT_NEAR(told.entries[i], seen[i], 1e-7 * (1 + std::fabs(seen[i])))
-            << s.joint.name << " " << row;
+        EXPECT_NEAR(told.entries[i], seen[i], 1e-7 * (1 + std::fabs(seen[i]))) << s.joint.name << " " << row;
         ++checked;
       }
     }
@@ -109,8 +106,7 @@ int check_partial_derivatives(const Shown& s) {
 std::vector<Joint> spatial_joints() {
   std::vector<Joint> joints;
   for (const auto& [name, text] : unusual_specs()) {
-    if (Joint joint = read_text(name, text); joint.dimension == 3)
-      joints.push_back(std::move(joint));
+    if (Joint joint = read_text(name, text); joint.dimension == 3) joints.push_back(std::move(joint));
   }
   for (const std::string& name : spec_names()) {
     if (!name.starts_with("spatial/")) continue;
@@ -130,8 +126,7 @@ TEST(ExplainForms, EachTimesItsVelocitiesIsCdot) {
       const std::vector<double> Jv = blocks_times(chain->links[0].formula, velocities(s), s.values);
       ASSERT_EQ(Jv.size(), s.block.rows.size()) << joint.name;
       for (std::size_t i = 0; i < Jv.size(); ++i) {
-        const double Cdot =
-            evaluate(s.block.rows[i].Cdot, s.values) - evaluate(s.block.rows[i].C_t, s.values);
+        const double Cdot = evaluate(s.block.rows[i].Cdot, s.values) - evaluate(s.block.rows[i].C_t, s.values);
         EXPECT_NEAR(Jv[i], Cdot, 1e-9 * (1 + std::fabs(Cdot))) << joint.name;
       }
     }
@@ -149,8 +144,7 @@ TEST(ExplainForms, WhatIsSaidAboutThePartialDerivativeIsTrue) {
 
 TEST(ExplainForms, AWrongPartialDerivativeIsFound) {
   const auto specs = unusual_specs();
-  const auto hinge =
-      std::find_if(specs.begin(), specs.end(), [](const auto& s) { return s.first == "hinge"; });
+  const auto hinge = std::find_if(specs.begin(), specs.end(), [](const auto& s) { return s.first == "hinge"; });
   const Shown s = shown(read_text(hinge->first, hinge->second), Form::euler, 6);
   const std::string text = explanation_text(s.explanation);
   EXPECT_NE(text.find("dC_pin/de_a = -2 S(ra) G_a + 2 ra e_a'"), std::string::npos) << text;
@@ -158,10 +152,8 @@ TEST(ExplainForms, AWrongPartialDerivativeIsFound) {
   EXPECT_NE(text.find("is the partial derivative where C = 0"), std::string::npos) << text;
   const std::vector<double> seen = slopes(s, "pin", 0);
   const Array alone = value_of_formula(
-      product({number(-2), shaped(Shape::skew, leaf(s.joint.pool->find("ra"))), leaf({}, "G_a")}),
-      s.values);
+      product({number(-2), shaped(Shape::skew, leaf(s.joint.pool->find("ra"))), leaf({}, "G_a")}), s.values);
   double worst = 0;
-  for (std::size_t i = 0; i < seen.size(); ++i)
-    worst = std::max(worst, std::fabs(seen[i] - alone.entries[i]));
+  for (std::size_t i = 0; i < seen.size(); ++i) worst = std::max(worst, std::fabs(seen[i] - alone.entries[i]));
   EXPECT_GT(worst, 1e-3);  // J_euler alone is not dC/de
 }

@@ -13,9 +13,7 @@ Array column(const Triple<double>& v, std::size_t dimension) {
   return {dimension, 1, std::vector<double>(v.begin(), v.begin() + static_cast<long>(dimension))};
 }
 
-Triple<double> triple(const Array& a) {
-  return {a.entries[0], a.entries[1], a.entries.size() > 2 ? a.entries[2] : 0};
-}
+Triple<double> triple(const Array& a) { return {a.entries[0], a.entries[1], a.entries.size() > 2 ? a.entries[2] : 0}; }
 
 Array times(double s, Array a) {
   for (double& x : a.entries) x *= s;
@@ -36,8 +34,7 @@ Array multiplied(const Array& a, const Array& b) {
   Array c{a.rows, b.columns, std::vector<double>(a.rows * b.columns)};
   for (std::size_t i = 0; i < a.rows; ++i) {
     for (std::size_t j = 0; j < b.columns; ++j) {
-      for (std::size_t k = 0; k < a.columns; ++k)
-        c.entries[i * c.columns + j] += a.at(i, k) * b.at(k, j);
+      for (std::size_t k = 0; k < a.columns; ++k) c.entries[i * c.columns + j] += a.at(i, k) * b.at(k, j);
     }
   }
   return c;
@@ -53,8 +50,7 @@ Array transposed(const Array& a) {
 
 Array cross_product(const Array& u, const Array& v) {
   if (u.entries.size() == 3) return column(cdot::derive::cross_product(triple(u), triple(v)), 3);
-  if (u.entries.size() == 1)
-    return column({-u.entries[0] * v.entries[1], u.entries[0] * v.entries[0], 0}, 2);
+  if (u.entries.size() == 1) return column({-u.entries[0] * v.entries[1], u.entries[0] * v.entries[0], 0}, 2);
   return scalar(u.entries[0] * v.entries[1] - u.entries[1] * v.entries[0]);
 }
 
@@ -114,23 +110,19 @@ double called(const std::string& name, const std::vector<Array>& args) {
 Array tensor(Expr leaf, const Values& values) {
   Array a{3, 3, {}};
   for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j)
-      a.entries.push_back(evaluate(tensor_component(leaf, i, j), values));
+    for (std::size_t j = 0; j < 3; ++j) a.entries.push_back(evaluate(tensor_component(leaf, i, j), values));
   }
   return a;
 }
 
 // A_a, G_a and e_a of a body, from its Euler parameters e_a_0 to e_a_3.
 Array of_orientation(const std::string& name, const Values& values) {
-  const bool known =
-      name.size() == 3 && name[1] == '_' && values.contains("e_" + name.substr(2) + "_0");
+  const bool known = name.size() == 3 && name[1] == '_' && values.contains("e_" + name.substr(2) + "_0");
   if (!known) throw NoValue(name);
   EulerParameters<double> e;
-  for (std::size_t k = 0; k < 4; ++k)
-    e[k] = values.at("e_" + name.substr(2) + "_" + std::to_string(k));
+  for (std::size_t k = 0; k < 4; ++k) e[k] = values.at("e_" + name.substr(2) + "_" + std::to_string(k));
   if (name[0] == 'e') return {4, 1, {e.begin(), e.end()}};
-  if (name[0] == 'G')
-    return {3, 4, {-e[1], e[0], -e[3], e[2], -e[2], e[3], e[0], -e[1], -e[3], -e[2], e[1], e[0]}};
+  if (name[0] == 'G') return {3, 4, {-e[1], e[0], -e[3], e[2], -e[2], e[3], e[0], -e[1], -e[3], -e[2], e[1], e[0]}};
   if (name[0] != 'A') throw NoValue(name);
   const auto axes = axes_of(e);
   Array A{3, 3, {}};
@@ -154,14 +146,11 @@ Array value_of_formula(const Formula& f, const Values& values) {
   std::vector<Array> args;
   for (const Formula& arg : f.args) args.push_back(value_of_formula(arg, values));
   switch (f.shape) {
-    case Shape::leaf:
-      return leaf_value(f, values);
-    case Shape::number:
-      return scalar(f.number.value());
+    case Shape::leaf: return leaf_value(f, values);
+    case Shape::number: return scalar(f.number.value());
     case Shape::sum: {
       Array total = scalar(0);
-      for (std::size_t i = 0; i < args.size(); ++i)
-        total = added(total, args[i], f.minus[i] ? -1 : 1);
+      for (std::size_t i = 0; i < args.size(); ++i) total = added(total, args[i], f.minus[i] ? -1 : 1);
       return total;
     }
     case Shape::product: {
@@ -169,38 +158,25 @@ Array value_of_formula(const Formula& f, const Values& values) {
       for (const Array& arg : args) total = multiplied(total, arg);
       return total;
     }
-    case Shape::quotient:
-      return times(1 / args[1].entries[0], args[0]);
-    case Shape::power:
-      return scalar(std::pow(args[0].entries[0], f.exponent));
-    case Shape::dot:
-      return multiplied(transposed(args[0]), args[1]);
-    case Shape::cross:
-      return cross_product(args[0], args[1]);
+    case Shape::quotient: return times(1 / args[1].entries[0], args[0]);
+    case Shape::power: return scalar(std::pow(args[0].entries[0], f.exponent));
+    case Shape::dot: return multiplied(transposed(args[0]), args[1]);
+    case Shape::cross: return cross_product(args[0], args[1]);
     case Shape::perp:
-    case Shape::skew:
-      return skew(args[0]);
-    case Shape::norm:
-      return scalar(length(args[0]));
-    case Shape::unit:
-      return times(1 / length(args[0]), args[0]);
-    case Shape::component:
-      return scalar(args[0].entries[static_cast<std::size_t>(f.name[0] - 'x')]);
-    case Shape::call:
-      return scalar(called(f.name, args));
-    case Shape::transpose:
-      return transposed(args[0]);
+    case Shape::skew: return skew(args[0]);
+    case Shape::norm: return scalar(length(args[0]));
+    case Shape::unit: return times(1 / length(args[0]), args[0]);
+    case Shape::component: return scalar(args[0].entries[static_cast<std::size_t>(f.name[0] - 'x')]);
+    case Shape::call: return scalar(called(f.name, args));
+    case Shape::transpose: return transposed(args[0]);
     case Shape::identity:
-      return values.contains("v_a_z") ? Array{3, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1}}
-                                      : Array{2, 2, {1, 0, 0, 1}};
-    case Shape::matrix:
-      return assembled(f, args);
+      return values.contains("v_a_z") ? Array{3, 3, {1, 0, 0, 0, 1, 0, 0, 0, 1}} : Array{2, 2, {1, 0, 0, 1}};
+    case Shape::matrix: return assembled(f, args);
   }
   throw std::logic_error("unknown form");
 }
 
-std::vector<double> blocks_times(const Formula& J,
-                                 const std::vector<std::vector<double>>& velocities,
+std::vector<double> blocks_times(const Formula& J, const std::vector<std::vector<double>>& velocities,
                                  const Values& values) {
   std::vector<double> result;
   const std::size_t columns = static_cast<std::size_t>(J.columns);
@@ -209,8 +185,7 @@ std::vector<double> blocks_times(const Formula& J,
     for (std::size_t k = 0; k < columns; ++k) {
       const Array block = value_of_formula(J.args[row * columns + k], values);
       if (block.entries == std::vector{0.0}) continue;
-      if (block.columns != velocities.at(k).size())
-        throw std::logic_error("a block of J is too wide or too narrow");
+      if (block.columns != velocities.at(k).size()) throw std::logic_error("a block of J is too wide or too narrow");
       sum.resize(block.rows);
       for (std::size_t i = 0; i < block.rows; ++i) {
         for (std::size_t j = 0; j < block.columns; ++j) sum[i] += block.at(i, j) * velocities[k][j];

@@ -22,8 +22,7 @@ struct NoValue : std::runtime_error {
 
 Array value_of_formula(const cdot::derive::Formula& f, const cdot::derive::Values& values);
 // J, block by block, times the velocities: one of them for each column of blocks.
-std::vector<double> blocks_times(const cdot::derive::Formula& J,
-                                 const std::vector<std::vector<double>>& velocities,
+std::vector<double> blocks_times(const cdot::derive::Formula& J, const std::vector<std::vector<double>>& velocities,
                                  const cdot::derive::Values& values);
 
 // What has to have a value: v and w of every body, and everything that is shown.

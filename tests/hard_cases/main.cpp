@@ -44,7 +44,8 @@ class Silence : public testing::Test {
       ++(warned ? said : verdict.held ? held : inexact);
       EXPECT_TRUE(warned || verdict.held || verdict.together) << name_of(way) << " is lost in silence:" << verdict.off;
     }
-    fmt::print("  of the ways that claim nothing {} say why, {} hold all the same, {} are inexact\n", said, held, inexact);
+    fmt::print("  of the ways that claim nothing {} say why, {} hold all the same, {} are inexact\n", said, held,
+               inexact);
   }
 
  private:
@@ -75,12 +76,9 @@ void try_all(std::string_view wanted) {
     std::string others;
     for (const Way& way : all_ways()) {
       const Verdict verdict = verdict_on(hard_case, way);
-      if (verdict.held)
-        held.push_back(way);
-      else if (!verdict.said.empty())
-        others += fmt::format("    {:24}says: {}\n", name_of(way), verdict.said);
-      else
-        others += fmt::format("    {:24}SILENT{}\n", name_of(way), verdict.off);
+      if (verdict.held) held.push_back(way);
+      else if (!verdict.said.empty()) others += fmt::format("    {:24}says: {}\n", name_of(way), verdict.said);
+      else others += fmt::format("    {:24}SILENT{}\n", name_of(way), verdict.off);
     }
     fmt::print("{}: held in silence by {}\n{}", name_of(hard_case), text_of(held), others);
     std::fflush(stdout);

@@ -51,10 +51,8 @@ Trial::Trial(const std::string& scene_file, const Way& the_way)
 
 void Trial::start() {
   const bool planar = scene.dimension == Dimension::planar, single = way.single && !another_engine;
-  if (planar)
-    world_ = single ? started<Planar<float>>(scene) : started<Planar<double>>(scene);
-  else
-    world_ = single ? started<Spatial<float>>(scene) : started<Spatial<double>>(scene);
+  if (planar) world_ = single ? started<Planar<float>>(scene) : started<Planar<double>>(scene);
+  else world_ = single ? started<Spatial<float>>(scene) : started<Spatial<double>>(scene);
   if (another_engine) mover_ = another_engine(scene, *world_);
 }
 

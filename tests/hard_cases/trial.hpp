@@ -61,7 +61,7 @@ class Trial {
   const Way way;
   Scene scene;  // may be changed until start()
 
-  void start();  // the World of the scene, on its joints if the scene asks for it
+  void start();                          // the World of the scene, on its joints if the scene asks for it
   bool refused(const std::string& why);  // start(), which is to fail and to say this
   // Goes on for so many seconds in steps of the scene, or of `step`; `each` is called after every one. Ends early if
   // something is not finite.

@@ -35,29 +35,27 @@ enum Function {
   number_of_functions
 };
 
-inline constexpr std::array<std::string_view, number_of_functions> function_names = {
-    "position",
-    "jacobian",
-    "effective_mass",
-    "factor",
-    "solve",
-    "velocity",
-    "apply",
-    "dense",
-    "inverse_mass_jacobian",
-    "gamma",
-    "time_derivative",
-    "stiffness",
-    "effective_mass_isotropic",
-    "apply_isotropic",
-    "inverse_mass_jacobian_isotropic",
-    "local_jacobian",
-    "euler_jacobian"};
+inline constexpr std::array<std::string_view, number_of_functions> function_names = {"position",
+                                                                                     "jacobian",
+                                                                                     "effective_mass",
+                                                                                     "factor",
+                                                                                     "solve",
+                                                                                     "velocity",
+                                                                                     "apply",
+                                                                                     "dense",
+                                                                                     "inverse_mass_jacobian",
+                                                                                     "gamma",
+                                                                                     "time_derivative",
+                                                                                     "stiffness",
+                                                                                     "effective_mass_isotropic",
+                                                                                     "apply_isotropic",
+                                                                                     "inverse_mass_jacobian_isotropic",
+                                                                                     "local_jacobian",
+                                                                                     "euler_jacobian"};
 
 // What a variant does not have of its own, but of the block that it is a variant of.
 constexpr bool inherited_by_variants(Function f) {
-  return f == gamma || f == time_derivative || f == stiffness || f == local_jacobian ||
-         f == euler_jacobian;
+  return f == gamma || f == time_derivative || f == stiffness || f == local_jacobian || f == euler_jacobian;
 }
 
 // All that a block's functions read, laid out as in the contract: x y c s angle of each body, ...
@@ -95,8 +93,7 @@ struct AnyBlock {
   // Every function on as many inputs at once as the scalar type has lanes.
   std::vector<Outputs> (*evaluate)(std::span<const Inputs> lanes);
   // factor and solve for a K (lower triangle) that no pose has to give.
-  std::vector<double> (*factor_and_solve)(const std::vector<double>& K,
-                                          const std::vector<double>& rhs);
+  std::vector<double> (*factor_and_solve)(const std::vector<double>& K, const std::vector<double>& rhs);
   // Overwrites the parameters that have a default, in their order.
   void (*set_defaults)(Inputs& in);
 

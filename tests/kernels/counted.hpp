@@ -38,15 +38,10 @@ inline Counted cos(Counted a) { return ++Counted::taken.call, std::cos(a.value);
 inline Counted tan(Counted a) { return ++Counted::taken.call, std::tan(a.value); }
 inline Counted exp(Counted a) { return ++Counted::taken.call, std::exp(a.value); }
 inline Counted log(Counted a) { return ++Counted::taken.call, std::log(a.value); }
-inline Counted atan2(Counted y, Counted x) {
-  return ++Counted::taken.call, std::atan2(y.value, x.value);
-}
-inline Counted inverse(Counted a) {
-  return ++Counted::taken.divide, ++Counted::taken.compare, cdot::inverse(a.value);
-}
+inline Counted atan2(Counted y, Counted x) { return ++Counted::taken.call, std::atan2(y.value, x.value); }
+inline Counted inverse(Counted a) { return ++Counted::taken.divide, ++Counted::taken.compare, cdot::inverse(a.value); }
 inline Counted pivot(Counted d, Counted k) {
-  return ++Counted::taken.divide, ++Counted::taken.compare, ++Counted::taken.multiply,
-         cdot::pivot(d.value, k.value);
+  return ++Counted::taken.divide, ++Counted::taken.compare, ++Counted::taken.multiply, cdot::pivot(d.value, k.value);
 }
 
 }  // namespace counting

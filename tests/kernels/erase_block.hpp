@@ -77,8 +77,8 @@ struct Space {
 
 // What only blocks in space have for sphere-like bodies.
 template <class Block, class T, class Jacobian, class Velocity>
-void evaluate_isotropic(std::span<const Inputs> lanes, const Jacobian& J,
-                        const T (&lambda)[Block::rows], Velocity& v, std::vector<Outputs>& out) {
+void evaluate_isotropic(std::span<const Inputs> lanes, const Jacobian& J, const T (&lambda)[Block::rows], Velocity& v,
+                        std::vector<Outputs>& out) {
   constexpr int n = Block::bodies, rows = Block::rows;
   spatial::IsotropicInverseMass<T> m[n];
   load<T>(m, lanes, &Inputs::m_isotropic);
@@ -191,14 +191,12 @@ AnyBlock erased(std::string name, std::size_t general, bool is_coordinate) {
 
 // A block and its variants; `prefix` is "" for the rows, "slide." for a coordinate.
 template <template <class> class In, class Joint, class Block, class T>
-void add_with_variants(std::vector<AnyBlock>& all, const std::string& name,
-                       const std::string& prefix) {
+void add_with_variants(std::vector<AnyBlock>& all, const std::string& name, const std::string& prefix) {
   const std::size_t general = all.size();
   all.push_back(erased<In, Joint, Block, Block, T>(name, general, !prefix.empty()));
   const auto add = [&]<class Variant>(std::type_identity<Variant>) {
     const std::string body(Joint::body_names[Variant::immovable_body]);
-    all.push_back(
-        erased<In, Joint, Block, Variant, T>(prefix + body + "_immovable", general, !prefix.empty()));
+    all.push_back(erased<In, Joint, Block, Variant, T>(prefix + body + "_immovable", general, !prefix.empty()));
   };
   [&]<class... Variants>(std::type_identity<std::tuple<Variants...>>) {
     (add(std::type_identity<Variants>{}), ...);

@@ -8,13 +8,11 @@ namespace cdot {
 Eigen::MatrixXd matrix(const Outputs& out, Function function, Eigen::Index columns) {
   using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   const std::vector<double>& numbers = out.of[function];
-  return Eigen::Map<const RowMajor>(numbers.data(),
-                                    static_cast<Eigen::Index>(numbers.size()) / columns, columns);
+  return Eigen::Map<const RowMajor>(numbers.data(), static_cast<Eigen::Index>(numbers.size()) / columns, columns);
 }
 
 Eigen::VectorXd vector(const std::vector<double>& numbers) {
-  return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
-                                           static_cast<Eigen::Index>(numbers.size()));
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
 }
 
 Eigen::MatrixXd symmetric(const std::vector<double>& triangle, int rows) {
@@ -27,8 +25,7 @@ Eigen::MatrixXd symmetric(const std::vector<double>& triangle, int rows) {
 }
 
 Eigen::MatrixXd inverse_masses(const AnyBlock& block, const Inputs& in) {
-  const auto columns = static_cast<Eigen::Index>(block.columns()),
-             width = static_cast<Eigen::Index>(block.width());
+  const auto columns = static_cast<Eigen::Index>(block.columns()), width = static_cast<Eigen::Index>(block.width());
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(columns, columns);
   for (Eigen::Index b = 0; b < block.bodies; ++b) {
     const double* const m = &in.m[block.mass() * static_cast<std::size_t>(b)];
@@ -43,9 +40,7 @@ Eigen::MatrixXd inverse_masses(const AnyBlock& block, const Inputs& in) {
   return M;
 }
 
-Outputs evaluate_one(const AnyBlock& block, const Inputs& in) {
-  return block.evaluate(std::span(&in, 1)).front();
-}
+Outputs evaluate_one(const AnyBlock& block, const Inputs& in) { return block.evaluate(std::span(&in, 1)).front(); }
 
 Eigen::MatrixXd dense_jacobian(const AnyBlock& block, const Inputs& in) {
   return matrix(evaluate_one(block, in), dense, static_cast<Eigen::Index>(block.columns()));
@@ -60,17 +55,15 @@ Eigen::MatrixXd derivative_at_zero(const std::function<Eigen::MatrixXd(double)>&
 
 void expect_near(const AnyBlock& block, std::string_view law, const Eigen::MatrixXd& actual,
                  const Eigen::MatrixXd& expected, double tolerance) {
-  ASSERT_EQ(actual.rows(), expected.rows())
-      << block.space() << ' ' << block.joint << ' ' << block.block << ": " << law;
-  ASSERT_EQ(actual.cols(), expected.cols())
-      << block.space() << ' ' << block.joint << ' ' << block.block << ": " << law;
+  ASSERT_EQ(actual.rows(), expected.rows()) << block.space() << ' ' << block.joint << ' ' << block.block << ": " << law;
+  ASSERT_EQ(actual.cols(), expected.cols()) << block.space() << ' ' << block.joint << ' ' << block.block << ": " << law;
   for (Eigen::Index i = 0; i < actual.rows(); ++i) {
     for (Eigen::Index j = 0; j < actual.cols(); ++j) {
       const double a = actual(i, j), e = expected(i, j);
       // Written so that NaN fails.
       if (std::abs(a - e) <= tolerance * (1 + std::abs(e))) continue;
-      ADD_FAILURE() << block.space() << ' ' << block.joint << ", " << block.block << ": " << law
-                    << ": row " << i << ", column " << j << " is " << a << ", not " << e;
+      ADD_FAILURE() << block.space() << ' ' << block.joint << ", " << block.block << ": " << law << ": row " << i
+                    << ", column " << j << " is " << a << ", not " << e;
     }
   }
 }

@@ -20,9 +20,7 @@ Eigen::MatrixXd general_jacobian(const AnyBlock& block, const Inputs& in) {
   return dense_jacobian(blocks<double>()[block.general], in);
 }
 
-const double* pose_of(const Inputs& in, Eigen::Index body) {
-  return &in.q[16 * static_cast<std::size_t>(body)];
-}
+const double* pose_of(const Inputs& in, Eigen::Index body) { return &in.q[16 * static_cast<std::size_t>(body)]; }
 
 // A(e) from the pose.
 Eigen::Matrix3d rotation(const double* pose) {
@@ -30,9 +28,7 @@ Eigen::Matrix3d rotation(const double* pose) {
 }
 
 // e0 e1 e2 e3
-Eigen::Vector4d parameters(const double* pose) {
-  return Eigen::Map<const Eigen::Vector4d>(pose + 3);
-}
+Eigen::Vector4d parameters(const double* pose) { return Eigen::Map<const Eigen::Vector4d>(pose + 3); }
 
 // G with w = 2 G edot: rows by the components of w in world axes.
 Eigen::Matrix<double, 3, 4> rates(const Eigen::Vector4d& e) {
@@ -49,8 +45,7 @@ TEST(Forms, local_is_J_times_A) {
     for (Eigen::Index b = 0; b < block.bodies; ++b) {
       J.middleCols<3>(6 * b + 3) *= rotation(pose_of(in, b));
     }
-    expect_near(block, "J diag(E, A)", matrix(evaluate_one(block, in), local_jacobian, J.cols()), J,
-                round_off);
+    expect_near(block, "J diag(E, A)", matrix(evaluate_one(block, in), local_jacobian, J.cols()), J, round_off);
   });
 }
 
@@ -59,8 +54,7 @@ TEST(Forms, local_is_J_times_A) {
 TEST(Forms, local_has_the_same_K) {
   for_all_in_space([](const AnyBlock& block, const Inputs& in) {
     const Outputs out = evaluate_one(block, in);
-    const Eigen::MatrixXd J =
-        matrix(out, local_jacobian, static_cast<Eigen::Index>(block.columns()));
+    const Eigen::MatrixXd J = matrix(out, local_jacobian, static_cast<Eigen::Index>(block.columns()));
     Eigen::MatrixXd inverse_mass = inverse_masses(block, in);
     for (Eigen::Index b = 0; b < block.bodies; ++b) {
       const Eigen::Matrix3d A = rotation(pose_of(in, b));
@@ -68,8 +62,7 @@ TEST(Forms, local_has_the_same_K) {
       I = (A.transpose() * I * A).eval();
     }
     const Eigen::MatrixXd K = symmetric(out.of[effective_mass], block.rows);
-    expect_near(block, "J_b M_b^-1 J_b^T", J * inverse_mass * J.transpose(), K,
-                round_off * (1 + K.norm()));
+    expect_near(block, "J_b M_b^-1 J_b^T", J * inverse_mass * J.transpose(), K, round_off * (1 + K.norm()));
   });
 }
 
@@ -79,11 +72,9 @@ TEST(Forms, euler_is_J_times_2G) {
     Eigen::MatrixXd by_parameters(block.rows, 7 * block.bodies);
     for (Eigen::Index b = 0; b < block.bodies; ++b) {
       by_parameters.middleCols<3>(7 * b) = J.middleCols<3>(6 * b);
-      by_parameters.middleCols<4>(7 * b + 3) =
-          2 * J.middleCols<3>(6 * b + 3) * rates(parameters(pose_of(in, b)));
+      by_parameters.middleCols<4>(7 * b + 3) = 2 * J.middleCols<3>(6 * b + 3) * rates(parameters(pose_of(in, b)));
     }
-    expect_near(block, "J diag(E, 2 G)",
-                matrix(evaluate_one(block, in), euler_jacobian, by_parameters.cols()),
+    expect_near(block, "J diag(E, 2 G)", matrix(evaluate_one(block, in), euler_jacobian, by_parameters.cols()),
                 by_parameters, round_off);
   });
 }
@@ -106,8 +97,7 @@ TEST(Forms, euler_is_the_difference_of_position_where_parameters_stay_of_length_
         set_orientation(&moved.q[16 * static_cast<std::size_t>(b)], e + s * rate);
         return Eigen::MatrixXd(vector(evaluate_one(block, moved).of[position]));
       };
-      expect_near(block, "J_c edot = Cdot", J.middleCols<4>(7 * b + 3) * rate,
-                  derivative_at_zero(at), 1e-8);
+      expect_near(block, "J_c edot = Cdot", J.middleCols<4>(7 * b + 3) * rate, derivative_at_zero(at), 1e-8);
     }
   });
 }

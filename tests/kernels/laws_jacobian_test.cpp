@@ -31,15 +31,13 @@ Eigen::MatrixXd force_at(const AnyBlock& block, const Inputs& in) {
 
 // Cdot = J v + dC/dt
 Eigen::MatrixXd rate_at(const AnyBlock& block, const Inputs& in) {
-  return dense_jacobian(block, in) * vector(in.v) +
-         vector(evaluate_one(block, in).of[time_derivative]);
+  return dense_jacobian(block, in) * vector(in.v) + vector(evaluate_one(block, in).of[time_derivative]);
 }
 
 // d f / dq, column by column; zero for the held body.
 Eigen::MatrixXd gradient(const AnyBlock& block, const Inputs& in,
                          Eigen::MatrixXd (*f)(const AnyBlock&, const Inputs&)) {
-  Eigen::MatrixXd G =
-      Eigen::MatrixXd::Zero(f(block, in).rows(), static_cast<Eigen::Index>(block.columns()));
+  Eigen::MatrixXd G = Eigen::MatrixXd::Zero(f(block, in).rows(), static_cast<Eigen::Index>(block.columns()));
   for (std::size_t c = 0; c < block.columns(); ++c) {
     if (held(block, c)) continue;
     G.col(static_cast<Eigen::Index>(c)) = derivative_at_zero([&](double s) {
@@ -77,8 +75,7 @@ bool has_velocity_row(const AnyBlock& block) {
 TEST(Laws, jacobian_is_the_difference_of_position) {
   for_all([](const AnyBlock& block, const Inputs& in) {
     if (has_velocity_row(block)) return;
-    expect_near(block, "J = dC/dq", dense_jacobian(block, in), gradient(block, in, position_at),
-                1e-8);
+    expect_near(block, "J = dC/dq", dense_jacobian(block, in), gradient(block, in, position_at), 1e-8);
   });
 }
 
@@ -100,8 +97,7 @@ TEST(Laws, time_derivative_is_the_difference_in_time) {
       return position_at(block, later);
     });
     expect_near(block, "dC/dt at fixed q", C_t, difference, 1e-8);
-    EXPECT_EQ(block.explicit_time, !C_t.isZero(0))
-        << block.joint << ", " << block.block << ": explicit_time";
+    EXPECT_EQ(block.explicit_time, !C_t.isZero(0)) << block.joint << ", " << block.block << ": explicit_time";
     explicit_blocks += block.explicit_time;
   });
   EXPECT_GT(explicit_blocks, 0) << "no joint of the catalogue depends on time";
@@ -126,8 +122,7 @@ TEST(Laws, gamma_is_minus_the_difference_of_the_rate_at_constant_velocity) {
 TEST(Laws, stiffness_is_the_difference_of_the_force) {
   for_all([](const AnyBlock& block, const Inputs& in) {
     if (block.immovable >= 0) return;  // it is the general block's
-    const Eigen::MatrixXd H =
-        matrix(evaluate_one(block, in), stiffness, static_cast<Eigen::Index>(block.columns()));
+    const Eigen::MatrixXd H = matrix(evaluate_one(block, in), stiffness, static_cast<Eigen::Index>(block.columns()));
     expect_near(block, "H = d(J^T lambda)/dq", H, gradient(block, in, force_at), 1e-7);
     if (!has_velocity_row(block)) {
       expect_near(block, "H - H^T", H - H.transpose(), turning_part(block, in), 1e-11);

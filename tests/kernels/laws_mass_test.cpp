@@ -66,8 +66,7 @@ TEST(Laws, apply_adds_inverse_M_J_transposed_lambda) {
     const Expected e = expected(block, in);
     const Eigen::VectorXd v = vector(in.v) + e.inverse_mass * (e.J.transpose() * vector(in.lambda));
     expect_near(block, "v + M^-1 J^T lambda", vector(out.of[apply]), v, round_off);
-    expect_near(block, "(M^-1 J^T)^T", matrix(out, inverse_mass_jacobian, e.J.cols()),
-                e.J * e.inverse_mass, round_off);
+    expect_near(block, "(M^-1 J^T)^T", matrix(out, inverse_mass_jacobian, e.J.cols()), e.J * e.inverse_mass, round_off);
   });
 }
 
@@ -99,8 +98,8 @@ TEST(Laws, a_variant_is_the_general_block_with_a_body_at_rest_and_infinitely_hea
     }
     for (int f = 0; f < number_of_functions; ++f) {
       if (f == jacobian) continue;  // stores other fields
-      expect_near(block, function_names[static_cast<std::size_t>(f)], vector(of_variant.of[f]),
-                  vector(general.of[f]), f == solve || f == factor ? 1e-9 : round_off);
+      expect_near(block, function_names[static_cast<std::size_t>(f)], vector(of_variant.of[f]), vector(general.of[f]),
+                  f == solve || f == factor ? 1e-9 : round_off);
     }
   });
   EXPECT_GT(variants, 0);
@@ -126,8 +125,7 @@ TEST(Guards, dependent_rows_share_the_impulse) {
     ++blocks_with_several_rows;
     // The factor is told by the kernel which entries of K are zero at every pose, so the pattern is
     // K's own.
-    const std::vector<double> pattern =
-        evaluate_one(block, random_inputs(block, 1)).of[effective_mass];
+    const std::vector<double> pattern = evaluate_one(block, random_inputs(block, 1)).of[effective_mass];
     if (std::count(pattern.begin(), pattern.end(), 0.0) > 0) continue;
     for (int repeat = 0; repeat < 200; ++repeat) {
       Eigen::VectorXd g(block.rows);
@@ -152,9 +150,8 @@ TEST(Guards, every_value_is_finite_at_singular_poses) {
     for (const auto& [name, in] : singular_inputs(block, 3)) {
       const Outputs out = evaluate_one(block, in);
       for (std::size_t f = 0; f < number_of_functions; ++f) {
-        EXPECT_TRUE(all_finite(out.of[f]))
-            << block.space() << ' ' << block.joint << ", " << block.block << ": "
-            << function_names[f] << " at: " << name;
+        EXPECT_TRUE(all_finite(out.of[f])) << block.space() << ' ' << block.joint << ", " << block.block << ": "
+                                           << function_names[f] << " at: " << name;
       }
     }
   }

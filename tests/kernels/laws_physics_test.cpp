@@ -50,8 +50,7 @@ Eigen::VectorXd momentum(const AnyBlock& block, const Inputs& in, const std::vec
   for (Eigen::Index b = 0; b < block.bodies; ++b) {
     const auto w = static_cast<Eigen::Index>(block.width());
     Eigen::Vector3d x = Eigen::Vector3d::Zero(), linear = x, spin = x;
-    x.head(dimension) =
-        vector(in.q).segment(static_cast<Eigen::Index>(block.pose()) * b, dimension);
+    x.head(dimension) = vector(in.q).segment(static_cast<Eigen::Index>(block.pose()) * b, dimension);
     linear.head(dimension) = p.segment(w * b, dimension);
     spin.tail(w - dimension) = p.segment(w * b + dimension, w - dimension);
     total.head<3>() += linear;
@@ -103,8 +102,7 @@ TEST(Physics, moving_all_bodies_together_changes_nothing) {
 TEST(Physics, defaults_start_the_joint_at_rest_position) {
   const std::set<std::string> without_promise = {"sine_track", "surface", "n1", "cone", "lesson_example"};
   for_all([&](const AnyBlock& block, const Inputs& random) {
-    if (block.immovable >= 0 || block.is_coordinate || without_promise.contains(block.joint))
-      return;
+    if (block.immovable >= 0 || block.is_coordinate || without_promise.contains(block.joint)) return;
     Inputs in = random;
     in.time[0] = 0;  // a driven angle has its default at time 0
     block.set_defaults(in);
@@ -121,8 +119,8 @@ TEST(Physics, default_directions_have_length_one) {
       if (info.kind != ParameterKind::unit && info.kind != ParameterKind::frame) continue;
       const auto at = static_cast<std::size_t>(info.offset);
       const Eigen::Index dimension = block.planar() ? 2 : 3;
-      const Eigen::MatrixXd axes = Eigen::Map<const Eigen::MatrixXd>(
-          &in.p[at], dimension, static_cast<Eigen::Index>(info.size) / dimension);
+      const Eigen::MatrixXd axes =
+          Eigen::Map<const Eigen::MatrixXd>(&in.p[at], dimension, static_cast<Eigen::Index>(info.size) / dimension);
       const Eigen::MatrixXd products = axes.transpose() * axes;
       expect_near(block, "axes of a frame, or a direction: " + std::string(info.name), products,
                   Eigen::MatrixXd::Identity(products.rows(), products.cols()), 1e-14);

@@ -48,8 +48,7 @@ std::vector<double> random_parameters(const AnyBlock& block, Random& random) {
       p.insert(p.end(), axes.begin(), axes.end());
     } else {
       const bool scalar = info.kind == ParameterKind::scalar;
-      for (const double x :
-           random.many(static_cast<std::size_t>(info.size), scalar ? 0.5 : -1, scalar ? 1.5 : 1)) {
+      for (const double x : random.many(static_cast<std::size_t>(info.size), scalar ? 0.5 : -1, scalar ? 1.5 : 1)) {
         p.push_back(x);
       }
     }
@@ -57,9 +56,7 @@ std::vector<double> random_parameters(const AnyBlock& block, Random& random) {
   return p;
 }
 
-void set_angle(double* pose, double angle) {
-  pose[2] = std::cos(angle), pose[3] = std::sin(angle), pose[4] = angle;
-}
+void set_angle(double* pose, double angle) { pose[2] = std::cos(angle), pose[3] = std::sin(angle), pose[4] = angle; }
 
 void set_orientation(double* pose, const Eigen::Quaterniond& e) {
   cdot::set_orientation(pose, Eigen::Vector4d(e.w(), e.x(), e.y(), e.z()));
@@ -104,20 +101,16 @@ std::vector<double> random_masses(const AnyBlock& block, Random& random) {
   return all;
 }
 
-void set_all(std::vector<double>& numbers, double value) {
-  std::fill(numbers.begin(), numbers.end(), value);
-}
+void set_all(std::vector<double>& numbers, double value) { std::fill(numbers.begin(), numbers.end(), value); }
 
 }  // namespace
 
 Inputs random_inputs(const AnyBlock& block, std::uint32_t seed) {
   Random random(seed);
-  const auto n = static_cast<std::size_t>(block.bodies),
-             rows = static_cast<std::size_t>(block.rows);
+  const auto n = static_cast<std::size_t>(block.bodies), rows = static_cast<std::size_t>(block.rows);
   Inputs in;
   in.q = random.many(block.pose() * n, -2, 2);
-  for (std::size_t b = 0; b < n; ++b)
-    set_random_orientation(block, &in.q[block.pose() * b], random);
+  for (std::size_t b = 0; b < n; ++b) set_random_orientation(block, &in.q[block.pose() * b], random);
   in.v = random.many(block.width() * n, -1, 1);
   in.m = random_masses(block, random);
   in.m_isotropic = random.many(2 * n, 0.3, 3);
@@ -191,8 +184,7 @@ void move(const AnyBlock& block, Inputs& in, std::size_t column, double step) {
 }
 
 Inputs moved_together(const AnyBlock& block, const Inputs& in) {
-  const Eigen::Vector3d axis =
-      block.planar() ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(1, -2, 2) / 3;
+  const Eigen::Vector3d axis = block.planar() ? Eigen::Vector3d(0, 0, 1) : Eigen::Vector3d(1, -2, 2) / 3;
   const double angle = 0.7;
   const Eigen::Matrix3d A = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
   const Eigen::Index dimension = block.planar() ? 2 : 3;

@@ -17,8 +17,8 @@ namespace {
 
 template <class T>
 struct Packs : testing::Test {};
-using PackTypes = testing::Types<Pack<float, 4>, Pack<float, 8>, Pack<float, 16>, Pack<double, 4>,
-                                 Pack<double, 8>, Pack<double, 16>>;
+using PackTypes =
+    testing::Types<Pack<float, 4>, Pack<float, 8>, Pack<float, 16>, Pack<double, 4>, Pack<double, 8>, Pack<double, 16>>;
 TYPED_TEST_SUITE(Packs, PackTypes);
 
 // As many inputs as lanes; singular ones among them, so that what one lane guards against must not
@@ -34,16 +34,13 @@ std::vector<Inputs> lanes_of_inputs(const AnyBlock& block, std::uint32_t seed) {
   return lanes;
 }
 
-void expect_equal_bits(const AnyBlock& block, const Outputs& pack, const Outputs& scalar,
-                       std::size_t lane) {
+void expect_equal_bits(const AnyBlock& block, const Outputs& pack, const Outputs& scalar, std::size_t lane) {
   for (std::size_t f = 0; f < number_of_functions; ++f) {
     ASSERT_EQ(pack.of[f].size(), scalar.of[f].size());
     for (std::size_t i = 0; i < pack.of[f].size(); ++i) {
-      EXPECT_EQ(std::bit_cast<std::uint64_t>(pack.of[f][i]),
-                std::bit_cast<std::uint64_t>(scalar.of[f][i]))
-          << block.space() << ' ' << block.joint << ", " << block.block << ": " << function_names[f]
-          << ", number " << i << ", lane " << lane << ": " << pack.of[f][i] << " and "
-          << scalar.of[f][i];
+      EXPECT_EQ(std::bit_cast<std::uint64_t>(pack.of[f][i]), std::bit_cast<std::uint64_t>(scalar.of[f][i]))
+          << block.space() << ' ' << block.joint << ", " << block.block << ": " << function_names[f] << ", number " << i
+          << ", lane " << lane << ": " << pack.of[f][i] << " and " << scalar.of[f][i];
     }
   }
 }
@@ -63,18 +60,16 @@ std::map<Key, Operations> generated_ledger() {
     for (std::string c; std::getline(cells, c, ',');) cell.push_back(c);
     if (cell[4] != "generated") continue;
     const auto number = [&](std::size_t i) { return std::stoi(cell[i]); };
-    ledger[{cell[0], cell[1], cell[2], cell[3]}] = {number(5), number(6), number(7),
-                                                    number(8), number(9), number(10)};
-    EXPECT_EQ(number(11), number(5) + number(6) + number(7) + number(8) + number(9) + number(10))
-        << line;
+    ledger[{cell[0], cell[1], cell[2], cell[3]}] = {number(5), number(6), number(7), number(8), number(9), number(10)};
+    EXPECT_EQ(number(11), number(5) + number(6) + number(7) + number(8) + number(9) + number(10)) << line;
   }
   return ledger;
 }
 
 std::string text(const Operations& o) {
   std::ostringstream s;
-  s << o.add << " +, " << o.multiply << " *, " << o.divide << " /, " << o.root << " roots, "
-    << o.compare << " comparisons, " << o.call << " calls";
+  s << o.add << " +, " << o.multiply << " *, " << o.divide << " /, " << o.root << " roots, " << o.compare
+    << " comparisons, " << o.call << " calls";
   return s.str();
 }
 
@@ -101,11 +96,9 @@ TEST(Floats, come_close_to_doubles) {
     const Outputs fine = evaluate_one(block, in);
     const auto index = static_cast<std::size_t>(&block - blocks<double>().data());
     const Outputs coarse = evaluate_one(blocks<float>()[index], in);
-    const double condition =
-        1 + vector(fine.of[factor]).norm() * vector(fine.of[effective_mass]).norm();
+    const double condition = 1 + vector(fine.of[factor]).norm() * vector(fine.of[effective_mass]).norm();
     for (std::size_t f = 0; f < number_of_functions; ++f) {
-      const double scale =
-          f == solve || f == factor ? condition * condition : 1 + vector(fine.of[f]).norm();
+      const double scale = f == solve || f == factor ? condition * condition : 1 + vector(fine.of[f]).norm();
       expect_near(block, function_names[f], vector(coarse.of[f]), vector(fine.of[f]), 2e-5 * scale);
     }
   });
@@ -117,9 +110,8 @@ TEST(Floats, stay_finite_at_singular_poses) {
       const Outputs out = evaluate_one(block, in);
       for (std::size_t f = 0; f < number_of_functions; ++f) {
         for (const double x : out.of[f]) {
-          EXPECT_TRUE(std::isfinite(x))
-              << block.space() << ' ' << block.joint << ", " << block.block << ": "
-              << function_names[f] << " at: " << name;
+          EXPECT_TRUE(std::isfinite(x)) << block.space() << ' ' << block.joint << ", " << block.block << ": "
+                                        << function_names[f] << " at: " << name;
         }
       }
     }
@@ -129,8 +121,7 @@ TEST(Floats, stay_finite_at_singular_poses) {
 TEST(Counted, has_the_bits_of_a_double) {
   for_all([](const AnyBlock& block, const Inputs& in) {
     const auto index = static_cast<std::size_t>(&block - blocks<double>().data());
-    expect_equal_bits(block, evaluate_one(blocks<counting::Counted>()[index], in),
-                      evaluate_one(block, in), 0);
+    expect_equal_bits(block, evaluate_one(blocks<counting::Counted>()[index], in), evaluate_one(block, in), 0);
   });
 }
 
@@ -142,13 +133,13 @@ TEST(Counted, agrees_with_the_ledger) {
     for (std::size_t f = 0; f < number_of_functions; ++f) {
       if (block.planar() && f > stiffness) continue;
       if (block.immovable >= 0 && inherited_by_variants(static_cast<Function>(f))) continue;
-      const auto row = ledger.find(
-          {std::string(block.space()), block.joint, block.block, std::string(function_names[f])});
-      ASSERT_NE(row, ledger.end()) << block.space() << ' ' << block.joint << ", " << block.block
-                                   << ": " << function_names[f];
+      const auto row =
+          ledger.find({std::string(block.space()), block.joint, block.block, std::string(function_names[f])});
+      ASSERT_NE(row, ledger.end()) << block.space() << ' ' << block.joint << ", " << block.block << ": "
+                                   << function_names[f];
       EXPECT_EQ(out.cost[f], row->second)
-          << block.space() << ' ' << block.joint << ", " << block.block << ": " << function_names[f]
-          << " does " << text(out.cost[f]) << "; the ledger says " << text(row->second);
+          << block.space() << ' ' << block.joint << ", " << block.block << ": " << function_names[f] << " does "
+          << text(out.cost[f]) << "; the ledger says " << text(row->second);
       ++compared;
     }
   }

@@ -21,8 +21,7 @@ Joint joint_of(const std::string& rows) {
 }
 
 // Every function at once: multiplied out, these formulas have millions of terms.
-const char* const long_row =
-    "  smooth: sqrt(1 + q) + exp(-q) - log(2 + q) + tan(small) + abs(2 + cos(q)) = q ^ 3\n";
+const char* const long_row = "  smooth: sqrt(1 + q) + exp(-q) - log(2 + q) + tan(small) + abs(2 + cos(q)) = q ^ 3\n";
 const char* const short_row = "  short: tan(small) + abs(2 + cos(q)) = 3\n";
 const char* const power_row = "  power: (dot(u, u) + l * norm(u) + dot(u, arm(pa)))^30 = l^60\n";
 

@@ -10,10 +10,8 @@
 namespace cdot::derive {
 namespace {
 
-CheckReport checked(const std::string& rows, std::string* said = nullptr,
-                    const std::string& space = "planar") {
-  const std::string text =
-      "joint own " + space + "\n  \"own\"\n  point pa on a\n  point pb on b\n" + rows;
+CheckReport checked(const std::string& rows, std::string* said = nullptr, const std::string& space = "planar") {
+  const std::string text = "joint own " + space + "\n  \"own\"\n  point pa on a\n  point pb on b\n" + rows;
   const ReadResult read = read_joint(std::make_shared<SourceFile>("own.joint", text), {});
   EXPECT_TRUE(read.joint) << render(*read.file, read.diagnostics);
   const CheckReport report = check(read);
@@ -25,9 +23,7 @@ CheckReport checked(const std::string& rows, std::string* said = nullptr,
   return report;
 }
 
-bool mentions(const std::string& all, const std::string& words) {
-  return all.find(words) != std::string::npos;
-}
+bool mentions(const std::string& all, const std::string& words) { return all.find(words) != std::string::npos; }
 
 TEST(Check, ARowThatOnlyTouchesZeroHasNoForce) {
   std::string said;
@@ -63,12 +59,9 @@ TEST(Check, AbsoluteAnglesDoNotConserveMomentum) {
 
 TEST(Check, ACoordinateThatARowHoldsIsAnError) {
   std::string said;
-  const std::string rows =
-      "  pa = pb\n  angle(b) = angle(a)\n  coordinate turn = angle(b) - angle(a)\n";
+  const std::string rows = "  pa = pb\n  angle(b) = angle(a)\n  coordinate turn = angle(b) - angle(a)\n";
   EXPECT_FALSE(checked(rows, &said).clean());
-  EXPECT_TRUE(
-      mentions(said, "own.joint:7:14: error: the coordinate turn is not free: the row C2 holds it"))
-      << said;
+  EXPECT_TRUE(mentions(said, "own.joint:7:14: error: the coordinate turn is not free: the row C2 holds it")) << said;
   EXPECT_TRUE(mentions(said, "fix: drop the coordinate")) << said;
 }
 
@@ -105,11 +98,8 @@ TEST(Check, TellsWhereTheEffectiveMassIsSingular) {
 TEST(Check, TellsWhereTheEffectiveMassIsSingularInSpace) {
   std::string said;
   const std::string frames = "  frame fa on a\n  frame fb on b\n";
-  EXPECT_TRUE(
-      checked(frames + "  pa = pb\n  cross(fa.x, fb.x) = 0 keep 2\n", &said, "spatial").clean());
-  EXPECT_TRUE(
-      mentions(said, "while nothing but a can move, K is singular where dot(fa_x, fb_x) = 0"))
-      << said;
+  EXPECT_TRUE(checked(frames + "  pa = pb\n  cross(fa.x, fb.x) = 0 keep 2\n", &said, "spatial").clean());
+  EXPECT_TRUE(mentions(said, "while nothing but a can move, K is singular where dot(fa_x, fb_x) = 0")) << said;
   EXPECT_TRUE(mentions(said, "while nothing can turn, K is singular at every pose")) << said;
   said.clear();
   EXPECT_TRUE(checked("  norm(pa - pb) = 2 [m]\n", &said, "spatial").clean());
@@ -121,9 +111,7 @@ TEST(Check, RowsThatVanishInSpaceAreFound) {
   std::string said;
   EXPECT_FALSE(checked("  dot(pa - pb, pa - pb) = 0\n", &said, "spatial").clean());
   EXPECT_TRUE(mentions(said, "write `pa = pb`")) << said;
-  EXPECT_FALSE(
-      checked("  frame fa on a\n  frame fb on b\n  dot(fa.x, fb.x) = 1\n", &said, "spatial")
-          .clean());
+  EXPECT_FALSE(checked("  frame fa on a\n  frame fb on b\n  dot(fa.x, fb.x) = 1\n", &said, "spatial").clean());
   EXPECT_TRUE(mentions(said, "J vanishes where C = 0")) << said;
 }
 

@@ -38,11 +38,9 @@ TEST(Laws, EachFailsForADerivationThatBreaksIt) {
          b.rows[0].J[1].w = -cross(rb, t);
        }},
       {"Cdot with a factor", LawId::rate, [](Block& b) { b.rows[0].Cdot = Rational(2) * b.rows[0].Cdot; }},
-      {"K with a body left out", LawId::mass,
-       [&](Block& b) { b.K[0][0] = b.K[0][0] - body_symbols(joint, 1).inv_m; }},
+      {"K with a body left out", LawId::mass, [&](Block& b) { b.K[0][0] = b.K[0][0] - body_symbols(joint, 1).inv_m; }},
       {"gamma of the wrong sign", LawId::gamma, [](Block& b) { b.rows[0].gamma = -b.rows[0].gamma; }},
-      {"a stiffness entry dropped", LawId::stiffness,
-       [&](Block& b) { b.stiffness[2][2] = joint.pool->number(0); }},
+      {"a stiffness entry dropped", LawId::stiffness, [&](Block& b) { b.stiffness[2][2] = joint.pool->number(0); }},
   };
   for (const Broken& broken : table) {
     Block block = derive_rows(joint);
@@ -57,8 +55,8 @@ TEST(Laws, EachFailsForADerivationThatBreaksIt) {
 }
 
 // all: C, then the columns of J body by body.
-void expect_finite_differences(const Joint& joint, const ScalarRow& row,
-                               const std::vector<Expr>& all, const Sample& sample, int dimension) {
+void expect_finite_differences(const Joint& joint, const ScalarRow& row, const std::vector<Expr>& all,
+                               const Sample& sample, int dimension) {
   const std::size_t width = (all.size() - 1) / joint.bodies.size();
   const auto moved = [&](std::size_t body, std::size_t column, double step) {
     Sample there = sample;

@@ -15,8 +15,7 @@ namespace fs = std::filesystem;
 std::vector<fs::path> corpus() {
   std::vector<fs::path> files;
   for (const auto& f : fs::directory_iterator(CDOT_BROKEN))
-    if (f.path().extension() == ".joint" || f.path().extension() == ".hand")
-      files.push_back(f.path());
+    if (f.path().extension() == ".joint" || f.path().extension() == ".hand") files.push_back(f.path());
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -54,8 +53,7 @@ TEST(Corpus, IsLargeAndComplete) {
   EXPECT_GE(hands, 10);
   for (const auto& f : fs::directory_iterator(CDOT_BROKEN))
     if (f.path().extension() == ".expected") {
-      EXPECT_TRUE(fs::exists(fs::path(f.path()).replace_extension()))
-          << f.path() << " is left over";
+      EXPECT_TRUE(fs::exists(fs::path(f.path()).replace_extension())) << f.path() << " is left over";
     }
 }
 

@@ -21,8 +21,7 @@ TEST(Catalogue, SpecsAreReadWithoutErrors) {
 
 TEST(Catalogue, SpecsHaveNothingUnused) {
   const Library library = library_of(CDOT_SPECS);
-  for (const auto& [name, file] : library)
-    EXPECT_EQ(render(*file, read_joint(file, library).diagnostics), "");
+  for (const auto& [name, file] : library) EXPECT_EQ(render(*file, read_joint(file, library).diagnostics), "");
 }
 
 TEST(Catalogue, HandDerivationsAreReadWithoutErrors) {

@@ -13,19 +13,16 @@ namespace {
 // `expression` as a let of a joint that declares one of everything; the let's value and unit as
 // text.
 std::string value_of(const std::string& expression, const std::string& space = "planar") {
-  const std::string text =
-      "joint j " +
-      space +
-      "\n point pa on a\n point pb on b\n unit t on b\n vector d [m] on a\n frame f "
-      "on b\n"
-      " frame g on a\n scalar l [m]\n scalar k\n point p on world\n let it = " +
-      expression + "\n pa = pb\n";
+  const std::string text = "joint j " + space +
+                           "\n point pa on a\n point pb on b\n unit t on b\n vector d [m] on a\n frame f "
+                           "on b\n"
+                           " frame g on a\n scalar l [m]\n scalar k\n point p on world\n let it = " +
+                           expression + "\n pa = pb\n";
   const ReadResult r = read_joint(std::make_shared<SourceFile>("j", text), {});
   if (!r.joint) return render(*r.file, r.diagnostics);
   std::string out;
   for (const Let& let : r.joint->lets)
-    out += (out.empty() ? "" : ", ") + text_unnamed(let.value) + " [" +
-           cdot::derive::text(let.unit) + "]";
+    out += (out.empty() ? "" : ", ") + text_unnamed(let.value) + " [" + cdot::derive::text(let.unit) + "]";
   return out;
 }
 

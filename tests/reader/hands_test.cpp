@@ -17,8 +17,7 @@ struct Read {
 std::unique_ptr<Read> read(const std::string& body) {
   auto r = std::make_unique<Read>();
   const Library library = library_of(std::string(CDOT_BROKEN) + "/parts");
-  r->file = read_hand(std::make_shared<SourceFile>(
-      "slider.hand", "entry PRI-1.a \"title\"\n source \"s\"\n" + body));
+  r->file = read_hand(std::make_shared<SourceFile>("slider.hand", "entry PRI-1.a \"title\"\n source \"s\"\n" + body));
   const HandEntryAst& ast = r->file.entries.at(0);
   r->joint = read_joint(library.at("slider"), library, {ast.anchors});
   r->entry = elaborate_entry(ast, r->file, r->joint, stand_in(r->joint), r->diagnostics);
@@ -46,8 +45,7 @@ TEST(Hands, BuildJacobiansFromBlocks) {
   EXPECT_EQ(first_value(" J = [ t', cross(ra, t), -t', -cross(rb + u, t) ; 0, 1, 0, -1 ]\n"),
             "t.x, t.y, cross(ra, t), -t.x, -t.y, -cross(rb + u, t);0, 0, 1, 0, 0, -1;");
   EXPECT_EQ(first_value(" J = [ 0, 1, 0, -1 ]\n"), "0, 0, 1, 0, 0, -1;");
-  EXPECT_EQ(first_value(" J = [ E, S(ra), -E, -S(rb) ]\n"),
-            "1, 0, -ra.y, -1, 0, rb.y;0, 1, ra.x, 0, -1, -rb.x;");
+  EXPECT_EQ(first_value(" J = [ E, S(ra), -E, -S(rb) ]\n"), "1, 0, -ra.y, -1, 0, rb.y;0, 1, ra.x, 0, -1, -rb.x;");
 }
 
 TEST(Hands, MultiplyMatrices) {
@@ -55,8 +53,7 @@ TEST(Hands, MultiplyMatrices) {
   EXPECT_EQ(first_value(" K = [1, 2 ; 3, 4]' - E\n"), "0, 3;2, 3;");
   EXPECT_EQ(first_value(" K = [1, 2 ; 3, 4] * [1, 2 ; 3, 4]^-1\n"), "1, 0;0, 1;");
   EXPECT_EQ(first_value(" K = [1, 2] * [3 ; 4] / 11\n"), "1;");
-  EXPECT_EQ(first_value(" K = [ 1/m(a) * E, 0 ; 0, 1/I(a) ]\n"),
-            "inv_m_a, 0, 0;0, inv_m_a, 0;0, 0, inv_I_a;");
+  EXPECT_EQ(first_value(" K = [ 1/m(a) * E, 0 ; 0, 1/I(a) ]\n"), "inv_m_a, 0, 0;0, inv_m_a, 0;0, 0, inv_I_a;");
   EXPECT_EQ(first_value(" K = cross([ra.x ; ra.y], t) * [2]\n"),
             "2*cross(ra.x*world.x + ra.y*perp(world.x), t);");  // a column of two is a vector
 }
@@ -67,8 +64,7 @@ TEST(Hands, SkewIsWhatTurns) {
 }
 
 TEST(Hands, KnowWhatEntriesAssume) {
-  const auto r = read(
-      " assume t on a\n assume dot(t, t) = 1\n assume b immovable\n free h\n C = h * dot(t, u)\n");
+  const auto r = read(" assume t on a\n assume dot(t, t) = 1\n assume b immovable\n free h\n C = h * dot(t, u)\n");
   EXPECT_EQ(r->entry.id, "PRI-1.a");
   EXPECT_EQ(r->entry.anchors.at("t"), "a");
   EXPECT_EQ(r->joint.joint->pool->find("t")->body, 0);
@@ -102,8 +98,7 @@ TEST(Hands, ReadUpdatesBoundsAndClaims) {
 }
 
 TEST(Hands, SayWhyAFormulaHasNoValue) {
-  EXPECT_EQ(first_value(" C = dot(t, u) + t\n"),
-            "a number and a vector cannot be added or compared: `t`");
+  EXPECT_EQ(first_value(" C = dot(t, u) + t\n"), "a number and a vector cannot be added or compared: `t`");
   EXPECT_EQ(first_value(" K = [1, 2, 3] + [1, 2]\n"), "sizes differ: 1 x 3 and 1 x 2: `[1, 2]`");
 }
 

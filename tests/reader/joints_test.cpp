@@ -108,13 +108,11 @@ TEST(Joints, CanBeAnchoredElsewhere) {
 
 TEST(Joints, KeepTheirComment) {
   const auto above = std::make_shared<SourceFile>(
-      "j",
-      "# drawn\n#   /\\\njoint j planar\n point pa on a\n point g on world\n pa = g # not this\n");
+      "j", "# drawn\n#   /\\\njoint j planar\n point pa on a\n point g on world\n pa = g # not this\n");
   EXPECT_EQ(read_joint(above, {}).joint->comment, "drawn\n  /\\\n");
-  const auto below =
-      std::make_shared<SourceFile>("j",
-                                   "joint j planar\n # drawn\n # twice\n point pa on a\n # not "
-                                   "this\n point g on world\n pa = g\n");
+  const auto below = std::make_shared<SourceFile>("j",
+                                                  "joint j planar\n # drawn\n # twice\n point pa on a\n # not "
+                                                  "this\n point g on world\n pa = g\n");
   EXPECT_EQ(read_joint(below, {}).joint->comment, "drawn\ntwice\n");
 }
 

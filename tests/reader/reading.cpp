@@ -31,14 +31,13 @@ GeneratedRows stand_in(const ReadResult& read) {
     Pool& pool = *joint.pool;
     const int rows = scalar_rows(joint, names);
     const int columns = 3 * static_cast<int>(joint.bodies.size());
-    return Generated{symbols(pool, "C", rows, 1), symbols(pool, "Cdot", rows, 1),
-                     symbols(pool, "J", rows, columns), symbols(pool, "K", rows, rows)};
+    return Generated{symbols(pool, "C", rows, 1), symbols(pool, "Cdot", rows, 1), symbols(pool, "J", rows, columns),
+                     symbols(pool, "K", rows, rows)};
   };
 }
 
 std::string messages_about_hand(const std::shared_ptr<const SourceFile>& hand,
-                                const std::shared_ptr<const SourceFile>& joint,
-                                const Library& library) {
+                                const std::shared_ptr<const SourceFile>& joint, const Library& library) {
   HandFile file = read_hand(hand);
   std::string out, about_formulas;
   for (const HandEntryAst& ast : file.entries) {

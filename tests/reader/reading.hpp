@@ -15,8 +15,7 @@ GeneratedRows stand_in(const ReadResult& read);
 // Every message about a file of hand derivations, its remarks and the formulas that have no value,
 // as text.
 std::string messages_about_hand(const std::shared_ptr<const SourceFile>& hand,
-                                const std::shared_ptr<const SourceFile>& joint,
-                                const Library& library);
+                                const std::shared_ptr<const SourceFile>& joint, const Library& library);
 
 // The specs of a folder, named without the folder, so that messages are the same everywhere.
 Library library_of(const std::filesystem::path& folder);

@@ -18,11 +18,9 @@ void add_everything(World<T>& world) {
   add_friction(world, 3, "angle", {.max_force = 0.1});
   add_spring(world, 4, "angle", {.softness = {.by_frequency = true, .frequency = 2}, .rest = 0.2});
   set_breaking_load(world, 7, 30);
-  distance(world, rods[0], rods[5], 4,
-           Softness{.by_frequency = true, .frequency = 3, .damping_ratio = 0.2});
+  distance(world, rods[0], rods[5], 4, Softness{.by_frequency = true, .frequency = 3, .damping_ratio = 0.2});
   world.add_spring({.body_a = rods[1], .body_b = rods[9], .stiffness = 5, .rest_length = 3});
-  world.add_joint(
-      {"max_distance", {rods[2], rods[6]}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {4.0}}}, {}});
+  world.add_joint({"max_distance", {rods[2], rods[6]}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {4.0}}}, {}});
   add_chain(world, 3, -pi / 2);
 }
 

@@ -143,7 +143,8 @@ void with_effects(World<T>& world, bool other) {
   add_motor(world, 0, "angle", other ? Motor{-2, 30} : Motor{1, 20});
   add_limit(world, 1, "angle", {.lower = -0.1, .upper = other ? 0.5 : 0.02});
   add_friction(world, 2, "angle", {other ? 2.0 : 0.1});
-  add_spring(world, 3, "angle", {.softness = {.by_frequency = false, .stiffness = other ? 60.0 : 20.0, .damping = 1}, .rest = 0.2});
+  add_spring(world, 3, "angle",
+             {.softness = {.by_frequency = false, .stiffness = other ? 60.0 : 20.0, .damping = 1}, .rest = 0.2});
   add_limit(world, 4, "angle", {.lower = other ? -0.1 : 0.1, .upper = other ? -0.1 : 0.1});
 }
 
@@ -213,9 +214,9 @@ std::vector<int> add_bodies(BasicWorld<S>& world, const JointType& type) {
   std::vector<int> bodies;
   for (int i = 0; i < type.bodies; ++i) {
     if constexpr (S::dimension == Dimension::planar)
-      bodies.push_back(world.add_body({.x = 0.8 * i, .y = 0.3 * i, .angle = 0.1 * i, .mass = 1, .inertia = 0.1 + 0.1 * i}));
-    else
-      bodies.push_back(world.add_body(brick(0.8 * i, 0.3 * i, -0.2 * i, 1 + 0.5 * i)));
+      bodies.push_back(
+          world.add_body({.x = 0.8 * i, .y = 0.3 * i, .angle = 0.1 * i, .mass = 1, .inertia = 0.1 + 0.1 * i}));
+    else bodies.push_back(world.add_body(brick(0.8 * i, 0.3 * i, -0.2 * i, 1 + 0.5 * i)));
   }
   return bodies;
 }
@@ -233,7 +234,8 @@ int add_sprung(BasicWorld<S>& world, const JointType& type, std::vector<NamedVal
 std::vector<NamedValue> named(const JointType& type, const std::vector<double>& numbers) {
   std::vector<NamedValue> values;
   for (const ParameterInfo& info : type.parameters)
-    values.push_back({std::string(info.name), {numbers.begin() + info.offset, numbers.begin() + info.offset + info.size}});
+    values.push_back(
+        {std::string(info.name), {numbers.begin() + info.offset, numbers.begin() + info.offset + info.size}});
   return values;
 }
 
@@ -282,7 +284,8 @@ TEST(Changes, PointsOfTheGroundAreThoseOfTheWorld) {
   world.set_origin(1e6, 2e6);
   BodyDefinition d = rod(1e6, 2e6, 0);
   const int bar = world.add_body(d);
-  const int pin = world.add_joint({"revolute", {world.ground(), bar}, {{"pa", {1e6 + 0.1, 2e6}}, {"pb", {-0.4, 0.1}}}, {}});
+  const int pin =
+      world.add_joint({"revolute", {world.ground(), bar}, {{"pa", {1e6 + 0.1, 2e6}}, {"pb", {-0.4, 0.1}}}, {}});
   const std::vector<double> before = world.joint_parameters(pin);
   world.set_parameters(pin, {{"pa", {1e6 + 0.25, 2e6 - 0.5}}});
   const std::vector<double> after = world.joint_parameters(pin);
@@ -360,7 +363,8 @@ TEST(Changes, OfEffectsAllocateNothing) {
 TEST(Changes, ThatMakeNoSenseAreRefusedAndChangeNothing) {
   World<double> world(heavy);
   const auto rods = add_chain(world, 2, -0.4);
-  const int a = world.add_body({.x = 5, .mass = 1, .inertia = 1}), b = world.add_body({.x = 5, .mass = 1, .inertia = 1});
+  const int a = world.add_body({.x = 5, .mass = 1, .inertia = 1}),
+            b = world.add_body({.x = 5, .mass = 1, .inertia = 1});
   world.add_joint({"distance", {a, b}, {{"pa", {1, 0}}, {"pb", {0, 0}}, {"l", {1}}}, {}});
   const int motor = add_motor(world, 1, "angle", {.speed = 1, .max_force = 20});
   const int lock = add_limit(world, 0, "angle", {.lower = 0, .upper = 0});

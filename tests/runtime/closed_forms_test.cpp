@@ -34,8 +34,7 @@ TEST(ClosedForms, FreeFallIsExactUpToTheKnownErrorOfSymplecticEuler) {
 
 TEST(ClosedForms, ConstantForceAndTorque) {
   World<double> world;
-  const int body =
-      world.add_body({.mass = 2, .inertia = 4, .force_x = 6, .force_y = -2, .torque = 8});
+  const int body = world.add_body({.mass = 2, .inertia = 4, .force_x = 6, .force_y = -2, .torque = 8});
   run(world, 1, 1e-3);
   EXPECT_NEAR(world.velocity(body).x, 3, 1e-12);
   EXPECT_NEAR(world.velocity(body).y, -1, 1e-12);
@@ -45,11 +44,10 @@ TEST(ClosedForms, ConstantForceAndTorque) {
 TEST(ClosedForms, DragDecaysExponentially) {
   expect_first_order(0.02, [](double h) {
     World<double> world;
-    const int body = world.add_body(
-        {.vx = 1, .w = 1, .mass = 2, .inertia = 4, .linear_damping = 0.7, .angular_damping = 1.3});
+    const int body =
+        world.add_body({.vx = 1, .w = 1, .mass = 2, .inertia = 4, .linear_damping = 0.7, .angular_damping = 1.3});
     run(world, 2, h);
-    return std::abs(world.velocity(body).x - std::exp(-1.4)) +
-           std::abs(world.velocity(body).w - std::exp(-2.6));
+    return std::abs(world.velocity(body).x - std::exp(-1.4)) + std::abs(world.velocity(body).w - std::exp(-2.6));
   });
 }
 
@@ -81,8 +79,7 @@ TEST(ClosedForms, PeriodOfTheSimplePendulum) {
   const double g = 9.81, amplitude = 1.2, exact = pendulum_period(1, g, amplitude);
   for (double h : {1e-2, 5e-3, 2.5e-3}) {
     World<double> world(settings(Solver::direct, Drift::projection, -g));
-    const int bob = world.add_body(
-        {.x = std::sin(amplitude), .y = -std::cos(amplitude), .mass = 3, .inertia = 0});
+    const int bob = world.add_body({.x = std::sin(amplitude), .y = -std::cos(amplitude), .mass = 3, .inertia = 0});
     distance(world, world.ground(), bob, 1);
     // A period is even in h for a symplectic method: second order, although the trajectory is first
     // order.
@@ -102,8 +99,7 @@ TEST(ClosedForms, SoftDistanceByStiffnessIsTheDampedOscillator) {
     expect_first_order(2e-3, [&](double h) {
       World<double> world(settings(solver));
       const int body = world.add_body({.x = 3, .mass = 2, .inertia = 1});
-      distance(world, world.ground(), body, 2,
-               Softness{.by_frequency = false, .stiffness = 50, .damping = 2});
+      distance(world, world.ground(), body, 2, Softness{.by_frequency = false, .stiffness = 50, .damping = 2});
       run(world, 2, h);
       return std::abs(world.pose(body).x - 2 - oscillator(50, 2, 2, 2));
     });
@@ -126,11 +122,7 @@ TEST(ClosedForms, PointSpringIsTheDampedOscillator) {
   expect_first_order(2e-3, [&](double h) {
     World<double> world;
     const int body = world.add_body({.x = 3, .mass = 2, .inertia = 1});
-    world.add_spring({.body_a = world.ground(),
-                      .body_b = body,
-                      .stiffness = 50,
-                      .rest_length = 2,
-                      .damping = 2});
+    world.add_spring({.body_a = world.ground(), .body_b = body, .stiffness = 50, .rest_length = 2, .damping = 2});
     run(world, 2, h);
     return std::abs(world.pose(body).x - 2 - oscillator(50, 2, 2, 2));
   });
@@ -166,8 +158,7 @@ TEST(ClosedForms, EnergyOfSpringsIsCounted) {
 TEST(ClosedForms, SoftJointEnergyIsCounted) {
   World<double> world;
   const int body = world.add_body({.x = 3, .mass = 2, .inertia = 1});
-  distance(world, world.ground(), body, 2,
-           Softness{.by_frequency = false, .stiffness = 50, .damping = 0});
+  distance(world, world.ground(), body, 2, Softness{.by_frequency = false, .stiffness = 50, .damping = 0});
   EXPECT_NEAR(world.energy(), 25, 1e-12);
 }
 

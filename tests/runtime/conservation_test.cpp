@@ -34,15 +34,9 @@ void add_free_mechanism(World<T>& world) {
   for (int i = 1; i < 4; ++i) revolute(world, rods[i - 1], rods[i], 0.5, 0, -0.5, 0);
   add_motor(world, 1, "angle", {.speed = 2, .max_force = 0.5});
   add_limit(world, 0, "angle", {.lower = -0.3, .upper = 0.4});
-  distance(world, rods[0], rods[2], 2,
-           Softness{.by_frequency = true, .frequency = 3, .damping_ratio = 0.2});
+  distance(world, rods[0], rods[2], 2, Softness{.by_frequency = true, .frequency = 3, .damping_ratio = 0.2});
   revolute(world, rods[3], rods[4], 0.5, 0, -0.5, 0);
-  world.add_spring({.body_a = rods[0],
-                    .body_b = rods[4],
-                    .ay = 0.2,
-                    .stiffness = 5,
-                    .rest_length = 3,
-                    .damping = 0.3});
+  world.add_spring({.body_a = rods[0], .body_b = rods[4], .ay = 0.2, .stiffness = 5, .rest_length = 3, .damping = 0.3});
   world.apply_impulse(rods[0], {1, 2, 0.5});
   world.apply_impulse(rods[4], {-3, 1, -0.2});
 }

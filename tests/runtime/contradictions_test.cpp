@@ -1,5 +1,5 @@
-// Joints that cannot all hold: the bodies rest where the sum of the squares of what is left of C is least, whichever row
-// elimination meets last, and nothing else about their motion is disturbed.
+// Joints that cannot all hold: the bodies rest where the sum of the squares of what is left of C is least, whichever
+// row elimination meets last, and nothing else about their motion is disturbed.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -10,8 +10,8 @@
 namespace cdot::test {
 namespace {
 
-constexpr Integrator all_integrators[] = {Integrator::euler, Integrator::implicit, Integrator::rattle,
-                                          Integrator::rk4, Integrator::dop853};
+constexpr Integrator all_integrators[] = {Integrator::euler, Integrator::implicit, Integrator::rattle, Integrator::rk4,
+                                          Integrator::dop853};
 
 // Three rods of 1, 1 and 2.02 m in a line.
 void add_triangle(World<double>& world) {

@@ -25,8 +25,7 @@ int add_pendulum(World<double>& world, double x, bool hanging, int links) {
                                      .mass = 1,
                                      .inertia = 1.0 / 12});
     const double anchor = i ? 0.5 : x, y = 0;
-    joint =
-        world.add_joint({"revolute", {before, link}, {{"pa", {anchor, y}}, {"pb", {-0.5, 0}}}, {}});
+    joint = world.add_joint({"revolute", {before, link}, {{"pa", {anchor, y}}, {"pb", {-0.5, 0}}}, {}});
     before = link;
   }
   return joint;
@@ -39,8 +38,7 @@ void add_effect(World<double>& world, int joint, const std::string& effect) {
   if (effect == "motor") add_motor(world, joint, "angle", {.speed = 1, .max_force = 0});
   if (effect == "friction") add_friction(world, joint, "angle", {.max_force = 0});
   if (effect == "spring")
-    add_spring(world, joint, "angle",
-               {.softness = {.by_frequency = false, .damping = 1e-300}, .rest = 0});
+    add_spring(world, joint, "angle", {.softness = {.by_frequency = false, .damping = 1e-300}, .rest = 0});
   if (effect == "breaking") set_breaking_load(world, joint, 1e300);
 }
 #endif
@@ -56,20 +54,18 @@ int main(int count, char** arguments) {
   if (count < 3) return 2;
   const std::string effect = count > 3 ? arguments[3] : "none";
   cdot::Settings settings;
-  settings.solver =
-      std::string(arguments[1]) == "direct" ? cdot::Solver::direct : cdot::Solver::iterative;
+  settings.solver = std::string(arguments[1]) == "direct" ? cdot::Solver::direct : cdot::Solver::iterative;
   settings.gravity_y = -9.81;
   settings.sleep_after = 0.05;
   World<double> world(settings);
   const int links = count > 4 ? std::atoi(arguments[4]) : 2;
   const int joint = add_pendulum(world, 0, false, links);
-  for (int i = 1; i < std::atoi(arguments[2]); ++i)
-    add_pendulum(world, 4.0 * i, effect == "sleep", links);
+  for (int i = 1; i < std::atoi(arguments[2]); ++i) add_pendulum(world, 4.0 * i, effect == "sleep", links);
 #ifdef CDOT_LINK_EFFECTS
   add_effect(world, joint, effect);
 #endif
   for (int i = 0; i < 100; ++i) world.step(1e-3);
   measured_steps(world);
-  std::printf("joint %d, hash %llx, asleep %d\n", joint,
-              static_cast<unsigned long long>(world.hash()), world.sleeping_islands());
+  std::printf("joint %d, hash %llx, asleep %d\n", joint, static_cast<unsigned long long>(world.hash()),
+              world.sleeping_islands());
 }

@@ -31,8 +31,7 @@ Counted count(const std::string& program, const std::string& arguments) {
   if (at != std::string::npos) run.instructions = std::stol(run.output.substr(at + 12));
   EXPECT_GT(run.instructions, 1000) << command << "\n" << run.output;
   const auto hash = run.output.find("hash ");
-  run.output =
-      hash == std::string::npos ? "" : run.output.substr(hash, run.output.find('\n', hash) - hash);
+  run.output = hash == std::string::npos ? "" : run.output.substr(hash, run.output.find('\n', hash) - hash);
   return run;
 }
 
@@ -55,8 +54,8 @@ TEST(Cost, EffectsNotAskedForCostNoInstruction) {
     const Counted plain = count(without, solver + "10"), linked = count(with, solver + "10");
     EXPECT_EQ(plain.instructions, linked.instructions) << solver;
     EXPECT_EQ(plain.output, linked.output);
-    std::printf("%sten pendulums: %ld instructions with and without the effects' code\n",
-                solver.c_str(), plain.instructions);
+    std::printf("%sten pendulums: %ld instructions with and without the effects' code\n", solver.c_str(),
+                plain.instructions);
   }
 }
 
@@ -70,8 +69,7 @@ TEST(Cost, AnEffectAddsToItsOwnJointAlone) {
       const long added_to_many = count(with, solver + "12" + effect).instructions - many;
       EXPECT_GT(added_to_few, 0) << solver << effect;
       EXPECT_EQ(added_to_few, added_to_many) << solver << effect;
-      std::printf("%s%s adds %ld instructions, among 2 or 12 pendulums\n", solver.c_str(), effect,
-                  added_to_few);
+      std::printf("%s%s adds %ld instructions, among 2 or 12 pendulums\n", solver.c_str(), effect, added_to_few);
     }
   }
 }
@@ -85,19 +83,17 @@ TEST(Cost, AChainCostsInProportionToItsLength) {
     instructions[k] = count(without, "direct 1 none " + std::to_string(links)).instructions;
     std::printf("%d links: %ld instructions in 20 steps\n", links, instructions[k]);
   }
-  const double first = double(instructions[1] - instructions[0]),
-               second = double(instructions[2] - instructions[1]);
+  const double first = double(instructions[1] - instructions[0]), second = double(instructions[2] - instructions[1]);
   EXPECT_NEAR(second / first, 2, 0.2);
 }
 
 TEST(Cost, SleepingIslandsCostNoInstruction) {
   for (const std::string& solver : both) {
-    const Counted alone = count(without, solver + "1"),
-                  crowd = count(without, solver + "200 sleep");
+    const Counted alone = count(without, solver + "1"), crowd = count(without, solver + "200 sleep");
     EXPECT_NE(crowd.output.find("asleep 199"), std::string::npos) << crowd.output;
     EXPECT_EQ(alone.instructions, crowd.instructions) << solver;
-    std::printf("%s1 pendulum, alone or beside 199 sleeping ones: %ld instructions\n",
-                solver.c_str(), alone.instructions);
+    std::printf("%s1 pendulum, alone or beside 199 sleeping ones: %ld instructions\n", solver.c_str(),
+                alone.instructions);
   }
 }
 

@@ -69,8 +69,8 @@ TEST(Diagnose, StiffestMotionOfAHangingThread) {
   check_hanging_beads<float>(2e-2);
 }
 
-// A rod from its end: omega^2 = 3 g / 2 l, in the plane and in space, the same with the iterative solver. Upside down it
-// does not swing, it falls.
+// A rod from its end: omega^2 = 3 g / 2 l, in the plane and in space, the same with the iterative solver. Upside down
+// it does not swing, it falls.
 TEST(Diagnose, StiffestMotionOfAPendulum) {
   for (const auto& [name, solver] : solvers) {
     World<double> world(settings(solver, Drift::projection, -9.81));
@@ -85,7 +85,8 @@ TEST(Diagnose, StiffestMotionOfAPendulum) {
 // omega^2 = k (1 / m_a + 1 / m_b), of the lighter.
 TEST(Diagnose, StiffestMotionOfASpring) {
   World<double> world(settings(Solver::direct));
-  const int heavy = world.add_body({.mass = 3, .inertia = 1}), light = world.add_body({.x = 2, .mass = 0.5, .inertia = 1});
+  const int heavy = world.add_body({.mass = 3, .inertia = 1}),
+            light = world.add_body({.x = 2, .mass = 0.5, .inertia = 1});
   world.add_spring({.body_a = heavy, .body_b = light, .stiffness = 200, .rest_length = 2});
   const Diagnosis found = diagnose(world, h);
   ASSERT_EQ(found.islands.size(), 1u);
@@ -95,8 +96,8 @@ TEST(Diagnose, StiffestMotionOfASpring) {
   EXPECT_EQ(found.islands[0].rows, 0);
 }
 
-// On a coordinate, with a damper: sqrt(k / I) of a rod about its end where the spring's force is taken as it is, nothing
-// where it is solved for.
+// On a coordinate, with a damper: sqrt(k / I) of a rod about its end where the spring's force is taken as it is,
+// nothing where it is solved for.
 TEST(Diagnose, StiffestMotionOfASpringOnACoordinate) {
   for (const auto& [name, integrator] : integrators) {
     Settings s = settings(Solver::direct);
@@ -109,8 +110,8 @@ TEST(Diagnose, StiffestMotionOfASpringOnACoordinate) {
   }
 }
 
-// The linearly implicit step takes the tension that turns rods and that which pulls beads into line: nothing is left that
-// swings by more than 1 rad per step. To the sweeps of the other solver beads stay as stiff as they are.
+// The linearly implicit step takes the tension that turns rods and that which pulls beads into line: nothing is left
+// that swings by more than 1 rad per step. To the sweeps of the other solver beads stay as stiff as they are.
 TEST(Diagnose, KnowsWhatTheImplicitStepTakesOff) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);
   s.integrator = Integrator::implicit;
@@ -130,7 +131,8 @@ TEST(Diagnose, KnowsWhatTheImplicitStepTakesOff) {
     return step * std::sqrt(diagnose(world, step).islands.at(0).stiffest.square);
   };
   const double of_rods = radians(rods), of_beads = radians(beads), swept = radians(swept_beads);
-  fmt::print("  per step: rods {:.3f} rad, beads {:.3f} rad, beads under sweeps {:.3f} rad\n", of_rods, of_beads, swept);
+  fmt::print("  per step: rods {:.3f} rad, beads {:.3f} rad, beads under sweeps {:.3f} rad\n", of_rods, of_beads,
+             swept);
   EXPECT_LT(of_rods, 1);
   EXPECT_LT(of_beads, 1);
   EXPECT_GT(swept, 10);
@@ -179,7 +181,9 @@ TEST(Diagnose, NamesRedundantRows) {
 // A side 0.02 m too long: whichever row is said to be too much misses the others by that, and all three take part.
 TEST(Diagnose, TellsConflictsByHowMuch) {
   World<double> world(settings(Solver::direct));
-  const auto side = [&](double x, double length) { return world.add_body({.x = x, .mass = 1, .inertia = length / 12}); };
+  const auto side = [&](double x, double length) {
+    return world.add_body({.x = x, .mass = 1, .inertia = length / 12});
+  };
   const int a = side(0.5, 1), b = side(1.5, 1), c = side(1, 2.02), other = side(9, 1);
   revolute(world, world.ground(), other, 8.5, 0, -0.5, 0);
   revolute(world, a, b, 0.5, 0, -0.5, 0);
@@ -201,16 +205,16 @@ TEST(Diagnose, TellsConflictsByHowMuch) {
 // Looking changes nothing: not a bit, in any method, of the state or of the run.
 template <class S, class Build>
 void check_that_looking_is_free(Build build) {
-  const int methods =
-      for_each_method(settings(Solver::direct, Drift::projection, -9.81), [&](const Settings& s, const std::string& name) {
-        BasicWorld<S> world(s), unseen(s);
-        build(world), build(unseen);
-        for (int k = 0; k < 10; ++k) {
-          diagnose(world, 0.01);
-          world.step(0.01), unseen.step(0.01);
-          ASSERT_EQ(world.hash(), unseen.hash()) << name;
-        }
-      });
+  const int methods = for_each_method(settings(Solver::direct, Drift::projection, -9.81),
+                                      [&](const Settings& s, const std::string& name) {
+                                        BasicWorld<S> world(s), unseen(s);
+                                        build(world), build(unseen);
+                                        for (int k = 0; k < 10; ++k) {
+                                          diagnose(world, 0.01);
+                                          world.step(0.01), unseen.step(0.01);
+                                          ASSERT_EQ(world.hash(), unseen.hash()) << name;
+                                        }
+                                      });
   EXPECT_GE(methods, 12);
 }
 

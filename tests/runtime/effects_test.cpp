@@ -138,11 +138,10 @@ TEST(Prismatic, BlockSlidesDownAndStopsAtItsLimit) {
     World<double> world(settings(solver, Drift::projection, -g));
     const int block = world.add_body({.mass = 1, .inertia = 0.1});
     // The normal of the incline that falls to the right.
-    const int joint = world.add_joint(
-        {"prismatic",
-         {block, world.ground()},
-         {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {std::sin(slope), std::cos(slope)}}},
-         {}});
+    const int joint = world.add_joint({"prismatic",
+                                       {block, world.ground()},
+                                       {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {std::sin(slope), std::cos(slope)}}},
+                                       {}});
     const double h = 1e-3;
     run(world, 1, h);
     const double down = std::hypot(world.pose(block).x, world.pose(block).y);

@@ -148,8 +148,9 @@ constexpr double across = 0.5, along = 0.25, spins[] = {0.75, 0, 2};
 struct Turn {
   Real e0, e1, e2, e3;
   friend Turn operator*(const Turn& p, const Turn& q) {
-    return {p.e0 * q.e0 - p.e1 * q.e1 - p.e2 * q.e2 - p.e3 * q.e3, p.e0 * q.e1 + p.e1 * q.e0 + p.e2 * q.e3 - p.e3 * q.e2,
-            p.e0 * q.e2 - p.e1 * q.e3 + p.e2 * q.e0 + p.e3 * q.e1, p.e0 * q.e3 + p.e1 * q.e2 - p.e2 * q.e1 + p.e3 * q.e0};
+    return {
+        p.e0 * q.e0 - p.e1 * q.e1 - p.e2 * q.e2 - p.e3 * q.e3, p.e0 * q.e1 + p.e1 * q.e0 + p.e2 * q.e3 - p.e3 * q.e2,
+        p.e0 * q.e2 - p.e1 * q.e3 + p.e2 * q.e0 + p.e3 * q.e1, p.e0 * q.e3 + p.e1 * q.e2 - p.e2 * q.e1 + p.e3 * q.e0};
   }
 };
 
@@ -162,12 +163,14 @@ Real top_off_after(int steps) {
   for (int k = 1; k <= steps; ++k) {
     EXPECT_TRUE(world.step(step));
     if (k % 16 != 0) continue;
-    const Real time = Real(k) * step, round = L / across * time / 2, own = (1 - Real(along) / across) * spins[2] * time / 2;
+    const Real time = Real(k) * step, round = L / across * time / 2,
+               own = (1 - Real(along) / across) * spins[2] * time / 2;
     const Turn precession{std::cos(round), std::sin(round) * Lx / L, 0, std::sin(round) * Lz / L};
     const Turn q = precession * Turn{std::cos(own), 0, 0, std::sin(own)};
     const auto pose = world.pose(0);
     const Real same = q.e0 * pose.e0 + q.e1 * pose.e1 + q.e2 * pose.e2 + q.e3 * pose.e3, sign = same < 0 ? -1 : 1;
-    for (const Real difference : {q.e0 - sign * pose.e0, q.e1 - sign * pose.e1, q.e2 - sign * pose.e2, q.e3 - sign * pose.e3})
+    for (const Real difference :
+         {q.e0 - sign * pose.e0, q.e1 - sign * pose.e1, q.e2 - sign * pose.e2, q.e3 - sign * pose.e3})
       worst = std::max(worst, std::abs(difference));
   }
   return worst;

@@ -119,8 +119,7 @@ TEST(HardCases, FeatherBetweenAnvils) {
 // 160 planks of 1 m over 158 m, dropped as a V: sag and tension at rest are known.
 TEST(HardCases, BridgeWithSlack) {
   World<double> world(heavy());
-  const double half = 79, depth = std::sqrt(80.0 * 80 - half * half),
-               slope = std::atan2(depth, half);
+  const double half = 79, depth = std::sqrt(80.0 * 80 - half * half), slope = std::atan2(depth, half);
   int before = world.ground();
   for (int i = 0; i < 160; ++i) {
     const double s = i < 80 ? i + 0.5 : 159.5 - i;
@@ -156,8 +155,7 @@ TEST(HardCases, StretchedChain) {
   const Extremes e = watch(world, 1);
   EXPECT_LT(world.worst_position_error().value, 5e-3);
   EXPECT_LE(e.rise, 0);
-  for (int i = 0; i < world.body_count(); ++i)
-    EXPECT_LT(std::hypot(world.velocity(i).x, world.velocity(i).y), 40);
+  for (int i = 0; i < world.body_count(); ++i) EXPECT_LT(std::hypot(world.velocity(i).x, world.velocity(i).y), 40);
 }
 
 TEST(HardCases, TheSameJointTenTimes) {
@@ -220,8 +218,7 @@ void pulley_to_zero(Solver solver, double step, double* gap, double* rise) {
   World<T> world(settings(solver, Drift::projection, -g));
   const int a = world.add_body({.x = -1, .y = 5, .mass = 2, .inertia = 0.4});
   const int b = world.add_body({.x = 1, .y = 9.8, .mass = 1, .inertia = 0.2});
-  world.add_joint(
-      {"pulley", {a, b}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"ga", {-1, 10}}, {"gb", {1, 10}}}, {}});
+  world.add_joint({"pulley", {a, b}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"ga", {-1, 10}}, {"gb", {1, 10}}}, {}});
   const Extremes e = watch(world, 3, step);
   EXPECT_TRUE(finite(world));
   *gap = e.gap;
@@ -246,16 +243,13 @@ TEST(HardCases, PulleyWhoseRopeShrinksToNothing) {
 TEST(HardCases, SliderCrankThroughItsDeadCentres) {
   World<double> world(settings(Solver::direct, Drift::projection, -g));
   const int ground = world.ground();
-  const int crank =
-      world.add_body({.x = 0.0765, .vy = 11.475, .w = 150, .mass = 0.038, .inertia = 7.4e-5});
-  const int rod =
-      world.add_body({.x = 0.306, .vy = 11.475, .w = -75, .mass = 0.038, .inertia = 5.9e-4});
+  const int crank = world.add_body({.x = 0.0765, .vy = 11.475, .w = 150, .mass = 0.038, .inertia = 7.4e-5});
+  const int rod = world.add_body({.x = 0.306, .vy = 11.475, .w = -75, .mass = 0.038, .inertia = 5.9e-4});
   const int slider = world.add_body({.x = 0.459, .mass = 0.076, .inertia = 2.7e-6});
   revolute(world, ground, crank, 0, 0, -0.0765, 0);
   revolute(world, crank, rod, 0.0765, 0, -0.153, 0);
   revolute(world, rod, slider, 0.153, 0, 0, 0);
-  world.add_joint(
-      {"prismatic", {slider, ground}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
+  world.add_joint({"prismatic", {slider, ground}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
   const Extremes e = watch(world, 0.2, 0.005 / 164);
   EXPECT_LT(e.gap, 1e-5);
   EXPECT_LT(std::max(e.rise, e.fall), 1e-3);  // of 7.5 J
@@ -265,11 +259,9 @@ TEST(HardCases, SliderCrankThroughItsDeadCentres) {
 // lost.
 TEST(HardCases, FourBarThroughTheFlatPose) {
   World<double> world(settings(Solver::direct, Drift::projection));
-  const int a = world.add_body(
-      {.y = 0.5, .angle = pi / 2, .vx = -0.5, .w = 1, .mass = 1, .inertia = 1.0 / 12});
+  const int a = world.add_body({.y = 0.5, .angle = pi / 2, .vx = -0.5, .w = 1, .mass = 1, .inertia = 1.0 / 12});
   const int b = world.add_body({.x = 0.5, .y = 1, .vx = -1, .mass = 1, .inertia = 1.0 / 12});
-  const int c = world.add_body(
-      {.x = 1, .y = 0.5, .angle = pi / 2, .vx = -0.5, .w = 1, .mass = 1, .inertia = 1.0 / 12});
+  const int c = world.add_body({.x = 1, .y = 0.5, .angle = pi / 2, .vx = -0.5, .w = 1, .mass = 1, .inertia = 1.0 / 12});
   revolute(world, world.ground(), a, 0, 0, -0.5, 0);
   revolute(world, a, b, 0.5, 0, -0.5, 0);
   revolute(world, b, c, 0.5, 0, 0.5, 0);

@@ -31,8 +31,7 @@ double gap_of_pendulum(Kernels kernels, double inertia) {
 
 TEST(Kernels, AgreeWhereNothingIsExtreme) {
   const double expected = gap_of_pendulum<World<double>>(Kernels::balanced, 0.1);
-  for (const Kernels kernels : all_kernels)
-    EXPECT_NEAR(gap_of_pendulum<World<double>>(kernels, 0.1), expected, 1e-12);
+  for (const Kernels kernels : all_kernels) EXPECT_NEAR(gap_of_pendulum<World<double>>(kernels, 0.1), expected, 1e-12);
 }
 
 // K of such a bob is (1/m) E + (r^2/I) t t': its second pivot is a difference of 5e6 and 5e6 that leaves 2, of which

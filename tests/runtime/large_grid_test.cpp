@@ -1,5 +1,5 @@
-// Grids of discs with so many redundant rows that elimination cannot tell which: what contradicts is shared by all as in
-// small systems, and a saved state goes on with the same bits.
+// Grids of discs with so many redundant rows that elimination cannot tell which: what contradicts is shared by all as
+// in small systems, and a saved state goes on with the same bits.
 #include <fmt/core.h>
 
 #include <cmath>

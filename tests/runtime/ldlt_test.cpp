@@ -47,8 +47,7 @@ Problem random_problem(const Joints& joints, int freedom, std::mt19937& random) 
     for (int body : {joints.bodies[i].first, joints.bodies[i].second})
       for (int r = 0; body >= 0 && r < joints.rows[i]; ++r)
         for (int c = 0; c < freedom; ++c)
-          problem.J(problem.ldlt.first(static_cast<int>(i)) + r, freedom * body + c) =
-              uniform(random);
+          problem.J(problem.ldlt.first(static_cast<int>(i)) + r, freedom * body + c) = uniform(random);
   return problem;
 }
 
@@ -230,8 +229,7 @@ TEST(Ldlt, ChainsAndTreesFillNothingIn) {
       for (size_t j = 0; j < joints.rows.size(); ++j)
         if (i != j && coupled(joints.bodies[i], joints.bodies[j]))
           neighbours[i].push_back(static_cast<int>(j)), ++before;
-    for (const Elimination& one : minimum_degree_order(joints.rows, neighbours, 0))
-      after += one.neighbours.size();
+    for (const Elimination& one : minimum_degree_order(joints.rows, neighbours, 0)) after += one.neighbours.size();
     EXPECT_EQ(2 * after, before);
   }
 }
@@ -244,13 +242,13 @@ TEST(Ldlt, AChainCostsInProportionToItsLength) {
       cost[k] = random_problem(chain(100 << k, rows), 1, random).ldlt.multiplications();
     }
     EXPECT_EQ(cost[2] - cost[1], 2 * (cost[1] - cost[0]));
-    fmt::print("{} rows a joint: {} multiplications for 100 joints, {} for 200, {} for 400\n", rows,
-               cost[0], cost[1], cost[2]);
+    fmt::print("{} rows a joint: {} multiplications for 100 joints, {} for 200, {} for 400\n", rows, cost[0], cost[1],
+               cost[2]);
   }
 }
 
-// Discs in a square, each joined to its right and its lower neighbour, seven of them at the top on the ground. Joints of
-// two rows that share a disc are coupled.
+// Discs in a square, each joined to its right and its lower neighbour, seven of them at the top on the ground. Joints
+// of two rows that share a disc are coupled.
 long multiplications_of_grid(int n) {
   std::vector<std::vector<int>> joints_at(static_cast<size_t>(n * n));
   std::vector<int> rows;
@@ -277,10 +275,13 @@ long multiplications_of_grid(int n) {
 
 // By nested dissection a grid of n bodies costs in proportion to n^1.5.
 TEST(Ldlt, AGridCostsLittleMoreThanByDissection) {
-  const long small = multiplications_of_grid(25), middle = multiplications_of_grid(50), large = multiplications_of_grid(100);
-  const auto exponent = [](long few, long many, double bodies) { return std::log(double(many) / few) / std::log(bodies); };
-  fmt::print("25 x 25: {}, 50 x 50: {} (n^{:.2f}), 100 x 100: {} multiplications (n^{:.2f} from 25 x 25)\n", small, middle,
-             exponent(small, middle, 4), large, exponent(small, large, 16));
+  const long small = multiplications_of_grid(25), middle = multiplications_of_grid(50),
+             large = multiplications_of_grid(100);
+  const auto exponent = [](long few, long many, double bodies) {
+    return std::log(double(many) / few) / std::log(bodies);
+  };
+  fmt::print("25 x 25: {}, 50 x 50: {} (n^{:.2f}), 100 x 100: {} multiplications (n^{:.2f} from 25 x 25)\n", small,
+             middle, exponent(small, middle, 4), large, exponent(small, large, 16));
   EXPECT_LT(exponent(small, large, 16), 1.6);
   EXPECT_LT(exponent(middle, large, 4), 1.6);
 }
@@ -304,8 +305,7 @@ TEST(Ldlt, RowsAreNotDroppedForNoiseThatIsOverstated) {
   Ldlt ldlt;
   ldlt.analyse({rows + 1}, {});
   for (int i = 0; i <= rows; ++i)
-    for (int j = 0; j <= i; ++j)
-      ldlt.values()[ldlt.place(i, j).at] = 1 + eps * eps * (std::min({i, j, rows - 1}) + 1);
+    for (int j = 0; j <= i; ++j) ldlt.values()[ldlt.place(i, j).at] = 1 + eps * eps * (std::min({i, j, rows - 1}) + 1);
   const std::vector<double> added(rows + 1, 0.0);
   EXPECT_EQ(ldlt.factor(added.data(), nullptr), 1);
   for (int k = 1; k < rows; ++k) {

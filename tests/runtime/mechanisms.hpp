@@ -31,8 +31,7 @@ inline int add_bar(World<double>& world, const Bar& bar, double mass = 1) {
 inline int pin(World<double>& world, int a, int b, double x, double y) {
   const auto q = world.pose(a);
   const double dx = x - q.x, dy = y - q.y;
-  return world.add_joint(
-      {"revolute", {a, b}, {{"pa", {q.c * dx + q.s * dy, q.c * dy - q.s * dx}}}, {}});
+  return world.add_joint({"revolute", {a, b}, {{"pa", {q.c * dx + q.s * dy, q.c * dy - q.s * dx}}}, {}});
 }
 
 // So many links hanging from the ground, a zigzag.
@@ -57,10 +56,7 @@ inline void add_slider_crank(World<double>& world) {
   pin(world, world.ground(), crank, 0, 0);
   pin(world, crank, rod, x, y);
   pin(world, rod, slider, end, 0);
-  world.add_joint({"prismatic",
-                   {slider, world.ground()},
-                   {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}},
-                   {}});
+  world.add_joint({"prismatic", {slider, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 1}}}, {}});
 }
 
 inline void add_four_bar(World<double>& world) {
@@ -90,8 +86,7 @@ inline void add_rotating_squares(World<double>& world, int n, double phi, double
                                      .inertia = 1.0 / 12}));
     }
   const auto hinge = [&](int a, int b, double x, double y) {
-    world.add_joint(
-        {"revolute", {a, b}, {{"pa", {arm * x, arm * y}}, {"pb", {-arm * x, -arm * y}}}, {}});
+    world.add_joint({"revolute", {a, b}, {{"pa", {arm * x, arm * y}}, {"pb", {-arm * x, -arm * y}}}, {}});
   };
   for (int j = 0; j < n; ++j)
     for (int i = 0; i < n; ++i) {
@@ -140,10 +135,8 @@ inline void add_spatial_chain(SpatialWorld<double>& world, int links, const char
     const NamedValue at{"pa", {i - q.x, -q.y, -q.z}};
     const double tilt = 0.3 * i;
     const NamedValue axis{"fa", {std::sin(tilt), 0.2, std::cos(tilt)}};
-    if (std::string(joint) == "spherical")
-      world.add_joint({joint, {before, body}, {at}, {}});
-    else
-      world.add_joint({joint, {before, body}, {at, axis}, {}});
+    if (std::string(joint) == "spherical") world.add_joint({joint, {before, body}, {at}, {}});
+    else world.add_joint({joint, {before, body}, {at, axis}, {}});
     before = body;
   }
 }
@@ -155,14 +148,10 @@ inline void add_hinge_loop(SpatialWorld<double>& world) {
   int before = world.ground();
   const auto hinge = [&](int a, int b, int at) {
     const auto q = world.pose(a);
-    world.add_joint({"hinge",
-                     {a, b},
-                     {{"pa", {loop_x[at] - q.x, loop_y[at] - q.y, -q.z}}, {"fa", {0, 0, 1}}},
-                     {}});
+    world.add_joint({"hinge", {a, b}, {{"pa", {loop_x[at] - q.x, loop_y[at] - q.y, -q.z}}, {"fa", {0, 0, 1}}}, {}});
   };
   for (int i = 0; i < 3; ++i) {
-    const int bar = world.add_body(
-        block((loop_x[i] + loop_x[i + 1]) / 2, (loop_y[i] + loop_y[i + 1]) / 2, 0.1 * i));
+    const int bar = world.add_body(block((loop_x[i] + loop_x[i + 1]) / 2, (loop_y[i] + loop_y[i + 1]) / 2, 0.1 * i));
     hinge(before, bar, i);
     before = bar;
   }

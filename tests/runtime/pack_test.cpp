@@ -20,8 +20,8 @@ struct Lanes<Pack<T, w>> {
 
 template <class P>
 class PackTest : public testing::Test {};
-using Packs = testing::Types<Pack<float, 4>, Pack<float, 8>, Pack<float, 16>, Pack<double, 4>,
-                             Pack<double, 8>, Pack<double, 16>>;
+using Packs =
+    testing::Types<Pack<float, 4>, Pack<float, 8>, Pack<float, 16>, Pack<double, 4>, Pack<double, 8>, Pack<double, 16>>;
 TYPED_TEST_SUITE(PackTest, Packs);
 
 template <class T>
@@ -43,14 +43,12 @@ void expect_same_lanes(F f, const char* what) {
   constexpr int width = Lanes<P>::width;
   for (int start = 0; start < 60; ++start) {
     T x[width], y[width];
-    for (int i = 0; i < width; ++i)
-      x[i] = number<T>(start + i), y[i] = number<T>(2 * start + 5 * i);
+    for (int i = 0; i < width; ++i) x[i] = number<T>(start + i), y[i] = number<T>(2 * start + 5 * i);
     const P result = f(P::load(x), P::load(y));
     for (int i = 0; i < width; ++i) {
       const T expected = f(x[i], y[i]);
       const bool both_nan = std::isnan(expected) && std::isnan(result[i]);
-      EXPECT_TRUE(both_nan || same_bits(expected, result[i]))
-          << what << " of " << x[i] << ", " << y[i];
+      EXPECT_TRUE(both_nan || same_bits(expected, result[i])) << what << " of " << x[i] << ", " << y[i];
     }
   }
 }
@@ -103,8 +101,7 @@ T evaluate(T x) {
   }
   typename Joint::template Parameters<T> p;
   T* numbers = reinterpret_cast<T*>(&p);
-  for (size_t i = 0; i < sizeof p / sizeof(T); ++i)
-    numbers[i] = T(0.1) * T(static_cast<int>(i)) + x;
+  for (size_t i = 0; i < sizeof p / sizeof(T); ++i) numbers[i] = T(0.1) * T(static_cast<int>(i)) + x;
   typename Joint::template Jacobian<T> J;
   T C[rows], K[rows * (rows + 1) / 2], F[rows * (rows + 1) / 2], b[rows], lambda[rows];
   Joint::jacobian(q, p, x, C, J);

@@ -68,8 +68,7 @@ TEST(Redundancy, HingeLoopMovesLikeItsPlanarTwin) {
     const double start = plane.pose(1).y;
     EXPECT_EQ(dropped_rows(space, 0.5, 1.0 / 60), std::set<int>{3});
     run(plane, 0.5, 1.0 / 60);
-    fmt::print("moved {:.4f} m, its twin {:.4f} m\n", space.pose(1).y - start,
-               plane.pose(1).y - start);
+    fmt::print("moved {:.4f} m, its twin {:.4f} m\n", space.pose(1).y - start, plane.pose(1).y - start);
     EXPECT_NEAR(space.pose(1).y, plane.pose(1).y, 0.01);
   }
 }
@@ -108,8 +107,7 @@ TEST(Redundancy, ParallelBarsThroughTheFlatPose) {
     const double exact = gap_of_parallel_bars<double>(Drift::projection, h);
     const double coarse = gap_of_parallel_bars<float>(Drift::projection, h);
     const double fed_back = gap_of_parallel_bars<float>(Drift::baumgarte, h);
-    fmt::print("h = {:.5f} s: gaps {:.2g} m, in floats {:.2g} m, by Baumgarte {:.2g} m\n", h, exact,
-               coarse, fed_back);
+    fmt::print("h = {:.5f} s: gaps {:.2g} m, in floats {:.2g} m, by Baumgarte {:.2g} m\n", h, exact, coarse, fed_back);
     EXPECT_LT(exact, 1e-11);
     EXPECT_LT(coarse, 1e-3);
     EXPECT_LT(fed_back, 100 * h * h);

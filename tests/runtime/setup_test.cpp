@@ -22,23 +22,18 @@ JointDefinition revolute_with(std::vector<int> bodies, std::vector<NamedValue> p
 TEST(Setup, MistakesInJointsAreNamed) {
   World<double> world;
   const int g = world.ground(), b = world.add_body({.mass = 1, .inertia = 1});
-  const auto say = [&](const JointDefinition& joint) {
-    return message_of([&] { world.add_joint(joint); });
-  };
+  const auto say = [&](const JointDefinition& joint) { return message_of([&] { world.add_joint(joint); }); };
   EXPECT_EQ(say({"revolut", {g, b}, {}, {}}), "there is no joint `revolut`");
   EXPECT_EQ(say(revolute_with({g}, {})), "joint `revolute` connects 2 bodies, not 1");
   EXPECT_EQ(say(revolute_with({g, 7}, {})), "there is no body number 7");
   EXPECT_EQ(say(revolute_with({b, b}, {})), "joint `revolute` names the same movable body twice");
   EXPECT_EQ(say(revolute_with({g, b}, {{"pc", {0, 0}}})),
             "joint `revolute` has no parameter `pc`; its parameters are `pa`, `pb`");
-  EXPECT_EQ(say(revolute_with({g, b}, {{"pa", {0}}})),
-            "parameter `pa` of joint `revolute` takes 2 numbers, not 1");
-  EXPECT_EQ(say(revolute_with({g, b}, {{"pa", {0, NAN}}})),
-            "parameter `pa` of joint `revolute` is not finite");
+  EXPECT_EQ(say(revolute_with({g, b}, {{"pa", {0}}})), "parameter `pa` of joint `revolute` takes 2 numbers, not 1");
+  EXPECT_EQ(say(revolute_with({g, b}, {{"pa", {0, NAN}}})), "parameter `pa` of joint `revolute` is not finite");
   EXPECT_EQ(say(revolute_with({g, b}, {{"pa", {0, 0}}, {"pa", {1, 0}}})),
             "parameter `pa` of joint `revolute` is given twice");
-  EXPECT_EQ(say(revolute_with({g, b}, {})),
-            "joint `revolute` needs its parameter `pa` (it has no default)");
+  EXPECT_EQ(say(revolute_with({g, b}, {})), "joint `revolute` needs its parameter `pa` (it has no default)");
   EXPECT_EQ(say({"prismatic", {b, g}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0, 0}}}, {}}),
             "parameter `t` of joint `prismatic` is a direction and must not be zero");
   EXPECT_EQ(world.joint_count(), 0);
@@ -46,14 +41,11 @@ TEST(Setup, MistakesInJointsAreNamed) {
 
 TEST(Setup, MistakesInBodiesAreNamed) {
   World<double> world;
-  EXPECT_EQ(message_of([&] { world.add_body({.mass = 0, .inertia = 1}); }),
-            "a body needs a mass > 0, or to be static");
+  EXPECT_EQ(message_of([&] { world.add_body({.mass = 0, .inertia = 1}); }), "a body needs a mass > 0, or to be static");
   EXPECT_EQ(message_of([&] { world.add_body({.mass = -1, .inertia = 1}); }),
             "a body needs a mass > 0, or to be static");
-  EXPECT_EQ(message_of([&] { world.add_body({.x = NAN, .mass = 1}); }),
-            "every number of a body must be finite");
-  EXPECT_EQ(message_of([&] { world.add_body({.vx = 1, .is_static = true}); }),
-            "a static body has no velocity");
+  EXPECT_EQ(message_of([&] { world.add_body({.x = NAN, .mass = 1}); }), "every number of a body must be finite");
+  EXPECT_EQ(message_of([&] { world.add_body({.vx = 1, .is_static = true}); }), "a static body has no velocity");
   EXPECT_EQ(world.body_count(), 0);
   EXPECT_THROW(World<double>({.iterations = 0}), Error);
   EXPECT_THROW(World<double>({.baumgarte = 2}), Error);
@@ -78,11 +70,8 @@ TEST(Setup, DirectionsAreNormalised) {
   for (double scale : {1.0, 10.0, 1e-6, 1e-200}) {
     World<double> world;
     const int b = world.add_body({.mass = 1, .inertia = 1});
-    const int joint =
-        world.add_joint({"prismatic",
-                         {b, world.ground()},
-                         {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0.6 * scale, 0.8 * scale}}},
-                         {}});
+    const int joint = world.add_joint(
+        {"prismatic", {b, world.ground()}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"t", {0.6 * scale, 0.8 * scale}}}, {}});
     const auto p = world.joint_parameters(joint);
     const int offset = world.joint_type(joint).parameters[2].offset;
     EXPECT_NEAR(p[offset], 0.6, 1e-15);

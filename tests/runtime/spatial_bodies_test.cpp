@@ -30,8 +30,7 @@ TEST(Rotation, ByAVectorIsTheExponential) {
     const Vector<double> v = {0.2, -1.1, 0.7}, before = to_world(q, v);
     // Rodrigues
     const double c = std::cos(angle), s = std::sin(angle);
-    const Vector<double> expected =
-        c * before + s * cross(axis, before) + (1 - c) * dot(axis, before) * axis;
+    const Vector<double> expected = c * before + s * cross(axis, before) + (1 - c) * dot(axis, before) * axis;
     EXPECT_LT(norm(to_world(turned, v) - expected), 1e-15 * (10 + angle)) << angle;
   }
   EXPECT_EQ(spatial::turned_by(q, {0, 0, 0}).e1, q.e1);
@@ -51,8 +50,7 @@ TEST(Rotation, PositivePartDropsNegativeEigenvalues) {
   const Symmetric<double> S = turned(q, Symmetric<double>{3, -2, 0.5, 0, 0, 0});
   const Symmetric<double> expected = turned(q, Symmetric<double>{3, 0, 0.5, 0, 0, 0});
   const Symmetric<double> off = spatial::positive_part(S) + (-1.0) * expected;
-  for (double entry : {off.xx, off.yy, off.zz, off.xy, off.xz, off.yz})
-    EXPECT_NEAR(entry, 0, 1e-14);
+  for (double entry : {off.xx, off.yy, off.zz, off.xy, off.xz, off.yz}) EXPECT_NEAR(entry, 0, 1e-14);
 }
 
 TEST(SpatialBody, KeepsMomentumEnergyAndTheUnitQuaternion) {
@@ -119,8 +117,8 @@ TEST(SpatialBody, FastSpinAboutAPrincipalAxisIsExact) {
   EXPECT_EQ(world.velocity(body).wx, 0);
 }
 
-// By what angle a symmetric top is off after 5 s in steps of h: it goes round L at the rate L / I_across, I_across being
-// 1 kg m^2, and round its axis e at 2 - 1.5 * 2 = -1 rad/s. e lies in the frame's y-z plane.
+// By what angle a symmetric top is off after 5 s in steps of h: it goes round L at the rate L / I_across, I_across
+// being 1 kg m^2, and round its axis e at 2 - 1.5 * 2 = -1 rad/s. e lies in the frame's y-z plane.
 double top_off(const Vector<double>& e, double h) {
   SpatialWorld<double> world;
   SpatialBodyDefinition d;

@@ -25,8 +25,7 @@ TEST_P(Catalogue, RunsAndKeepsWhatItMust) {
     for (int i = 0; i < type.bodies; ++i)
       joint.bodies.push_back(world.add_body(brick(0.8 * i, 0.3 * i, -0.2 * i, 1 + 0.5 * i)));
     world.add_joint(joint);
-    for (int body : joint.bodies)
-      world.apply_impulse(body, {0.2 * body, 0.1, -0.1, 0.02, -0.01 * body, 0.03});
+    for (int body : joint.bodies) world.apply_impulse(body, {0.2 * body, 0.1, -0.1, 0.02, -0.01 * body, 0.03});
     const bool fits = world.project(1e-9);
     EXPECT_TRUE(fits) << type.name;
     const SpatialMomentum before = momentum(world);
@@ -35,8 +34,7 @@ TEST_P(Catalogue, RunsAndKeepsWhatItMust) {
     EXPECT_LT(world.worst_position_error().value, 1e-6) << type.name;
     if (!holds_the_world(type) && !type.explicit_time) {
       EXPECT_LT(norm(after.linear - before.linear), 1e-11) << type.name;
-      EXPECT_LT(norm(after.angular - before.angular), solver == Solver::direct ? 1e-10 : 1e-5)
-          << type.name;
+      EXPECT_LT(norm(after.angular - before.angular), solver == Solver::direct ? 1e-10 : 1e-5) << type.name;
     }
     for (int body : joint.bodies) EXPECT_EQ(off_unit(world.pose(body)), 0);
   }

@@ -118,8 +118,7 @@ TEST(SpatialJoints, AnglesGoOnBeyondHalfATurn) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     SpatialWorld<double> world(settings(solver));
     const int body = world.add_body(brick(0.5, 0, 0));
-    const int hinge =
-        join(world, "hinge", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {0, 0.6, 0.8}}});
+    const int hinge = join(world, "hinge", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {0, 0.6, 0.8}}});
     add_motor(world, hinge, "angle", {.speed = 5, .max_force = 20});
     add_limit(world, hinge, "angle", {.lower = -1, .upper = 19});
     run(world, 2, 0.005);
@@ -141,8 +140,7 @@ TEST(SpatialJoints, AGearCountsTurns) {
   const int b = world.add_body(wheel);
   const int first = join(world, "hinge", world.ground(), a, {{"pa", {0, 0, 0}}, {"fa", {0, 0, 1}}});
   join(world, "hinge", world.ground(), b, {{"pa", {3, 0, 0}}, {"fa", {0, 0, 1}}});
-  const int gear =
-      join(world, "gear", a, b, {{"fa", {0, 0, 1}}, {"fb", {0, 0, 1}}, {"ratio", {2.5}}});
+  const int gear = join(world, "gear", a, b, {{"fa", {0, 0, 1}}, {"fb", {0, 0, 1}}, {"ratio", {2.5}}});
   add_motor(world, first, "angle", {.speed = 4, .max_force = 100});
   run(world, 20, 0.01);
   EXPECT_NEAR(world.velocity(a).wz, 4, 1e-9);
@@ -175,13 +173,11 @@ TEST(SpatialJoints, FramesInEveryWayOfGivingThem) {
   SpatialWorld<double> world;
   const int body = world.add_body(brick(1, 0, 0));
   const auto frame = [&](std::vector<double> fa) {
-    const int joint =
-        join(world, "revolute", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", std::move(fa)}});
+    const int joint = join(world, "revolute", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", std::move(fa)}});
     const auto numbers = world.joint_parameters(joint);
     for (const ParameterInfo& info : world.joint_type(joint).parameters)
       if (info.name == "fa")
-        return std::vector<double>(numbers.begin() + info.offset,
-                                   numbers.begin() + info.offset + info.size);
+        return std::vector<double>(numbers.begin() + info.offset, numbers.begin() + info.offset + info.size);
     return std::vector<double>{};
   };
   const auto triad = [](const std::vector<double>& f) {
@@ -191,8 +187,7 @@ TEST(SpatialJoints, FramesInEveryWayOfGivingThem) {
     EXPECT_NEAR(dot(x, y), 0, 1e-15);
     EXPECT_LT(norm(cross(x, y) - z), 1e-15);
   };
-  for (const std::vector<double>& x :
-       {std::vector<double>{0, 0, 3}, {0, -1, 0}, {2, 0, 0}, {0.3, -0.2, 0.9}})
+  for (const std::vector<double>& x : {std::vector<double>{0, 0, 3}, {0, -1, 0}, {2, 0, 0}, {0.3, -0.2, 0.9}})
     triad(frame(x));
   EXPECT_EQ(frame({0, 0, 1, 1, 0, 0.5}), frame({0, 0, 1, 1, 0, 0, 0, 1, 0}));
   EXPECT_THROW(frame({0, 0, 0}), Error);
@@ -217,8 +212,7 @@ spatial::Pose<double> pose_at_the_end(const char* type, const std::vector<const 
   std::vector<NamedValue> values = {{"pa", {0.5, 0.1, 0}}};
   if (std::string_view(type) != "spherical") values.push_back({"fa", {0.3, 1, 0.2}});
   const int joint = join(world, type, first, second, values);
-  for (const char* coordinate : locked)
-    add_limit(world, joint, coordinate, {.lower = 0, .upper = 0});
+  for (const char* coordinate : locked) add_limit(world, joint, coordinate, {.lower = 0, .upper = 0});
   world.apply_impulse(second, {0.3, 0.5, -0.2, 0.1, 0.2, -0.1});
   run(world, 0.5, 1e-3);
   for (const char* coordinate : locked)
@@ -227,24 +221,20 @@ spatial::Pose<double> pose_at_the_end(const char* type, const std::vector<const 
 }
 
 TEST(SpatialJoints, SixDofWithLocksIsTheJointWithThoseRows) {
-  const std::vector<const char*> all = {"slide_x", "slide_y", "slide_z",
-                                        "turn_x",  "turn_y",  "turn_z"};
+  const std::vector<const char*> all = {"slide_x", "slide_y", "slide_z", "turn_x", "turn_y", "turn_z"};
   for (const SixDof& c :
        {SixDof{"fixed", {}}, SixDof{"revolute", {"turn_x"}}, SixDof{"prismatic", {"slide_x"}},
-        SixDof{"cylindrical", {"slide_x", "turn_x"}},
-        SixDof{"planar_joint", {"slide_y", "slide_z", "turn_x"}},
+        SixDof{"cylindrical", {"slide_x", "turn_x"}}, SixDof{"planar_joint", {"slide_y", "slide_z", "turn_x"}},
         SixDof{"spherical", {"turn_x", "turn_y", "turn_z"}}}) {
     std::vector<const char*> locked;
     for (const char* coordinate : all)
-      if (std::none_of(c.free.begin(), c.free.end(),
-                       [&](std::string_view name) { return name == coordinate; }))
+      if (std::none_of(c.free.begin(), c.free.end(), [&](std::string_view name) { return name == coordinate; }))
         locked.push_back(coordinate);
     const auto ours = pose_at_the_end("six_dof", locked), theirs = pose_at_the_end(c.like, {});
     EXPECT_NEAR(ours.x, theirs.x, 1e-6) << c.like;
     EXPECT_NEAR(ours.y, theirs.y, 1e-6) << c.like;
     EXPECT_NEAR(ours.z, theirs.z, 1e-6) << c.like;
-    const double same =
-        ours.e0 * theirs.e0 + ours.e1 * theirs.e1 + ours.e2 * theirs.e2 + ours.e3 * theirs.e3;
+    const double same = ours.e0 * theirs.e0 + ours.e1 * theirs.e1 + ours.e2 * theirs.e2 + ours.e3 * theirs.e3;
     EXPECT_NEAR(std::abs(same), 1, 1e-9) << c.like;
   }
 }
@@ -256,20 +246,16 @@ TEST(SpatialJoints, SixDofStaysWithinItsLimits) {
     s.iterations = 50;
     SpatialWorld<double> world(s);
     const int body = world.add_body(brick(0, 0, 0));
-    const int joint =
-        join(world, "six_dof", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {1, 0, 0}}});
-    for (const char* slide : {"slide_x", "slide_y"})
-      add_limit(world, joint, slide, {.lower = 0, .upper = 0});
+    const int joint = join(world, "six_dof", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {1, 0, 0}}});
+    for (const char* slide : {"slide_x", "slide_y"}) add_limit(world, joint, slide, {.lower = 0, .upper = 0});
     add_limit(world, joint, "slide_z", {.lower = -0.5, .upper = 0.2});
-    for (const char* turn : {"turn_x", "turn_y"})
-      add_limit(world, joint, turn, {.lower = -0.3, .upper = 0.3});
+    for (const char* turn : {"turn_x", "turn_y"}) add_limit(world, joint, turn, {.lower = -0.3, .upper = 0.3});
     world.apply_impulse(body, {0, 0, 0, 0.2, -0.3, 0.1});
     double lowest = 0, widest = 0;
     for (int i = 0; i < 2000; ++i) {
       world.step(1e-3);
       lowest = std::min(lowest, world.coordinate(joint, "slide_z"));
-      for (const char* turn : {"turn_x", "turn_y"})
-        widest = std::max(widest, std::abs(world.coordinate(joint, turn)));
+      for (const char* turn : {"turn_x", "turn_y"}) widest = std::max(widest, std::abs(world.coordinate(joint, turn)));
     }
     EXPECT_NEAR(lowest, -0.5, 1e-6);
     EXPECT_NEAR(world.coordinate(joint, "slide_z"), -0.5, 1e-6);

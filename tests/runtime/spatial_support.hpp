@@ -22,8 +22,8 @@ SpatialMomentum momentum(const SpatialWorld<T>& world) {
     const spatial::Vector<double> x = {q.x, q.y, q.z};
     const spatial::Vector<double> p = (1.0 / double(m.m)) * spatial::Vector<double>{v.x, v.y, v.z};
     sum.linear = sum.linear + p;
-    sum.angular = sum.angular + cross(x, p) +
-                  spatial::inverse(inverse_inertia) * spatial::Vector<double>{v.wx, v.wy, v.wz};
+    sum.angular =
+        sum.angular + cross(x, p) + spatial::inverse(inverse_inertia) * spatial::Vector<double>{v.wx, v.wy, v.wz};
   }
   return sum;
 }
@@ -31,12 +31,11 @@ SpatialMomentum momentum(const SpatialWorld<T>& world) {
 // How far the quaternion is from a unit one, and A from a rotation.
 template <class T>
 double off_unit(const spatial::Pose<T>& q) {
-  const double length = std::sqrt(double(q.e0) * q.e0 + double(q.e1) * q.e1 + double(q.e2) * q.e2 +
-                                  double(q.e3) * q.e3);
-  const spatial::Vector<double> x = {q.xx, q.yx, q.zx}, y = {q.xy, q.yy, q.zy},
-                                z = {q.xz, q.yz, q.zz};
-  const double off = std::max({std::abs(dot(x, y)), std::abs(norm(cross(x, y) - z)),
-                               std::abs(norm(x) - 1), std::abs(length - 1)});
+  const double length =
+      std::sqrt(double(q.e0) * q.e0 + double(q.e1) * q.e1 + double(q.e2) * q.e2 + double(q.e3) * q.e3);
+  const spatial::Vector<double> x = {q.xx, q.yx, q.zx}, y = {q.xy, q.yy, q.zy}, z = {q.xz, q.yz, q.zz};
+  const double off =
+      std::max({std::abs(dot(x, y)), std::abs(norm(cross(x, y) - z)), std::abs(norm(x) - 1), std::abs(length - 1)});
   return off < 4 * std::numeric_limits<T>::epsilon() ? 0 : off;
 }
 
@@ -60,8 +59,7 @@ void add_free_mechanism(SpatialWorld<T>& world) {
   std::vector<int> bricks;
   for (int i = 0; i < 4; ++i) bricks.push_back(world.add_body(brick(i, 0.1 * i, 0, 1 + 0.5 * i)));
   join(world, "spherical", bricks[0], bricks[1], {{"pa", {0.5, 0.1, 0.2}}});
-  const int hinge =
-      join(world, "hinge", bricks[1], bricks[2], {{"pa", {0.5, 0, 0}}, {"fa", {0.3, 0.2, 1}}});
+  const int hinge = join(world, "hinge", bricks[1], bricks[2], {{"pa", {0.5, 0, 0}}, {"fa", {0.3, 0.2, 1}}});
   join(world, "spherical", bricks[2], bricks[3], {{"pa", {0.5, 0, 0.3}}});
   add_motor(world, hinge, "angle", {.speed = 2, .max_force = 0.5});
   add_limit(world, hinge, "angle", {.lower = -3, .upper = 3});

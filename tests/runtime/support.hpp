@@ -29,8 +29,7 @@ int revolute(World<T>& world, int a, int b, double ax, double ay, double bx, dou
 
 template <class T>
 int distance(World<T>& world, int a, int b, double length, std::optional<Softness> soft = {}) {
-  return world.add_joint(
-      {"distance", {a, b}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {length}}}, soft});
+  return world.add_joint({"distance", {a, b}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {length}}}, soft});
 }
 
 // A rod of length 1 whose left end is at (x, y), turned by `angle`.
@@ -64,12 +63,9 @@ inline std::vector<NamedValue> some_values(const JointType& type) {
   for (const ParameterInfo& info : type.parameters) {
     if (info.has_default) continue;
     std::vector<double> numbers;
-    if (info.kind == ParameterKind::scalar)
-      numbers = {0.7};
-    else if (info.kind == ParameterKind::point)
-      numbers = {0.4, 0.1 * info.offset / 3.0, 0.2};
-    else
-      numbers = {0.3, -0.2 + 0.05 * info.offset, 1};
+    if (info.kind == ParameterKind::scalar) numbers = {0.7};
+    else if (info.kind == ParameterKind::point) numbers = {0.4, 0.1 * info.offset / 3.0, 0.2};
+    else numbers = {0.3, -0.2 + 0.05 * info.offset, 1};
     if (info.size < 3) numbers.resize(static_cast<size_t>(info.size));
     values.push_back({std::string(info.name), numbers});
   }

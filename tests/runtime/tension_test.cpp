@@ -133,8 +133,8 @@ TEST(Tension, HoldsAHeavyLoadOnBeads) {
   }
 }
 
-// 100 beads on 101 bars between two points, where they hang in equilibrium: the force in bar k is (H, m g (k - 50)), and
-// H is such that they reach from one point to the other.
+// 100 beads on 101 bars between two points, where they hang in equilibrium: the force in bar k is (H, m g (k - 50)),
+// and H is such that they reach from one point to the other.
 TEST(Tension, LeavesAHangingChainWhereItIs) {
   constexpr int beads = 100;
   constexpr double length = 0.1, mass = 0.1, span = 6;

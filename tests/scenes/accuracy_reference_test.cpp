@@ -1,5 +1,7 @@
-// The reference that `cdot-run accuracy` makes itself: how well its methods agree with each other and with closed forms,
-// and what it says where they do not.
+// The reference that `cdot-run accuracy` makes itself: how well its methods agree with each other and with closed
+// forms, and what it says where they do not.
+#include "runtime/accuracy_reference.hpp"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -10,7 +12,6 @@
 #include <tuple>
 
 #include "runtime/accuracy_compose.hpp"
-#include "runtime/accuracy_reference.hpp"
 #include "tests/scenes/accuracy_pendulum.hpp"
 #include "tests/scenes/support.hpp"
 
@@ -65,9 +66,9 @@ Frame in_space(Frame frame) {
 // Against references by other code, for motions that magnify round-off and one that does not.
 TEST(AccuracyReference, AgreesWithOtherCode) {
   if (!finer) GTEST_SKIP() << "long double is double here";
-  for (const auto& [problem, name, duration] :
-       {std::tuple{"torque_free_body", "spatial/torque_free_body", 20.0}, {"gyroscope", "spatial/gyroscope", 2.0},
-        {"four_bar", "crank_rocker", 2.0}}) {
+  for (const auto& [problem, name, duration] : {std::tuple{"torque_free_body", "spatial/torque_free_body", 20.0},
+                                                {"gyroscope", "spatial/gyroscope", 2.0},
+                                                {"four_bar", "crank_rocker", 2.0}}) {
     Scene scene = scene_named(name);
     scene.duration = duration;
     const ReferenceRun made = make_reference_run(scene);
@@ -79,9 +80,9 @@ TEST(AccuracyReference, AgreesWithOtherCode) {
       for (const SceneBody& body : scene.bodies) at.bodies.push_back(sample.bodies.at(body.name));
       for (const Frame& frame : made.frames)
         if (std::abs(frame.time - sample.time) < 1e-9)
-          worst = std::max(worst, apart(scene.dimension == Dimension::planar ? in_space(frame) : frame, at,
-                                        Dimension::spatial)
-                                      .larger()),
+          worst = std::max(
+              worst,
+              apart(scene.dimension == Dimension::planar ? in_space(frame) : frame, at, Dimension::spatial).larger()),
           ++compared;
     }
     fmt::print("  {}: {} agree to {:.1e}, with other code, good to {:.0e}, to {:.1e}\n", problem, made.made_by,
@@ -92,7 +93,8 @@ TEST(AccuracyReference, AgreesWithOtherCode) {
   }
 }
 
-// Two methods without a formula in common, on problems of all kinds; in extended precision where doubles are too coarse.
+// Two methods without a formula in common, on problems of all kinds; in extended precision where doubles are too
+// coarse.
 class Agreement : public testing::TestWithParam<const char*> {};
 
 TEST_P(Agreement, IsAsWanted) {

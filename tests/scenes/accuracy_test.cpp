@@ -215,7 +215,8 @@ TEST(Sweep, EndsWhereItsBudgetDoes) {
     EXPECT_TRUE(sweep(pendulum_scene(), options, state, {}));
     return state.points.size();
   };
-  // Spent: 3 runs of 1 s, 0.5 s for looking, and 1 s for timing. Level 1 would take 2 s, be looked at for 1 s and timed.
+  // Spent: 3 runs of 1 s, 0.5 s for looking, and 1 s for timing. Level 1 would take 2 s, be looked at for 1 s and
+  // timed.
   EXPECT_EQ(levels_within(12.4), 3u);
   EXPECT_GT(levels_within(12.6), 3u);
 }

@@ -42,18 +42,15 @@ std::vector<std::string> foreign_to(std::string page) {
   return found;
 }
 
-void PageTest::SetUp() {
-  ASSERT_STRNE(CDOT_CHROMIUM, "CDOT_CHROMIUM-NOTFOUND") << "this test needs chromium";
-}
+void PageTest::SetUp() { ASSERT_STRNE(CDOT_CHROMIUM, "CDOT_CHROMIUM-NOTFOUND") << "this test needs chromium"; }
 
-std::string PageTest::browse(const std::string& page, const std::string& fragment,
-                             const std::string& options) const {
+std::string PageTest::browse(const std::string& page, const std::string& fragment, const std::string& options) const {
   const std::string path = folder_ / "page.html", profile = folder_ / "profile";
   write_file(path, page);
-  const CommandResult result = run_command(fmt::format(
-      "'{}' --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
-      "--disable-component-update --disable-sync --user-data-dir='{}' {} 'file://{}{}'",
-      CDOT_CHROMIUM, profile, options, path, fragment));
+  const CommandResult result = run_command(
+      fmt::format("'{}' --headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
+                  "--disable-component-update --disable-sync --user-data-dir='{}' {} 'file://{}{}'",
+                  CDOT_CHROMIUM, profile, options, path, fragment));
   EXPECT_EQ(result.status, 0) << result.err;
   return result.out;
 }
@@ -62,8 +59,7 @@ std::string PageTest::rendered(const std::string& page, const std::string& fragm
   return browse(page, fragment, "--virtual-time-budget=3000 --dump-dom");
 }
 
-nlohmann::json PageTest::seen_by(std::string page, const std::string& script,
-                                 const std::string& fragment) const {
+nlohmann::json PageTest::seen_by(std::string page, const std::string& script, const std::string& fragment) const {
   page.replace(page.find("</body>"), 7, fmt::format(person, script));
   page.insert(page.find("<script>"), frames_by_the_clock);
   const std::string document = rendered(page, fragment), mark = "<pre id=\"seen\">";
@@ -75,8 +71,7 @@ nlohmann::json PageTest::seen_by(std::string page, const std::string& script,
 
 std::string PageTest::screenshot(const std::string& page, const std::string& fragment) const {
   const std::string picture = folder_ / "picture.png";
-  browse(page, fragment,
-         fmt::format("--window-size=900,600 --virtual-time-budget=500 --screenshot='{}'", picture));
+  browse(page, fragment, fmt::format("--window-size=900,600 --virtual-time-budget=500 --screenshot='{}'", picture));
   return read_text(picture);
 }
 

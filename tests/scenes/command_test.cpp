@@ -14,9 +14,7 @@
 namespace cdot::test {
 namespace {
 
-std::string scene(const std::string& name) {
-  return fmt::format("'{}'", (scenes_dir() / (name + ".toml")).string());
-}
+std::string scene(const std::string& name) { return fmt::format("'{}'", (scenes_dir() / (name + ".toml")).string()); }
 
 std::vector<std::vector<std::string>> csv(const std::filesystem::path& path) {
   std::vector<std::vector<std::string>> rows;
@@ -33,8 +31,7 @@ TEST(Command, HelpTeaches) {
   for (const char* arguments : {"--help", "simulate --help"}) {
     const CommandResult result = cdot_run(arguments);
     EXPECT_EQ(result.status, 0);
-    for (const char* word :
-         {"simulate", "Examples", "Exit status", "--html", "specs/scenes/README.md"}) {
+    for (const char* word : {"simulate", "Examples", "Exit status", "--html", "specs/scenes/README.md"}) {
       EXPECT_NE(result.out.find(word), std::string::npos) << arguments << ": " << word;
     }
   }
@@ -45,8 +42,8 @@ TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
   EXPECT_EQ(text.status, 0);
   EXPECT_NE(text.out.find("revolute  (2 bodies, 2 rows)"), std::string::npos) << text.out;
   const auto list = nlohmann::json::parse(cdot_run("list --json").out);
-  const auto revolute = std::find_if(list.begin(), list.end(),
-                                     [](const auto& joint) { return joint["type"] == "revolute"; });
+  const auto revolute =
+      std::find_if(list.begin(), list.end(), [](const auto& joint) { return joint["type"] == "revolute"; });
   ASSERT_NE(revolute, list.end());
   EXPECT_EQ((*revolute)["bodies"], 2);
   EXPECT_EQ((*revolute)["parameters"][0]["name"], "pa");
@@ -69,16 +66,14 @@ TEST(Command, BadUsageAndBadScenesAreTwo) {
 }
 
 TEST(Command, AnUnstableRunIsOneAndSaysWhy) {
-  const CommandResult result = cdot_run("simulate " + scene("compound_pendulum") +
-                                        " --drift none --step 0.05 --tolerance 1e-6");
+  const CommandResult result =
+      cdot_run("simulate " + scene("compound_pendulum") + " --drift none --step 0.05 --tolerance 1e-6");
   EXPECT_EQ(result.status, 1);
-  EXPECT_NE(result.out.find("FAILED          joint \"pivot\" is off by"), std::string::npos)
-      << result.out;
+  EXPECT_NE(result.out.find("FAILED          joint \"pivot\" is off by"), std::string::npos) << result.out;
 }
 
 TEST(Command, SummaryAsJson) {
-  const CommandResult result =
-      cdot_run("simulate " + scene("compound_pendulum") + " --until 1 --json");
+  const CommandResult result = cdot_run("simulate " + scene("compound_pendulum") + " --until 1 --json");
   EXPECT_EQ(result.status, 0) << result.err;
   const auto json = nlohmann::json::parse(result.out);
   EXPECT_EQ(json["ok"], true);
@@ -96,15 +91,13 @@ TEST(Command, ProgressOnlyWhereItIsSeen) {
 TEST(Command, TrajectoryHasAColumnPerBodyAndQuantity) {
   const TemporaryFolder folder;
   const std::string path = folder / "four_bar.csv";
-  EXPECT_EQ(
-      cdot_run(fmt::format("simulate {} --until 0.01 -o '{}'", scene("four_bar"), path)).status, 0);
+  EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.01 -o '{}'", scene("four_bar"), path)).status, 0);
   const auto rows = csv(path);
   ASSERT_EQ(rows.size(), 12u);  // the head, the start, ten steps
   ASSERT_EQ(rows[0].size(), 19u);
   EXPECT_EQ(rows[0][0], "time");
   const std::vector<std::string> first(rows[0].begin() + 1, rows[0].begin() + 7);
-  EXPECT_EQ(first,
-            (std::vector<std::string>{"v0.x", "v0.y", "v0.angle", "v0.vx", "v0.vy", "v0.omega"}));
+  EXPECT_EQ(first, (std::vector<std::string>{"v0.x", "v0.y", "v0.angle", "v0.vx", "v0.vy", "v0.omega"}));
   EXPECT_EQ(rows[0][7], "h0.x");
   EXPECT_EQ(std::stod(rows[1][0]), 0);
   EXPECT_EQ(std::stod(rows[1][6]), -1);
@@ -116,8 +109,7 @@ TEST(Command, TrajectoryHasAColumnPerBodyAndQuantity) {
 // between.
 TEST(Command, RowTimesDoNotChangeTheRun) {
   const TemporaryFolder folder;
-  const std::string steps = folder / "steps.csv", every = folder / "every.csv",
-                    times = folder / "times.csv";
+  const std::string steps = folder / "steps.csv", every = folder / "every.csv", times = folder / "times.csv";
   const std::string simulate = fmt::format("simulate {} --until 0.5 ", scene("double_pendulum"));
   ASSERT_EQ(cdot_run(simulate + "-o '" + steps + "'").status, 0);
   ASSERT_EQ(cdot_run(simulate + "--every 0.1 -o '" + every + "'").status, 0);
@@ -132,8 +124,7 @@ TEST(Command, RowTimesDoNotChangeTheRun) {
   ASSERT_EQ(asked.size(), 4u);
   EXPECT_EQ(asked[1][0], "0.10025");
   EXPECT_EQ(asked[2][0], "0.25");
-  const double before = std::stod(all[101][1]), after = std::stod(all[102][1]),
-               between = std::stod(asked[1][1]);
+  const double before = std::stod(all[101][1]), after = std::stod(all[102][1]), between = std::stod(asked[1][1]);
   EXPECT_NEAR(between, 0.75 * before + 0.25 * after, 1e-6);
   EXPECT_EQ(cdot_run(simulate + "--every 0.1 --times 1").status, 2);
 }
@@ -150,15 +141,12 @@ TEST(Command, SameInputSameBytes) {
 TEST(Command, NoHalfWrittenFiles) {
   const TemporaryFolder folder;
   const std::string missing = folder / "no_such_folder/run.csv";
-  EXPECT_EQ(
-      cdot_run(fmt::format("simulate {} --until 0.1 -o '{}'", scene("four_bar"), missing)).status,
-      2);
+  EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.1 -o '{}'", scene("four_bar"), missing)).status, 2);
   // Interrupted in the middle of a long run: the old file stays, no part of a new one does.
   const std::string path = folder / "run.csv";
   std::ofstream(path) << "old\n";
-  const CommandResult result =
-      run_command(fmt::format("timeout -s INT 0.5 '{}' simulate {} --until 100000 -o '{}'",
-                              CDOT_RUN, scene("four_bar"), path));
+  const CommandResult result = run_command(
+      fmt::format("timeout -s INT 0.5 '{}' simulate {} --until 100000 -o '{}'", CDOT_RUN, scene("four_bar"), path));
   EXPECT_NE(result.status, 0);
   EXPECT_EQ(read_text(path), "old\n");
   EXPECT_EQ(folder.contents(), std::vector<std::string>{"run.csv"});
@@ -186,8 +174,9 @@ TEST(Command, PrecisionIsFloatIfAsked) {
   for (const char* name : {"double_pendulum", "spatial/double_pendulum"}) {
     const auto run = [&](const std::string& precision) {
       const std::string path = folder / (precision + ".csv");
-      const CommandResult result = cdot_run(fmt::format(
-          "simulate {} --integrator rk4 --until 1 --step 0.0078125 -o '{}' --precision {}", scene(name), path, precision));
+      const CommandResult result =
+          cdot_run(fmt::format("simulate {} --integrator rk4 --until 1 --step 0.0078125 -o '{}' --precision {}",
+                               scene(name), path, precision));
       EXPECT_EQ(result.status, 0) << result.err;
       EXPECT_EQ(result.err, "");
       EXPECT_EQ(result.out.find("precision       float") != std::string::npos, precision == "float") << result.out;

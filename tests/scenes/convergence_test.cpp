@@ -40,8 +40,8 @@ TEST_P(Convergence, FirstOrder) {
     scene.step = problem.step / (1 << halvings);
     const Distance distance = distance_to(reference, scene);
     now = distance.largest();
-    fmt::print("  h = {:.4e}  off by {:.3e} m {:.3e} rad {:.3e} m/s {:.3e} rad/s", scene.step,
-               distance.position, distance.angle, distance.velocity, distance.spin);
+    fmt::print("  h = {:.4e}  off by {:.3e} m {:.3e} rad {:.3e} m/s {:.3e} rad/s", scene.step, distance.position,
+               distance.angle, distance.velocity, distance.spin);
     if (halvings > 0) {
       const double slope = std::log2(before / now);
       fmt::print("  slope {:.3f}", slope);
@@ -120,14 +120,12 @@ World<double> after_a_second(const Scene& scene) {
 TEST(Reactions, OfTheCantileverAreExactStatics) {
   const Scene scene = read_scene((scenes_dir() / "cantilever.toml").string());
   World<double> world = after_a_second(scene);
-  const auto json =
-      nlohmann::json::parse(read_text(source_dir() / "tests/scenes/reference/cantilever.json"));
+  const auto json = nlohmann::json::parse(read_text(source_dir() / "tests/scenes/reference/cantilever.json"));
   ASSERT_EQ(json["reactions"].size(), 10u);
   for (int k = 0; k < 10; ++k) {
     const auto& expected = json["reactions"][static_cast<std::size_t>(k)];
     const auto reaction = world.reaction(k, k);  // weld k on its second body, block k
-    const double force = expected["force_on_body_b"][1],
-                 moment = expected["moment_on_body_b_about_joint"];
+    const double force = expected["force_on_body_b"][1], moment = expected["moment_on_body_b_about_joint"];
     // From the centre of the block to the weld, 0.25 m to its left: M = torque - (-0.25) force.
     EXPECT_NEAR(reaction.force_x, 0, 1e-6 * force);
     EXPECT_NEAR(reaction.force_y, force, 1e-6 * force);
@@ -138,8 +136,7 @@ TEST(Reactions, OfTheCantileverAreExactStatics) {
 TEST(Reactions, OfTheCatenaryAreItsTension) {
   const Scene scene = read_scene((scenes_dir() / "catenary_100.toml").string());
   World<double> world = after_a_second(scene);
-  const auto json =
-      nlohmann::json::parse(read_text(source_dir() / "tests/scenes/reference/catenary_100.json"));
+  const auto json = nlohmann::json::parse(read_text(source_dir() / "tests/scenes/reference/catenary_100.json"));
   ASSERT_EQ(json["forces"].size(), 100u);
   for (int k = 0; k < 100; ++k) {
     const auto reaction = world.reaction(k, k);  // the joint at the left end of link k

@@ -1,5 +1,5 @@
-// cdot-run diagnose, and the warnings of cdot-run simulate: what is said of methods that are wrong for a scene, and that
-// nothing is said of those that are right.
+// cdot-run diagnose, and the warnings of cdot-run simulate: what is said of methods that are wrong for a scene, and
+// that nothing is said of those that are right.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,9 @@
 namespace cdot::test {
 namespace {
 
-std::string hard(const std::string& name) { return fmt::format("'{}/tests/hard_cases/{}.toml'", CDOT_SOURCE_DIR, name); }
+std::string hard(const std::string& name) {
+  return fmt::format("'{}/tests/hard_cases/{}.toml'", CDOT_SOURCE_DIR, name);
+}
 
 bool says(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
@@ -33,12 +35,14 @@ struct Wrong {
 
 // Method, and what must be said of it; the fix that is offered then is one of which nothing is said.
 constexpr Wrong wrong[] = {
-    {"ball_and_chain/planar", "--integrator euler", "the tension of the joints makes \"link", "integrator = \"implicit\""},
+    {"ball_and_chain/planar", "--integrator euler", "the tension of the joints makes \"link",
+     "integrator = \"implicit\""},
     {"ball_and_chain/planar", "--solver iterative", "sweeps of the iterative solver leave much of an error",
      "solver = \"direct\""},
     {"fast_spin/planar", "--integrator rattle", "rad per substep: rattle follows turns of less than about 0.5",
      "integrator = \"dop853\" with local_error = 1e-6"},
-    {"incompatible_triangle/planar", "", "\"ab\", \"bc\", \"ca\" contradict each other", "correct the anchors or the lengths"},
+    {"incompatible_triangle/planar", "", "\"ab\", \"bc\", \"ca\" contradict each other",
+     "correct the anchors or the lengths"},
     {"stiff_and_soft/planar", "--integrator rattle", "a spring makes \"box", "substeps = "},
 };
 
@@ -59,17 +63,19 @@ TEST(DiagnoseCommand, SaysThatASpringIsTooStiffForTheStep) {
                          "position = [1, 0]\n[[spring]]\nbodies = [\"world\", \"ball\"]\nstiffness = 1e6\nrest = 0.5\n";
   const CommandResult result = cdot_run(fmt::format("simulate '{}'", file.string()));
   EXPECT_EQ(result.status, 1);
-  EXPECT_TRUE(says(result.out, "a spring makes \"ball\" swing with 1e+03 rad/s, 10 rad per substep: euler is unstable from "
-                               "2 on. Likely fix: substeps = 20 or more, or integrator"))
+  EXPECT_TRUE(says(result.out,
+                   "a spring makes \"ball\" swing with 1e+03 rad/s, 10 rad per substep: euler is unstable from "
+                   "2 on. Likely fix: substeps = 20 or more, or integrator"))
       << result.out;
 }
 
 TEST(DiagnoseCommand, PrintsIslands) {
   const CommandResult result = cdot_run("diagnose " + hard("ball_and_chain/planar") + " --at 0");
   EXPECT_EQ(result.status, 0) << result.err;
-  for (const char* words : {"method: direct implicit, double, substeps of 0.01667 s", "at t = 0 s\n",
-                            "island 0: 41 bodies, from \"link1\"", "rank            82 of 82 rows", "condition of K  1.09e+05",
-                            "masses          5.982 to 4021 kg", "nothing speaks against this method"})
+  for (const char* words :
+       {"method: direct implicit, double, substeps of 0.01667 s", "at t = 0 s\n", "island 0: 41 bodies, from \"link1\"",
+        "rank            82 of 82 rows", "condition of K  1.09e+05", "masses          5.982 to 4021 kg",
+        "nothing speaks against this method"})
     EXPECT_TRUE(says(result.out, words)) << words << "\n" << result.out;
 }
 
@@ -87,7 +93,8 @@ TEST(DiagnoseCommand, HasAllNumbersInJson) {
 }
 
 TEST(DiagnoseCommand, RefusesATimeAfterTheEnd) {
-  const CommandResult result = cdot_run(fmt::format("diagnose '{}' --at 1e9", (scenes_dir() / "four_bar.toml").string()));
+  const CommandResult result =
+      cdot_run(fmt::format("diagnose '{}' --at 1e9", (scenes_dir() / "four_bar.toml").string()));
   EXPECT_EQ(result.status, 2);
   EXPECT_TRUE(says(result.err, "--at 1000000000: the run ends at 10 s")) << result.err;
 }

@@ -95,8 +95,8 @@ TEST(FailedStep, IsTakenAgainInPartsWhereTheSceneAllows) {
   EXPECT_FALSE(json.contains("failed_step"));
 }
 
-// Links that start a metre apart: no number of parts is enough for ten sweeps, but the direct solver puts them together;
-// then the run goes on by sweeps.
+// Links that start a metre apart: no number of parts is enough for ten sweeps, but the direct solver puts them
+// together; then the run goes on by sweeps.
 TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
   const auto run = [](const std::string& keys, const char* options) {
     return run_hard_case("stretched_chain/planar.toml", "solver = \"iterative\"\n" + keys, options);
@@ -113,7 +113,8 @@ TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
 // What has been tried is not advised.
 TEST(FailedStep, AdvisesWhatWasNotTried) {
   Failing scene;
-  const CommandResult stopped = cdot_run(scene.run("", "")), retried = cdot_run(scene.run("on_failure = \"retry\"\n", ""));
+  const CommandResult stopped = cdot_run(scene.run("", "")),
+                      retried = cdot_run(scene.run("on_failure = \"retry\"\n", ""));
   EXPECT_NE(stopped.out.find("or on_failure = \"retry\""), std::string::npos) << stopped.out;
   EXPECT_NE(retried.out.find("FAILED"), std::string::npos) << retried.out;
   EXPECT_EQ(retried.out.find("on_failure"), std::string::npos) << retried.out;

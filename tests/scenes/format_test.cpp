@@ -14,12 +14,9 @@ namespace fs = std::filesystem;
 
 Scene scene_of(const std::string& text) { return read_scene(std::string_view(text), "test.toml"); }
 
-std::string body(const std::string& keys) {
-  return "[[body]]\nname = \"rod\"\nmass = 2\n" + keys + "\n";
-}
+std::string body(const std::string& keys) { return "[[body]]\nname = \"rod\"\nmass = 2\n" + keys + "\n"; }
 
-const std::vector<double>& parameter(const Scene& scene, std::size_t joint,
-                                     const std::string& name) {
+const std::vector<double>& parameter(const Scene& scene, std::size_t joint, const std::string& name) {
   for (const NamedValue& value : scene.joints[joint].definition.parameters) {
     if (value.name == name) return value.numbers;
   }
@@ -62,8 +59,7 @@ TEST(Format, TheReadmeNamesEveryKey) {
       std::string list = report.substr(at, report.find('\n', at) - at) + ", ";
       for (std::size_t end; (end = list.find(", ")) != std::string::npos; list.erase(0, end + 2)) {
         const std::string key = list.substr(0, end);
-        const bool named = readme.find("`" + key) != std::string::npos ||
-                           readme.find("[[" + key) != std::string::npos;
+        const bool named = readme.find("`" + key) != std::string::npos || readme.find("[[" + key) != std::string::npos;
         EXPECT_TRUE(named) << key;
         ++keys;
       }
@@ -73,8 +69,7 @@ TEST(Format, TheReadmeNamesEveryKey) {
 }
 
 TEST(Format, AnglesAndFractions) {
-  const Scene scene =
-      scene_of("step = \"1/60\"\n" + body("inertia = \"3/4\"\nangle = \"-90 deg\"\nspin = 2"));
+  const Scene scene = scene_of("step = \"1/60\"\n" + body("inertia = \"3/4\"\nangle = \"-90 deg\"\nspin = 2"));
   EXPECT_DOUBLE_EQ(scene.step, 1.0 / 60);
   EXPECT_DOUBLE_EQ(scene.bodies[0].definition.inertia, 0.75);
   EXPECT_DOUBLE_EQ(scene.bodies[0].definition.angle, -std::numbers::pi / 2);
@@ -82,12 +77,9 @@ TEST(Format, AnglesAndFractions) {
 }
 
 TEST(Format, InertiaOfUniformShapes) {
-  EXPECT_DOUBLE_EQ(scene_of(body("shape = { rod = 3 }")).bodies[0].definition.inertia,
-                   2 * 9.0 / 12);
-  EXPECT_DOUBLE_EQ(scene_of(body("shape = { box = [3, 4] }")).bodies[0].definition.inertia,
-                   2 * 25.0 / 12);
-  EXPECT_DOUBLE_EQ(scene_of(body("shape = { disc = 3 }")).bodies[0].definition.inertia,
-                   2 * 9.0 / 2);
+  EXPECT_DOUBLE_EQ(scene_of(body("shape = { rod = 3 }")).bodies[0].definition.inertia, 2 * 9.0 / 12);
+  EXPECT_DOUBLE_EQ(scene_of(body("shape = { box = [3, 4] }")).bodies[0].definition.inertia, 2 * 25.0 / 12);
+  EXPECT_DOUBLE_EQ(scene_of(body("shape = { disc = 3 }")).bodies[0].definition.inertia, 2 * 9.0 / 2);
   EXPECT_EQ(scene_of(body("shape = { disc = 3 }\ninertia = 7")).bodies[0].definition.inertia, 7);
 }
 
@@ -115,8 +107,8 @@ TEST(Format, DefaultsAreThoseOfTheReadme) {
 TEST(Format, PointsInTheBodyAndInTheWorld) {
   const std::string head = body("inertia = 1\nposition = [2, 1]\nangle = \"90 deg\"") +
                            "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\n";
-  for (const char* said : {"pa = [2, 1.5]\npb = [0.5, 0]",
-                           "pa = [2, 1.5]\npb = { world = [2, 1.5] }", "at = [2, 1.5]"}) {
+  for (const char* said :
+       {"pa = [2, 1.5]\npb = [0.5, 0]", "pa = [2, 1.5]\npb = { world = [2, 1.5] }", "at = [2, 1.5]"}) {
     const Scene scene = scene_of(head + said);
     EXPECT_NEAR(parameter(scene, 0, "pb")[0], 0.5, 1e-15) << said;
     EXPECT_NEAR(parameter(scene, 0, "pb")[1], 0, 1e-15) << said;
@@ -125,10 +117,9 @@ TEST(Format, PointsInTheBodyAndInTheWorld) {
 }
 
 TEST(Format, DirectionsInTheWorldTurnWithTheBody) {
-  const Scene scene =
-      scene_of(body("inertia = 1\nangle = \"90 deg\"") +
-               "[[joint]]\ntype = \"prismatic\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\n"
-               "t = { world = [0, 3] }\n");
+  const Scene scene = scene_of(body("inertia = 1\nangle = \"90 deg\"") +
+                               "[[joint]]\ntype = \"prismatic\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\n"
+                               "t = { world = [0, 3] }\n");
   EXPECT_NEAR(parameter(scene, 0, "t")[0], 3, 1e-15);
   EXPECT_NEAR(parameter(scene, 0, "t")[1], 0, 1e-15);
 }
@@ -152,12 +143,11 @@ TEST(Format, CopiesAreNumberedShiftedAndGivenValuesOfTheirOwn) {
 }
 
 TEST(Format, EffectsOnCoordinates) {
-  const Scene scene = scene_of(
-      body("inertia = 1") +
-      "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\n"
-      "angle.limit = { upper = \"90 deg\" }\nangle.motor = { speed = 2, max = 5 }\n"
-      "angle.spring = { stiffness = 10, damping = 1, rest = 0.5 }\nangle.damper = 0.25\n"
-      "angle.friction = 3\nbreaking = 500\nsoft = { frequency = 4, damping_ratio = 0.7 }\n");
+  const Scene scene = scene_of(body("inertia = 1") +
+                               "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\n"
+                               "angle.limit = { upper = \"90 deg\" }\nangle.motor = { speed = 2, max = 5 }\n"
+                               "angle.spring = { stiffness = 10, damping = 1, rest = 0.5 }\nangle.damper = 0.25\n"
+                               "angle.friction = 3\nbreaking = 500\nsoft = { frequency = 4, damping_ratio = 0.7 }\n");
   const SceneJoint& joint = scene.joints[0];
   ASSERT_EQ(joint.effects.size(), 1u);
   const SceneEffects& effects = joint.effects[0];
@@ -177,8 +167,8 @@ TEST(Format, EffectsOnCoordinates) {
 }
 
 TEST(Format, SpringsTakeTheirLengthFromTheStart) {
-  const Scene scene = scene_of(body("inertia = 1\nposition = [3, 4]") +
-                               "[[spring]]\nbodies = [\"world\", \"rod\"]\nstiffness = 10\n");
+  const Scene scene =
+      scene_of(body("inertia = 1\nposition = [3, 4]") + "[[spring]]\nbodies = [\"world\", \"rod\"]\nstiffness = 10\n");
   ASSERT_EQ(scene.springs.size(), 1u);
   EXPECT_EQ(scene.springs[0].rest_length, 5);
   EXPECT_EQ(scene.springs[0].body_a, world_body);

@@ -1,5 +1,5 @@
-// Hard cases as `cdot-run simulate` sees them: reports, notes, refusals with their line, and single numbers that are known
-// closer than tests/hard_cases asks of every way. Steps as in the scene, mostly 1/60 s, unless said.
+// Hard cases as `cdot-run simulate` sees them: reports, notes, refusals with their line, and single numbers that are
+// known closer than tests/hard_cases asks of every way. Steps as in the scene, mostly 1/60 s, unless said.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -47,8 +47,7 @@ void expect_finite_in_float(const Scene& scene) {
   for (int k = 0; k < steps; ++k) world.step(scene.step);
   for (int k = 0; k < static_cast<int>(scene.bodies.size()); ++k) {
     const auto pose = world.pose(k);
-    EXPECT_TRUE(std::isfinite(pose.x + pose.y + pose.angle))
-        << scene.bodies[static_cast<std::size_t>(k)].name;
+    EXPECT_TRUE(std::isfinite(pose.x + pose.y + pose.angle)) << scene.bodies[static_cast<std::size_t>(k)].name;
   }
 }
 
@@ -105,8 +104,7 @@ TEST(HardCases, FeatherBetweenAnvils) {
   scene.settings.substeps = 32;  // the energy of the swing is off by a share of the step
   const RunResult result = run(scene);
   EXPECT_LT(result.worst_error, 1e-3);
-  const double swing =
-      1000 * 9.81 * (0.5 + 2.5);  // what the anvils gain by hanging straight down [J]
+  const double swing = 1000 * 9.81 * (0.5 + 2.5);  // what the anvils gain by hanging straight down [J]
   EXPECT_LT(result.energy_drift, 0.005 * swing);
   expect_finite_in_float(scene);
 }
@@ -121,13 +119,12 @@ TEST(HardCases, SameJointTenTimes) {
     return states;
   };
   const std::vector<BodyState> ten = states_of(in_steps_of_a_millisecond(hard("same_joint_ten_times")));
-  const std::vector<BodyState> one =
-      states_of(read_scene((scenes_dir() / "compound_pendulum.toml").string()));
+  const std::vector<BodyState> one = states_of(read_scene((scenes_dir() / "compound_pendulum.toml").string()));
   ASSERT_EQ(ten.size(), one.size());
   double apart = 0;
   for (std::size_t k = 0; k < one.size(); ++k) {
-    apart = std::max({apart, std::abs(ten[k].x - one[k].x), std::abs(ten[k].y - one[k].y),
-                      std::abs(ten[k].angle - one[k].angle)});
+    apart = std::max(
+        {apart, std::abs(ten[k].x - one[k].x), std::abs(ten[k].y - one[k].y), std::abs(ten[k].angle - one[k].angle)});
   }
   EXPECT_LT(apart, 1e-9);
 }
@@ -138,8 +135,8 @@ TEST(HardCases, FourBarThroughTheFlatPosition) {
   double branch = 0;
   RunOptions options;
   options.row = [&](const Frame& frame) {
-    branch = std::max(branch, std::abs(std::remainder(frame.bodies[0].angle - frame.bodies[2].angle,
-                                                      6.283185307179586)));
+    branch =
+        std::max(branch, std::abs(std::remainder(frame.bodies[0].angle - frame.bodies[2].angle, 6.283185307179586)));
   };
   const RunResult result = run(scene, options);
   EXPECT_LT(result.worst_error, 1e-4);
@@ -161,8 +158,7 @@ TEST(HardCases, SliderCrankThroughItsDeadCentres) {
   const Reference reference = read_reference("slider_crank", 0.2);
   // 0.2 s are 6553.6 steps: the row before the end is turned on by the rate.
   const double late = 0.2 - std::floor(0.2 / scene.step) * scene.step;
-  EXPECT_NEAR(crank.angle + crank.w * late, reference.samples.back().bodies.at("crank").angle,
-              1e-3);
+  EXPECT_NEAR(crank.angle + crank.w * late, reference.samples.back().bodies.at("crank").angle, 1e-3);
   EXPECT_LT(guide, 1e-5);
 }
 
@@ -176,11 +172,10 @@ TEST(HardCases, DistanceBetweenCoincidentPoints) {
 // A distance of 0 has no direction where it holds: refused in the line of the joint, with what to
 // write instead.
 TEST(HardCases, DistanceOfLengthZeroIsRefused) {
-  const Scene scene = read_scene(
-      std::string_view("[[body]]\nname = \"ball\"\nmass = 1\nshape = { disc = 1 }\n"
-                       "[[joint]]\nname = \"zero\"\ntype = \"distance\"\n"
-                       "bodies = [\"world\", \"ball\"]\npa = [0, 0]\npb = [0, 0]\nl = 0\n"),
-      "zero.toml");
+  const Scene scene = read_scene(std::string_view("[[body]]\nname = \"ball\"\nmass = 1\nshape = { disc = 1 }\n"
+                                                  "[[joint]]\nname = \"zero\"\ntype = \"distance\"\n"
+                                                  "bodies = [\"world\", \"ball\"]\npa = [0, 0]\npb = [0, 0]\nl = 0\n"),
+                                 "zero.toml");
   try {
     build_world<double>(scene);
     FAIL() << "accepted";
@@ -228,13 +223,11 @@ TEST(HardCases, FarFromTheOrigin) {
     return states;
   };
   const std::vector<BodyState> far = states_of(in_steps_of_a_millisecond(hard("far_from_origin")));
-  const std::vector<BodyState> near =
-      states_of(read_scene((scenes_dir() / "compound_pendulum.toml").string()));
+  const std::vector<BodyState> near = states_of(read_scene((scenes_dir() / "compound_pendulum.toml").string()));
   ASSERT_EQ(far.size(), near.size());
   double apart = 0;
   for (std::size_t k = 0; k < far.size(); ++k) {
-    apart = std::max(
-        {apart, std::abs(far[k].x - 1e6 - near[k].x), std::abs(far[k].angle - near[k].angle)});
+    apart = std::max({apart, std::abs(far[k].x - 1e6 - near[k].x), std::abs(far[k].angle - near[k].angle)});
   }
   fmt::print("  apart {:.2e}\n", apart);
   EXPECT_LT(apart, 1e-5);

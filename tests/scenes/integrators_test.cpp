@@ -41,7 +41,7 @@ std::vector<Case> all_cases() {
   const Problem problems[] = {
       {"simple_pendulum", 10, 0.01, 0.05, 0.25}, {"compound_pendulum", 10, 0.01, 0.05, 0.25},
       {"double_pendulum", 2, 0.01, 0.02, 0.125}, {"four_bar", 0.5, 0.00625, 0.0125},
-      {"slider_crank", 0.2, 1e-4, 4e-4, 2e-3},          {"spatial/torque_free_body", 20, 0.02, 0.1, 0.4},
+      {"slider_crank", 0.2, 1e-4, 4e-4, 2e-3},   {"spatial/torque_free_body", 20, 0.02, 0.1, 0.4},
   };
   std::vector<Case> cases;
   for (const Problem& problem : problems) {
@@ -86,7 +86,8 @@ TEST(Orders, OfTheEighthOrderTheFourBarSeesOnlyRoundOff) {
   EXPECT_LT(distance_to(reference, scene).largest(), 10 * reference.accuracy);
 }
 
-// What accelerates evenly goes along a parabola, which methods of second order and more follow to round-off at any step.
+// What accelerates evenly goes along a parabola, which methods of second order and more follow to round-off at any
+// step.
 TEST(Orders, FromTheSecondOnThePulleysSeeOnlyRoundOff) {
   for (const char* name : {"pulley_ratio1", "pulley_ratio2"})
     for (const Integrator integrator : {Integrator::rattle, Integrator::rk4, Integrator::dop853}) {

@@ -81,8 +81,7 @@ TEST(Jacobian, IsThatOfTheWorld) {
       double sum = 0;
       for (int k = 0; k < 3; ++k) {
         const auto v = world.velocity(system.bodies[k]);
-        sum += system.entry(joint.first + r, 3 * k) * v.x +
-               system.entry(joint.first + r, 3 * k + 1) * v.y +
+        sum += system.entry(joint.first + r, 3 * k) * v.x + system.entry(joint.first + r, 3 * k + 1) * v.y +
                system.entry(joint.first + r, 3 * k + 2) * v.w;
       }
       EXPECT_NEAR(sum, expected[r], 1e-14);
@@ -172,8 +171,7 @@ TEST(Jacobian, TheTableHasTheNumbersOfTheJson) {
     std::sort(numbers->begin(), numbers->end());
   }
   ASSERT_EQ(printed.size(), exact.size());
-  for (std::size_t at = 0; at < exact.size(); ++at)
-    EXPECT_NEAR(printed[at], exact[at], 1e-5 * std::fabs(exact[at]));
+  for (std::size_t at = 0; at < exact.size(); ++at) EXPECT_NEAR(printed[at], exact[at], 1e-5 * std::fabs(exact[at]));
 }
 
 }  // namespace

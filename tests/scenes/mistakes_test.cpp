@@ -43,19 +43,15 @@ TEST(Mistakes, AreCountedAndAllShown) {
 
 TEST(Mistakes, OfManyCopiesAreNotRepeatedWithoutEnd) {
   const std::string report = report_on(
-      "[[body]]\nrepeat = 1000\nname = \"b{i}\"\nmass = 1\ninertia = 1\nshift = { mass = -1 }\n",
-      "copies.toml");
+      "[[body]]\nrepeat = 1000\nname = \"b{i}\"\nmass = 1\ninertia = 1\nshift = { mass = -1 }\n", "copies.toml");
   EXPECT_LT(std::count(report.begin(), report.end(), '\n'), 250);
-  EXPECT_NE(report.find("copies.toml: 949 more"), std::string::npos)
-      << report.substr(report.size() - 200);
+  EXPECT_NE(report.find("copies.toml: 949 more"), std::string::npos) << report.substr(report.size() - 200);
 }
 
 // A reader of files from anywhere: whatever the bytes, it ends with a scene or with mistakes.
 TEST(Mistakes, DamagedFilesAreReadOrRefused) {
   std::mt19937 random(1);
-  const auto below = [&](std::size_t n) {
-    return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);
-  };
+  const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
   int refused = 0;
   for (const fs::path& file : files_in(scenes_dir(), ".toml")) {
     if (file.stem() == "catenary_100") continue;

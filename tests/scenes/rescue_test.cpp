@@ -44,8 +44,7 @@ TEST_P(Rescue, ARopeJamsInItsPulley) {
   World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
   const int heavy = world.add_body({.x = -1, .y = 5, .mass = 2, .inertia = 0.4});
   const int light = world.add_body({.x = 1, .y = 9.8, .mass = 1, .inertia = 0.2});
-  world.add_joint(
-      {"pulley", {heavy, light}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"ga", {-1, 10}}, {"gb", {1, 10}}}, {}});
+  world.add_joint({"pulley", {heavy, light}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"ga", {-1, 10}}, {"gb", {1, 10}}}, {}});
   const double start = world.energy();
   double gained = 0;
   for (int k = 0; k < 60; ++k) {
@@ -59,8 +58,8 @@ TEST_P(Rescue, ARopeJamsInItsPulley) {
   EXPECT_LT(counts.taken, 100'000);
 }
 
-// A motor of any force turns a rod that a bar to the ground does not let turn: no step is short enough for both. Each is
-// left to Euler's after a few attempts, not taken in the thousands that are too short to be told from rest.
+// A motor of any force turns a rod that a bar to the ground does not let turn: no step is short enough for both. Each
+// is left to Euler's after a few attempts, not taken in the thousands that are too short to be told from rest.
 TEST_P(Rescue, AMotorTurnsAgainstABar) {
   const auto& [integrator, local_error] = GetParam();
   World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
@@ -79,8 +78,8 @@ TEST_P(Rescue, AMotorTurnsAgainstABar) {
   EXPECT_LT(gap, 1e-10);
 }
 
-// A double pendulum in floats, asked for an error far below their last bit: that of the last bit is what it gets, in steps
-// of a method of high order, and not by steps in which nothing but round-off is left.
+// A double pendulum in floats, asked for an error far below their last bit: that of the last bit is what it gets, in
+// steps of a method of high order, and not by steps in which nothing but round-off is left.
 TEST(RescueOfFloats, NoErrorIsBelowTheLastBit) {
   for (const Integrator integrator : methods) {
     World<float> world({.integrator = integrator, .local_error = 1e-12, .gravity_y = -9.81});
@@ -101,8 +100,8 @@ TEST(RescueOfFloats, NoErrorIsBelowTheLastBit) {
   }
 }
 
-// A bead of 1 g on two bars between the ground and a load of 1 kg that flies away: they come taut within less time than a
-// fixed step. One that would end beyond their reach, off its joints, is none, and the counts say so.
+// A bead of 1 g on two bars between the ground and a load of 1 kg that flies away: they come taut within less time than
+// a fixed step. One that would end beyond their reach, off its joints, is none, and the counts say so.
 TEST_P(Rescue, ALightBeadIsDrawnTaut) {
   const auto& [integrator, local_error] = GetParam();
   for (const auto& [x, h] : {std::pair{0.9, 0.027}, {0.97, 0.083}}) {
@@ -147,12 +146,10 @@ std::string name_of(Integrator integrator, double local_error) {
 }
 
 constexpr double local_errors[] = {0, 1e-6};
-INSTANTIATE_TEST_SUITE_P(Methods, Rescue,
-                         testing::Combine(testing::ValuesIn(methods), testing::ValuesIn(local_errors)),
+INSTANTIATE_TEST_SUITE_P(Methods, Rescue, testing::Combine(testing::ValuesIn(methods), testing::ValuesIn(local_errors)),
                          [](const auto& info) { return std::apply(name_of, info.param); });
 INSTANTIATE_TEST_SUITE_P(Methods, RescueOfALoad,
-                         testing::Combine(testing::ValuesIn(methods), testing::ValuesIn(local_errors),
-                                          testing::Bool()),
+                         testing::Combine(testing::ValuesIn(methods), testing::ValuesIn(local_errors), testing::Bool()),
                          [](const auto& info) {
                            return name_of(std::get<0>(info.param), std::get<1>(info.param)) +
                                   (std::get<2>(info.param) ? "_on_beads" : "_on_rods");

@@ -31,21 +31,21 @@ TEST(Run, ConsistentStartIsSilent) {
 TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
   std::string warnings;
   simulate(scene_of(with(pendulum, "[0.5, 0]", "[0.5, 0.25]\nvelocity = [3, 0]")), {}, warnings);
-  EXPECT_EQ(
-      warnings,
-      "test.toml:8:1: warning: the start does not fit revolute \"pivot\": C2 = -0.25, Cdot1 = -3\n"
-      "    8 | [[joint]]\n"
-      "      | ^^^^^^^^^\n"
-      "  fix: correct the pose or velocity, or let project = true move the bodies onto their "
-      "joints\n");
+  EXPECT_EQ(warnings,
+            "test.toml:8:1: warning: the start does not fit revolute \"pivot\": C2 = -0.25, Cdot1 = -3\n"
+            "    8 | [[joint]]\n"
+            "      | ^^^^^^^^^\n"
+            "  fix: correct the pose or velocity, or let project = true move the bodies onto their "
+            "joints\n");
 }
 
 // A chain that starts off its joints is no page of paragraphs for each link.
 TEST(Run, OfManyInconsistentJointsTheFirstAreTold) {
-  const std::string links = with(with(pendulum, "[[body]]", "[[body]]\nrepeat = 40"), "[[joint]]", "[[joint]]\nrepeat = 40");
-  const Scene scene = scene_of(with(
-      with(with(with(links, "\"rod\"", "\"rod{i}\""), "\"pivot\"", "\"pivot{i}\""), "\"rod\"]", "\"rod{i}\"]"),
-      "[0.5, 0]", "[0.5, 0.25]"));
+  const std::string links =
+      with(with(pendulum, "[[body]]", "[[body]]\nrepeat = 40"), "[[joint]]", "[[joint]]\nrepeat = 40");
+  const Scene scene = scene_of(
+      with(with(with(with(links, "\"rod\"", "\"rod{i}\""), "\"pivot\"", "\"pivot{i}\""), "\"rod\"]", "\"rod{i}\"]"),
+           "[0.5, 0]", "[0.5, 0.25]"));
   std::string warnings;
   simulate(scene, {}, warnings);
   std::size_t told = 0;
@@ -74,10 +74,9 @@ TEST(Run, ProjectionMakesTheStartConsistent) {
 }
 
 TEST(Run, ContradictingJointsAreReported) {
-  Scene scene =
-      scene_of(std::string(pendulum) +
-               "[[joint]]\nname = \"other\"\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\n"
-               "pa = [3, 0]\npb = [0.5, 0]\n");
+  Scene scene = scene_of(std::string(pendulum) +
+                         "[[joint]]\nname = \"other\"\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\n"
+                         "pa = [3, 0]\npb = [0.5, 0]\n");
   scene.project = true;
   std::string warnings;
   simulate(scene, {}, warnings);
@@ -118,8 +117,7 @@ TEST(Run, StaticJointIsNoted) {
   std::string warnings;
   const RunResult result =
       simulate(read_scene((source_dir() / "tests/hard_cases/both_immovable/planar.toml").string()), {}, warnings);
-  EXPECT_EQ(result.notes, std::vector<std::string>{
-                              "joint \"idle\" connects only immovable bodies and does nothing"});
+  EXPECT_EQ(result.notes, std::vector<std::string>{"joint \"idle\" connects only immovable bodies and does nothing"});
 }
 
 TEST(Frames, CubicBetweenStepsIsExactForCubics) {

@@ -21,18 +21,14 @@ double far(const spatial::Vector<double>& a, double x, double y, double z) {
 
 // A planar state, tilted, against one in space.
 double difference(const BodyState& planar, const BodyState& in_space) {
-  const auto turned = [](double x, double y, double z) {
-    return to_world(tilt(), spatial::Vector<double>{x, y, z});
-  };
-  const auto upright = spatial::oriented(0.0, 0.0, 0.0, std::cos(planar.angle / 2), 0.0, 0.0,
-                                         std::sin(planar.angle / 2));
-  const auto q =
-      spatial::oriented(0.0, 0.0, 0.0, in_space.e0, in_space.e1, in_space.e2, in_space.e3);
+  const auto turned = [](double x, double y, double z) { return to_world(tilt(), spatial::Vector<double>{x, y, z}); };
+  const auto upright =
+      spatial::oriented(0.0, 0.0, 0.0, std::cos(planar.angle / 2), 0.0, 0.0, std::sin(planar.angle / 2));
+  const auto q = spatial::oriented(0.0, 0.0, 0.0, in_space.e0, in_space.e1, in_space.e2, in_space.e3);
   const auto x_axis = to_world(tilt(), spatial::Vector<double>{upright.xx, upright.yx, 0});
   return std::max({far(turned(planar.x, planar.y, 0), in_space.x, in_space.y, in_space.z),
                    far(turned(planar.vx, planar.vy, 0), in_space.vx, in_space.vy, in_space.vz),
-                   far(turned(0, 0, planar.w), in_space.wx, in_space.wy, in_space.wz),
-                   far(x_axis, q.xx, q.yx, q.zx)});
+                   far(turned(0, 0, planar.w), in_space.wx, in_space.wy, in_space.wz), far(x_axis, q.xx, q.yx, q.zx)});
 }
 
 // Spatial hinges in a tilted plane move as planar ones, to round-off of the method: the same error
@@ -42,14 +38,12 @@ TEST(TiltedPlane, MovesAsThePlanarMechanism) {
     const char* scene;
     double until, step, bound;
   };
-  for (const Case& c :
-       {Case{"double_pendulum", 2, 0.001, 1e-10}, Case{"double_pendulum", 2, 0.01, 1e-10},
-        Case{"slider_crank", 0.2, 1e-5, 1e-6},  // at 150 rad/s
-        Case{"four_bar", 10, 0.001, 1e-6}}) {   // past change points
+  for (const Case& c : {Case{"double_pendulum", 2, 0.001, 1e-10}, Case{"double_pendulum", 2, 0.01, 1e-10},
+                        Case{"slider_crank", 0.2, 1e-5, 1e-6},  // at 150 rad/s
+                        Case{"four_bar", 10, 0.001, 1e-6}}) {   // past change points
     Scene planar = scene_named(c.scene), in_space = scene_named(std::string("spatial/") + c.scene);
     planar.step = in_space.step = c.step;
-    const auto expected = run_of(planar, c.until, c.until / 50),
-               found = run_of(in_space, c.until, c.until / 50);
+    const auto expected = run_of(planar, c.until, c.until / 50), found = run_of(in_space, c.until, c.until / 50);
     ASSERT_EQ(expected.size(), found.size());
     double worst = 0;
     for (std::size_t i = 0; i < found.size(); ++i)
@@ -76,8 +70,7 @@ TEST(Gyroscope, PrecessesAtItsRate) {
     for (const Frame& frame : frames) {
       const BodyState& b = frame.bodies[0];
       const double angle = rate * frame.time;
-      off =
-          std::max(off, std::hypot(b.x - 0.3 * std::cos(angle), b.y - 0.3 * std::sin(angle), b.z));
+      off = std::max(off, std::hypot(b.x - 0.3 * std::cos(angle), b.y - 0.3 * std::sin(angle), b.z));
     }
     fmt::print("  h = {:.1e}  off by {:.3e} m\n", step, off);
     if (before > 0) {
@@ -140,8 +133,7 @@ TEST(RedundantLoop, NeitherDriftsNorStalls) {
     RunOptions options;
     std::string warnings;
     const RunResult result = simulate(scene, options, warnings);
-    fmt::print("  {}: worst |C| {:.2e}, energy off by {:.2e} J\n", solver, result.worst_error,
-               result.energy_drift);
+    fmt::print("  {}: worst |C| {:.2e}, energy off by {:.2e} J\n", solver, result.worst_error, result.energy_drift);
     EXPECT_TRUE(result.finite);
     EXPECT_LT(result.worst_error, std::string(solver) == "direct" ? 1e-11 : 1e-3);
     EXPECT_LT(result.energy_drift, 0.1);

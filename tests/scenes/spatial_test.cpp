@@ -54,8 +54,7 @@ TEST(SpatialScene, FramesBetweenSteps) {
     };
     const Frame middle = between(at(0.25 - step / 2), at(0.25 + step / 2), 0.25);
     const BodyState &a = middle.bodies[0], &b = fine.bodies[0];
-    const double off =
-        std::hypot(std::hypot(a.e0 - b.e0, a.e1 - b.e1), std::hypot(a.e2 - b.e2, a.e3 - b.e3));
+    const double off = std::hypot(std::hypot(a.e0 - b.e0, a.e1 - b.e1), std::hypot(a.e2 - b.e2, a.e3 - b.e3));
     if (before > 0) {
       EXPECT_LT(off, before);
     }
@@ -79,8 +78,7 @@ TEST(SpatialScene, OrientationAndInertiaInEveryWayOfWritingThem) {
   EXPECT_EQ(tensor.bodies[0].spatial.inertia.xy, 0.1);
   EXPECT_EQ(tensor.bodies[0].spatial.inertia.yz, 0.2);
   EXPECT_DOUBLE_EQ(one_body("shape = { ball = 0.5 }\n").bodies[0].spatial.inertia.xx, 0.2);
-  EXPECT_DOUBLE_EQ(one_body("shape = { box = [1, 2, 3] }\n").bodies[0].spatial.inertia.xx,
-                   2 * 13.0 / 12);
+  EXPECT_DOUBLE_EQ(one_body("shape = { box = [1, 2, 3] }\n").bodies[0].spatial.inertia.xx, 2 * 13.0 / 12);
   EXPECT_DOUBLE_EQ(one_body("shape = { disc = 1, width = 0.2 }\n").bodies[0].spatial.inertia.zz, 1);
 }
 

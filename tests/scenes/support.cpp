@@ -46,8 +46,7 @@ TemporaryFolder::~TemporaryFolder() { fs::remove_all(path_); }
 
 std::vector<std::string> TemporaryFolder::contents() const {
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_))
-    names.push_back(entry.path().filename());
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) names.push_back(entry.path().filename());
   std::sort(names.begin(), names.end());
   return names;
 }
@@ -71,10 +70,9 @@ std::vector<ReferenceSample> samples_of(const nlohmann::json& json, double until
     if (sample["t"].get<double>() > until) continue;
     ReferenceSample& added = samples.emplace_back(ReferenceSample{sample["t"], {}});
     for (const auto& [name, v] : sample["bodies"].items())
-      added.bodies[name] = v.size() == 6
-                               ? BodyState{v[0], v[1], v[2], v[3], v[4], v[5]}
-                               : BodyState{v[0], v[1], 0,    v[7], v[8],  0,     v[2], v[9],
-                                           v[3], v[4], v[5], v[6], v[10], v[11], v[12]};
+      added.bodies[name] = v.size() == 6 ? BodyState{v[0], v[1], v[2], v[3], v[4], v[5]}
+                                         : BodyState{v[0], v[1], 0,    v[7], v[8],  0,     v[2], v[9],
+                                                     v[3], v[4], v[5], v[6], v[10], v[11], v[12]};
   }
   return samples;
 }
@@ -104,9 +102,7 @@ std::vector<fs::path> all_scene_files() {
   return files;
 }
 
-Scene scene_named(const std::string& name) {
-  return read_scene((scenes_dir() / (name + ".toml")).string());
-}
+Scene scene_named(const std::string& name) { return read_scene((scenes_dir() / (name + ".toml")).string()); }
 
 std::vector<Frame> run_of(Scene scene, double until, double every_seconds) {
   std::vector<Frame> frames;
@@ -124,9 +120,7 @@ namespace {
 
 // The angle between two orientations; q and -q are the same.
 double turn_between(const BodyState& a, const BodyState& b) {
-  const auto pose = [](const BodyState& s) {
-    return spatial::oriented(0.0, 0.0, 0.0, s.e0, s.e1, s.e2, s.e3);
-  };
+  const auto pose = [](const BodyState& s) { return spatial::oriented(0.0, 0.0, 0.0, s.e0, s.e1, s.e2, s.e3); };
   return spatial::norm(spatial::turn_between(pose(a), pose(b)));
 }
 
@@ -141,13 +135,11 @@ Distance distance_to(const Reference& reference, const Scene& scene) {
     const ReferenceSample& sample = reference.samples[next++];
     for (std::size_t k = 0; k < frame.bodies.size(); ++k) {
       const BodyState &is = frame.bodies[k], &was = sample.bodies.at(scene.bodies[k].name);
-      worst.position =
-          std::max(worst.position, std::hypot(is.x - was.x, is.y - was.y, is.z - was.z));
+      worst.position = std::max(worst.position, std::hypot(is.x - was.x, is.y - was.y, is.z - was.z));
       worst.angle = std::max({worst.angle, std::abs(is.angle - was.angle), turn_between(is, was)});
-      worst.velocity =
-          std::max(worst.velocity, std::hypot(is.vx - was.vx, is.vy - was.vy, is.vz - was.vz));
-      worst.spin = std::max({worst.spin, std::abs(is.w - was.w),
-                             std::hypot(is.wx - was.wx, is.wy - was.wy, is.wz - was.wz)});
+      worst.velocity = std::max(worst.velocity, std::hypot(is.vx - was.vx, is.vy - was.vy, is.vz - was.vz));
+      worst.spin =
+          std::max({worst.spin, std::abs(is.w - was.w), std::hypot(is.wx - was.wx, is.wy - was.wy, is.wz - was.wz)});
     }
   };
   Scene run = scene;

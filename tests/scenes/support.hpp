@@ -24,8 +24,7 @@ std::vector<Frame> run_of(Scene scene, double until, double every_seconds);
 std::vector<std::filesystem::path> all_scene_files();
 
 // All files with this ending in a folder, by name.
-std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder,
-                                            const std::string& ending);
+std::vector<std::filesystem::path> files_in(const std::filesystem::path& folder, const std::string& ending);
 
 class TemporaryFolder {
  public:

@@ -1,5 +1,7 @@
 // The page of a scene in space, in a real browser: bodies where the film has them, an orbiting
 // camera, the same controls as in the plane.
+#include "runtime/viewer_space.hpp"
+
 #include <algorithm>
 #include <cctype>
 #include <iterator>
@@ -7,7 +9,6 @@
 
 #include "runtime/rotation.hpp"
 #include "runtime/viewer.hpp"
-#include "runtime/viewer_space.hpp"
 #include "tests/scenes/browser.hpp"
 
 namespace cdot::test {
@@ -40,8 +41,7 @@ TEST_F(SpacePage, BodiesAreWhereTheFilmHasThem) {
                             "#t=1");
   ASSERT_FALSE(seen.contains("error")) << seen;
   EXPECT_EQ(seen["time"], 1);
-  const Frame& frame =
-      *std::find_if(film_.begin(), film_.end(), [](const Frame& f) { return f.time > 0.99999; });
+  const Frame& frame = *std::find_if(film_.begin(), film_.end(), [](const Frame& f) { return f.time > 0.99999; });
   const BodyState& b = frame.bodies[0];
   const auto q = spatial::oriented(b.x, b.y, b.z, b.e0, b.e1, b.e2, b.e3);
   const auto p = to_world(q, spatial::Vector<double>{0.3, -0.2, 0.5});
@@ -104,9 +104,7 @@ TEST_F(SpacePage, ShowsAtItsEndWhatTheStillShows) {
   }
 }
 
-TEST_F(SpacePage, IsSelfContained) {
-  EXPECT_EQ(foreign_to(html_page(scene_, film_)), std::vector<std::string>());
-}
+TEST_F(SpacePage, IsSelfContained) { EXPECT_EQ(foreign_to(html_page(scene_, film_)), std::vector<std::string>()); }
 
 TEST(SpacePictures, EverySceneInSpaceCanBeDrawn) {
   for (const std::filesystem::path& file : files_in(scenes_dir() / "spatial", ".toml")) {

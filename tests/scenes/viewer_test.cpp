@@ -20,8 +20,7 @@ Scene short_scene(const char* name, double duration) {
   return scene;
 }
 
-std::string attribute(const std::string& document, const std::string& element,
-                      const std::string& name) {
+std::string attribute(const std::string& document, const std::string& element, const std::string& name) {
   const std::size_t at = document.find(element);
   if (at == std::string::npos) return "no " + element;
   const std::size_t start = document.find(name + "=\"", at);
@@ -39,14 +38,11 @@ TEST_F(Page, ScriptRunsAndShowsTheTimeAskedFor) {
   EXPECT_EQ(attribute(document, "<html", "data-ready"), std::to_string(film.size()));
   EXPECT_EQ(attribute(document, "<html", "data-time"), "0.5");
   const View view = view_of(scene, film);
-  const Frame& middle =
-      *std::find_if(film.begin(), film.end(), [](const Frame& f) { return f.time > 0.4999; });
+  const Frame& middle = *std::find_if(film.begin(), film.end(), [](const Frame& f) { return f.time > 0.4999; });
   for (std::size_t body = 0; body < 2; ++body) {
     double x = 0, y = 0, degrees = 0;
-    const std::string shown =
-        attribute(document, fmt::format("data-body=\"{}\"", body), "transform");
-    ASSERT_EQ(std::sscanf(shown.c_str(), "translate(%lf %lf) rotate(%lf)", &x, &y, &degrees), 3)
-        << shown;
+    const std::string shown = attribute(document, fmt::format("data-body=\"{}\"", body), "transform");
+    ASSERT_EQ(std::sscanf(shown.c_str(), "translate(%lf %lf) rotate(%lf)", &x, &y, &degrees), 3) << shown;
     const Place place = place_of(view, middle.bodies[body]);
     EXPECT_NEAR(x, place.x, 0.5);
     EXPECT_NEAR(y, place.y, 0.5);
@@ -125,10 +121,10 @@ TEST(Pictures, StillIsWellFormed) {
   const TemporaryFolder folder;
   const std::string path = folder / "still.svg";
   write_file(path, svg_still(scene, film_of(scene)));
-  const CommandResult result = run_command(
-      fmt::format("python3 -c \"import sys, xml.dom.minidom as d; "
-                  "print(len(d.parse(sys.argv[1]).getElementsByTagName('rect')))\" '{}'",
-                  path));
+  const CommandResult result =
+      run_command(fmt::format("python3 -c \"import sys, xml.dom.minidom as d; "
+                              "print(len(d.parse(sys.argv[1]).getElementsByTagName('rect')))\" '{}'",
+                              path));
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, "21\n");  // three rods at seven times
 }

@@ -28,10 +28,8 @@ void orient(Random& random, SpatialBodyDefinition& d) {
   const auto axis = random.in_cube(1, true);
   d.e0 = random.between(-1, 1), d.e1 = axis[0], d.e2 = axis[1], d.e3 = axis[2];
   const double length = std::sqrt(d.e0 * d.e0 + d.e1 * d.e1 + d.e2 * d.e2 + d.e3 * d.e3);
-  if (!(length > 1e-3))
-    d.e0 = 1, d.e1 = d.e2 = d.e3 = 0;
-  else
-    d.e0 /= length, d.e1 /= length, d.e2 /= length, d.e3 /= length;
+  if (!(length > 1e-3)) d.e0 = 1, d.e1 = d.e2 = d.e3 = 0;
+  else d.e0 /= length, d.e1 /= length, d.e2 /= length, d.e3 /= length;
 }
 
 std::vector<double> cut(const std::array<double, 3>& v, Dimension dimension) {
@@ -139,12 +137,9 @@ std::vector<NamedValue> random_parameters(Random& random, const Scales& scales, 
     if (info.has_default && !(info.kind != ParameterKind::scalar && random.chance(0.15))) continue;
     const int body = info.body < 0 ? world_body : bodies[static_cast<std::size_t>(info.body)];
     std::vector<double> numbers;
-    if (info.kind == ParameterKind::scalar)
-      numbers = {random_scalar(random, scales, info.unit)};
-    else if (point || info.kind == ParameterKind::vector)
-      numbers = random_point(random, scales, scene, bodies, body);
-    else
-      numbers = random_direction(random, info, scene.dimension);
+    if (info.kind == ParameterKind::scalar) numbers = {random_scalar(random, scales, info.unit)};
+    else if (point || info.kind == ParameterKind::vector) numbers = random_point(random, scales, scene, bodies, body);
+    else numbers = random_direction(random, info, scene.dimension);
     values.push_back({std::string(info.name), numbers});
   }
   return values;
@@ -198,10 +193,8 @@ Softness random_softness(Random& random, const Scales& scales, bool turns) {
   s.damping_ratio = damped ? random.between(0, 2) : 0;
   s.stiffness = turns ? stiffness * scales.length * scales.length : stiffness;
   s.damping = damped ? s.stiffness / scales.rate * random.between(0, 0.1) : 0;
-  if (s.by_frequency)
-    s.stiffness = s.damping = 0;
-  else
-    s.frequency = s.damping_ratio = 0;
+  if (s.by_frequency) s.stiffness = s.damping = 0;
+  else s.frequency = s.damping_ratio = 0;
   return s;
 }
 
@@ -271,8 +264,8 @@ void add_effects(Random& random, const Scales& scales, Scene& scene) {
     const JointType& type = world.joint_type(static_cast<int>(j));
     for (const CoordinateInfo& coordinate : type.coordinates)
       if (random.chance(0.4) && has_value(build_world_in<S>(scene), static_cast<int>(j), coordinate.name))
-        joint.effects.push_back(random_effects(random, scales, coordinate,
-                                               world.coordinate(static_cast<int>(j), coordinate.name)));
+        joint.effects.push_back(
+            random_effects(random, scales, coordinate, world.coordinate(static_cast<int>(j), coordinate.name)));
     if (random.chance(0.1)) joint.definition.soft = random_softness(random, scales, false);
     if (random.chance(0.05))
       joint.breaking = scales.mass * scales.length * scales.rate * scales.rate * random.log_between(1, 100);

@@ -203,10 +203,8 @@ template <class S>
 void Growth::grow() {
   BasicWorld<S> world;
   for (const SceneBody& body : made_.scene.bodies) {
-    if constexpr (S::dimension == Dimension::planar)
-      world.add_body(body.definition);
-    else
-      world.add_body(body.spatial);
+    if constexpr (S::dimension == Dimension::planar) world.add_body(body.definition);
+    else world.add_body(body.spatial);
   }
   add_tree(world);
   add_loops(world);
@@ -224,10 +222,8 @@ Mechanism Growth::grown() {
   choose_scales();
   choose_method();
   add_bodies();
-  if (scene.dimension == Dimension::planar)
-    grow<Planar<double>>();
-  else
-    grow<Spatial<double>>();
+  if (scene.dimension == Dimension::planar) grow<Planar<double>>();
+  else grow<Spatial<double>>();
   return std::move(made_);
 }
 

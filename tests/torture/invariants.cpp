@@ -29,8 +29,8 @@ constexpr double just_passed = std::is_same_v<T, double> ? 3e-9 : 3e-4;
 constexpr double turns_round = 0.5;   // of unit rows, in a step
 constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
 
-// Of its row's diagonal: what a pivot of K must be to be told from round-off, and from what joints that are a little open
-// leave of a row too many.
+// Of its row's diagonal: what a pivot of K must be to be told from round-off, and from what joints that are a little
+// open leave of a row too many.
 template <class T>
 constexpr double told_apart = Ldlt::pivot_share<T>;
 
@@ -184,7 +184,7 @@ Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
 template <class S>
 const char* Trial<S>::excuse(BasicWorld<S>& world) const {
   if (laws_.may_contradict) return "a prescribed motion, or a rolling one, meets what may stop it";
-  if (heaviest_over_lightest(*scene_) * told_apart<T> > 1)  // rows of effects as well
+  if (heaviest_over_lightest(*scene_) * told_apart < T >> 1)  // rows of effects as well
     return "masses further apart than pivots are told from round-off";
   const SystemMatrix now = system_matrix(world);
   if (independence(now, 8 * std::numeric_limits<double>::epsilon()) < std::sqrt(told_apart<T>))

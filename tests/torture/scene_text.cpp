@@ -126,8 +126,7 @@ void write_effects(const SceneEffects& effects, Lines lines) {
                                 ? fmt::format("{{ speed = {} }}", motor->speed)
                                 : fmt::format("{{ speed = {}, max = {} }}", motor->speed, motor->max_force));
   for (const SceneSpring& spring : effects.springs) {
-    if (is_damper(spring))
-      lines.number(key("damper"), spring.softness.damping);
+    if (is_damper(spring)) lines.number(key("damper"), spring.softness.damping);
     else
       lines.raw(key("spring"), fmt::format("{{ {}{} }}", softness(spring.softness),
                                            spring.rest ? fmt::format(", rest = {}", *spring.rest) : ""));
@@ -168,10 +167,8 @@ std::string text_of(const Scene& scene) {
   for (const SceneBody& body : scene.bodies) {
     text += fmt::format("\n[[body]]\nname = \"{}\"\n", body.name);
     if (body.is_static) text += "static = true\n";
-    if (scene.dimension == Dimension::planar)
-      write_planar(body.definition, lines);
-    else
-      write_spatial(body.spatial, lines);
+    if (scene.dimension == Dimension::planar) write_planar(body.definition, lines);
+    else write_spatial(body.spatial, lines);
   }
   for (const SceneJoint& joint : scene.joints) {
     text += "\n[[joint]]\n";

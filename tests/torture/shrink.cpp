@@ -84,10 +84,10 @@ class Shrinker {
            each(best_.scene.bodies.size(), [](Scene& s, std::size_t k) { remove_body(s, static_cast<int>(k)); });
   }
   bool fewer_joints() {
-    const bool joints = each(best_.scene.joints.size(),
-                             [](Scene& s, std::size_t k) { s.joints.erase(s.joints.begin() + long(k)); });
-    const bool springs = each(best_.scene.springs.size(),
-                              [](Scene& s, std::size_t k) { s.springs.erase(s.springs.begin() + long(k)); });
+    const bool joints =
+        each(best_.scene.joints.size(), [](Scene& s, std::size_t k) { s.joints.erase(s.joints.begin() + long(k)); });
+    const bool springs =
+        each(best_.scene.springs.size(), [](Scene& s, std::size_t k) { s.springs.erase(s.springs.begin() + long(k)); });
     return joints || springs;
   }
   bool fewer_effects() {

@@ -81,7 +81,8 @@ inline double push_of(const std::vector<SpringRow>& springs, double h) {
 // under one force f, which is f0 or, implicitly, f1 + k beta:
 //   h J v f - (f0 + f1) (c1 - c0) / 2, at most |c1 - c0| |f1 - f0| / 2 + |beta| (|f0| + 2 |f1| + k |beta|),
 //   beta = (c1 - c0) - h J v0 - h J dv, |J dv| <= sqrt(K) |dv|.
-inline double missed_work(const std::vector<SpringRow>& before, const std::vector<SpringRow>& now, double h, double dv) {
+inline double missed_work(const std::vector<SpringRow>& before, const std::vector<SpringRow>& now, double h,
+                          double dv) {
   double sum = 0;
   for (std::size_t k = 0; k < now.size(); ++k) {
     const SpringRow &s = before[k], &e = now[k];

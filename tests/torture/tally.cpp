@@ -22,14 +22,10 @@ std::string kind_of(const std::string& reason) {
 
 const char* word(Outcome outcome) {
   switch (outcome) {
-    case Outcome::held:
-      return "held";
-    case Outcome::refused:
-      return "refused";
-    case Outcome::limited:
-      return "limited";
-    case Outcome::broken:
-      return "BROKEN";
+    case Outcome::held: return "held";
+    case Outcome::refused: return "refused";
+    case Outcome::limited: return "limited";
+    case Outcome::broken: return "BROKEN";
   }
   return "";
 }

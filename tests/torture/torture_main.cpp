@@ -33,14 +33,10 @@ void read_method(const std::string& method, Wish& wish) {
       const auto names = names_of(table);
       return std::find(names.begin(), names.end(), word) != names.end();
     };
-    if (has(solvers))
-      wish.solver = method_called(solvers, word);
-    else if (has(integrators))
-      wish.integrator = method_called(integrators, word);
-    else if (has(precisions))
-      wish.single = method_called(precisions, word);
-    else
-      throw Error(fmt::format("--method: no solver, integrator or precision is called {}", word));
+    if (has(solvers)) wish.solver = method_called(solvers, word);
+    else if (has(integrators)) wish.integrator = method_called(integrators, word);
+    else if (has(precisions)) wish.single = method_called(precisions, word);
+    else throw Error(fmt::format("--method: no solver, integrator or precision is called {}", word));
   }
 }
 
@@ -100,10 +96,8 @@ int torture(const Options& options) {
     if (options.print) fmt::print("{}\n", text_of(mechanism.scene));
     const Verdict verdict = judge(mechanism.scene, asked);
     tally.add(mechanism, verdict);
-    if (verdict.broken())
-      report(options, seed, mechanism.scene, verdict);
-    else if (options.count == 1)
-      say(verdict);
+    if (verdict.broken()) report(options, seed, mechanism.scene, verdict);
+    else if (options.count == 1) say(verdict);
     if (k % 100 == 99) fmt::print(stderr, "\r{} mechanisms, {} broken", k + 1, tally.count(Outcome::broken));
   }
   fmt::print(stderr, "\r{:60}\r", "");

@@ -143,9 +143,9 @@ class Table : public benchmark::BenchmarkReporter {
         const auto at = found->second.find(stage);
         return at == found->second.end() ? std::nan("") : at->second;
       };
-      fmt::print("| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} |\n",
-                 name, rows_[name], ns("analyse"), ns("analyse_eigen"), ns("assemble"), ns("factor"),
-                 ns("factor_eigen"), ns("solve"), ns("solve_eigen"),
+      fmt::print("| {} | {} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} |\n", name,
+                 rows_[name], ns("analyse"), ns("analyse_eigen"), ns("assemble"), ns("factor"), ns("factor_eigen"),
+                 ns("solve"), ns("solve_eigen"),
                  (ns("factor_eigen") + ns("solve_eigen")) / (ns("factor") + ns("solve")),
                  ns("analyse_eigen") / ns("analyse"));
     }
@@ -163,13 +163,12 @@ void add(const std::string& name, const std::function<void(BasicWorld<S>&)>& bui
   static std::map<std::string, std::unique_ptr<Bench<S>>> built;  // when first measured
   mechanisms.push_back(name);
   const auto stage = [&](const char* of, void (*run)(benchmark::State&, Bench<S>&)) {
-    benchmark::RegisterBenchmark((name + "/" + of).c_str(),
-                                 [=](benchmark::State& state) {
-                                   auto& bench = built[name];
-                                   if (!bench) bench = std::make_unique<Bench<S>>(build);
-                                   run(state, *bench);
-                                   state.counters["rows"] = bench->island->system.rows();
-                                 });
+    benchmark::RegisterBenchmark((name + "/" + of).c_str(), [=](benchmark::State& state) {
+      auto& bench = built[name];
+      if (!bench) bench = std::make_unique<Bench<S>>(build);
+      run(state, *bench);
+      state.counters["rows"] = bench->island->system.rows();
+    });
   };
   stage("analyse", analyse<S>);
   stage("analyse_eigen", analyse_by_library<S>);
@@ -186,17 +185,14 @@ void add_all() {
   add<Plane>("slider_crank", add_slider_crank);
   add<Plane>("four_bar", add_four_bar);
   for (int links : {10, 30, 100, 300, 1000})
-    add<Plane>(fmt::format("chain_{}", links),
-               [links](World<double>& world) { add_zigzag(world, links); });
+    add<Plane>(fmt::format("chain_{}", links), [links](World<double>& world) { add_zigzag(world, links); });
   add<Plane>("ragdoll", add_ragdoll);
   for (int n : {3, 5, 8})
-    add<Plane>(fmt::format("squares_{}x{}", n, n),
-               [n](World<double>& world) { add_rotating_squares(world, n, 0.3); });
+    add<Plane>(fmt::format("squares_{}x{}", n, n), [n](World<double>& world) { add_rotating_squares(world, n, 0.3); });
   for (const char* joint : {"spherical", "hinge", "fixed"})
     for (int links : {3, 10, 30})
-      add<Space>(fmt::format("{}_chain_{}", joint, links), [=](SpatialWorld<double>& world) {
-        add_spatial_chain(world, links, joint);
-      });
+      add<Space>(fmt::format("{}_chain_{}", joint, links),
+                 [=](SpatialWorld<double>& world) { add_spatial_chain(world, links, joint); });
   add<Space>("hinge_loop", add_hinge_loop);
 }
 

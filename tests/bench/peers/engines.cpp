@@ -29,7 +29,8 @@ namespace {
 // The whole number of `coarsest` steps per interval between samples, half as many more, twice as many, and so on.
 std::vector<double> two_per_halving(const Problem& problem, double steps_per_second) {
   const double interval = problem.duration / double(problem.times.size());
-  const double coarsest = 2 * std::ceil(interval * steps_per_second / 2);  // even, so that half as many more is whole too
+  const double coarsest =
+      2 * std::ceil(interval * steps_per_second / 2);  // even, so that half as many more is whole too
   std::vector<double> all{interval / coarsest};
   for (int halvings = 0; halvings <= 14; ++halvings)
     for (const double part : {1.5, 2.0}) all.push_back(interval / std::ldexp(part * coarsest, halvings));

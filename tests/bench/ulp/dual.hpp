@@ -19,9 +19,7 @@ struct Dual {
   friend Dual operator+(Dual a, Dual b) { return {a.value + b.value, a.slope + b.slope}; }
   friend Dual operator-(Dual a, Dual b) { return {a.value - b.value, a.slope - b.slope}; }
   friend Dual operator-(Dual a) { return {-a.value, -a.slope}; }
-  friend Dual operator*(Dual a, Dual b) {
-    return {a.value * b.value, a.slope * b.value + a.value * b.slope};
-  }
+  friend Dual operator*(Dual a, Dual b) { return {a.value * b.value, a.slope * b.value + a.value * b.slope}; }
   friend Dual operator/(Dual a, Dual b) {
     const long double q = a.value / b.value;
     return {q, (a.slope - q * b.slope) / b.value};
@@ -47,8 +45,7 @@ inline Dual exp(Dual a) { return {std::exp(a.value), a.slope * std::exp(a.value)
 inline Dual log(Dual a) { return {std::log(a.value), a.slope / a.value}; }
 inline Dual atan2(Dual y, Dual x) {
   const long double square = x.value * x.value + y.value * y.value;
-  return {std::atan2(y.value, x.value),
-          square > 0 ? (y.slope * x.value - x.slope * y.value) / square : 0};
+  return {std::atan2(y.value, x.value), square > 0 ? (y.slope * x.value - x.slope * y.value) / square : 0};
 }
 inline Dual asin(Dual a) { return {std::asin(a.value), a.slope / std::sqrt(1 - a.value * a.value)}; }
 inline Dual inverse(Dual a) { return a.value == 0 ? Dual(0) : Dual(1) / a; }

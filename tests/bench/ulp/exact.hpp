@@ -58,9 +58,7 @@ inline Exact atan2(const Exact& y, const Exact& x) {
 inline Exact asin(const Exact& a) { return of_real(cln::realpart(cln::asin(a.value()))); }
 inline Exact inverse(const Exact& a) { return cln::zerop(a.value()) ? Exact(0) : Exact(1) / a; }
 // Only what is zero to almost all digits is no pivot here.
-inline Exact pivot(const Exact& d, const Exact& k) {
-  return d > Exact(1e-45) * abs(k) ? Exact(1) / d : Exact(0);
-}
+inline Exact pivot(const Exact& d, const Exact& k) { return d > Exact(1e-45) * abs(k) ? Exact(1) / d : Exact(0); }
 
 }  // namespace exact
 

@@ -87,9 +87,7 @@ class Maker {
     const Vector3d v(number(-1, 1), number(-1, 1), block_.planar() ? 0 : number(-1, 1));
     return v.norm() > 0.1 ? v.normalized() : Vector3d::UnitX();
   }
-  Vector3d axis() {
-    return Vector3d::Unit(block_.planar() ? 2 : static_cast<Eigen::Index>(random_() % 3));
-  }
+  Vector3d axis() { return Vector3d::Unit(block_.planar() ? 2 : static_cast<Eigen::Index>(random_() % 3)); }
   void add(double* to, const Vector3d& v) const {
     for (std::size_t k = 0; k < dimension(); ++k) to[k] += v[static_cast<Eigen::Index>(k)];
   }
@@ -179,8 +177,7 @@ class Maker {
 
 }  // namespace
 
-Inputs inputs_of(Family family, const AnyBlock& block, void (*set_defaults)(Inputs&), int digits,
-                 std::uint32_t seed) {
+Inputs inputs_of(Family family, const AnyBlock& block, void (*set_defaults)(Inputs&), int digits, std::uint32_t seed) {
   Maker maker(block, set_defaults, digits, seed);
   switch (family) {
     case Family::satisfied: maker.satisfy(); break;

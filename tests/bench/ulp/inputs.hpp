@@ -19,11 +19,10 @@ enum class Family {
   number
 };
 inline constexpr auto families = static_cast<std::size_t>(Family::number);
-inline constexpr std::array<std::string_view, families> family_names = {
-    "random", "satisfied", "far", "singular", "equal anchors", "masses"};
+inline constexpr std::array<std::string_view, families> family_names = {"random",   "satisfied",     "far",
+                                                                        "singular", "equal anchors", "masses"};
 
 // `digits`: how many decimal digits the scalar has; what is "nearly" and "far" stays within it.
-Inputs inputs_of(Family family, const AnyBlock& block, void (*set_defaults)(Inputs&), int digits,
-                 std::uint32_t seed);
+Inputs inputs_of(Family family, const AnyBlock& block, void (*set_defaults)(Inputs&), int digits, std::uint32_t seed);
 
 }  // namespace cdot::ulp

@@ -32,8 +32,8 @@ int operations(const MeasuredBlock<double>& measured, Measured which) {
     return operations(measured, Measured::factor) + operations(measured, Measured::solve);
   }
   if (which >= Measured::impulse_fast) return 0;  // not generated, so not in the ledger
-  const std::string key = std::string(block.space()) + ',' + block.joint + ',' + block.block + ',' +
-                          std::string(info(which).name);
+  const std::string key =
+      std::string(block.space()) + ',' + block.joint + ',' + block.block + ',' + std::string(info(which).name);
   const auto found = all.find(key);
   if (found == all.end()) throw std::runtime_error("no row of the ledger: " + key);
   return found->second;

@@ -12,12 +12,11 @@ namespace {
 int report_worse_than(double at_most, const std::vector<cdot::ulp::Line>& lines) {
   int worse = 0;
   for (const cdot::ulp::Line& line : lines) {
-    for (const auto& [scalar, worst] : {std::pair{"float", line.in_float.scale.worst},
-                                        {"double", line.in_double.scale.worst}}) {
+    for (const auto& [scalar, worst] :
+         {std::pair{"float", line.in_float.scale.worst}, {"double", line.in_double.scale.worst}}) {
       if (worst <= at_most || line.form_of || line.which >= cdot::ulp::Measured::impulse_fast) continue;
       std::cout << line.block->space() << ' ' << line.block->joint << ' ' << line.block->block << ": "
-                << info(line.which).name << " in " << scalar << " is off by " << worst
-                << " units of its scale\n";
+                << info(line.which).name << " in " << scalar << " is off by " << worst << " units of its scale\n";
       ++worse;
     }
   }

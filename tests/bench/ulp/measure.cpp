@@ -160,8 +160,7 @@ bool drops_a_row(const std::vector<double>& F, int rows) {
 
 Spread spread(std::vector<Sample> samples) {
   if (samples.empty()) return {};
-  std::sort(samples.begin(), samples.end(),
-            [](const Sample& a, const Sample& b) { return a.error < b.error; });
+  std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) { return a.error < b.error; });
   const auto at = [&](double share) {
     return samples[static_cast<std::size_t>(share * static_cast<double>(samples.size() - 1))].error;
   };
@@ -195,8 +194,7 @@ struct Samples {
 
 // One sample's errors in one function, appended. An impulse of exactly 0 is that of a row that was dropped.
 template <class T>
-void compare(std::size_t index, std::size_t function, const Arguments<T>& in, std::size_t family,
-             Samples& samples) {
+void compare(std::size_t index, std::size_t function, const Arguments<T>& in, std::size_t family, Samples& samples) {
   const MeasuredBlock<T>& block = measured_blocks<T>()[index];
   const MeasuredFunction<T>& f = block.functions[function];
   if (f.which == Measured::factor || f.which == Measured::factor_and_solve) {
@@ -238,9 +236,9 @@ std::vector<Accuracy> measure(std::size_t index, int samples_per_family) {
   std::vector<Arguments<T>> timed;
   for (std::size_t family = 0; family < families; ++family) {
     for (int i = 0; i < samples_per_family; ++i) {
-      const Arguments<T> in = arguments(
-          block, inputs_of(static_cast<Family>(family), block.shape, in_double.set_defaults,
-                           std::numeric_limits<T>::digits10, static_cast<std::uint32_t>(i + 1)));
+      const Arguments<T> in =
+          arguments(block, inputs_of(static_cast<Family>(family), block.shape, in_double.set_defaults,
+                                     std::numeric_limits<T>::digits10, static_cast<std::uint32_t>(i + 1)));
       for (std::size_t f = 0; f < samples.size(); ++f) compare(index, f, in, family, samples[f]);
       if (family == 0 && timed.size() < 64) timed.push_back(in);
     }

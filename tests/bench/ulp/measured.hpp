@@ -27,7 +27,7 @@ struct MeasuredBlock {
   std::size_t fields;
   std::vector<MeasuredFunction<T>> functions;
   void (*set_defaults)(Inputs& in);  // overwrites the parameters that have a default
-  int operations = 0;  // of a form that is not generated, so not in the ledger
+  int operations = 0;                // of a form that is not generated, so not in the ledger
 };
 
 template <class Scalar>
@@ -67,17 +67,14 @@ struct Calls {
   static constexpr int triangle = rows * (rows + 1) / 2, columns = S::width * bodies;
   using Parameters = typename Joint::template Parameters<T>;
   using Jacobian = typename Block::template Jacobian<T>;
-  static constexpr std::size_t fields =
-      std::is_empty_v<Jacobian> ? 0 : sizeof(Jacobian) / sizeof(T);
+  static constexpr std::size_t fields = std::is_empty_v<Jacobian> ? 0 : sizeof(Jacobian) / sizeof(T);
 
   struct Inputs {
     const Arguments<T>& in;
     const auto& q() const { return as<typename S::Pose[bodies]>(in[poses].data()); }
     const auto& v() const { return as<typename S::Velocity[bodies]>(in[velocities].data()); }
     const auto& m() const { return as<typename S::InverseMass[bodies]>(in[masses].data()); }
-    const auto& balls() const {
-      return as<typename S::IsotropicInverseMass[bodies]>(in[isotropic_masses].data());
-    }
+    const auto& balls() const { return as<typename S::IsotropicInverseMass[bodies]>(in[isotropic_masses].data()); }
     const auto& p() const { return as<Parameters>(in[parameters].data()); }
     const T& time() const { return in[instant][0]; }
     const auto& lambda() const { return as<T[rows]>(in[impulses].data()); }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-
 namespace cdot::ulp {
 namespace {
 
@@ -18,9 +17,7 @@ std::string cells(const Spread& s) {
   return fmt::format("{:.3g},{:.3g},{:.3g},{}", s.median, s.p99, s.worst, s.worst_family);
 }
 
-std::string name_of(const AnyBlock& block) {
-  return fmt::format("{} {} {}", block.space(), block.joint, block.block);
-}
+std::string name_of(const AnyBlock& block) { return fmt::format("{} {} {}", block.space(), block.joint, block.block); }
 
 // A row per function: the worst kernel of all.
 std::string by_function(const std::vector<Line>& lines) {
@@ -40,9 +37,8 @@ std::string by_function(const std::vector<Line>& lines) {
         std::sort(all.begin(), all.end());
         return short_number(all[all.size() / 2]);
       };
-      const Line& worst = **std::max_element(of.begin(), of.end(), [&](auto* a, auto* b) {
-        return (a->*member).scale.worst < (b->*member).scale.worst;
-      });
+      const Line& worst = **std::max_element(
+          of.begin(), of.end(), [&](auto* a, auto* b) { return (a->*member).scale.worst < (b->*member).scale.worst; });
       s += fmt::format("| {} | {} | {} | {} ", middle(&Spread::median), middle(&Spread::p99),
                        short_number((worst.*member).scale.worst), name_of(*worst.block));
     }
@@ -52,9 +48,8 @@ std::string by_function(const std::vector<Line>& lines) {
 }
 
 const Line* find(const std::vector<Line>& lines, const AnyBlock* block, Measured which) {
-  const auto found = std::find_if(lines.begin(), lines.end(), [&](const Line& line) {
-    return line.block == block && line.which == which;
-  });
+  const auto found = std::find_if(lines.begin(), lines.end(),
+                                  [&](const Line& line) { return line.block == block && line.which == which; });
   return found == lines.end() ? nullptr : &*found;
 }
 
@@ -85,13 +80,11 @@ std::string by_kernel(const std::vector<Line>& lines, Cell cell) {
 }
 
 std::string worst_of_scale(const Line& line) {
-  return fmt::format("{} / {}", short_number(line.in_float.scale.worst),
-                     short_number(line.in_double.scale.worst));
+  return fmt::format("{} / {}", short_number(line.in_float.scale.worst), short_number(line.in_double.scale.worst));
 }
 
 std::string cost(const Line& line) {
-  return fmt::format("{}: {:.1f} / {:.1f}", line.operations, line.in_float.nanoseconds,
-                     line.in_double.nanoseconds);
+  return fmt::format("{}: {:.1f} / {:.1f}", line.operations, line.in_float.nanoseconds, line.in_double.nanoseconds);
 }
 
 // Forms of C that are not generated, each below the one that is.
@@ -104,8 +97,8 @@ std::string forms_of_C(const std::vector<Line>& lines) {
     s += fmt::format("| {} | {} ", name_of(*line.block), line.operations);
     for (const Accuracy* a : {&line.in_float, &line.in_double}) {
       s += fmt::format("| {:.1f} | {} | {} | {} | {} | {} ", a->nanoseconds, short_number(a->ulp.median),
-                       short_number(a->ulp.p99), short_number(a->scale.p99),
-                       short_number(a->scale.worst), a->scale.worst_family);
+                       short_number(a->ulp.p99), short_number(a->scale.p99), short_number(a->scale.worst),
+                       a->scale.worst_family);
     }
     s += "|\n";
   };
@@ -119,8 +112,7 @@ std::string forms_of_C(const std::vector<Line>& lines) {
 
 // A row per kernel with several rows: fast, balanced, robust.
 std::string forms_of_K(const std::vector<Line>& lines, Accuracy Line::*scalar) {
-  constexpr Measured forms[] = {Measured::impulse_fast, Measured::impulse_balanced,
-                                Measured::impulse_robust};
+  constexpr Measured forms[] = {Measured::impulse_fast, Measured::impulse_balanced, Measured::impulse_robust};
   std::string s =
       "| kernel | fast: ns | p99 | worst | dropped | balanced: ns | p99 | worst | dropped | robust: ns | p99 | "
       "worst | dropped |\n"
@@ -150,11 +142,9 @@ std::string csv(const std::vector<Line>& lines) {
       "space,joint,block,function,operations,scalar,nanoseconds,ulp_median,ulp_p99,ulp_worst,"
       "ulp_worst_at,scale_median,scale_p99,scale_worst,scale_worst_at,guarded\n";
   for (const Line& line : lines) {
-    for (const auto& [scalar, a] :
-         {std::pair{"float", &line.in_float}, {"double", &line.in_double}}) {
-      s += fmt::format("{},{},{},{},{},{},{:.1f},{},{},{}\n", line.block->space(),
-                       line.block->joint, line.block->block, info(line.which).name,
-                       line.operations, scalar, a->nanoseconds, cells(a->ulp), cells(a->scale),
+    for (const auto& [scalar, a] : {std::pair{"float", &line.in_float}, {"double", &line.in_double}}) {
+      s += fmt::format("{},{},{},{},{},{},{:.1f},{},{},{}\n", line.block->space(), line.block->joint, line.block->block,
+                       info(line.which).name, line.operations, scalar, a->nanoseconds, cells(a->ulp), cells(a->scale),
                        a->guarded);
     }
   }
@@ -174,9 +164,8 @@ std::string markdown(const std::vector<Line>& lines, int samples_per_family) {
       "## From J to the impulse by `kernels = \"fast\"`, `\"balanced\"`, `\"robust\"`: in float\n\n"
       "p99 and worst in units of the natural scale; dropped: inputs of which a row was taken for dependent.\n\n"
       "{}\n## The same in double\n\n{}",
-      samples_per_family, families, by_function(lines), by_kernel(lines, worst_of_scale),
-      by_kernel(lines, cost), forms_of_C(lines), forms_of_K(lines, &Line::in_float),
-      forms_of_K(lines, &Line::in_double));
+      samples_per_family, families, by_function(lines), by_kernel(lines, worst_of_scale), by_kernel(lines, cost),
+      forms_of_C(lines), forms_of_K(lines, &Line::in_float), forms_of_K(lines, &Line::in_double));
 }
 
 }  // namespace cdot::ulp

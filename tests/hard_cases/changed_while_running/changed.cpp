@@ -15,10 +15,8 @@ void add(Trial& t) {
   t.change([](auto& world) {
     const bool planar = std::is_same_v<std::decay_t<decltype(world)>, World<double>> ||
                         std::is_same_v<std::decay_t<decltype(world)>, World<float>>;
-    if (planar)
-      world.add_joint({"angle", {1, 2}, {}, {}});
-    else
-      world.add_joint({"relative_orientation", {1, 2}, {{"fa", {1, 0, 0}}}, {}});
+    if (planar) world.add_joint({"angle", {1, 2}, {}, {}});
+    else world.add_joint({"relative_orientation", {1, 2}, {{"fa", {1, 0, 0}}}, {}});
   });
   const Watch w = t.run(2);
   t.at_most("gap [m, rad]", w.gap, 1e-3);

@@ -38,9 +38,7 @@ void hang(Trial& t, int n, int steps) {
 void small(Trial& t) { hang(t, 25, 300); }
 void whole(Trial& t) { hang(t, 100, t.way.single ? 2 : 12); }
 
-Ways settled() {
-  return in_double(only(direct(), {Integrator::rattle})) + only(direct(), {Integrator::implicit});
-}
+Ways settled() { return in_double(only(direct(), {Integrator::rattle})) + only(direct(), {Integrator::implicit}); }
 
 const Register planar({"joint_grid", "planar", settled(), small, "25 x 25", true});
 const Register planar_whole({"joint_grid", "planar", only(direct(), {Integrator::implicit}), whole, "100 x 100", true});

@@ -13,7 +13,8 @@ struct Kind {
   int branches;       // that hang from each rod
   const char* joint;  // by which they do
 };
-constexpr Kind pin_chain{1, "revolute"}, pin_tree{2, "revolute"}, ball_chain{1, "spherical"}, cross_tree{2, "universal"};
+constexpr Kind pin_chain{1, "revolute"}, pin_tree{2, "revolute"}, ball_chain{1, "spherical"},
+    cross_tree{2, "universal"};
 
 // Against the vertical, where they are let go [rad].
 double slant_of(int rod) { return rod % 2 == 0 ? 0.4 : -0.3; }
@@ -36,8 +37,7 @@ void add_joint(Trial& t, const Kind& kind, int a, int b, double slant) {
   SceneJoint joint;
   if (t.scene.dimension == Dimension::planar)
     joint.definition = {kind.joint, {a, b}, {{"pa", {end, 0}}, {"pb", {-0.5, 0}}}, {}};
-  else
-    joint.definition = {kind.joint, {a, b}, {{"pa", {end, 0, 0}}, {"pb", {-0.5, 0, 0}}}, {}};
+  else joint.definition = {kind.joint, {a, b}, {{"pa", {end, 0, 0}}, {"pb", {-0.5, 0, 0}}}, {}};
   if (kind.joint == cross_tree.joint) {  // shafts along the rods
     const Vec3 shaft = a == world_body ? Vec3{std::sin(slant), 0, -std::cos(slant)} : Vec3{1, 0, 0};
     joint.definition.parameters.push_back({"fa", {shaft[0], shaft[1], shaft[2], 0, 1, 0}});
@@ -96,11 +96,14 @@ Case swaying(const char* scene, const Kind& kind, const std::string& variant) {
 // A thousand metres down floats are 6e-5 m apart: RATTLE's drift onto the joints does not end there.
 Ways but_rattle_in_float() { return without(direct(), {Integrator::rattle}) + in_double(direct()); }
 
-const Register all[] = {
-    Register(resting("planar", direct(), pin_chain, "chain")),   Register(swaying("planar", pin_chain, "chain")),
-    Register(resting("planar", direct(), pin_tree, "tree")),     Register(swaying("planar", pin_tree, "tree")),
-    Register(resting("spatial", but_rattle_in_float(), ball_chain, "chain")), Register(swaying("spatial", ball_chain, "chain")),
-    Register(resting("spatial", direct(), cross_tree, "tree")),  Register(swaying("spatial", cross_tree, "tree"))};
+const Register all[] = {Register(resting("planar", direct(), pin_chain, "chain")),
+                        Register(swaying("planar", pin_chain, "chain")),
+                        Register(resting("planar", direct(), pin_tree, "tree")),
+                        Register(swaying("planar", pin_tree, "tree")),
+                        Register(resting("spatial", but_rattle_in_float(), ball_chain, "chain")),
+                        Register(swaying("spatial", ball_chain, "chain")),
+                        Register(resting("spatial", direct(), cross_tree, "tree")),
+                        Register(swaying("spatial", cross_tree, "tree"))};
 
 }  // namespace
 }  // namespace cdot::hard

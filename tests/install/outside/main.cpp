@@ -28,8 +28,8 @@ int main() {
     lowest = std::fmin(lowest, world.pose(bead).y);
   }
   const double drift = std::fabs(world.energy() - energy), off = world.worst_position_error().value;
-  std::printf("worst |C| %.1e m, energy off by %.1e J, the bead went down to %.3f m, along %.3f m\n",
-              off, drift, lowest, world.coordinate(on, "along"));
+  std::printf("worst |C| %.1e m, energy off by %.1e J, the bead went down to %.3f m, along %.3f m\n", off, drift,
+              lowest, world.coordinate(on, "along"));
   const bool found = cdot::find_joint_type(cdot::Dimension::planar, "ellipse") != nullptr;
   return found && off < 1e-9 && drift < 0.05 && lowest < -0.5 ? 0 : 1;
 }

@@ -33,10 +33,8 @@ class BulletRun final : public SteppedRun {
     world_.setGravity(bt(problem.gravity));
     btContactSolverInfo& info = world_.getSolverInfo();
     info.m_erp = way.erp;
-    if (way.sweeps > 0)
-      info.m_numIterations = way.sweeps;
-    else
-      info.m_minimumSolverBatchSize = 1;
+    if (way.sweeps > 0) info.m_numIterations = way.sweeps;
+    else info.m_minimumSolverBatchSize = 1;
     for (const Body& body : problem.bodies) add(body, way, problem.sleep_after > 0);
     for (const Joint& joint : problem.joints) add(problem, joint);
   }

@@ -193,8 +193,7 @@ class MultibodyRun final : public SteppedRun {
       turn = btQuaternion::getIdentity();
       in = btVector3(0, 0, 0);
     }
-    if (joint.kind == JointKind::fixed)
-      made.setupFixed(link, body.mass, inertia, above, turn, in, out, true);
+    if (joint.kind == JointKind::fixed) made.setupFixed(link, body.mass, inertia, above, turn, in, out, true);
     else if (joint.kind == JointKind::spherical)
       made.setupSpherical(link, body.mass, inertia, above, turn, in, out, true);
     else if (joint.kind == JointKind::revolute)
@@ -202,8 +201,7 @@ class MultibodyRun final : public SteppedRun {
     else if (!turns.empty())
       made.setupRevolute(link, body.mass, inertia, above, turn,
                          bt(local_direction(problem, branch.body, turns.back().axis)), in, out, true);
-    else
-      made.setupPrismatic(link, body.mass, inertia, above, turn, axis, in, out, true);
+    else made.setupPrismatic(link, body.mass, inertia, above, turn, axis, in, out, true);
     made.getLink(link).m_jointFeedback = &felt_[joint.number];
   }
 
@@ -232,10 +230,8 @@ class MultibodyRun final : public SteppedRun {
         btMultiBodyLinkCollider* collider = colliders_.back().get();
         collider->setCollisionShape(&parts_.shape);
         world_.addCollisionObject(collider);
-        if (link < 0)
-          made->setBaseCollider(collider);
-        else
-          made->getLink(link).m_collider = collider;
+        if (link < 0) made->setBaseCollider(collider);
+        else made->getLink(link).m_collider = collider;
       }
     for (const auto& constraint : constraints_) world_.addMultiBodyConstraint(constraint.get());
   }

@@ -126,8 +126,7 @@ class ChipmunkRun final : public SteppedRun {
     if (joint.kind == JointKind::max_distance) return make(cpSlideJointNew(a, b, pa, pb, 0, joint.length));
     if (joint.kind == JointKind::prismatic)
       make(cpGrooveJointNew(a, b, end(problem, joint, -1), end(problem, joint, 1), pb));
-    else if (joint.kind != JointKind::orientation)
-      make(cpPivotJointNew2(a, b, pa, pb));
+    else if (joint.kind != JointKind::orientation) make(cpPivotJointNew2(a, b, pa, pb));
     if (joint.kind == JointKind::prismatic || joint.kind == JointKind::fixed || joint.kind == JointKind::orientation)
       make(cpGearJointNew(a, b, cpBodyGetAngle(b) - cpBodyGetAngle(a), 1));
     if (joint.spring) add_spring(problem, joint);

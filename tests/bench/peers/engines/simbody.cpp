@@ -121,10 +121,8 @@ class SimbodyRun final : public Run {
     SimTK::MobilizedBody& made = bodies_[std::size_t(branch.body)];
     if (branch.joint < 0) {
       const SimTK::Transform start(rotation(body.start.q), vec(body.start.x));
-      if (body.moves)
-        made = SimTK::MobilizedBody::Free(parent, start, rigid, SimTK::Transform());
-      else
-        made = SimTK::MobilizedBody::Weld(parent, start, rigid, SimTK::Transform());
+      if (body.moves) made = SimTK::MobilizedBody::Free(parent, start, rigid, SimTK::Transform());
+      else made = SimTK::MobilizedBody::Weld(parent, start, rigid, SimTK::Transform());
       return;
     }
     const Joint& joint = problem.joints[std::size_t(branch.joint)];
@@ -162,10 +160,8 @@ class SimbodyRun final : public Run {
     const SimTK::Transform in = frame(problem, branch.parent, axes, anchor),
                            out = frame(problem, branch.body, axes, anchor);
     SimTK::MobilizedBody& made = bodies_[std::size_t(branch.body)];
-    if (turns.size() == 2)
-      made = SimTK::MobilizedBody::Universal(mobile(branch.parent), in, rigid, out);
-    else
-      made = SimTK::MobilizedBody::Gimbal(mobile(branch.parent), in, rigid, out);
+    if (turns.size() == 2) made = SimTK::MobilizedBody::Universal(mobile(branch.parent), in, rigid, out);
+    else made = SimTK::MobilizedBody::Gimbal(mobile(branch.parent), in, rigid, out);
     for (std::size_t k = 0; k < turns.size(); ++k) {
       if (turns[k].held) SimTK::Constraint::ConstantCoordinate(made, SimTK::MobilizerQIndex(int(k)), 0);
       if (turns[k].motor) add_motor(made, int(k), turns[k].motor->speed, *turns[k].motor);
@@ -281,16 +277,11 @@ class SimbodyRun final : public Run {
   }
 
   void choose(const Way& way, double knob) {
-    if (way.kind == Way::merson)
-      integrator_ = std::make_unique<SimTK::RungeKuttaMersonIntegrator>(system_);
-    else if (way.kind == Way::feldberg)
-      integrator_ = std::make_unique<SimTK::RungeKuttaFeldbergIntegrator>(system_);
-    else if (way.kind == Way::rk3)
-      integrator_ = std::make_unique<SimTK::RungeKutta3Integrator>(system_);
-    else if (way.kind == Way::cpodes)
-      integrator_ = std::make_unique<SimTK::CPodesIntegrator>(system_);
-    else
-      integrator_ = std::make_unique<SimTK::SemiExplicitEulerIntegrator>(system_, knob);
+    if (way.kind == Way::merson) integrator_ = std::make_unique<SimTK::RungeKuttaMersonIntegrator>(system_);
+    else if (way.kind == Way::feldberg) integrator_ = std::make_unique<SimTK::RungeKuttaFeldbergIntegrator>(system_);
+    else if (way.kind == Way::rk3) integrator_ = std::make_unique<SimTK::RungeKutta3Integrator>(system_);
+    else if (way.kind == Way::cpodes) integrator_ = std::make_unique<SimTK::CPodesIntegrator>(system_);
+    else integrator_ = std::make_unique<SimTK::SemiExplicitEulerIntegrator>(system_, knob);
     if (way.kind != Way::euler) integrator_->setAccuracy(knob);
   }
 

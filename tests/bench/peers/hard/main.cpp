@@ -107,8 +107,6 @@ int main(int argc, char** argv) {
       if (!output.empty()) write(output, found);
     }
   }
-  if (output.empty())
-    fmt::print("{}", page(found));
-  else
-    write(output, found);
+  if (output.empty()) fmt::print("{}", page(found));
+  else write(output, found);
 }

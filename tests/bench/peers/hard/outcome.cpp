@@ -58,10 +58,8 @@ void try_it(Outcome& outcome, const hard::Case& hard_case, const Asked& asked) {
 
 void run(Outcome& outcome, const hard::Case& hard_case, const Asked& asked, Told& told) {
   try {
-    if (const Spoilt* question = spoilt(hard_case))
-      judge(*question, hard_case, asked, told, outcome);
-    else
-      try_it(outcome, hard_case, asked);
+    if (const Spoilt* question = spoilt(hard_case)) judge(*question, hard_case, asked, told, outcome);
+    else try_it(outcome, hard_case, asked);
   } catch (const Exploded&) {
     outcome.kind = Outcome::explodes;
   } catch (const CannotSay& reason) {
@@ -209,8 +207,7 @@ bool judge(const hard::Case& hard_case, const Asked& asked, Outcome& outcome) {
   const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
   if (signal == SIGXCPU || signal == SIGKILL)
     ended(outcome, Outcome::too_slow, fmt::format("no end within {} s of CPU time", asked.longest));
-  else
-    ended(outcome, Outcome::aborts, fmt::format("{}{}{}", strsignal(signal), said.empty() ? "" : ": ", said));
+  else ended(outcome, Outcome::aborts, fmt::format("{}{}{}", strsignal(signal), said.empty() ? "" : ": ", said));
   return true;
 }
 
