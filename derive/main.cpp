@@ -1,11 +1,10 @@
 // `cdot`: from the position constraint of a joint to its Jacobian, effective mass, proof and
 // kernel.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <exception>
+#include <fmt/format.h>
 
-#include "derive/commands.hpp"
+#include "derive/commands/commands.hpp"
 
 int main(int argc, char** argv) {
   CLI::App app{

@@ -2,10 +2,9 @@
 #pragma once
 
 #include <fmt/format.h>
-
 #include <string>
 
-#include "runtime/methods.hpp"
+#include <cdot/methods.hpp>
 
 namespace cdot::test {
 

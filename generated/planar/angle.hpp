@@ -8,7 +8,7 @@
 // K = inv_I_a + inv_I_b
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

@@ -10,7 +10,7 @@
 // K = inv_m_a + inv_m_b + inv_I_a (ra × n)^2 + inv_I_b (rb × n)^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

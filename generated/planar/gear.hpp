@@ -10,7 +10,7 @@
 // K = inv_I_a + inv_I_b ratio^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

@@ -28,7 +28,7 @@
 // K_slide = inv_m_a + inv_m_c + inv_I_a (ra × ea)^2 + inv_I_c ((rc + ua) × ea)^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

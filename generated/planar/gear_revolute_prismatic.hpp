@@ -14,7 +14,7 @@
 //     + inv_I_d ratio^2 ((rd + ub) × e)^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

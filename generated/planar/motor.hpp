@@ -15,7 +15,7 @@
 // K[angular, angular] = inv_I_a + inv_I_b
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

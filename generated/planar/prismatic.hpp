@@ -17,7 +17,7 @@
 // K_slide = inv_m_a + inv_m_b + inv_I_a (t · ra)^2 + inv_I_b (t · (rb + u))^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

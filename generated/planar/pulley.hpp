@@ -14,7 +14,7 @@
 // K = inv_m_a + inv_m_b ratio^2 + inv_I_a (ra × na)^2 + inv_I_b ratio^2 (rb × nb)^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

@@ -14,7 +14,7 @@
 // K_slide = inv_m_b + inv_I_b (rb × e)^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

@@ -13,7 +13,7 @@
 // K_angle = inv_I_a + inv_I_b
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

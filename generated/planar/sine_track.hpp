@@ -24,7 +24,7 @@
 // K_slide = inv_m_a + inv_m_b + inv_I_a (ra × f_x)^2 + inv_I_b (s_y - rb × f_x)^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::planar {
 

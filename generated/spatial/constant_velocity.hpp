@@ -51,7 +51,7 @@
 //                fb_x)^2)) fa_x) × fb_x)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -10,7 +10,7 @@
 // K = inv_m_a + inv_m_b + (ra × n)' inv_I_a (ra × n) + (rb × n)' inv_I_b (rb × n)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

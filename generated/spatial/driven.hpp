@@ -35,7 +35,7 @@
 //                   + (turned × fb_z)' inv_I_b (turned × fb_z)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -21,7 +21,7 @@
 // K_angle_b = (gb_x + fb_x)' inv_I_b (gb_x + fb_x)/(gb_x · fb_x + 1)^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -20,7 +20,7 @@
 // K[q_pin, q_pin] = inv_m_b E + S(q_ra) inv_I_b S(q_ra)' + inv_m_c E + S(q_rb) inv_I_c S(q_rb)'
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -8,7 +8,7 @@
 // K = (na × nb)' inv_I_a (na × nb) + (na × nb)' inv_I_b (na × nb)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -11,7 +11,7 @@
 // K = inv_m_a + inv_m_b + (rb × n)' inv_I_b (rb × n) + ((ra + d) × n)' inv_I_a ((ra + d) × n)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

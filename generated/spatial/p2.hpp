@@ -17,7 +17,7 @@
 //                     + ((ra + d) × fa_z)' inv_I_a ((ra + d) × fa_z)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

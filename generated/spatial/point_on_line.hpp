@@ -22,7 +22,7 @@
 //           + ((ra + d) × fa_x)' inv_I_a ((ra + d) × fa_x)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -15,7 +15,7 @@
 //     + (ra × na)' inv_I_a (ra × na)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

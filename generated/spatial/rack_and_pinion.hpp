@@ -21,7 +21,7 @@
 // K_slide = inv_m_b + (rb × e)' inv_I_b (rb × e)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -18,7 +18,7 @@
 //         - S(fb_y)' S(fa_y)'/2 - S(fb_z)' S(fa_z)'/2)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -23,7 +23,7 @@
 //                           + (fa_z × fb_x)' inv_I_b (fa_z × fb_x)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

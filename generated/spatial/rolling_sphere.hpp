@@ -23,7 +23,7 @@
 //                     + (arm_a × fa_z)' inv_I_a (arm_a × fa_z)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -96,7 +96,7 @@
 //           + (fa_x + fb_x)' inv_I_b (fa_x + fb_x)/(fa_x · fb_x + 1)^2
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -11,7 +11,7 @@
 // K = inv_m_a E + S(ra) inv_I_a S(ra)' + inv_m_b E + S(rb) inv_I_b S(rb)'
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -10,7 +10,7 @@
 // K = inv_m_a (d · d) + inv_m_b (d · d) + (ra × d)' inv_I_a (ra × d) + (rb × d)' inv_I_b (rb × d)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -40,7 +40,7 @@
 //       + ((ra + d) × fa_y)' inv_I_a ((ra + d) × fa_y)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

@@ -23,7 +23,7 @@
 //           + unit(fa_x × fb_x)' inv_I_b unit(fa_x × fb_x)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

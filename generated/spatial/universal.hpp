@@ -49,7 +49,7 @@
 //                fb_y)^2)) fb_y) × fa_y)
 #pragma once
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot::spatial {
 

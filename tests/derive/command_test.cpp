@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-#include "derive/operators.hpp"
+#include "derive/language/operators.hpp"
 
 namespace {
 

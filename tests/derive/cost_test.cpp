@@ -1,9 +1,8 @@
 // No generated C, J or K costs more than the cheapest published derivation of the same.
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <map>
 #include <set>
 #include <sstream>

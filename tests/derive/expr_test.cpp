@@ -1,11 +1,10 @@
 // Builders keep values, equal expressions are one node, and rationals refuse to overflow.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <gtest/gtest.h>
 #include <limits>
 
-#include "derive/canonical.hpp"
+#include "derive/expression/components.hpp"
 #include "tests/derive/random_expressions.hpp"
 
 using namespace cdot::derive;

@@ -1,7 +1,6 @@
 // What `cdot derive` remembers of earlier runs: the same bytes as from a fresh proof, and nothing once anything that
 // it depends on has changed.
-#include "derive/memory.hpp"
-
+#include "derive/pipeline/cache.hpp"
 #include "tests/derive/command.hpp"
 
 namespace {

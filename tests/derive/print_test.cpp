@@ -1,11 +1,10 @@
 // Programs as text: names from the spec, none that C++ or the kernel has taken, lines that fit.
-#include <gtest/gtest.h>
+#include "derive/program/print.hpp"
 
 #include <algorithm>
+#include <gtest/gtest.h>
 #include <regex>
 #include <tuple>
-
-#include "derive/print_program.hpp"
 
 using namespace cdot::derive;
 

@@ -1,9 +1,8 @@
 // `cdot derive` in several processes: the same bytes however many, and a word on what became of one that died.
-#include "derive/processes.hpp"
-
 #include <csignal>
 #include <thread>
 
+#include "derive/pipeline/process_pool.hpp"
 #include "tests/derive/command.hpp"
 
 namespace {

@@ -1,14 +1,13 @@
 // Programs: what the passes rewrite keeps its value and never costs more; known kernels cost what a
 // person's would.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <gtest/gtest.h>
 
-#include "derive/canonical.hpp"
-#include "derive/kernel.hpp"
-#include "derive/ledger.hpp"
-#include "derive/specs_folder.hpp"
+#include "derive/derivation/specs_folder.hpp"
+#include "derive/expression/components.hpp"
+#include "derive/kernel/ledger.hpp"
+#include "derive/kernel/plan.hpp"
 #include "tests/derive/random_expressions.hpp"
 
 using namespace cdot::derive;

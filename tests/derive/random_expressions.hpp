@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "derive/numeric.hpp"
-#include "derive/program.hpp"
+#include "derive/numbers/numeric.hpp"
+#include "derive/program/program.hpp"
 
 namespace cdot::derive {
 

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "derive/generate.hpp"
-#include "derive/specs_folder.hpp"
+#include "derive/derivation/specs_folder.hpp"
+#include "derive/kernel/generate.hpp"
 
 int main(int argc, char** argv) {
   using namespace cdot::derive;

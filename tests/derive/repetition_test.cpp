@@ -1,8 +1,7 @@
 // generated/ says nothing twice under two names. Apart from the other tests, since it reads what is committed.
-#include <gtest/gtest.h>
-
 #include <filesystem>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <iterator>
 #include <map>
 #include <regex>

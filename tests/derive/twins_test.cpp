@@ -1,6 +1,5 @@
 // Two specs that differ in names only give kernels that differ in names only, whatever the names collide with.
 #include <gtest/gtest.h>
-
 #include <string>
 #include <vector>
 

@@ -1,13 +1,12 @@
 // `cdot diff` as a person or a program meets it: JSON, exit status, errors.
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <array>
 #include <cstdio>
+#include <gtest/gtest.h>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "tests/diff/support.hpp"
 

@@ -1,8 +1,7 @@
 // Which published formulas the ledger counts beside the generated ones: those that say the same
 // wherever the joint is. What the counts are is a test of the ledger's.
-#include <gtest/gtest.h>
-
 #include <algorithm>
+#include <gtest/gtest.h>
 
 #include "tests/diff/support.hpp"
 

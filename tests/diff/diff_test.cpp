@@ -1,7 +1,6 @@
 // What `cdot diff` says of derivations that are wrong in known ways, and what it forgives.
-#include <gtest/gtest.h>
-
 #include <algorithm>
+#include <gtest/gtest.h>
 #include <ostream>
 
 #include "tests/diff/support.hpp"

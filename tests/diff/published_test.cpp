@@ -1,8 +1,7 @@
 // Every published entry beside the specs. No verdict is written down here: each difference is held
 // against its numbers.
-#include <gtest/gtest.h>
-
 #include <cstdio>
+#include <gtest/gtest.h>
 #include <map>
 #include <regex>
 #include <set>

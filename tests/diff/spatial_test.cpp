@@ -1,9 +1,8 @@
 // `cdot diff` in space: three-wide blocks, the three forms of velocity, tensors, one mistake in
 // vectors told once.
+#include <fstream>
 #include <gtest/gtest.h>
 #include <unistd.h>
-
-#include <fstream>
 
 #include "tests/diff/support.hpp"
 

@@ -1,10 +1,9 @@
 #include "tests/diff/support.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <fstream>
+#include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace cdot::test {
 

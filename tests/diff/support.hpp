@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "derive/diff.hpp"
+#include "derive/diff/diff.hpp"
 
 namespace cdot::test {
 

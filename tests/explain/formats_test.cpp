@@ -1,11 +1,10 @@
 // The other formats: HTML is well-formed and needs nothing from elsewhere, LaTeX compiles or at
 // least balances, and the JSON says the truth when another program evaluates it.
-#include <sys/wait.h>
-
 #include <cstdlib>
 #include <fstream>
 #include <regex>
 #include <sstream>
+#include <sys/wait.h>
 
 #include "support.hpp"
 

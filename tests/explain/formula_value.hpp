@@ -5,8 +5,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "derive/explain.hpp"
-#include "derive/numeric.hpp"
+#include "derive/explain/explain.hpp"
+#include "derive/numbers/numeric.hpp"
 
 struct Array {
   std::size_t rows = 1, columns = 1;

@@ -1,15 +1,14 @@
 // The catalogue's specs, read for the tests.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <filesystem>
+#include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
-#include "derive/explain.hpp"
-#include "derive/specs_folder.hpp"
+#include "derive/derivation/specs_folder.hpp"
+#include "derive/explain/explain.hpp"
 
 // "planar/line", ...
 inline std::vector<std::string> spec_names() {

@@ -1,11 +1,10 @@
 // One test per case, over all ways that claim to hold it. `hard_cases_tests --table` writes the table of README.md,
 // `hard_cases_tests --try [CASE]` tries all ways there are, also those that claim nothing.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cstdio>
+#include <fmt/format.h>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <iterator>
 #include <string_view>
 

@@ -2,7 +2,7 @@
 // and gravity grow with the size.
 #pragma once
 
-#include "runtime/scene.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::hard {
 

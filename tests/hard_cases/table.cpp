@@ -1,7 +1,6 @@
 // README.md: of all cases the ways that hold them, the criterion, and the worst that was measured.
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 #include "tests/hard_cases/trial.hpp"
 

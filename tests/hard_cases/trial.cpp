@@ -1,11 +1,10 @@
 #include "tests/hard_cases/trial.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 
-#include "runtime/run_worst.hpp"
+#include "runtime/tool/run/worst.hpp"
 
 namespace cdot::hard {
 namespace {

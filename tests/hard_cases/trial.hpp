@@ -9,9 +9,10 @@
 #include <variant>
 #include <vector>
 
-#include "runtime/effects.hpp"
-#include "runtime/run_frame.hpp"
-#include "runtime/scene.hpp"
+#include <cdot/effects.hpp>
+
+#include "runtime/tool/run/frame.hpp"
+#include "runtime/tool/scene/scene.hpp"
 #include "tests/hard_cases/ways.hpp"
 
 namespace cdot::hard {

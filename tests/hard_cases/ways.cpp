@@ -1,10 +1,9 @@
 #include "tests/hard_cases/ways.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "runtime/methods.hpp"
+#include <cdot/methods.hpp>
 
 namespace cdot::hard {
 namespace {

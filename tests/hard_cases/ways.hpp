@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/settings.hpp"
+#include <cdot/settings.hpp>
 
 namespace cdot::hard {
 

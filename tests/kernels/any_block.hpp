@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace cdot {
 

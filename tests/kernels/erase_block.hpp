@@ -6,9 +6,10 @@
 #include <type_traits>
 #include <utility>
 
-#include "generated/planar/registry.hpp"
-#include "generated/spatial/registry.hpp"
-#include "runtime/pack.hpp"
+#include <cdot/pack.hpp>
+#include <cdot/planar/registry.hpp>
+#include <cdot/spatial/registry.hpp>
+
 #include "tests/kernels/any_block.hpp"
 
 namespace cdot {

@@ -2,10 +2,9 @@
 // name the place.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <Eigen/Geometry>
 #include <functional>
+#include <gtest/gtest.h>
 
 #include "tests/kernels/any_block.hpp"
 #include "tests/kernels/sample.hpp"

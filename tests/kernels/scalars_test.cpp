@@ -7,7 +7,8 @@
 #include <map>
 #include <sstream>
 
-#include "runtime/pack.hpp"
+#include <cdot/pack.hpp>
+
 #include "tests/kernels/counted.hpp"
 #include "tests/kernels/law.hpp"
 

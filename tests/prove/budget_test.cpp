@@ -1,11 +1,10 @@
 // Algebra that would take hours is given up: the laws are then shown at random points, the same ones
 // on every run, and a derivation that breaks them is still found out.
+#include <cstdio>
 #include <gtest/gtest.h>
 
-#include <cstdio>
-
-#include "derive/prove.hpp"
-#include "derive/read.hpp"
+#include "derive/language/read.hpp"
+#include "derive/proof/prove.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -2,8 +2,8 @@
 // check finds nothing but notes.
 #include <gtest/gtest.h>
 
-#include "derive/check.hpp"
-#include "derive/specs_folder.hpp"
+#include "derive/check/check.hpp"
+#include "derive/derivation/specs_folder.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -1,11 +1,10 @@
 // `cdot check`: what it finds in specs that no kernel should be made of.
-#include "derive/check.hpp"
-
-#include <gtest/gtest.h>
+#include "derive/check/check.hpp"
 
 #include <algorithm>
+#include <gtest/gtest.h>
 
-#include "derive/specs_folder.hpp"
+#include "derive/derivation/specs_folder.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -1,14 +1,13 @@
 // Each law fails for a derivation that breaks it; and J, in plain numbers, is the slope of C for every spec of the
 // catalogue. That the laws hold for all of it is in catalogue_test.cpp.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <gtest/gtest.h>
 
-#include "derive/numeric.hpp"
-#include "derive/prove.hpp"
-#include "derive/specs_folder.hpp"
+#include "derive/derivation/specs_folder.hpp"
+#include "derive/numbers/numeric.hpp"
+#include "derive/proof/prove.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -1,9 +1,8 @@
 // Every broken file of the corpus gives exactly the messages that stand beside it. CDOT_UPDATE=1
 // rewrites them: read each as the person who made the mistake.
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 #include <fstream>
+#include <gtest/gtest.h>
 
 #include "tests/reader/reading.hpp"
 

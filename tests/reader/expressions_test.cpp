@@ -1,10 +1,9 @@
 // Expressions: what the grammar makes of them, exact numbers, and every operator of the table at
 // least once.
 #include <gtest/gtest.h>
-
 #include <set>
 
-#include "derive/operators.hpp"
+#include "derive/language/operators.hpp"
 #include "tests/reader/reading.hpp"
 
 namespace cdot::derive {

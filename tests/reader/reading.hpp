@@ -4,8 +4,8 @@
 
 #include <string>
 
-#include "derive/hand.hpp"
-#include "derive/read.hpp"
+#include "derive/language/hand/hand.hpp"
+#include "derive/language/read.hpp"
 
 namespace cdot::derive {
 

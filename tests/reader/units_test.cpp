@@ -1,8 +1,8 @@
 // Units as the language has them: what multiplies, what hides, how they are said.
 #include <gtest/gtest.h>
 
-#include "derive/source.hpp"
-#include "derive/unit.hpp"
+#include "derive/expression/unit.hpp"
+#include "derive/syntax/source.hpp"
 
 namespace cdot::derive {
 namespace {

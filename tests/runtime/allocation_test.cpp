@@ -1,5 +1,6 @@
 // step() does not allocate: every operator new of the process is counted while it runs.
-#include "runtime/methods.hpp"
+#include <cdot/methods.hpp>
+
 #include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {

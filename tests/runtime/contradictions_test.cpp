@@ -1,8 +1,7 @@
 // Joints that cannot all hold: the bodies rest where the sum of the squares of what is left of C is least, whichever
 // row elimination meets last, and nothing else about their motion is disturbed.
-#include <fmt/core.h>
-
 #include <cmath>
+#include <fmt/core.h>
 
 #include "tests/runtime/mechanisms.hpp"
 #include "tests/runtime/support.hpp"

@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "runtime/world.hpp"
+#include <cdot/world.hpp>
 #ifdef CDOT_LINK_EFFECTS
-#include "runtime/effects.hpp"
+#include <cdot/effects.hpp>
 #endif
 
 namespace {

@@ -1,10 +1,9 @@
 // Only what a scene calls for costs anything: instructions of step(), counted by callgrind,
 // compared exactly.
-#include <gtest/gtest.h>
-
 #include <array>
 #include <cstdio>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <iterator>
 #include <string>
 

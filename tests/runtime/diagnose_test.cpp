@@ -1,11 +1,10 @@
 // What a diagnosis says, against what is known in closed form or from the dense K.
-#include "runtime/diagnose.hpp"
-
+#include <Eigen/Dense>
 #include <fmt/core.h>
 
-#include <Eigen/Dense>
+#include <cdot/diagnose.hpp>
+#include <cdot/jacobian.hpp>
 
-#include "runtime/jacobian.hpp"
 #include "tests/methods.hpp"
 #include "tests/runtime/mechanisms.hpp"
 #include "tests/runtime/spatial_support.hpp"

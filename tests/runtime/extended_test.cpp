@@ -1,17 +1,17 @@
 // Worlds in extended precision: closer to closed forms than any double is. Where long double is double, as with some
 // compilers, there is nothing to show.
-#include <fmt/core.h>
-#include <gtest/gtest.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <fmt/core.h>
+#include <gtest/gtest.h>
 #include <limits>
 #include <numbers>
 #include <random>
 
-#include "runtime/ldlt.hpp"
-#include "runtime/world.hpp"
+#include <cdot/world.hpp>
+
+#include "runtime/direct/ldlt.hpp"
 
 namespace cdot::test {
 namespace {

@@ -1,7 +1,6 @@
 // A step that fails leaves the World as it was before it and says where and why; numbers that are not finite do not get
 // in.
 #include <fmt/format.h>
-
 #include <limits>
 
 #include "tests/methods.hpp"

@@ -1,8 +1,9 @@
 // Settings::kernels: the same impulses by three ways, and what the robust one is for.
 #include <Eigen/Core>
 
-#include "generated/planar/weld.hpp"
-#include "runtime/kernel_forms.hpp"
+#include <cdot/detail/kernel_forms.hpp>
+#include <cdot/planar/weld.hpp>
+
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {

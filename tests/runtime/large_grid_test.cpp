@@ -1,10 +1,10 @@
 // Grids of discs with so many redundant rows that elimination cannot tell which: what contradicts is shared by all as
 // in small systems, and a saved state goes on with the same bits.
+#include <cmath>
 #include <fmt/core.h>
 
-#include <cmath>
+#include <cdot/snapshot.hpp>
 
-#include "runtime/snapshot.hpp"
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {

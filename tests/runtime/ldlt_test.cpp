@@ -1,13 +1,12 @@
 // The sparse block LDL^T against dense solves of Eigen, on K = J J^T of random joints between
 // random bodies.
-#include "runtime/ldlt.hpp"
-
-#include <fmt/core.h>
-#include <gtest/gtest.h>
+#include "runtime/direct/ldlt.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <fmt/core.h>
+#include <gtest/gtest.h>
 #include <random>
 
 namespace cdot::test {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/world.hpp"
+#include <cdot/world.hpp>
 
 namespace cdot::test {
 

@@ -1,11 +1,9 @@
 // A pack does lane by lane what its scalar does, to the bit.
-#include "runtime/pack.hpp"
-
 #include <gtest/gtest.h>
-
 #include <limits>
 
-#include "generated/planar/registry.hpp"
+#include <cdot/pack.hpp>
+#include <cdot/planar/registry.hpp>
 
 namespace cdot {
 namespace {

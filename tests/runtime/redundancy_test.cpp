@@ -1,7 +1,6 @@
 // Mechanisms with more rows than their motion needs: the surplus is counted, dropped at every step
 // alike, and what is left moves as if it had never been there.
 #include <fmt/core.h>
-
 #include <set>
 
 #include "tests/runtime/mechanisms.hpp"

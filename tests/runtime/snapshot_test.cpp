@@ -1,8 +1,8 @@
 // A run that goes on from a snapshot has the same bits as one that was never interrupted, in another World, after
 // another history, by every solver, integrator, drift correction, space and precision, with breaking and sleeping.
-#include "runtime/snapshot.hpp"
-
 #include <fmt/format.h>
+
+#include <cdot/snapshot.hpp>
 
 #include "tests/methods.hpp"
 #include "tests/runtime/spatial_support.hpp"

@@ -2,9 +2,10 @@
 // conserved.
 #include <fmt/core.h>
 
-#include "runtime/methods.hpp"
-#include "runtime/rotation.hpp"
-#include "runtime/world_state.hpp"
+#include <cdot/methods.hpp>
+#include <cdot/rotation.hpp>
+
+#include "runtime/state/world_state.hpp"
 #include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {

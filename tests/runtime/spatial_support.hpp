@@ -1,7 +1,8 @@
 // What tests of Worlds in space share.
 #pragma once
 
-#include "runtime/rotation.hpp"
+#include <cdot/rotation.hpp>
+
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {

@@ -1,14 +1,13 @@
 // Small worlds that several tests build.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
-#include "runtime/effects.hpp"
-#include "runtime/world.hpp"
+#include <cdot/effects.hpp>
+#include <cdot/world.hpp>
 
 namespace cdot::test {
 

@@ -1,13 +1,12 @@
 // The iterative solver sweeps along chains, from the tips to the roots, whatever order the joints were added in.
-#include "runtime/sweep_order.hpp"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
+#include "runtime/solve/sweep_order.hpp"
 
 #include <algorithm>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <random>
 
-#include "runtime/world.hpp"
+#include <cdot/world.hpp>
 
 namespace cdot::test {
 namespace {

@@ -1,8 +1,7 @@
 // What tension stiffens between bodies, in the linearly implicit step: beads on bars, where no body's own turning has a
 // part in it. Closed forms first, then what a heavy load does to a light chain at 1/60 s.
-#include <fmt/core.h>
-
 #include <cmath>
+#include <fmt/core.h>
 #include <utility>
 #include <vector>
 

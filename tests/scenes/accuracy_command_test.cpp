@@ -1,15 +1,14 @@
 // What `cdot-run accuracy` says, writes and refuses.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "runtime/run_accuracy.hpp"
-#include "runtime/run_output.hpp"
-#include "runtime/work_precision.hpp"
+#include "runtime/tool/accuracy/command.hpp"
+#include "runtime/tool/accuracy/work_precision.hpp"
+#include "runtime/tool/run/output.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

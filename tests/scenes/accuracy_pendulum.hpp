@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "runtime/accuracy_reference.hpp"
+#include "runtime/tool/accuracy/reference.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

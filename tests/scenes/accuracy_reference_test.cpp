@@ -1,17 +1,15 @@
 // The reference that `cdot-run accuracy` makes itself: how well its methods agree with each other and with closed
 // forms, and what it says where they do not.
-#include "runtime/accuracy_reference.hpp"
-
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <limits>
 #include <numbers>
 #include <tuple>
 
-#include "runtime/accuracy_compose.hpp"
+#include "runtime/tool/accuracy/compose.hpp"
+#include "runtime/tool/accuracy/reference.hpp"
 #include "tests/scenes/accuracy_pendulum.hpp"
 #include "tests/scenes/support.hpp"
 

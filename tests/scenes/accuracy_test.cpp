@@ -1,14 +1,13 @@
 // What accuracy costs in time, its parts: the frontier by hand-made numbers, errors by a closed form, sweeps that are
 // interrupted. What is said about it is in accuracy_command_test.cpp.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <cmath>
 #include <random>
 
-#include "runtime/accuracy_state.hpp"
-#include "runtime/accuracy_sweep.hpp"
-#include "runtime/run_output.hpp"
+#include "runtime/tool/accuracy/state.hpp"
+#include "runtime/tool/accuracy/sweep.hpp"
+#include "runtime/tool/run/output.hpp"
 #include "tests/methods.hpp"
 #include "tests/scenes/accuracy_pendulum.hpp"
 #include "tests/scenes/support.hpp"

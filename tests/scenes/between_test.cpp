@@ -1,12 +1,11 @@
 // States between the ends of the steps that a method chooses: as exact as the ends, on the constraints, and free of
 // consequences for the steps that follow.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "runtime/effects.hpp"
-#include "runtime/world.hpp"
+#include <cdot/effects.hpp>
+#include <cdot/world.hpp>
 
 namespace cdot::test {
 namespace {

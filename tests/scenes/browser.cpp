@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/run_output.hpp"
-#include "runtime/viewer.hpp"
+#include "runtime/tool/run/output.hpp"
+#include "runtime/tool/viewer/viewer.hpp"
 
 namespace cdot::test {
 namespace {

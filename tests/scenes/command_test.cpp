@@ -1,14 +1,13 @@
 // cdot-run as a person or a script meets it: help, exit status, files, JSON.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "runtime/run_output.hpp"
+#include "runtime/tool/run/output.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

@@ -1,12 +1,12 @@
 // Every problem with a known solution, at four steps that halve: the error halves too (the method
 // is of first order), and the finest run is as near to the reference as its step allows.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "runtime/methods.hpp"
+#include <cdot/methods.hpp>
+
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

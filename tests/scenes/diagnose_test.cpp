@@ -1,9 +1,8 @@
 // cdot-run diagnose, and the warnings of cdot-run simulate: what is said of methods that are wrong for a scene, and
 // that nothing is said of those that are right.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <fstream>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "tests/scenes/support.hpp"

@@ -1,11 +1,10 @@
 // cdot-run simulate when a step fails: where, what, the likely fix, exit status 1; what was written ends before it.
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-
 #include <fstream>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "runtime/run_state.hpp"
+#include "runtime/tool/run/state.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

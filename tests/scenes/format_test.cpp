@@ -1,8 +1,7 @@
 // What a scene file says is what the scene holds: units, frames, defaults, copies.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <cmath>
 #include <numbers>
 
 #include "tests/scenes/support.hpp"

@@ -1,9 +1,8 @@
 // Hard cases as `cdot-run simulate` sees them: reports, notes, refusals with their line, and single numbers that are
 // known closer than tests/hard_cases asks of every way. Steps as in the scene, mostly 1/60 s, unless said.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <cmath>
 
 #include "tests/scenes/support.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <numbers>
 
-#include "runtime/world.hpp"
+#include <cdot/world.hpp>
 
 namespace cdot::test {
 

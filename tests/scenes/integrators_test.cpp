@@ -1,12 +1,12 @@
 // Every integrator on every problem with a known solution: the error falls with the step as the method's order says,
 // rotations in space included, until it meets the reference's own.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <cdot/effects.hpp>
+#include <cdot/methods.hpp>
 
-#include "runtime/effects.hpp"
-#include "runtime/methods.hpp"
 #include "tests/scenes/heavy_load.hpp"
 #include "tests/scenes/support.hpp"
 

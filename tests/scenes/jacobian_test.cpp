@@ -1,13 +1,13 @@
 // cdot-run jacobian: the system's D against what is known of it by other routes.
-#include <gtest/gtest.h>
+#include "runtime/tool/commands/jacobian.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <gtest/gtest.h>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "runtime/run_jacobian.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

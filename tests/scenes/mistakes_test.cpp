@@ -1,7 +1,6 @@
 // Every mistake in broken/ is reported word for word as its .txt says, and no damaged file brings
 // the reader down.
 #include <gtest/gtest.h>
-
 #include <random>
 
 #include "tests/scenes/support.hpp"

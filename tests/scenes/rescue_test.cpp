@@ -1,11 +1,10 @@
 // Where a Runge-Kutta step has nothing to do with the motion, the linearly implicit step takes its place, and that is
 // counted: nothing explodes, nothing hangs.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "runtime/accuracy_run.hpp"
+#include "runtime/tool/run/trajectory.hpp"
 #include "tests/scenes/heavy_load.hpp"
 #include "tests/scenes/support.hpp"
 

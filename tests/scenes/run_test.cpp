@@ -1,8 +1,7 @@
 // Runs seen from inside: what is judged, what is warned of, what is projected, how frames are
 // picked.
-#include <gtest/gtest.h>
-
 #include <cmath>
+#include <gtest/gtest.h>
 
 #include "tests/scenes/support.hpp"
 

@@ -1,12 +1,12 @@
 // Mechanisms in space: the same motion as in the plane, a gyroscope, the lesson's three bodies, and
 // loops with more hinges than they need.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
+#include <cdot/rotation.hpp>
 
-#include "runtime/rotation.hpp"
-#include "runtime/run_jacobian.hpp"
+#include "runtime/tool/commands/jacobian.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

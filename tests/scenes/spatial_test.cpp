@@ -1,11 +1,10 @@
 // Scenes in space: against the elliptic functions, against the same mechanisms in the plane, and
 // how they are written.
+#include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "runtime/run_output.hpp"
+#include "runtime/tool/run/output.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

@@ -1,10 +1,10 @@
 // cdot-run simulate --save-state and --from-state: a run in two parts writes the rows of one in a single part.
+#include "runtime/tool/run/state.hpp"
+
 #include <fmt/format.h>
+#include <fstream>
 #include <gtest/gtest.h>
 
-#include <fstream>
-
-#include "runtime/run_state.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

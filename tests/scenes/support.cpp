@@ -1,18 +1,17 @@
 #include "tests/scenes/support.hpp"
 
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <sys/wait.h>
 
-#include "runtime/rotation.hpp"
+#include <cdot/rotation.hpp>
 
 namespace cdot::test {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/run_simulate.hpp"
+#include "runtime/tool/run/simulate.hpp"
 
 namespace cdot::test {
 

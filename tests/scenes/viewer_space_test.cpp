@@ -1,14 +1,14 @@
 // The page of a scene in space, in a real browser: bodies where the film has them, an orbiting
 // camera, the same controls as in the plane.
-#include "runtime/viewer_space.hpp"
-
 #include <algorithm>
 #include <cctype>
 #include <iterator>
 #include <sstream>
 
-#include "runtime/rotation.hpp"
-#include "runtime/viewer.hpp"
+#include <cdot/rotation.hpp>
+
+#include "runtime/tool/viewer/space.hpp"
+#include "runtime/tool/viewer/viewer.hpp"
 #include "tests/scenes/browser.hpp"
 
 namespace cdot::test {

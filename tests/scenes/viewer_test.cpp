@@ -1,14 +1,13 @@
 // The page runs in a real browser: its script draws, plays, scrubs and answers keys, without asking
 // the network for anything. The still is well-formed and shows what the scene holds.
-#include "runtime/viewer.hpp"
-
-#include <fmt/format.h>
+#include "runtime/tool/viewer/viewer.hpp"
 
 #include <cmath>
+#include <fmt/format.h>
 #include <numbers>
 
-#include "runtime/run_output.hpp"
-#include "runtime/viewer_marks.hpp"
+#include "runtime/tool/run/output.hpp"
+#include "runtime/tool/viewer/marks.hpp"
 #include "tests/scenes/browser.hpp"
 
 namespace cdot::test {

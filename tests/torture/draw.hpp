@@ -2,7 +2,7 @@
 // parameter may be is told by its kind and unit.
 #pragma once
 
-#include "runtime/scene.hpp"
+#include "runtime/tool/scene/scene.hpp"
 #include "tests/torture/random.hpp"
 
 namespace cdot::torture {

@@ -1,10 +1,10 @@
 #include "tests/torture/generate.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cdot/methods.hpp>
 
-#include "runtime/methods.hpp"
 #include "tests/torture/draw.hpp"
 #include "tests/torture/scene_text.hpp"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/scene.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::torture {
 

@@ -1,11 +1,10 @@
 #include "tests/torture/invariants.hpp"
 
 #include <fmt/format.h>
-
 #include <thread>
 
-#include "runtime/ldlt.hpp"
-#include "runtime/run_frame.hpp"
+#include "runtime/direct/ldlt.hpp"
+#include "runtime/tool/run/frame.hpp"
 #include "tests/torture/observer.hpp"
 #include "tests/torture/scene_text.hpp"
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-#include "runtime/scene.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::torture {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/jacobian.hpp"
+#include <cdot/jacobian.hpp>
 
 namespace cdot::torture {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "runtime/scene.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::torture {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "runtime/rotation.hpp"
-#include "runtime/world.hpp"
+#include <cdot/rotation.hpp>
+#include <cdot/world.hpp>
 
 namespace cdot::torture {
 

@@ -1,7 +1,7 @@
 // Every number of a scene, in turn, to be changed: f(double&).
 #pragma once
 
-#include "runtime/scene.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::torture {
 

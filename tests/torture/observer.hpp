@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "runtime/jacobian.hpp"
+#include <cdot/jacobian.hpp>
+
 #include "tests/methods.hpp"
 #include "tests/torture/invariants.hpp"
 #include "tests/torture/laws.hpp"

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "runtime/methods.hpp"
+#include <cdot/methods.hpp>
+
 #include "tests/torture/numbers.hpp"
 
 namespace cdot::torture {

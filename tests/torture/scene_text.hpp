@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "runtime/scene.hpp"
+#include "runtime/tool/scene/scene.hpp"
 
 namespace cdot::torture {
 

@@ -1,9 +1,8 @@
 #include "tests/torture/shrink.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <functional>
 
 #include "tests/torture/numbers.hpp"

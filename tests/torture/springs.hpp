@@ -6,8 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "runtime/world.hpp"
-#include "runtime/world_state.hpp"
+#include <cdot/world.hpp>
+
+#include "runtime/state/world_state.hpp"
 
 namespace cdot::torture {
 

@@ -1,10 +1,9 @@
 #include "tests/torture/tally.hpp"
 
 #include <fmt/format.h>
-
 #include <set>
 
-#include "runtime/methods.hpp"
+#include <cdot/methods.hpp>
 
 namespace cdot::torture {
 namespace {

@@ -1,13 +1,13 @@
 // Draws mechanisms until told to stop, judges each, shrinks and keeps those in which an invariant breaks.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
 
-#include "runtime/methods.hpp"
+#include <cdot/methods.hpp>
+
 #include "tests/torture/scene_text.hpp"
 #include "tests/torture/shrink.hpp"
 #include "tests/torture/tally.hpp"

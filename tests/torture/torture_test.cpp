@@ -1,9 +1,8 @@
 // The bounded torture: fixed seeds, every joint of both registries; scenes that once broke; and whether the torture
 // itself finds, shrinks and writes down what is made to break.
+#include <filesystem>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
-
-#include <filesystem>
 
 #include "tests/torture/scene_text.hpp"
 #include "tests/torture/shrink.hpp"

@@ -2,15 +2,15 @@
 // same islands. Prints a table of medians and ratios of this run.
 //
 //   ldlt_bench [--benchmark_filter=chain] [--benchmark_repetitions=9]
+#include <Eigen/SparseCholesky>
 #include <benchmark/benchmark.h>
 #include <fmt/core.h>
-
-#include <Eigen/SparseCholesky>
 #include <map>
 #include <memory>
 
-#include "runtime/jacobian.hpp"
-#include "runtime/world_state.hpp"
+#include <cdot/jacobian.hpp>
+
+#include "runtime/state/world_state.hpp"
 #include "tests/runtime/mechanisms.hpp"
 
 namespace cdot::test {

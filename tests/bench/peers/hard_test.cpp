@@ -1,11 +1,10 @@
 // That the page of hard cases is whole, and that what an engine makes of a case is not a mistake of its adapter.
 #include "tests/bench/peers/hard_test.hpp"
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <iterator>
 
 #include "tests/bench/peers/geometry.hpp"

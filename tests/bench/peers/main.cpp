@@ -1,11 +1,10 @@
 // cdot-peers: what accuracy costs in Cdot and in today's engines, in one run on one machine.
-#include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <fmt/format.h>
 #include <stdexcept>
 
 #include "tests/bench/peers/problem.hpp"

@@ -1,11 +1,10 @@
 // Errors and times of runs.
 #include "tests/bench/peers/measure.hpp"
 
-#include <time.h>
-
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <time.h>
 
 #include "tests/bench/peers/geometry.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/accuracy_frontier.hpp"
+#include "runtime/tool/accuracy/frontier.hpp"
 #include "tests/bench/peers/peer.hpp"
 
 namespace cdot::peers {

@@ -1,15 +1,15 @@
 // That every engine is asked the same question as Cdot, and answers it as well as the committed table says.
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "runtime/scene.hpp"
-#include "runtime/spatial.hpp"
+#include <cdot/spatial.hpp>
+
+#include "runtime/tool/scene/scene.hpp"
 #include "tests/bench/peers/geometry.hpp"
 #include "tests/bench/peers/measure.hpp"
 #include "tests/bench/peers/problem.hpp"

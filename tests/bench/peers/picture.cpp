@@ -1,7 +1,7 @@
 // The work-precision diagram of one problem: a colour and a marker per engine, every setting a dot.
 #include <fmt/format.h>
 
-#include "runtime/work_precision.hpp"
+#include "runtime/tool/accuracy/work_precision.hpp"
 #include "tests/bench/peers/report.hpp"
 
 namespace cdot::peers {

@@ -1,17 +1,17 @@
 // The table of problems, and the way from a scene to a problem that any engine can be asked.
 #include "tests/bench/peers/problem.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "runtime/scene.hpp"
-#include "runtime/spatial.hpp"
+#include <cdot/spatial.hpp>
+
+#include "runtime/tool/scene/scene.hpp"
 #include "tests/bench/peers/geometry.hpp"
 
 namespace cdot::peers {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "runtime/scene.hpp"
+#include "runtime/tool/scene/scene.hpp"
 #include "tests/bench/peers/peer.hpp"
 
 namespace cdot::peers {

@@ -1,10 +1,9 @@
 // Tables and data of a measurement.
 #include "tests/bench/peers/report.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>

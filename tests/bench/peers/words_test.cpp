@@ -1,8 +1,7 @@
 // That every word of the adapters does to every engine what it does to Cdot.
-#include <gtest/gtest.h>
-
 #include <cmath>
 #include <functional>
+#include <gtest/gtest.h>
 
 #include "tests/bench/peers/hard/mover.hpp"
 #include "tests/bench/peers/hard_test.hpp"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace dual {
 

@@ -6,7 +6,7 @@
 #include <cln/lfloat.h>
 #include <cln/real.h>
 
-#include "runtime/kernel.hpp"
+#include <cdot/kernel.hpp>
 
 namespace exact {
 

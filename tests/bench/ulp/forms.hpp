@@ -1,8 +1,9 @@
 // Algebraically equal forms of C that the generated kernels do not have, measured against the same truth.
 #pragma once
 
-#include "generated/planar/distance.hpp"
-#include "generated/spatial/six_dof.hpp"
+#include <cdot/planar/distance.hpp>
+#include <cdot/spatial/six_dof.hpp>
+
 #include "tests/bench/ulp/measured.hpp"
 
 namespace cdot::ulp {

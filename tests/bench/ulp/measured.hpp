@@ -7,7 +7,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "runtime/kernel_forms.hpp"
+#include <cdot/detail/kernel_forms.hpp>
+
 #include "tests/bench/ulp/function.hpp"
 #include "tests/kernels/any_block.hpp"
 

@@ -1,8 +1,7 @@
 #include "tests/bench/ulp/report.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace cdot::ulp {
 namespace {

@@ -2,7 +2,8 @@
 #include <cmath>
 #include <vector>
 
-#include "runtime/rotation.hpp"
+#include <cdot/rotation.hpp>
+
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::hard {

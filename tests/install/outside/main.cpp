@@ -2,9 +2,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "generated/planar/ellipse.hpp"
-#include "generated/planar/revolute.hpp"
-#include "runtime/world.hpp"
+#include <cdot/planar/ellipse.hpp>
+#include <cdot/planar/revolute.hpp>
+#include <cdot/world.hpp>
 
 int main() {
   static_assert(cdot::planar::ellipse::rows == 2 && cdot::planar::revolute::rows == 2);

@@ -1,6 +1,5 @@
 // Box2D 2.4: planar, single precision, sequential impulses and a pass over positions.
 #include <box2d/box2d.h>
-
 #include <map>
 #include <string>
 #include <utility>

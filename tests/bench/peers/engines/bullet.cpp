@@ -1,7 +1,6 @@
 // Bullet's rigid bodies: space, double precision, constraints at velocity level: by sweeps or by Dantzig's method.
 #include <BulletDynamics/MLCPSolvers/btDantzigSolver.h>
 #include <BulletDynamics/MLCPSolvers/btMLCPSolver.h>
-
 #include <cmath>
 #include <map>
 #include <string>

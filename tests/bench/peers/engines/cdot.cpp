@@ -1,15 +1,15 @@
 // Cdot itself, in the plane where the problem is planar; and, as an engine of its own, planar problems in space,
 // since the others that know only space have no choice.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 #include <string>
 
-#include "runtime/effects.hpp"
-#include "runtime/spatial.hpp"
-#include "runtime/world.hpp"
+#include <cdot/effects.hpp>
+#include <cdot/spatial.hpp>
+#include <cdot/world.hpp>
+
 #include "tests/bench/peers/geometry.hpp"
 
 namespace cdot::peers {

@@ -1,6 +1,5 @@
 // Chipmunk 7: planar, double precision, sequential impulses; joint errors are fed back into the velocities.
 #include <chipmunk/chipmunk.h>
-
 #include <cmath>
 #include <map>
 #include <string>

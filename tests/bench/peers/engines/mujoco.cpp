@@ -1,11 +1,10 @@
 // MuJoCo: space, double precision, minimal coordinates; loops are closed by soft equality constraints.
-#include <fmt/format.h>
-#include <mujoco/mujoco.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <fmt/format.h>
 #include <map>
+#include <mujoco/mujoco.h>
 #include <stdexcept>
 #include <string>
 #include <utility>

@@ -1,11 +1,10 @@
 // ODE: space, double precision, constraints at velocity level: by a direct factorisation (Step) or by sweeps
 // (QuickStep); joint errors are fed back.
-#include <ode/ode.h>
-
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
 #include <map>
+#include <ode/ode.h>
 #include <stdexcept>
 #include <string>
 

@@ -1,9 +1,8 @@
 // Simbody: space, double precision, minimal coordinates, integrators that control their error; loops are closed by
 // constraints that are projected.
 #include <Simbody.h>
-#include <fmt/format.h>
-
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 #include <string>
 #include <utility>

@@ -1,9 +1,8 @@
 // cdot-peers-hard: what Cdot and today's engines make of the hard cases, in one table.
-#include <fmt/format.h>
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <fstream>
+#include <sys/resource.h>
 
 #include "tests/bench/peers/hard/spoilt.hpp"
 #include "tests/bench/peers/hard/table.hpp"

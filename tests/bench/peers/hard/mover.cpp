@@ -1,14 +1,14 @@
 #include "tests/bench/peers/hard/mover.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <fmt/format.h>
 #include <limits>
 
-#include "runtime/spatial.hpp"
-#include "runtime/world_state.hpp"
+#include <cdot/spatial.hpp>
+
+#include "runtime/state/world_state.hpp"
 #include "tests/bench/peers/geometry.hpp"
 #include "tests/bench/peers/measure.hpp"
 #include "tests/bench/peers/problem.hpp"

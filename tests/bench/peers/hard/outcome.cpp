@@ -1,17 +1,16 @@
 #include "tests/bench/peers/hard/outcome.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <csignal>
+#include <cstring>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
-
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <csignal>
-#include <cstring>
 
 #include "tests/bench/peers/hard/spoilt.hpp"
 

@@ -1,9 +1,8 @@
 #include "tests/bench/peers/hard/table.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <map>
 
 namespace cdot::peers {

@@ -1,8 +1,7 @@
 // cdot-peers-reference: makes references/*.json, or checks them. A reference stands if both routes agree.
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cstring>
+#include <fmt/format.h>
 #include <fstream>
 #include <stdexcept>
 

@@ -1,0 +1,110 @@
+#include "derive/check/check.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "derive/check/parts.hpp"
+
+namespace cdot::derive {
+namespace {
+
+void take_over(const Diagnostics& diagnostics, Findings& findings) {
+  for (const Diagnostic& d : diagnostics.list) {
+    const bool error = d.severity == Severity::error;
+    findings.push_back(
+        {error ? Level::error : Level::warning, error ? "unreadable" : "reader", d.where, d.also, d.message, d.fix});
+  }
+}
+
+std::string kind_of(LawId id) {
+  switch (id) {
+    case LawId::momentum: return "momentum";
+    case LawId::rank: return "dependent";
+    default: return "law";
+  }
+}
+
+// What a broken law says; a law about the derivation itself is named, for it is no fault of the
+// spec.
+void take_over(const Proof& proof, Span where, Findings& findings) {
+  for (const Law& law : proof.laws) {
+    if (law.verdict != Verdict::fails && law.verdict != Verdict::undecided) continue;
+    const std::string kind = kind_of(law.id);
+    Finding finding{Level::error,
+                    kind,
+                    law.row != nullptr ? law.row->where : where,
+                    law.parts,
+                    kind == "law" ? fmt::format("{}: {}", name_of(law.id), law.text) : law.text,
+                    law.fix};
+    if (!finding.also.empty()) {
+      finding.where = finding.also.front();
+      finding.also.erase(finding.also.begin());
+    }
+    findings.push_back(std::move(finding));
+  }
+}
+
+}  // namespace
+
+Span place_of(const Block& coordinate, const Joint& joint) {
+  for (const Coordinate& c : joint.coordinates) {
+    if (c.name == coordinate.name) return c.where;
+  }
+  return {};
+}
+
+bool CheckReport::clean() const {
+  return std::all_of(findings.begin(), findings.end(), [](const Finding& f) { return f.level == Level::note; });
+}
+
+CheckReport check(const ReadResult& read) {
+  CheckReport report;
+  take_over(read.diagnostics, report.findings);
+  report.readable = read.joint.has_value();
+  if (!report.readable) return report;
+  const Joint& joint = *read.joint;
+  try {
+    const Subject subject = subject_of(joint);
+    report.proofs.push_back({"", prove(joint, subject.block)});
+    take_over(report.proofs.back().proof, {}, report.findings);
+    for (const Block& coordinate : subject.coordinates) {
+      report.proofs.push_back({coordinate.name, prove(joint, coordinate)});
+      take_over(report.proofs.back().proof, place_of(coordinate, joint), report.findings);
+    }
+    check_rows(subject, report.findings);
+    check_undefined(subject, report.findings);
+    check_mass(subject, report.findings);
+  } catch (const NotLinear& e) {
+    report.findings.push_back({Level::error,
+                               "linear",
+                               joint.rows.front().where,
+                               {},
+                               e.what(),
+                               "a velocity row is a sum of velocities times what does not contain them"});
+  } catch (const NumberTooLarge& e) {
+    report.findings.push_back({Level::error, "number", joint.rows.front().where, {}, e.what(), ""});
+  }
+  std::stable_sort(report.findings.begin(), report.findings.end(), [](const Finding& a, const Finding& b) {
+    if (a.where.begin != b.where.begin) return a.where.begin < b.where.begin;
+    return a.level > b.level;
+  });
+  return report;
+}
+
+std::string_view name_of(Level level) {
+  switch (level) {
+    case Level::note: return "note";
+    case Level::warning: return "warning";
+    case Level::error: return "error";
+  }
+  return "";
+}
+
+// As the reader's messages; the level is ours, since a reader has no notes.
+std::string render(const SourceFile& file, const Finding& f) {
+  std::string text = render(file, Diagnostic{Severity::warning, f.where, f.also, f.message, f.fix});
+  const std::string said = ": warning: ";
+  return text.replace(text.find(said, file.path.size()), said.size(), fmt::format(": {}: ", name_of(f.level)));
+}
+
+}  // namespace cdot::derive

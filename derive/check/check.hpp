@@ -1,0 +1,44 @@
+// Everything known to be wrong or risky about a spec, before any code exists.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "derive/language/read.hpp"
+#include "derive/proof/prove.hpp"
+
+namespace cdot::derive {
+
+enum class Level {
+  note,     // what the author may want to know: where K is singular, what the kernel does at 1/0
+  warning,  // likely a mistake
+  error     // no kernel should be made of this
+};
+
+struct Finding {
+  Level level = Level::note;
+  std::string kind;  // one word per kind of finding, for programs: "momentum", "vanishing", "singular", ...
+  Span where;
+  std::vector<Span> also;
+  std::string message, fix;
+};
+
+struct CheckReport {
+  bool readable = true;
+  std::vector<Finding> findings;  // in the order of the text; errors first where they stand at one place
+  // The laws of the joint (name "") and of each coordinate.
+  struct Proved {
+    std::string name;
+    Proof proof;
+  };
+  std::vector<Proved> proofs;
+
+  bool clean() const;  // nothing but notes
+};
+
+CheckReport check(const ReadResult& read);
+
+std::string_view name_of(Level level);
+std::string render(const SourceFile& file, const Finding& finding);
+
+}  // namespace cdot::derive

@@ -1,0 +1,64 @@
+#include "derive/check/mass_words.hpp"
+
+#include <algorithm>
+
+#include "derive/syntax/source.hpp"
+
+namespace cdot::derive {
+namespace {
+
+std::string who(const std::set<std::string>& bodies, std::string_view last) {
+  return listed(std::vector<std::string>(bodies.begin(), bodies.end()), last);
+}
+
+std::string abilities(const Way& way, std::string_view last, std::string_view between) {
+  std::string s;
+  if (!way.move.empty()) s += who(way.move, last) + " can move";
+  if (!way.move.empty() && !way.turn.empty()) s += between;
+  if (!way.turn.empty()) s += who(way.turn, last) + " can turn";
+  return s;
+}
+
+}  // namespace
+
+std::string where_all_vanish(const std::vector<std::vector<std::string>>& factors) {
+  if (factors.empty()) return "at every pose";
+  std::vector<std::set<std::string>> alternatives;
+  std::size_t without_words = 0;
+  for (const std::vector<std::string>& any : factors) {
+    if (any.empty()) ++without_words;
+    if (!any.empty()) alternatives.emplace_back(any.begin(), any.end());
+  }
+  if (alternatives.empty()) return "at some poses, perhaps: no words were found for where";
+  std::sort(alternatives.begin(), alternatives.end());
+  alternatives.erase(std::unique(alternatives.begin(), alternatives.end()), alternatives.end());
+  std::vector<std::string> conditions;
+  for (const auto& any : alternatives) {
+    const bool implied = std::any_of(alternatives.begin(), alternatives.end(), [&](const auto& other) {
+      return other != any && std::includes(any.begin(), any.end(), other.begin(), other.end());
+    });
+    if (implied) continue;
+    std::vector<std::string> zeros;
+    for (const std::string& factor : any) zeros.push_back(factor + " = 0");
+    const std::string condition = listed(zeros, " or ");
+    conditions.push_back(zeros.size() > 1 && factors.size() > 1 ? "(" + condition + ")" : condition);
+  }
+  return (without_words > 0 ? "only where " : "where ") + listed(conditions);
+}
+
+std::string in_words(const std::vector<Way>& ways) {
+  Way any;
+  bool single = true;
+  for (const Way& way : ways) {
+    single = single && way.move.size() <= 1 && way.turn.size() <= 1;
+    any.move.insert(way.move.begin(), way.move.end());
+    any.turn.insert(way.turn.begin(), way.turn.end());
+  }
+  const std::size_t all = std::max<std::size_t>(1, any.move.size()) * std::max<std::size_t>(1, any.turn.size());
+  if (single && ways.size() == all) return abilities(any, " or ", ", and ");
+  std::vector<std::string> parts;
+  for (const Way& way : ways) parts.push_back(abilities(way, " and ", " and "));
+  return listed(parts, ", or ");
+}
+
+}  // namespace cdot::derive

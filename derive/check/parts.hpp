@@ -1,0 +1,33 @@
+// The parts of a check, one question each.
+#pragma once
+
+#include "derive/check/check.hpp"
+#include "derive/numbers/numeric.hpp"
+
+namespace cdot::derive {
+
+// What a part looks at: the joint, what was derived from it, and random poses, some of them with C
+// = 0.
+struct Subject {
+  const Joint& joint;
+  Block block;
+  std::vector<Block> coordinates;
+  std::vector<Sample> anywhere, on_constraint;
+};
+Subject subject_of(const Joint& joint);
+
+// Moves the bodies of a sample to C = 0 (Gauss-Newton); false if that does not get there.
+bool project(const Joint& joint, const Block& block, Sample& sample);
+// The rows of J at a sample.
+std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block, const Sample& sample);
+
+// Where a coordinate stands.
+Span place_of(const Block& coordinate, const Joint& joint);
+
+using Findings = std::vector<Finding>;
+void check_rows(const Subject& subject,
+                Findings& findings);                               // vanishing, dependent, without bodies
+void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots, directions, angles
+void check_mass(const Subject& subject, Findings& findings);       // where K is singular
+
+}  // namespace cdot::derive

@@ -1,0 +1,116 @@
+// Where formulas are undefined, and what the kernel does there: the guards of runtime/include/cdot/kernel.hpp,
+// said in the spec's own names. What is undefined wherever C = 0 is an error.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "derive/check/parts.hpp"
+#include "derive/proof/words.hpp"
+
+namespace cdot::derive {
+namespace {
+
+constexpr double vanishing = 1e-6;
+
+class Undefined {
+ public:
+  Undefined(const Subject& subject, Findings& findings) : subject_(subject), findings_(findings) {}
+
+  void look_at(const Block& block) {
+    for (const ScalarRow& row : block.rows) {
+      name_ = row.name;
+      where_ = row.row != nullptr ? row.row->where : place_of(block, subject_.joint);
+      held_ = row.row != nullptr && row.kind != RowKind::velocity;
+      const Expr roots[] = {row.C, row.Cdot, row.gamma};
+      for (const Expr e : topological(roots)) look_at(e);
+    }
+  }
+
+ private:
+  std::string words(Expr e) const { return said(e, subject_.joint); }
+
+  void look_at(Expr e) {
+    if (e->kind == Kind::unit) return direction(e->args[0]);
+    if (e->kind == Kind::product) {
+      for (std::size_t i = 0; i < e->args.size(); ++i) {
+        if (e->exponents[i] < 0) divisor(e->args[i]);
+      }
+    }
+    if (e->kind == Kind::function) function(e);
+  }
+
+  // A length stands for its vector: |u|, u . u and the direction of u are one place.
+  void divisor(Expr e) {
+    if (e->kind == Kind::norm) return direction(e->args[0]);
+    if (e->kind == Kind::dot && e->args[0] == e->args[1]) return direction(e->args[0]);
+    if (!seen_.insert(&*e).second) return;
+    if (vanishes_on_constraint(e)) {
+      return add(Level::error, name_ + ": a division by " + words(e) + ", which is 0 wherever C = 0",
+                 "write the row without the division");
+    }
+    add(Level::note, name_ + ": where " + words(e) + " = 0 the kernel takes 0 for 1/(" + words(e) + ")");
+  }
+
+  void direction(Expr u) {
+    if (!seen_.insert(&*u).second) return;
+    const std::string name = words(u);
+    if (vanishes_on_constraint(u)) {
+      return add(Level::error,
+                 name_ + ": J is undefined wherever C = 0: " + name + " is zero there and has no direction",
+                 "two rows hold a vector at zero: write `" + vanishing_vector(u, subject_.joint) + "`");
+    }
+    add(Level::note, name_ + ": where " + name + " is zero it has no direction: the kernel takes " +
+                         (subject_.joint.dimension == 2 ? "(1, 0)" : "(1, 0, 0)") + " for unit(" + name +
+                         ") and 0 for 1/norm(" + name + ")");
+  }
+
+  void function(Expr e) {
+    if (!seen_.insert(&*e).second) return;
+    const std::string x = words(e->args[0]);
+    switch (e->fn) {
+      case Fn::sqrt: return add(Level::note, name_ + ": where " + x + " < 0 its root is not a number; no guard");
+      case Fn::log: return add(Level::note, name_ + ": where " + x + " <= 0 its log is no finite number; no guard");
+      case Fn::tan: return add(Level::note, name_ + ": tan(" + x + ") has poles at odd multiples of pi/2; no guard");
+      case Fn::abs:
+        return add(Level::note, name_ + ": at the corner " + x + " = 0 of abs the kernel takes the slope 0");
+      case Fn::atan2:
+        if (e->args[0]->kind == Kind::norm)
+          return add(Level::note, name_ + ": the angle " + words(e) + " in [0, pi] has a corner at both ends");
+        return add(Level::note, name_ + ": the angle " + words(e) + " jumps by 2 pi at pi, and where both " +
+                                    "arguments are 0 the kernel takes 0, also for its row of J");
+      default: return;
+    }
+  }
+
+  // At every pose with C = 0 that was found.
+  bool vanishes_on_constraint(Expr e) const {
+    if (!held_ || subject_.on_constraint.empty()) return false;
+    return std::all_of(subject_.on_constraint.begin(), subject_.on_constraint.end(), [&](const Sample& sample) {
+      Numbers numbers(world_values(subject_.joint, sample));
+      if (!e->vector) return std::fabs(numbers.scalar(e)) < vanishing;
+      const Triple<double> u = numbers.vector(e);
+      return std::hypot(u[0], u[1], u[2]) < vanishing;
+    });
+  }
+
+  void add(Level level, std::string message, std::string fix = {}) {
+    findings_.push_back({level, "undefined", where_, {}, std::move(message), std::move(fix)});
+  }
+
+  const Subject& subject_;
+  Findings& findings_;
+  std::set<const Node*> seen_;  // looked up only
+  std::string name_;
+  Span where_;
+  bool held_ = false;
+};
+
+}  // namespace
+
+void check_undefined(const Subject& subject, Findings& findings) {
+  Undefined undefined(subject, findings);
+  undefined.look_at(subject.block);
+  for (const Block& coordinate : subject.coordinates) undefined.look_at(coordinate);
+}
+
+}  // namespace cdot::derive

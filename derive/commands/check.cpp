@@ -1,0 +1,145 @@
+// `cdot check`: what is wrong or risky about specs, for people or as JSON.
+#include "derive/check/check.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "derive/commands/commands.hpp"
+#include "derive/derivation/specs_folder.hpp"
+#include "derive/language/operators.hpp"
+#include "derive/pipeline/process_pool.hpp"
+#include "derive/pipeline/serialise.hpp"
+
+namespace cdot::derive {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::vector<std::string> specs;
+  std::string specs_folder = "specs";
+  bool json = false;
+  int processes = usual_processes();
+};
+
+Json place(const SourceFile& file, Span span) {
+  return {{"line", file.line(span.begin)},
+          {"column", file.column(span.begin)},
+          {"text",
+           file.text.substr(static_cast<std::size_t>(span.begin), static_cast<std::size_t>(span.end - span.begin))}};
+}
+
+Json as_json(const SourceFile& file, const Finding& f) {
+  Json also = Json::array();
+  for (const Span& span : f.also) also.push_back(place(file, span));
+  return {{"level", name_of(f.level)}, {"kind", f.kind},       {"at", place(file, f.where)},
+          {"also", std::move(also)},   {"message", f.message}, {"fix", f.fix}};
+}
+
+Json as_json(const CheckReport::Proved& proved) {
+  Json laws = Json::array();
+  for (const Law& law : proved.proof.laws) {
+    laws.push_back({{"law", name_of(law.id)}, {"verdict", name_of(law.verdict)}, {"text", law.text}});
+  }
+  return {{"coordinate", proved.name}, {"laws", std::move(laws)}};
+}
+
+std::string status(const CheckReport& report) {
+  return !report.readable ? "unreadable" : report.clean() ? "clean" : "problems";
+}
+
+Json as_json(const SourceFile& file, const CheckReport& report) {
+  Json findings = Json::array(), proofs = Json::array();
+  for (const Finding& f : report.findings) findings.push_back(as_json(file, f));
+  for (const CheckReport::Proved& p : report.proofs) proofs.push_back(as_json(p));
+  return {{"spec", file.path},
+          {"status", status(report)},
+          {"findings", std::move(findings)},
+          {"proofs", std::move(proofs)}};
+}
+
+std::string counted(const CheckReport& report, Level level) {
+  const auto n =
+      std::count_if(report.findings.begin(), report.findings.end(), [&](const Finding& f) { return f.level == level; });
+  return n == 0 ? "" : fmt::format(", {} {}{}", n, name_of(level), n == 1 ? "" : "s");
+}
+
+std::string as_text(const SourceFile& file, const CheckReport& report) {
+  std::string text;
+  for (const Finding& f : report.findings) text += render(file, f);
+  std::size_t proved = 0, shown = 0, laws = 0;
+  for (const CheckReport::Proved& p : report.proofs) {
+    for (const Law& law : p.proof.laws) {
+      if (law.verdict == Verdict::does_not_apply) continue;
+      ++laws;
+      if (law.verdict == Verdict::holds) ++proved;
+      if (law.verdict == Verdict::shown) ++shown;
+    }
+  }
+  text += fmt::format("{}: {}", file.path, status(report));
+  if (report.readable) text += fmt::format(", {} of {} laws proved", proved, laws);
+  if (shown > 0) text += fmt::format(", {} shown at {} random points", shown, exact_points);
+  return text + counted(report, Level::error) + counted(report, Level::warning) + counted(report, Level::note) + "\n";
+}
+
+int run(const Options& options) {
+  const SpecsFolder folder(options.specs_folder);
+  std::vector<std::filesystem::path> paths;
+  for (const std::string& spec : options.specs) paths.push_back(folder.find(spec));
+  Json all = Json::array();
+  int exit_status = 0;
+  Tasks tasks;
+  for (const std::filesystem::path& path : paths) tasks.names.push_back(path.string());
+  tasks.run = [&](std::size_t i) {
+    const ReadResult read = folder.read(paths[i]);
+    const CheckReport report = check(read);
+    Parcel parcel;
+    parcel.put(!report.readable ? 2 : report.clean() ? 0 : 1);
+    parcel.put(options.json ? as_json(*read.file, report).dump(-1, ' ', false, Json::error_handler_t::replace)
+                            : as_text(*read.file, report));
+    return parcel.content();
+  };
+  tasks.take = [&](std::size_t i, const Answer& answer) {
+    if (!answer.failure.empty()) {
+      exit_status = 2;
+      return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
+    }
+    Unpacking parcel(answer.result);
+    exit_status = std::max(exit_status, parcel.number());
+    const std::string text = parcel.text();
+    if (options.json) {
+      all.push_back(Json::parse(text));
+    } else {
+      fmt::print("{}", text);
+    }
+  };
+  in_processes(tasks, options.processes);
+  if (options.json) fmt::print("{}\n", all.dump(2));
+  return exit_status;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, Command& selected) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command =
+      app.add_subcommand("check", "Everything known to be wrong or risky about a spec, before any code exists");
+  command->add_option("SPEC", options->specs, "Specs, by path or by name")->required();
+  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command->add_flag("--json", options->json,
+                    "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
+                    "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
+  add_processes_option(*command, options->processes);
+  command->footer(
+      "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where "
+      "the joint\n"
+      "is singular or undefined and what the kernel does there.\n"
+      "Exit status: 0 nothing but notes; 1 problems; 2 a spec cannot be read.\n\n"
+      "Operators\n" +
+      operators_help());
+  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace cdot::derive

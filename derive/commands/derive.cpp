@@ -1,0 +1,218 @@
+// `cdot derive`: specs to generated/, proved first, written whole or not at all; `--check` only compares.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "derive/commands/commands.hpp"
+#include "derive/pipeline/pipeline.hpp"
+#include "derive/pipeline/process_pool.hpp"
+
+namespace cdot::derive {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> specs;
+  std::string specs_folder = "specs", output = "generated";
+  bool check = false, fresh = false;
+  int processes = usual_processes();
+};
+
+std::string content_of(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::ostringstream all;
+  all << in.rdbuf();
+  return all.str();
+}
+
+// The rows of all, each once: two published derivations may be about the same.
+std::vector<LedgerRow> without_repetition(const std::vector<LedgerRow>& all) {
+  std::vector<LedgerRow> rows;
+  for (const LedgerRow& row : all) {
+    if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(row);
+  }
+  return rows;
+}
+
+// The dear ones first, so that none is left over at the end: those without a kernel yet, then by its size.
+std::vector<std::size_t> dearest_first(const std::vector<fs::path>& paths, const fs::path& output) {
+  std::vector<std::pair<std::uintmax_t, std::size_t>> sized;
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    std::error_code missing;  // then the size is the greatest there is
+    const fs::path space = paths[i].parent_path().filename();
+    sized.emplace_back(fs::file_size(output / space / (paths[i].stem().string() + ".hpp"), missing), i);
+  }
+  std::stable_sort(sized.begin(), sized.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::size_t> order;
+  for (const auto& [size, i] : sized) order.push_back(i);
+  return order;
+}
+
+// The files of all specs, or none if there is anything wrong with any of them, which is said here.
+std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsFolder& folder, const Options& options) {
+  const Memory memory(usual_memory());
+  const std::string program = identity_of_program();
+  std::vector<GeneratedJoint> joints;
+  std::vector<LedgerRow> hand_costs;
+  std::size_t remembered = 0;
+  Tasks tasks;
+  for (const fs::path& path : paths) tasks.names.push_back(path.string());
+  tasks.order = dearest_first(paths, options.output);
+  tasks.run = [&](std::size_t i) { return packed(derive_spec(paths[i], folder, memory, program, options.fresh)); };
+  tasks.take = [&](std::size_t i, const Answer& answer) {
+    if (!answer.failure.empty()) return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
+    const Outcome outcome = unpacked_outcome(answer.result);
+    fmt::print(stderr, "{}", outcome.complaints);
+    fmt::print("{}", outcome.said);
+    if (!outcome.proved) return;
+    remembered += outcome.remembered ? 1 : 0;
+    joints.push_back(outcome.joint);
+    hand_costs.insert(hand_costs.end(), outcome.hand_costs.begin(), outcome.hand_costs.end());
+  };
+  in_processes(tasks, options.processes);
+  memory.trim();
+  if (remembered > 0) {
+    fmt::print(stderr, "{} of {} specs are as they were when they were proved before (--fresh: prove all again)\n",
+               remembered, paths.size());
+  }
+  if (joints.size() < paths.size()) return std::nullopt;
+  return collect(joints, without_repetition(hand_costs));
+}
+
+// What stands below `root` and is ours: everything that `cdot derive` could have written.
+Files present(const fs::path& root) {
+  Files files;
+  if (fs::exists(root / "ledger.csv")) files["ledger.csv"] = content_of(root / "ledger.csv");
+  for (const char* space : {"planar", "spatial"}) {
+    std::error_code none;
+    for (const fs::directory_entry& entry : fs::directory_iterator(root / space, none)) {
+      files[std::string(space) + "/" + entry.path().filename().string()] = content_of(entry.path());
+    }
+  }
+  return files;
+}
+
+// Through a temporary file, so that nobody ever reads half of one; untouched if it is right already.
+void write_file(const fs::path& path, const std::string& content) {
+  fs::create_directories(path.parent_path());
+  fs::path temporary = path;
+  temporary += ".new";
+  {
+    std::ofstream out(temporary, std::ios::binary);
+    out << content;
+    if (!out.flush()) throw std::runtime_error(fmt::format("cannot write {}", temporary.string()));
+  }
+  fs::rename(temporary, path);
+}
+
+// The first line in which two texts differ, for a person to see what changed.
+std::string first_difference(const std::string& old_text, const std::string& new_text) {
+  std::istringstream a(old_text), b(new_text);
+  std::string left, right;
+  for (int line = 1;; ++line) {
+    const bool more_a = static_cast<bool>(std::getline(a, left));
+    const bool more_b = static_cast<bool>(std::getline(b, right));
+    if (!more_a && !more_b) return "";
+    if (!more_a) left = "(end)";
+    if (!more_b) right = "(end)";
+    if (left != right) return fmt::format("    line {}\n    - {}\n    + {}\n", line, left, right);
+  }
+}
+
+int compare(const Files& wanted, const fs::path& root, const std::string& command) {
+  const Files found = present(root);
+  int differences = 0;
+  for (const auto& [name, content] : wanted) {
+    const auto at = found.find(name);
+    if (at != found.end() && at->second == content) continue;
+    ++differences;
+    fmt::print("  {}: {}\n{}", (root / name).string(), at == found.end() ? "missing" : "differs",
+               at == found.end() ? "" : first_difference(at->second, content));
+  }
+  for (const auto& [name, content] : found) {
+    if (wanted.contains(name)) continue;
+    ++differences;
+    fmt::print("  {}: no spec makes it\n", (root / name).string());
+  }
+  if (differences == 0) {
+    fmt::print("{} is current: {} files\n", root.string(), wanted.size());
+    return 0;
+  }
+  fmt::print("{} is not current: {} of {} files. To mend it: {}\n", root.string(), differences, wanted.size(), command);
+  return 1;
+}
+
+void write(const Files& wanted, const fs::path& root) {
+  const Files found = present(root);
+  int written = 0, removed = 0;
+  for (const auto& [name, content] : wanted) {
+    const auto at = found.find(name);
+    if (at != found.end() && at->second == content) continue;
+    write_file(root / name, content);
+    ++written;
+  }
+  for (const auto& [name, content] : found) {
+    if (!wanted.contains(name)) fs::remove(root / name), ++removed;
+  }
+  fmt::print("{}: {} files, {} written, {} removed\n", root.string(), wanted.size(), written, removed);
+}
+
+// What writes what `options` ask to check.
+std::string command_line(const Options& options) {
+  const Options usual;
+  std::string command = "cdot derive";
+  for (const std::string& spec : options.specs) command += " " + spec;
+  if (options.specs_folder != usual.specs_folder) command += " --specs " + options.specs_folder;
+  if (options.output != usual.output) command += " -o " + options.output;
+  return command;
+}
+
+int run(const Options& options) {
+  const SpecsFolder folder(options.specs_folder);
+  std::vector<fs::path> paths;
+  for (const std::string& spec : options.specs) paths.push_back(folder.find(spec));
+  if (paths.empty()) paths = folder.all();
+  const std::optional<Files> wanted = derive_all(paths, folder, options);
+  if (!wanted) {
+    fmt::print(stderr, "nothing was written\n");
+    return 2;
+  }
+  if (options.check) return compare(*wanted, options.output, command_line(options));
+  write(*wanted, options.output);
+  return 0;
+}
+
+}  // namespace
+
+void add_derive_command(CLI::App& app, Command& selected) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "derive", "Prove every spec and write its kernel, the registry and the ledger of operation counts");
+  command->add_option("SPEC", options->specs,
+                      "Specs, by path or by name; all of the specs folder if none is given. With some given, DIR "
+                      "holds\njust these afterwards, so it should not be the folder of all");
+  command->add_option("-o,--output", options->output, "Folder to write to")->type_name("DIR")->capture_default_str();
+  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command->add_flag("--check", options->check,
+                    "Write nothing; exit 1 unless DIR has exactly the files that would be written");
+  command->add_flag("--fresh", options->fresh, "Prove everything anew, remembered or not");
+  add_processes_option(*command, options->processes);
+  command->footer(
+      "A spec that was proved is remembered until it, what it includes, the .hand beside it, or this program "
+      "changes,\nin $CDOT_CACHE, else $XDG_CACHE_HOME/cdot, else ~/.cache/cdot, a folder that may be deleted at "
+      "any time.");
+  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+}
+
+void add_processes_option(CLI::App& command, int& processes) {
+  command.add_option("-j,--jobs", processes, "Specs at once, each in a process of its own")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,188 @@
+// `cdot diff`: published derivations against the generated ones.
+#include "derive/diff/diff.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fmt/format.h>
+#include <iostream>
+
+#include "derive/commands/commands.hpp"
+#include "derive/pipeline/process_pool.hpp"
+#include "derive/pipeline/serialise.hpp"
+
+namespace cdot::derive {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::vector<std::string> what;
+  std::string specs_folder = "specs";
+  bool json = false, all = false;
+  int processes = usual_processes();
+};
+
+// A .hand file and the spec that it is about: the .joint of the same name beside it, or in the
+// specs folder.
+struct Pairing {
+  fs::path hand, spec;
+  std::string entry;  // the only one that is asked for; empty: all
+};
+
+fs::path hand_beside(fs::path spec) { return spec.replace_extension(".hand"); }
+
+Pairing pair_of_hand(const fs::path& hand, const SpecsFolder& folder) {
+  if (!fs::exists(hand)) throw NoSuchSpec(fmt::format("no such file: {}", hand.string()));
+  fs::path spec = hand;
+  spec.replace_extension(".joint");
+  if (!fs::exists(spec)) spec = folder.find(hand.stem().string());
+  return {hand, spec, ""};
+}
+
+Pairing pair_of_spec(const std::string& word, const SpecsFolder& folder) {
+  const fs::path spec = folder.find(word), hand = hand_beside(spec);
+  if (fs::exists(hand)) return {hand, spec, ""};
+  throw NoSuchSpec(fmt::format("no hand derivation beside {}: write {} (the language is in specs/README.md)",
+                               spec.string(), hand.string()));
+}
+
+std::vector<Pairing> all_pairs(const SpecsFolder& folder) {
+  std::vector<Pairing> pairs;
+  for (const fs::path& spec : folder.all()) {
+    if (fs::exists(hand_beside(spec))) pairs.push_back({hand_beside(spec), spec, ""});
+  }
+  return pairs;
+}
+
+// LIN-4, JO-12, L-n1: an entry of some .hand file; there may be one of that name beside several
+// joints.
+bool is_id(const std::string& word) {
+  return !word.empty() && word[0] >= 'A' && word[0] <= 'Z' && word.find('-') != word.npos;
+}
+
+std::vector<Pairing> pairs_with_entry(const std::string& id, const SpecsFolder& folder) {
+  std::vector<Pairing> pairs;
+  std::vector<std::string> ids;
+  for (Pairing& pair : all_pairs(folder)) {
+    bool here = false;
+    for (const HandEntryAst& entry : read_hand(load_source(pair.hand)).entries) {
+      ids.push_back(entry.id);
+      here = here || entry.id == id;
+    }
+    if (here) pairs.push_back({pair.hand, pair.spec, id});
+  }
+  if (!pairs.empty()) return pairs;
+  const std::string near = nearest(id, ids);
+  throw NoSuchSpec(fmt::format("no entry `{}` in any .hand file of the specs{}", id,
+                               near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
+}
+
+std::vector<Pairing> pairs_of(const std::vector<std::string>& words, const SpecsFolder& folder) {
+  if (words.empty()) return all_pairs(folder);
+  std::vector<Pairing> pairs;
+  for (const std::string& word : words) {
+    if (fs::path(word).extension() == ".hand") {
+      pairs.push_back(pair_of_hand(word, folder));
+    } else if (is_id(word) && !fs::exists(word)) {
+      for (Pairing& pair : pairs_with_entry(word, folder)) pairs.push_back(std::move(pair));
+    } else {
+      pairs.push_back(pair_of_spec(word, folder));
+    }
+  }
+  return pairs;
+}
+
+// What one .hand file comes to.
+struct Verdict {
+  std::string complaints, text;  // for stderr and stdout
+  bool unreadable = false;
+  int counts[4] = {};  // by Agreement
+
+  std::string packed() const {
+    Parcel parcel;
+    parcel.put(complaints);
+    parcel.put(text);
+    parcel.put(unreadable ? 1 : 0);
+    for (const int count : counts) parcel.put(count);
+    return parcel.content();
+  }
+  static Verdict unpacked(const std::string& content) {
+    Unpacking parcel(content);
+    Verdict verdict{parcel.text(), parcel.text(), parcel.number() == 1};
+    for (int& count : verdict.counts) count = parcel.number();
+    return verdict;
+  }
+};
+
+Verdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Options& options) {
+  DiffReport report = judge(pair.hand, pair.spec, folder);
+  if (!pair.entry.empty()) {
+    std::erase_if(report.judgements, [&](const Judgement& j) { return j.id != pair.entry; });
+  }
+  const bool everything = options.all || !options.what.empty();
+  Verdict verdict{render(*report.file, report.diagnostics),
+                  options.json ? to_json(report) : to_text(report, everything), report.diagnostics.has_errors()};
+  for (const Judgement& j : report.judgements) ++verdict.counts[static_cast<int>(j.agreement)];
+  return verdict;
+}
+
+int run(const Options& options) {
+  const SpecsFolder folder(options.specs_folder);
+  const std::vector<Pairing> pairs = pairs_of(options.what, folder);
+  std::vector<std::string> entries;
+  bool unreadable = false;
+  int counts[4] = {};
+  Tasks tasks;
+  for (const Pairing& pair : pairs) tasks.names.push_back(pair.hand.string());
+  tasks.run = [&](std::size_t i) { return verdict_on(pairs[i], folder, options).packed(); };
+  tasks.take = [&](std::size_t i, const Answer& answer) {
+    if (!answer.failure.empty()) {
+      unreadable = true;
+      return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
+    }
+    const Verdict verdict = Verdict::unpacked(answer.result);
+    unreadable = unreadable || verdict.unreadable;
+    for (std::size_t k = 0; k < 4; ++k) counts[k] += verdict.counts[k];
+    std::cerr << verdict.complaints;
+    if (options.json) {
+      entries.push_back(verdict.text);
+    } else {
+      std::cout << verdict.text << std::flush;
+    }
+  };
+  in_processes(tasks, options.processes);
+  if (options.json) {
+    std::cout << joined_json(entries);
+  } else {
+    fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", counts[0],
+               counts[1], counts[2], counts[3]);
+  }
+  return unreadable ? 2 : counts[2] > 0 ? 1 : 0;
+}
+
+}  // namespace
+
+void add_diff_command(CLI::App& app, Command& selected) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("diff",
+                                         "Compare hand derivations with the generated one: every "
+                                         "entry, and what is missing, flipped, doubled or\n"
+                                         "on the wrong body");
+  command->add_option("SPEC", options->what,
+                      "Specs by name or path (their .hand beside them), .hand files, or ids of "
+                      "entries (LIN-4); all if none\n"
+                      "is given");
+  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command->add_flag("--all", options->all, "Also entries that agree (always shown for named specs)");
+  command->add_flag("--json", options->json,
+                    "An array with, per entry: id, joint, title, source, verdict (agrees, "
+                    "agrees-if, differs, listed),\n"
+                    "condition (of agrees-if; the reason of listed), remarks, and items: what, "
+                    "row, column, kind,\n"
+                    "generated, hand, difference, sentence, confirmed (by which numbers)");
+  add_processes_option(*command, options->processes);
+  command->footer("Exit status: 0 nothing differs; 1 something does; 2 bad usage or input.");
+  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,104 @@
+// `cdot explain`: the derivation of one spec, for a person as text, HTML or LaTeX, for a program as
+// JSON.
+#include "derive/explain/explain.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fstream>
+#include <iostream>
+#include <memory>
+
+#include "derive/commands/commands.hpp"
+#include "derive/derivation/specs_folder.hpp"
+
+namespace cdot::derive {
+namespace {
+
+struct Options {
+  std::string spec, format = "text", form = "global", output, specs_folder = "specs";
+  bool json = false;
+};
+
+constexpr const char* json_schema =
+    "With --json, one object (names are those of the spec; `null` where nothing applies):\n"
+    "  format         1, the version of this schema\n"
+    "  joint, title, source, dimension, bodies\n"
+    "  columns        of every J: v_a_x, v_a_y, w_a, v_b_x, ...; in space v_a_z, w_a_x, ... too\n"
+    "  symbols        name -> {kind, meaning, unit, frame, body, from, unit_length}; kind is position, orientation,\n"
+    "                 velocity, mass, parameter, derived, time or constant; `from` gives a derived one from the pose "
+    "and\n"
+    "                 the parameters: r_pa_x = cos(theta_a)*pa_local_x - sin(theta_a)*pa_local_y;\n"
+    "                 unit_length: true for components of a vector of length 1\n"
+    "  frames         [{name, axes}]: right-handed triads among the parameters, in space\n"
+    "  intermediates  [{name, definition}], in order: each uses only what stands before it\n"
+    "  guards         [{where, kernel}]: where an entry is undefined and what a kernel does there\n"
+    "  rows           [{name, kind, text, unit}], kind is equality, inequality or velocity\n"
+    "  C, Cdot, C_t, gamma   one expression a row; C_t is dC/dt with the bodies at rest\n"
+    "  J, K           one array a row; K is square; \"0\" where nothing is\n"
+    "  coordinates    [{name, text, unit, C, Cdot, C_t, J, K, gamma}], with one row each\n"
+    "Expressions are infix text with + - * / ** and sqrt sin cos tan atan2 exp log abs sign, as sympy and\n"
+    "Python read them. A spec's name that Python reserves gets an underscore at its end.";
+
+Form form_named(const std::string& name) {
+  return name == "local" ? Form::local : name == "euler" ? Form::euler : Form::global;
+}
+
+std::string explanation(const Joint& joint, const Options& options) {
+  if (options.json) return explanation_json(joint).dump(2) + "\n";
+  const Explanation steps = explain(joint, form_named(options.form));
+  if (options.format == "html") return explanation_html(steps);
+  if (options.format == "latex") return explanation_latex(steps);
+  return explanation_text(steps);
+}
+
+int run(const Options& options) {
+  const SpecsFolder folder(options.specs_folder);
+  const ReadResult read = folder.read(folder.find(options.spec));
+  std::cerr << render(*read.file, read.diagnostics);
+  if (!read.joint) return 2;
+  if (read.joint->dimension == 2 && options.form != "global") {
+    fmt::print(stderr,
+               "cdot explain: --form is for spatial joints: in the plane w is one number, in every "
+               "form\n");
+    return 2;
+  }
+  const std::string text = explanation(*read.joint, options);
+  if (options.output.empty()) {
+    std::cout << text;
+    return std::cout.flush() ? 0 : 2;
+  }
+  std::ofstream out(options.output, std::ios::binary);
+  out << text;
+  if (out.flush()) return 0;
+  fmt::print(stderr, "cdot explain: cannot write {}\n", options.output);
+  return 2;
+}
+
+}  // namespace
+
+void add_explain_command(CLI::App& app, Command& selected) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand(
+      "explain", "The derivation of a spec, step by step: C, Cdot, J, K, gamma, and what was assumed");
+  command->add_option("SPEC", options->spec, "A spec, by path or by name")->required();
+  CLI::Option* format =
+      command->add_option("--format", options->format, "text; html: a page of its own; latex: an article")
+          ->check(CLI::IsMember({"text", "html", "latex"}))
+          ->capture_default_str();
+  CLI::Option* form =
+      command
+          ->add_option("--form", options->form,
+                       "Of velocity, in space: global: w in world axes; local: w' in the bodies' axes;\n"
+                       "euler: the rates of the Euler parameters. J is shown in that form too")
+          ->check(CLI::IsMember({"global", "local", "euler"}))
+          ->capture_default_str();
+  command->add_flag("--json", options->json, "Every entry as an expression for other programs (see below)")
+      ->excludes(format)
+      ->excludes(form);
+  command->add_option("-o,--output", options->output, "File to write instead of the terminal")->type_name("FILE");
+  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command->footer(json_schema);
+  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace cdot::derive

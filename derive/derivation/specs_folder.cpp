@@ -1,0 +1,62 @@
+#include "derive/derivation/specs_folder.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+#include "derive/derivation/free_coordinates.hpp"
+
+namespace cdot::derive {
+
+namespace fs = std::filesystem;
+
+SpecsFolder::SpecsFolder(fs::path folder) : folder_(std::move(folder)) {}
+
+std::vector<fs::path> SpecsFolder::all() const {
+  std::vector<fs::path> specs;
+  bool found = false;
+  for (const char* space : {"planar", "spatial"}) {
+    std::error_code failure;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_ / space, failure)) {
+      if (entry.path().extension() == ".joint") specs.push_back(entry.path());
+    }
+    found = found || !failure;
+  }
+  if (!found) {
+    throw NoSuchSpec(
+        fmt::format("no folder {0}/planar or {0}/spatial: run from the folder that holds specs/, "
+                    "or say --specs DIR",
+                    folder_.string()));
+  }
+  std::sort(specs.begin(), specs.end());
+  return specs;
+}
+
+fs::path SpecsFolder::find(const std::string& spec) const {
+  if (fs::exists(spec)) return spec;
+  std::vector<std::string> names;
+  for (const fs::path& known : all()) {
+    const std::string name = known.stem().string();
+    // `line`, or `spatial/line` where both spaces have one of that name; the planar one comes
+    // first.
+    if (name == spec || known.parent_path().filename().string() + "/" + name == spec) return known;
+    names.push_back(name);
+  }
+  if (spec.find('/') != std::string::npos) throw NoSuchSpec(fmt::format("no such file: {}", spec));
+  const std::string near = nearest(spec, names);
+  throw NoSuchSpec(fmt::format("no spec `{}`: neither that file nor {} exists{}", spec,
+                               (folder_ / "planar" / (spec + ".joint")).string(),
+                               near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
+}
+
+ReadResult SpecsFolder::read(const fs::path& spec, const ReadOptions& options) const {
+  const std::shared_ptr<const SourceFile> file = load_source(spec);
+  const fs::path space = folder_ / name_of_space(dimension_of(*file));
+  Library library;
+  if (fs::is_directory(space)) library = load_library(space);
+  library.merge(load_library(spec.has_parent_path() ? spec.parent_path() : fs::path(".")));
+  ReadResult result = read_joint(file, library, options);
+  if (result.joint) drop_held_coordinates(*result.joint);
+  return result;
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,35 @@
+// Where specs are found: how every command turns what the user typed into files.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "derive/language/read.hpp"
+
+namespace cdot::derive {
+
+// Raised for a spec that is not there; says what was tried and the likely fix.
+struct NoSuchSpec : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+class SpecsFolder {
+ public:
+  // `folder` holds planar/*.joint; relative to the current directory unless absolute.
+  explicit SpecsFolder(std::filesystem::path folder = "specs");
+
+  // A path, or the name of a joint of the folder: "line" is specs/planar/line.joint.
+  std::filesystem::path find(const std::string& spec) const;
+  // Every spec of the folder, by name.
+  std::vector<std::filesystem::path> all() const;
+
+  // Reads one spec; the specs beside it are what `include` finds. Diagnostics are in the result.
+  // What an include leaves free and another row holds is no coordinate of the joint.
+  ReadResult read(const std::filesystem::path& spec, const ReadOptions& options = {}) const;
+
+ private:
+  std::filesystem::path folder_;
+};
+
+}  // namespace cdot::derive

@@ -1,0 +1,298 @@
+#include "derive/diff/confirm.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include "derive/numbers/newton.hpp"
+
+namespace cdot::derive {
+namespace {
+
+Sample moved_along(const Joint& joint, Sample sample, const Motion& motion, double time, double amount) {
+  const std::size_t width = columns_per_body(joint.dimension);
+  for (std::size_t c = 0; c < motion.size(); ++c) {
+    sample.bodies[c / width].move(joint.dimension, c % width, amount * motion[c]);
+  }
+  const auto clock = sample.scalars.find("time");
+  if (clock != sample.scalars.end()) clock->second += amount * time;
+  return sample;
+}
+
+Sample with_velocities(const Joint& joint, Sample sample, const Motion& motion) {
+  const std::size_t width = columns_per_body(joint.dimension), linear = static_cast<std::size_t>(joint.dimension);
+  for (std::size_t c = 0; c < motion.size(); ++c) {
+    Sample::Body& body = sample.bodies[c / width];
+    const std::size_t k = c % width;
+    if (k < linear) body.v[k] = motion[c];
+    else body.w[joint.dimension == 2 ? 2 : k - linear] = motion[c];
+  }
+  return sample;
+}
+
+// A row of the inverse inertia of a body: one number in the plane, of a tensor in space.
+std::vector<double> inverse_inertia(const Joint& joint, const Sample& sample, std::size_t body, std::size_t row) {
+  const std::string name = "inv_I_" + joint.bodies[body];
+  if (joint.dimension == 2) return {sample.scalars.at(name)};
+  std::vector<double> numbers;
+  for (std::size_t k = 0; k < 3; ++k) {
+    numbers.push_back(sample.scalars.at(name + "_" + "xyz"[std::min(row, k)] + "xyz"[std::max(row, k)]));
+  }
+  return numbers;
+}
+
+std::string small(double error) { return error == 0 ? "0" : fmt::format("{:.0e}", error); }
+
+double inner(const Motion& a, const Motion& b) {
+  double total = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) total += a[i] * b[i];
+  return total;
+}
+
+Motion sum_of(const Motion& a, const Motion& b) {
+  Motion total = a;
+  for (std::size_t i = 0; i < b.size(); ++i) total[i] += b[i];
+  return total;
+}
+
+}  // namespace
+
+double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample, const Motion& motion, double time) {
+  if (row.kind == RowKind::velocity) {
+    const Motion rest(motion.size());
+    return values_at(joint, {row.Cdot}, with_velocities(joint, sample, motion))[0] -
+           values_at(joint, {row.Cdot}, with_velocities(joint, sample, rest))[0];
+  }
+  constexpr double step = 1e-6;
+  return (values_at(joint, {row.C}, moved_along(joint, sample, motion, time, step))[0] -
+          values_at(joint, {row.C}, moved_along(joint, sample, motion, time, -step))[0]) /
+         (2 * step);
+}
+
+Motion Confirm::gradient(const ScalarRow& row, const Sample& sample) const {
+  Motion J;
+  const std::size_t columns = sample.bodies.size() * columns_per_body(joint_.dimension);
+  for (std::size_t c = 0; c < columns; ++c) {
+    Motion along(columns);
+    along[c] = 1;
+    J.push_back(rate_along(joint_, row, sample, along, 0));
+  }
+  return J;
+}
+
+// J diag(E, A) or J diag(E, 2 G), body by body.
+Motion Confirm::in_form(const Motion& gradient, const Sample& sample) const {
+  if (form_ == Form::global) return gradient;
+  Motion columns;
+  for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
+    const double* J = &gradient[6 * b];
+    const EulerParameters<double>& e = sample.bodies[b].e;
+    const Triple<double> w = {J[3], J[4], J[5]};
+    columns.insert(columns.end(), J, J + 3);
+    if (form_ == Form::local) {
+      for (const Triple<double>& axis : axes_of(e)) columns.push_back(inner_product(w, axis));
+    } else {
+      for (const Triple<double>& g :
+           {Triple<double>{-e[1], -e[2], -e[3]}, {e[0], e[3], -e[2]}, {-e[3], e[0], e[1]}, {e[2], -e[1], e[0]}}) {
+        columns.push_back(2 * inner_product(w, g));
+      }
+    }
+  }
+  return columns;
+}
+
+Motion Confirm::velocity(const Sample& sample) const {
+  Motion v;
+  for (const Sample::Body& body : sample.bodies) {
+    for (std::size_t k = 0; k < columns_per_body(joint_.dimension); ++k)
+      v.push_back(body.velocity(joint_.dimension, k));
+  }
+  return v;
+}
+
+Motion Confirm::times_inverse_mass(const Sample& sample, const Motion& impulse) const {
+  const std::size_t width = columns_per_body(joint_.dimension), linear = static_cast<std::size_t>(joint_.dimension);
+  Motion change(impulse.size());
+  for (std::size_t c = 0; c < impulse.size(); ++c) {
+    const std::size_t body = c / width, k = c % width;
+    if (static_cast<int>(body) == immovable_) continue;
+    if (k < linear) {
+      change[c] = impulse[c] * sample.scalars.at("inv_m_" + joint_.bodies[body]);
+      continue;
+    }
+    const std::vector<double> row = inverse_inertia(joint_, sample, body, k - linear);
+    for (std::size_t j = 0; j < row.size(); ++j) change[c] += row[j] * impulse[body * width + linear + j];
+  }
+  return change;
+}
+
+// Body by body the impulse p with M^-1 p = change: the shortest such p, which is the only one.
+Motion Confirm::times_mass(const Sample& sample, const Motion& change) const {
+  Gradients inverse(change.size());
+  for (std::size_t c = 0; c < change.size(); ++c) {
+    Motion unit(change.size());
+    unit[c] = -1;
+    inverse[c] = times_inverse_mass(sample, unit);
+  }
+  return shortest_step(inverse, change);
+}
+
+std::string Confirm::worst(const std::string& how, const Poses& poses, const Measure& generated_error,
+                           const Measure& published_error) const {
+  double derived = 0, published = 0;
+  for (const Sample& sample : poses.samples()) {
+    derived = std::max(derived, std::abs(generated_error(sample)));
+    published = std::max(published, std::abs(published_error(sample)));
+  }
+  return fmt::format("{} at {} poses: generated off by {}, published by {:.2g}", how, poses.samples().size(),
+                     small(derived), published);
+}
+
+std::string Confirm::against(const Measure& measured, Expr generated, Expr published) const {
+  const auto error = [&](Expr e) {
+    return [&, e](const Sample& sample) {
+      const double truth = measured(sample);
+      return (value(e, sample) - truth) / (1 + std::abs(truth));
+    };
+  };
+  return worst("central differences of C", poses_, error(generated), error(published));
+}
+
+std::string Confirm::entry_of_J(const ScalarRow& row, double sign, std::size_t column, Expr generated,
+                                Expr published) const {
+  return against([&](const Sample& sample) { return sign * in_form(gradient(row, sample), sample)[column]; }, generated,
+                 published);
+}
+
+std::string Confirm::entry_of_K(const ScalarRow& row, const ScalarRow& other, double sign, Expr generated,
+                                Expr published) const {
+  const auto measured = [&](const Sample& sample) {
+    return sign * inner(gradient(row, sample), times_inverse_mass(sample, gradient(other, sample)));
+  };
+  return against(measured, generated, published);
+}
+
+std::string Confirm::rate(const ScalarRow& row, double sign, Expr generated, Expr published) const {
+  const auto measured = [&](const Sample& sample) {
+    return sign * rate_along(joint_, row, sample, velocity(sample), 1);
+  };
+  return against(measured, generated, published);
+}
+
+std::string Confirm::value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated, Expr published) const {
+  const bool coordinate = row.row == nullptr;
+  const Expr zero = published->pool->number(0);
+  if (!coordinate && !fulfilled.empty() && !fulfilled.equal(published, zero)) {
+    return worst(
+        "C where the constraint holds", fulfilled, [&](const Sample& sample) { return value(generated, sample); },
+        [&](const Sample& sample) { return value(published, sample); });
+  }
+  const std::string how = coordinate ? "the coordinate" : "C, which is zero in the same places,";
+  return worst(
+      how, poses_, [](const Sample&) { return 0.; },
+      [&](const Sample& sample) { return value(published, sample) - value(generated, sample); });
+}
+
+std::string Confirm::claim(Expr left, Expr right) const {
+  double most = 0;
+  for (const Sample& sample : poses_.samples())
+    most = std::max(most, std::abs(value(left, sample) - value(right, sample)));
+  const Sample& first = poses_.samples().front();
+  return fmt::format(
+      "both sides at {} poses: they differ by up to {:.2g}; at the first {:.4g} stands where "
+      "{:.4g} belongs",
+      poses_.samples().size(), most, value(left, first), value(right, first));
+}
+
+std::string Confirm::reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const {
+  double off = 0;
+  for (const Sample& sample : poses_.samples()) {
+    const double truth = sign * rate_along(joint_, row, sample, velocity(sample), 1);
+    off = std::max(off, std::abs(value(read, sample) - truth) / (1 + std::abs(truth)));
+  }
+  return fmt::format("no value as published; {} it is off by {} from central differences of C at {} poses", words,
+                     small(off), poses_.samples().size());
+}
+
+std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const {
+  double off = 0;
+  for (const Sample& sample : poses.samples()) {
+    const auto rows_of = [&](const Matrix& m) {
+      const std::vector<double> all = values_at(joint_, m.entries, sample);
+      Gradients rows;
+      for (int r = 0; r < m.rows; ++r) {
+        rows.emplace_back(all.begin() + r * m.columns, all.begin() + (r + 1) * m.columns);
+      }
+      return rows;
+    };
+    const Gradients basis = rows_of(larger);
+    for (const Motion& row : rows_of(smaller)) {
+      std::vector<double> along;
+      for (const Motion& of : basis) along.push_back(inner(of, row));
+      for (const double rest : sum_of(row, shortest_step(basis, along))) off = std::max(off, std::abs(rest));
+    }
+  }
+  return fmt::format(
+      "; where the constraint holds, the rows of the smaller are combinations of those of the "
+      "larger, "
+      "off by {} at {} poses",
+      small(off), poses.samples().size());
+}
+
+std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows, const Change& change) const {
+  const auto left = [&](const std::vector<Expr>& columns) {
+    return [&](const Sample& sample) {
+      const Motion after = sum_of(velocity(sample), values_at(joint_, columns, sample));
+      double most = 0;
+      for (const ScalarRow& row : rows) most = std::max(most, std::abs(rate_along(joint_, row, sample, after, 1)));
+      return most;
+    };
+  };
+  return worst("Cdot after the update, by central differences of C,", poses_, left(change.generated),
+               left(change.published));
+}
+
+std::string Confirm::positions_after(const std::vector<ScalarRow>& rows, const Change& change) const {
+  const auto left = [&](const std::vector<Expr>& columns) {
+    return [&](const Sample& sample) {
+      const Motion step = values_at(joint_, columns, sample);
+      double most = 0;
+      for (const ScalarRow& row : rows) {
+        most = std::max(most, std::abs(value(row.C, sample) + rate_along(joint_, row, sample, step, 0)));
+      }
+      return most;
+    };
+  };
+  return worst("C after the update, by central differences along it,", poses_, left(change.generated),
+               left(change.published));
+}
+
+std::string Confirm::work(const std::vector<ScalarRow>& rows, const Change& change) const {
+  const auto done = [&](const std::vector<Expr>& columns) {
+    return [&](const Sample& sample) {
+      Gradients J;
+      Motion rates;
+      for (const ScalarRow& row : rows) {
+        J.push_back(gradient(row, sample));
+        rates.push_back(inner(J.back(), velocity(sample)));
+      }
+      const Motion allowed = sum_of(velocity(sample), shortest_step(J, rates));
+      return inner(times_mass(sample, values_at(joint_, columns, sample)), allowed);
+    };
+  };
+  return worst("work of the impulse along motions that C allows, which has to be 0,", poses_, done(change.generated),
+               done(change.published));
+}
+
+std::string Confirm::bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const {
+  // Velocities are reversed where C falls.
+  const auto rising = [&](const Sample& sample) {
+    return std::abs(rate_along(joint_, rows[0], sample, velocity(sample), 0));
+  };
+  const auto impulse = [&](const Sample& sample) { return value(lambda[0], sample); };
+  const auto none = [](const Sample&) { return 0.; };
+  if (inequality) return worst("impulse while C rises by itself", poses_, none, impulse);
+  return worst("Cdot that an impulse kept above 0 leaves while C rises", poses_, none, rising);
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,73 @@
+// Confirms differences by numbers at random poses: central differences of C, impulses applied, both
+// sides evaluated. None of it uses what is derived, but to say how far that is off.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "derive/derivation/forms.hpp"
+#include "derive/diff/poses.hpp"
+#include "derive/expression/matrix.hpp"
+
+namespace cdot::derive {
+
+// One number per column of J.
+using Motion = std::vector<double>;
+
+// The change of C along a motion of the bodies and of time, by central differences; of a velocity
+// row, its value there less that at rest.
+double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample, const Motion& motion, double time);
+
+class Confirm {
+ public:
+  // `form`: of J's columns.
+  Confirm(const Joint& joint, int immovable, const Poses& poses, Form form)
+      : joint_(joint), immovable_(immovable), poses_(poses), form_(form) {}
+
+  // Each says how far the generated and the published value are off; `sign` is that of the row.
+  std::string entry_of_J(const ScalarRow& row, double sign, std::size_t column, Expr generated, Expr published) const;
+  std::string entry_of_K(const ScalarRow& row, const ScalarRow& other, double sign, Expr generated,
+                         Expr published) const;
+  std::string rate(const ScalarRow& row, double sign, Expr generated, Expr published) const;
+  // `fulfilled`: poses at which C = 0, where C has to vanish, if the row is no coordinate.
+  std::string value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated, Expr published) const;
+  std::string claim(Expr left, Expr right) const;
+  // Shows that some other reading of a formula without a value is right.
+  std::string reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const;
+
+  // How far the rows of one matrix are from being combinations of those of another.
+  std::string row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const;
+
+  // What a source changes, one expression per column of J; `generated` beside it.
+  struct Change {
+    std::vector<Expr> generated, published;
+  };
+  std::string velocities_after(const std::vector<ScalarRow>& rows, const Change& change) const;
+  std::string positions_after(const std::vector<ScalarRow>& rows, const Change& change) const;
+  // For an impulse of any size: its work along motions that the rows allow.
+  std::string work(const std::vector<ScalarRow>& rows, const Change& change) const;
+  // While C rises by itself: the impulse of an equation pulls it back, that of an inequality does
+  // not act.
+  std::string bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const;
+
+ private:
+  using Measure = std::function<double(const Sample&)>;
+  // How far two values are off at worst from what is measured, relative to its size.
+  std::string worst(const std::string& how, const Poses& poses, const Measure& generated_error,
+                    const Measure& published_error) const;
+  std::string against(const Measure& measured, Expr generated, Expr published) const;
+  double value(Expr e, const Sample& sample) const { return values_at(joint_, {e}, sample)[0]; }
+  Motion in_form(const Motion& gradient, const Sample& sample) const;
+  Motion gradient(const ScalarRow& row, const Sample& sample) const;
+  Motion velocity(const Sample& sample) const;
+  Motion times_inverse_mass(const Sample& sample, const Motion& impulse) const;
+  Motion times_mass(const Sample& sample, const Motion& change) const;
+
+  const Joint& joint_;
+  int immovable_;
+  const Poses& poses_;
+  Form form_;
+};
+
+}  // namespace cdot::derive

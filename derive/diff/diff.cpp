@@ -1,0 +1,53 @@
+// A .hand file to its judgements.
+#include "derive/diff/diff.hpp"
+
+#include "derive/diff/entry.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// The anchors of an entry that are not the spec's anyway.
+std::map<std::string, std::string> changed(const std::map<std::string, std::string>& anchors, const Joint& joint) {
+  std::map<std::string, std::string> other;
+  for (const auto& [name, body] : anchors) {
+    for (const Parameter& p : joint.parameters) {
+      const std::string fixed_in = p.body < 0 ? "world" : joint.bodies[static_cast<std::size_t>(p.body)];
+      if (p.name == name && fixed_in != body) other[name] = body;
+    }
+  }
+  return other;
+}
+
+}  // namespace
+
+std::string_view name_of(Agreement agreement) {
+  switch (agreement) {
+    case Agreement::agrees: return "agrees";
+    case Agreement::agrees_if: return "agrees-if";
+    case Agreement::differs: return "differs";
+    case Agreement::listed: return "listed";
+  }
+  return "";
+}
+
+DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path& spec, const SpecsFolder& folder) {
+  const HandFile file = read_hand(load_source(hand));
+  DiffReport report{file.file, {}, file.diagnostics};
+  const ReadResult plain = folder.read(spec);
+  if (!plain.joint) throw NoSuchSpec(render(*plain.file, plain.diagnostics));
+  for (const HandEntryAst& ast : file.entries) {
+    // Every entry has a pool of its own, so that the names one gives never show in another.
+    const ReadResult read = folder.read(spec, {.anchors = ast.anchors});
+    if (!read.joint) {
+      report.diagnostics.error(
+          ast.where, "with what this entry assumes, the spec cannot be read: " + render(*read.file, read.diagnostics));
+      continue;
+    }
+    const std::size_t before = report.diagnostics.list.size();
+    EntryJudge judge(ast, file, read, changed(ast.anchors, *plain.joint), report.diagnostics);
+    if (report.diagnostics.list.size() == before) report.judgements.push_back(judge.judge());
+  }
+  return report;
+}
+
+}  // namespace cdot::derive

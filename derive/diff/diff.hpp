@@ -1,0 +1,55 @@
+// The verdict on published derivations: what each claims against what is derived, entry by entry.
+// Every verdict is computed: equality is decided at random poses and proved by GiNaC, and what
+// differs is confirmed by finite differences.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "derive/derivation/specs_folder.hpp"
+#include "derive/kernel/ledger.hpp"
+#include "derive/language/hand/hand.hpp"
+
+namespace cdot::derive {
+
+enum class Agreement { agrees, agrees_if, differs, listed };
+std::string_view name_of(Agreement agreement);  // "agrees-if"
+
+// One place where a hand derivation differs.
+struct Difference {
+  std::string what;         // C, Cdot, J, K, b, update
+  std::string row, column;  // "1", "w_b"; empty where there are none
+  std::string kind;         // sign, factor, wrong body, missing term, extra term, transposed, undeclared
+                            // assumption
+  std::string generated, hand,
+      difference;  // infix, in the spec's names; difference = hand - generated
+  std::string sentence;
+  std::string confirmed;  // by finite differences: how far the generated and the published value
+                          // are off; may be empty
+  Span where;
+};
+
+struct Judgement {
+  std::string id, joint, title, source;
+  Agreement agreement = Agreement::agrees;
+  std::string condition;  // of agrees_if; the reason of listed
+  std::vector<Difference> differences;
+  std::vector<std::string> remarks;  // the sign of C, broken momentum, how equality was decided
+  std::vector<LedgerRow> costs;      // of what agrees
+  Span where;
+};
+
+struct DiffReport {
+  std::shared_ptr<const SourceFile> file;
+  std::vector<Judgement> judgements;
+  Diagnostics diagnostics;  // entries that cannot be read
+};
+
+// Judges every entry of a .hand file against the spec beside it (`spec`).
+DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path& spec, const SpecsFolder& folder);
+
+std::string to_text(const DiffReport& report, bool all);  // `all`: also what agrees, in a line each
+std::string to_json(const DiffReport& report);
+std::string joined_json(const std::vector<std::string>& arrays);  // of several reports, as one
+
+}  // namespace cdot::derive

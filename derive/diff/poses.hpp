@@ -1,0 +1,41 @@
+// Random poses at which formulas are compared, and the same poses moved to where equations hold.
+#pragma once
+
+#include <optional>
+
+#include "derive/derivation/derivation.hpp"
+#include "derive/numbers/numeric.hpp"
+
+namespace cdot::derive {
+
+class Poses {
+ public:
+  // `expressions`: everything that will be evaluated.
+  Poses(const Joint& joint, std::vector<Expr> expressions);
+
+  // The same poses moved to where these equations are zero, too; no poses if that is not possible.
+  Poses where(const std::vector<Expr>& equations) const;
+
+  // The same poses with all bodies in almost the same orientation: where to start from for C = 0.
+  Poses aligned() const;
+  Poses first(std::size_t count) const;
+  bool empty() const { return samples_.empty(); }
+  const std::vector<Sample>& samples() const { return samples_; }
+
+  // |a - b| is round-off at every pose.
+  bool equal(Expr a, Expr b) const;
+  // The constant k with a = k b at every pose, if there is one.
+  std::optional<double> constant_ratio(Expr a, Expr b) const;
+
+ private:
+  bool satisfy(Sample& sample) const;
+
+  const Joint* joint_;
+  std::vector<Sample> samples_;
+  std::vector<Expr> equations_;  // that hold at the samples
+};
+
+// Values of scalars at a pose.
+std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample);
+
+}  // namespace cdot::derive

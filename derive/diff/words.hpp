@@ -1,0 +1,36 @@
+// Names what is wrong with a published expression: its kind, and a sentence that says why the right
+// one is right.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "derive/diff/diff.hpp"
+#include "derive/diff/poses.hpp"
+
+namespace cdot::derive {
+
+// What a term of J may stem from: one leaf that moves with a body.
+struct Contribution {
+  Expr leaf, term;
+};
+
+struct Place {
+  std::string what, row, column;      // as in Difference
+  std::vector<Contribution> sources;  // of an entry of J, or of Cdot
+  std::vector<Expr> elsewhere;        // the generated entries of the other bodies in the same row
+  const Joint* joint = nullptr;
+};
+
+// "J, row 1, w_b"; "K, row 2, column 1"; "Cdot, row line".
+std::string name_of(const Place& place);
+
+// Fills kind, texts and sentence. `poses` decide what equals what.
+Difference describe_difference(const Place& place, Expr hand, Expr generated, const Poses& poses);
+
+// A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty
+// if none is found. `constraints`: the rows of C.
+std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand, Expr generated,
+                              const Poses& poses);
+
+}  // namespace cdot::derive

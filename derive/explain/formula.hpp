@@ -1,0 +1,124 @@
+// Formulas as a person writes them on paper. Expr keeps one normal form for what is equal; a
+// derivation needs the forms in between ("(w_b × t) · u" before it becomes "-(u × t) w_b"), so
+// these trees keep what they are given.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "derive/derivation/derivation.hpp"
+
+namespace cdot::derive {
+
+enum class Shape {
+  leaf,  // a symbol or a named expression
+  number,
+  sum,        // args, each with its sign
+  product,    // args side by side
+  quotient,   // args[0] / args[1]
+  power,      // args[0]^exponent
+  dot,        // args[0] · args[1]
+  cross,      // args[0] × args[1]; scalar × vector is w × r
+  perp,       // a quarter turn to the left
+  norm,       // |args[0]|
+  unit,       // direction of args[0]
+  component,  // args[0].x or .y; `name` says which
+  call,       // name(args...)
+  transpose,  // args[0]'
+  skew,       // S(args[0]), the column with S(r) w = w × r
+  identity,   // E
+  matrix      // args row by row, `columns` of them a row
+};
+
+struct Formula {
+  Shape shape = Shape::number;
+  Expr leaf;
+  std::string name;
+  Rational number;
+  int exponent = 1;
+  int columns = 0;
+  std::vector<bool> minus;  // of a sum's args
+  std::vector<Formula> args;
+
+  friend bool operator==(const Formula& f, const Formula& g) = default;
+};
+
+struct SignedFormula {
+  bool minus = false;
+  Formula formula;
+};
+
+Formula leaf(Expr e, std::string name = {});
+Formula number(Rational value);
+Formula sum(std::vector<SignedFormula> terms);  // of no terms: 0
+Formula negative(Formula f);
+Formula product(std::vector<Formula> factors);  // leaves out ones; of no factors: 1
+Formula quotient(Formula above, Formula below);
+Formula power(Formula base, int exponent);
+Formula dot(Formula u, Formula v);
+Formula cross(Formula u, Formula v);
+Formula shaped(Shape kind, Formula arg);  // perp, norm, unit, transpose, skew
+Formula component(Formula u, std::string axis);
+Formula identity();
+Formula matrix(int columns, std::vector<Formula> entries);
+
+bool is_one(const Formula& f);
+// f as terms with signs: a sum's own, or f alone.
+std::vector<SignedFormula> terms_of(const Formula& f);
+
+// A number times f, f/2 for a half.
+Formula times(Rational magnitude, Formula f);
+
+// Terms with a plus sign first, else in their order.
+std::vector<SignedFormula> positive_first(std::vector<SignedFormula> terms);
+// Whether two formulas have the same terms, in whatever order.
+bool same_terms(const Formula& f, const Formula& g);
+
+// What a formula without matrices equals.
+Expr value_of(const Formula& f, Pool& pool);
+
+// The name of the component that a product with this world axis takes: "x", "y"; empty for other
+// vectors.
+std::string world_axis(Expr axis);
+
+// e as the angle from one vector to another, atan2(u × v, u · v), in space atan2(|u × v|, u · v), if it is one.
+struct AngleBetween {
+  Expr from, to;
+};
+std::optional<AngleBetween> angle_between(Expr e);
+
+// How expressions of a joint are written: with the author's names for lets and points.
+class Notation {
+ public:
+  explicit Notation(const Joint& joint);
+
+  Formula of(Expr e) const;          // a named expression is its name
+  Formula definition(Expr e) const;  // what stands behind the name
+
+  struct Point {
+    std::string name;
+    Expr position, arm, value;
+  };
+  // The points x + arm hidden among a sum's terms: for each term its point, or none; the arm's term
+  // is marked used.
+  struct PointTerms {
+    std::vector<const Point*> at;
+    std::vector<bool> used;
+  };
+  PointTerms points_among(Expr sum) const;
+
+  static bool has_name(Expr e);  // given by the author, or a rate of such a thing
+
+ private:
+  Formula written(Expr e) const;
+  Formula sum_of(Expr e) const;
+  Formula product_of(Expr e) const;
+  Formula dot_of(Expr e) const;
+  Formula cross_of(Expr e) const;
+  Formula scale_of(Expr e) const;
+
+  std::vector<Point> points_;
+};
+
+}  // namespace cdot::derive

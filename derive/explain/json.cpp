@@ -1,0 +1,182 @@
+// The derivation for other programs: every entry as a plain infix expression over documented component names. The
+// schema is printed by `cdot explain --help`.
+#include <algorithm>
+#include <set>
+
+#include "derive/explain/explain.hpp"
+#include "derive/explain/symbols.hpp"
+#include "derive/expression/components.hpp"
+
+namespace cdot::derive {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class Infix {
+ public:
+  explicit Infix(const Joint& joint) : symbols_(joint) {}
+
+  std::string of(Expr scalar) { return print(components_.of(scalar), Level::sum); }
+
+  const Json& intermediates() const { return intermediates_; }
+  const Json& guards() const { return guards_; }
+  Json symbols() const { return symbols_.json(); }
+  Json frames() const { return symbols_.frames(); }
+
+ private:
+  enum class Level { sum, product, power };
+
+  std::string print(Expr e, Level level) {
+    if (e->kind == Kind::symbol) return symbols_.name(e);
+    if (e->name.empty() || e->kind == Kind::number) return inline_text(e, level);
+    if (const auto found = names_.find(&*e); found != names_.end()) return found->second;
+    const std::string definition = inline_text(e, Level::sum);
+    std::string name = symbols_.reserve(e->name);
+    names_.emplace(&*e, name);
+    intermediates_.push_back({{"name", name}, {"definition", definition}});
+    return name;
+  }
+
+  std::string inline_text(Expr e, Level level) {
+    switch (e->kind) {
+      case Kind::number: return enclosed(e->value.text(), level, e->value.sign() < 0, e->value);
+      case Kind::sum: return sum_text(e, level);
+      case Kind::product: return product_text(e, level);
+      default: return function_text(e, level);
+    }
+  }
+
+  static std::string enclosed(const std::string& text, Level level, bool negative, Rational value) {
+    const bool needs = (negative && level > Level::sum) || (!value.is_integer() && level > Level::sum);
+    return needs ? "(" + text + ")" : text;
+  }
+
+  std::string sum_text(Expr e, Level level) {
+    if (e->args.empty()) return "0";
+    std::string out;
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      const Rational c = e->coefs[i];
+      out += c.sign() < 0 ? (out.empty() ? "-" : " - ") : (out.empty() ? "" : " + ");
+      const bool constant = is_one(e->args[i]);
+      if (constant) out += abs(c).text();
+      else if (abs(c) != Rational(1)) out += enclosed(abs(c).text(), Level::product, false, c) + "*";
+      if (!constant) out += print(e->args[i], Level::product);
+    }
+    return level > Level::sum ? "(" + out + ")" : out;
+  }
+
+  std::string product_text(Expr e, Level level) {
+    std::string out;
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      const int k = e->exponents[i];
+      const std::string base = print(e->args[i], k == 1 ? Level::product : Level::power);
+      out += (out.empty() ? "" : "*") + base + (k == 1 ? "" : "**" + std::to_string(k));
+    }
+    return level == Level::power ? "(" + out + ")" : out;
+  }
+
+  // The guards of a kernel are said aside: here the mathematics stands.
+  std::string function_text(Expr e, Level level) {
+    if (e->fn == Fn::inverse) {
+      const std::string below = print(e->args[0], Level::sum);
+      guard(below + " = 0", "1/(" + below + ") is taken as 0");
+      const std::string out = "1/" + print(e->args[0], Level::power);
+      return level > Level::sum ? "(" + out + ")" : out;
+    }
+    if (e->fn == Fn::select) {
+      const std::string where = print(e->args[0], Level::sum) + " = 0";
+      const std::string out = print(e->args[1], level);
+      guard(where, out + " is taken as " + print(e->args[2], Level::sum));
+      return out;
+    }
+    std::string out = std::string(name_of(e->fn)) + "(";
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      out += (i == 0 ? "" : ", ") + print(e->args[i], Level::sum);
+    }
+    return out + ")";
+  }
+
+  void guard(const std::string& where, const std::string& kernel) {
+    if (guarded_.insert(where + kernel).second) guards_.push_back({{"where", where}, {"kernel", kernel}});
+  }
+
+  ExplainedSymbols symbols_;
+  Components components_;
+  std::map<const Node*, std::string> names_;
+  std::set<std::string> guarded_;
+  Json intermediates_ = Json::array(), guards_ = Json::array();
+};
+
+std::string kind_name(RowKind kind) {
+  return kind == RowKind::equality ? "equality" : kind == RowKind::inequality ? "inequality" : "velocity";
+}
+
+Json J_of(Infix& infix, const ScalarRow& row) {
+  Json entries = Json::array();
+  for (const Expr entry : columns_of(row.J)) entries.push_back(infix.of(entry));
+  return entries;
+}
+
+std::vector<std::string> columns(const Joint& joint) {
+  std::vector<std::string> names;
+  const std::string letters = joint.dimension == 2 ? "xy" : "xyz";
+  for (const std::string& b : joint.bodies) {
+    for (const char c : letters) names.push_back("v_" + b + "_" + c);
+    if (joint.dimension == 2) names.push_back("w_" + b);
+    if (joint.dimension == 2) continue;
+    for (const char c : letters) names.push_back("w_" + b + "_" + c);
+  }
+  return names;
+}
+
+void add_block(Json& out, Infix& infix, const Block& block) {
+  for (const char* key : {"C", "Cdot", "C_t", "J", "K", "gamma"}) out[key] = Json::array();
+  for (std::size_t i = 0; i < block.rows.size(); ++i) {
+    const ScalarRow& row = block.rows[i];
+    out["C"].push_back(infix.of(row.C));
+    out["Cdot"].push_back(infix.of(row.Cdot));
+    out["C_t"].push_back(infix.of(row.C_t));
+    out["J"].push_back(J_of(infix, row));
+    out["gamma"].push_back(infix.of(row.gamma));
+    Json entries = Json::array();
+    for (std::size_t j = 0; j < block.rows.size(); ++j) {
+      entries.push_back(infix.of(block.K[std::max(i, j)][std::min(i, j)]));
+    }
+    out["K"].push_back(std::move(entries));
+  }
+}
+
+}  // namespace
+
+nlohmann::ordered_json explanation_json(const Joint& joint) {
+  Infix infix(joint);
+  Json rows, coordinates = Json::array();
+  rows["rows"] = Json::array();
+  const Block block = derive_rows(joint);
+  for (const ScalarRow& row : block.rows) {
+    rows["rows"].push_back(
+        {{"name", row.name}, {"kind", kind_name(row.kind)}, {"text", row.row->text}, {"unit", text(row.row->unit)}});
+  }
+  add_block(rows, infix, block);
+  for (const Coordinate& c : joint.coordinates) {
+    Json out{{"name", c.name}, {"text", c.text}, {"unit", text(c.unit)}};
+    add_block(out, infix, derive_coordinate(joint, c));
+    coordinates.push_back(std::move(out));
+  }
+  Json all{{"format", 1},
+           {"joint", joint.name},
+           {"title", joint.title},
+           {"source", joint.source},
+           {"dimension", joint.dimension},
+           {"bodies", joint.bodies},
+           {"columns", columns(joint)},
+           {"symbols", infix.symbols()},
+           {"frames", infix.frames()}};
+  all["intermediates"] = infix.intermediates();
+  all["guards"] = infix.guards();
+  all.update(rows);
+  all["coordinates"] = std::move(coordinates);
+  return all;
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,93 @@
+// Grouping scalar rows into the author's statements, and the names of what is derived from them.
+#include "derive/explain/lecture.hpp"
+
+#include <utility>
+
+namespace cdot::derive {
+namespace {
+
+Expr left_side(const ScalarRow& row) { return row.kind == RowKind::velocity ? row.Cdot : row.C; }
+
+Statement scalar_statement(const ScalarRow& row, std::size_t index) {
+  return {row.name, row.row, row.kind, left_side(row), index, row.C_t, {}};
+}
+
+// What a vector Cdot keeps when no body moves.
+Expr at_rest(Expr Cdot) {
+  std::vector<Term> terms;
+  for (const Term& term : terms_of(Cdot)) {
+    if (!depends_on_velocity(term.e)) terms.push_back(term);
+  }
+  return sum(*Cdot->pool, terms, true);
+}
+
+// A vector as a row; a number is one already.
+Formula row_of(const Notation& notation, Expr e) {
+  if (is_zero(e)) return number(0);
+  if (!e->vector) return notation.of(e);
+  const Term term = split_coefficient(e);
+  const bool scaled = term.e->kind == Kind::scale && !Notation::has_name(term.e);
+  if (!scaled) return shaped(Shape::transpose, notation.of(e));
+  Formula row = times(abs(term.coef),
+                      product({notation.of(term.e->args[0]), shaped(Shape::transpose, notation.of(term.e->args[1]))}));
+  return term.coef.sign() < 0 ? negative(std::move(row)) : row;
+}
+
+}  // namespace
+
+Step& Lecture::section(std::string heading) {
+  out.steps.push_back({std::move(heading), {}});
+  return out.steps.back();
+}
+
+Part rows_part(const Joint& joint, const Notation& notation) {
+  Part part{derive_rows(joint), {}};
+  const std::vector<ScalarRow>& rows = part.block.rows;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const Row& row = *rows[i].row;
+    const bool vector = row.C->vector;
+    const Expr Cdot = row.kind == RowKind::velocity ? row.C : time_derivative(row.C, joint);
+    const auto entries = vector ? isolate_vector(Cdot, joint, notation) : std::nullopt;
+    if (!entries) {
+      part.statements.push_back(scalar_statement(rows[i], i));
+      continue;
+    }
+    part.statements.push_back({row.name, &row, row.kind, row.C, i, at_rest(Cdot), *entries});
+    i += static_cast<std::size_t>(joint.dimension) - 1;  // its other components
+  }
+  if (part.statements.size() == 1) part.statements[0].name.clear();
+  return part;
+}
+
+Part coordinate_part(const Joint& joint, const Coordinate& coordinate) {
+  Part part{derive_coordinate(joint, coordinate), {}};
+  part.statements.push_back(scalar_statement(part.block.rows[0], 0));
+  return part;
+}
+
+Formula label(const std::string& letter, const Statement& statement, Expr e) {
+  const bool coordinate = statement.row == nullptr;
+  if (coordinate && letter == "C") return leaf(e, statement.name);
+  if (coordinate && letter == "Cdot") return leaf(e, statement.name + "_dot");
+  const std::string& name = statement.name;
+  // A row without a name of its own is called C1: its J is J_1.
+  const bool numbered = name.size() > 1 && name[0] == 'C' && name[1] >= '0' && name[1] <= '9';
+  return leaf(e, name.empty() ? letter : letter + "_" + (numbered ? name.substr(1) : name));
+}
+
+Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& s) {
+  if (!s.vector()) return part.block.rows[s.first].Cdot;
+  return s.kind == RowKind::velocity ? s.C : time_derivative(s.C, lecture.joint);
+}
+
+Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
+  if (s.vector()) return s.entries[body].v;
+  return row_of(lecture.notation, part.block.rows[s.first].J[body].v);
+}
+
+Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
+  if (s.vector()) return s.entries[body].w;
+  return row_of(lecture.notation, part.block.rows[s.first].J[body].w);
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,69 @@
+// What the sections of an explanation share: the joint's statements with their derivation, and how
+// things are called.
+#pragma once
+
+#include "derive/explain/rates.hpp"
+#include "derive/explain/velocities.hpp"
+
+namespace cdot::derive {
+
+// One equation as the author wrote it: a scalar row, or a vector row with its two components kept
+// together.
+struct Statement {
+  std::string name;          // "line"; empty if it is the only one
+  const Row* row = nullptr;  // null for a coordinate
+  RowKind kind = RowKind::equality;
+  Expr C;                               // scalar or vector; a velocity row: its velocity expression
+  std::size_t first = 0;                // its first scalar row in the block
+  Expr C_t;                             // dC/dt with the bodies at rest
+  std::vector<VelocityBlocks> entries;  // J of a vector row, by body
+
+  bool vector() const { return C->vector; }
+};
+
+// The rows of the joint, or a coordinate.
+struct Part {
+  Block block;
+  std::vector<Statement> statements;
+};
+
+struct Lecture {
+  explicit Lecture(const Joint& j) : joint(j), notation(j), rates(j, notation) {}
+
+  const Joint& joint;
+  Notation notation;
+  Rates rates;
+  Explanation out;
+
+  Step& section(std::string heading);
+};
+
+Part rows_part(const Joint& joint, const Notation& notation);
+Part coordinate_part(const Joint& joint, const Coordinate& coordinate);
+
+// "C", or "C_line" where there are several; e is what it equals, if that is an expression.
+Formula label(const std::string& letter, const Statement& statement, Expr e = {});
+
+Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& statement);
+// What stands in a statement's row of J for one body: the block of v and the block of w; 0 where
+// nothing does.
+Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
+Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
+
+// The sections, in order.
+void introduce(Lecture& lecture);
+void state_constraint(Lecture& lecture, const Part& part);
+void differentiate(Lecture& lecture, const Part& part, Step& step);
+void isolate_velocities(Lecture& lecture, const Part& part, Step& step);
+void read_jacobian(Lecture& lecture, const Part& part, Step& step);
+// J in another form of velocity, in space; for the rows also whether form (c) is dC/de.
+void explain_form(Lecture& lecture, const Part& part, Form form);
+void show_form(const Lecture& lecture, const Part& part, Form form, Step& step);
+Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s);
+// K entry by entry: scalar rows simplified, vector rows in blocks.
+void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>& chains);
+void multiply_mass(Lecture& lecture, const Part& part, Step& step);
+void differentiate_again(Lecture& lecture, const Part& part, Step& step);
+void state_limits(Lecture& lecture, const std::vector<const Part*>& parts);
+
+}  // namespace cdot::derive

@@ -1,0 +1,107 @@
+// What a derivation takes for granted, and where it ends: zero lengths, divisions, roots, angles
+// that wrap.
+#include <set>
+#include <utility>
+
+#include "derive/explain/lecture.hpp"
+
+namespace cdot::derive {
+namespace {
+
+class Limits {
+ public:
+  explicit Limits(const Lecture& lecture) : notation_(lecture.notation) {}
+
+  void find(Expr root) {
+    for (const Expr e : topological(std::span(&root, 1))) {
+      if (!seen_.insert(&*e).second) continue;
+      if (e->kind == Kind::unit) of_direction(e);
+      if (e->kind == Kind::product) of_product(e);
+      if (e->kind == Kind::function) of_function(e);
+    }
+  }
+
+  Step limits{};
+
+ private:
+  void of_direction(Expr e) {
+    const Formula u = notation_.of(e->args[0]), n = notation_.of(e);
+    const bool plane = e->pool->dimension() == 2;
+    const std::string rest = std::string(" has no direction where {} = 0; the kernel takes ") +
+                             (plane ? "(1, 0) there." : "(1, 0, 0) there.");
+    if (n.shape == Shape::leaf) limits.list("{}" + rest, {n, shaped(Shape::norm, u)});
+    else limits.list("{}" + rest, {u, shaped(Shape::norm, u)});
+  }
+
+  void of_product(Expr e) {
+    for (std::size_t i = 0; i < e->args.size(); ++i) {
+      if (e->exponents[i] > 0 || !divided_by_.insert(&*e->args[i]).second) continue;
+      const Formula below = notation_.of(e->args[i]);
+      limits.list("A division by {}: where it is 0 the kernel takes 1/0 as 0, so that term vanishes.", {below});
+    }
+  }
+
+  void of_function(Expr e) {
+    const std::vector<Formula> args{notation_.of(e->args[0])};
+    switch (e->fn) {
+      case Fn::sqrt: return limits.list("sqrt is defined for {} ≥ 0 only.", args);
+      case Fn::log: return limits.list("log is defined for {} > 0 only.", args);
+      case Fn::tan: return limits.list("tan has poles where {} is an odd multiple of pi/2.", args);
+      case Fn::abs: return limits.list("abs has a corner at {} = 0; its derivative is taken as 0 there.", args);
+      case Fn::atan2:
+        if (e->args[0]->kind == Kind::norm) {
+          return limits.list("{} is an angle in [0, pi]: it has a corner at both ends.", {notation_.of(e)});
+        }
+        return limits.list("{} is an angle in (-pi, pi]: it jumps where the turn is complete.", {notation_.of(e)});
+      default: return;
+    }
+  }
+
+  const Notation& notation_;
+  std::set<const Node*> seen_, divided_by_;  // looked up only
+};
+
+void find_all(const Part& part, Limits& limits) {
+  for (const ScalarRow& row : part.block.rows) {
+    for (const Expr e : {row.C, row.Cdot, row.gamma}) limits.find(e);
+    for (const JacobianEntry& entry : row.J) {
+      limits.find(entry.v);
+      limits.find(entry.w);
+    }
+  }
+}
+
+void assume(const Joint& joint, Step& step) {
+  for (const Parameter& p : joint.parameters) {
+    if (!p.axes.empty()) {
+      step.list("{}, {} and {} have length 1 and stand on each other, a right-handed triad.",
+                {leaf(p.axes[0]), leaf(p.axes[1]), leaf(p.axes[2])});
+    } else if (p.kind == ParameterKind::unit || p.kind == ParameterKind::frame) {
+      step.list("{} has length 1.", {leaf(p.symbol)});
+    }
+  }
+  for (const Row& row : joint.rows) {
+    if (row.kind == RowKind::inequality) {
+      step.list("Row `" + row.name + "` acts only where C reaches 0.");
+    }
+  }
+  step.list("A body that cannot move has inverse mass and inverse inertia 0; its terms of K vanish.");
+  step.list(
+      "If all of K vanishes (no body can move), the kernel's guarded factorisation gives no "
+      "impulse.");
+  if (joint.uses_world) {
+    step.list("Something is fixed in the world, which takes any impulse: momentum is not conserved.");
+  }
+}
+
+}  // namespace
+
+void state_limits(Lecture& lecture, const std::vector<const Part*>& parts) {
+  Limits limits(lecture);
+  for (const Part* part : parts) find_all(*part, limits);
+  Step& step = lecture.section("What was assumed, and where it ends");
+  assume(lecture.joint, step);
+  for (Item& item : limits.limits.items) step.items.push_back(std::move(item));
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,77 @@
+// What a derivation comes to, for the head of a generated file: names, C, J and K, as the lecture
+// writes them.
+#include <algorithm>
+
+#include "derive/explain/lecture.hpp"
+
+namespace cdot::derive {
+namespace {
+
+Chain equation(Formula left, Formula right, std::string note = {}) {
+  return {std::move(left), {{std::move(right), std::move(note)}}};
+}
+
+std::string note_of(RowKind kind) {
+  switch (kind) {
+    case RowKind::equality: return "";
+    case RowKind::inequality: return "C >= 0 must hold, lambda >= 0";
+    case RowKind::velocity: return "at velocity level: C is 0";
+  }
+  return "";
+}
+
+bool has_skew(const Formula& f) {
+  return f.shape == Shape::skew || std::any_of(f.args.begin(), f.args.end(), has_skew);
+}
+
+std::string columns(const Joint& joint) {
+  std::string words = "columns ";
+  for (const std::string& b : joint.bodies) {
+    words += (b == joint.bodies[0] ? "v_" : " | v_") + b + " | w_" + b;
+  }
+  return words;
+}
+
+Chain meaning_of_S(int dimension) {
+  const bool plane = dimension == 2;
+  return equation(leaf({}, plane ? "S(r)" : "S(r) u"), leaf({}, plane ? "perp(r)" : "r × u"));
+}
+
+std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
+  std::vector<Chain> summary;
+  std::vector<Formula> J;
+  for (const Statement& s : part.statements) {
+    const bool velocity = s.kind == RowKind::velocity;
+    const Formula left =
+        part.block.name.empty() ? label(velocity ? "Cdot" : "C", s, s.C) : leaf(s.C, "coordinate " + s.name);
+    summary.push_back(equation(left, lecture.notation.definition(s.C), note_of(s.kind)));
+    const Formula row = row_of_J(lecture, part, s);
+    J.insert(J.end(), row.args.begin(), row.args.end());
+  }
+  if (part.statements.empty()) return summary;
+  const int width = static_cast<int>(2 * lecture.joint.bodies.size());
+  const bool single = part.statements.size() == 1;
+  const Formula all = matrix(width, std::move(J));
+  summary.push_back(equation(single ? label("J", part.statements[0]) : leaf({}, "J"), all, columns(lecture.joint)));
+  if (has_skew(all)) summary.push_back(meaning_of_S(lecture.joint.dimension));
+  summarise_mass(lecture, part, summary);
+  return summary;
+}
+
+}  // namespace
+
+std::vector<std::vector<Chain>> summarise(const Joint& joint) {
+  const Lecture lecture(joint);
+  std::vector<std::vector<Chain>> all = {summarise(lecture, rows_part(joint, lecture.notation))};
+  std::vector<Chain> names;
+  for (const Let& let : joint.lets) {
+    names.push_back(equation(leaf(let.value, let.name), lecture.notation.definition(let.value)));
+  }
+  all[0].insert(all[0].begin(), names.begin(), names.end());
+  for (const Coordinate& c : joint.coordinates) {
+    all.push_back(summarise(lecture, coordinate_part(joint, c)));
+  }
+  return all;
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,194 @@
+// Interning, the structural order, and traversals. The builders are in expression/build.cpp, the printer in
+// expression/text.cpp.
+#include "derive/expression/expr.hpp"
+
+#include <cassert>
+#include <set>
+
+namespace cdot::derive {
+namespace {
+
+std::string key_of(const Node& n) {
+  std::string key = std::to_string(static_cast<int>(n.kind)) + (n.vector ? "v" : "s");
+  if (n.kind == Kind::number) key += n.value.text();
+  if (n.kind == Kind::symbol) key += n.symbol;
+  if (n.kind == Kind::function) key += std::string(name_of(n.fn));
+  for (std::size_t i = 0; i < n.args.size(); ++i) {
+    key += ',' + std::to_string(n.args[i]->id);
+    if (n.kind == Kind::sum) key += '*' + n.coefs[i].text();
+    if (n.kind == Kind::product) key += '^' + std::to_string(n.exponents[i]);
+  }
+  return key;
+}
+
+// Where a leaf stands among others: differences of positions come first (they cancel what is large and common),
+// then what turns with a body; masses before inertias; the rest by name.
+int rank(const Node& n) {
+  switch (n.role) {
+    case Role::constant: return 0;
+    case Role::inverse_mass: return 1;
+    case Role::inverse_inertia: return 2;
+    case Role::position: return 3;
+    case Role::world_vector: return 4;
+    case Role::body_vector: return n.unit_length ? 7 : 5;
+    case Role::angle: return 6;
+    case Role::parameter: return 9;
+    default: return 8;
+  }
+}
+
+std::strong_ordering compare_symbols(const Node& a, const Node& b) {
+  if (const auto c = rank(a) <=> rank(b); c != 0) return c;
+  return a.symbol <=> b.symbol;
+}
+
+}  // namespace
+
+std::string_view name_of(Fn fn) {
+  switch (fn) {
+    case Fn::sqrt: return "sqrt";
+    case Fn::sin: return "sin";
+    case Fn::cos: return "cos";
+    case Fn::tan: return "tan";
+    case Fn::exp: return "exp";
+    case Fn::log: return "log";
+    case Fn::abs: return "abs";
+    case Fn::sign: return "sign";
+    case Fn::atan2: return "atan2";
+    case Fn::inverse: return "inverse";
+    case Fn::select: return "select";
+    case Fn::pivot: return "pivot";
+  }
+  return "";
+}
+
+std::strong_ordering compare(Expr a, Expr b) {
+  if (a == b) return std::strong_ordering::equal;
+  // A number sorts last in sums; symbols before compounds.
+  if (const auto c = (a->kind == Kind::number) <=> (b->kind == Kind::number); c != 0) return c;
+  if (a->kind == Kind::number) return a->value <=> b->value;
+  if (const auto c = a->kind <=> b->kind; c != 0) return c;
+  if (a->kind == Kind::symbol) return compare_symbols(*a, *b);
+  if (a->kind == Kind::function) {
+    if (const auto c = a->fn <=> b->fn; c != 0) return c;
+  }
+  const std::size_t shared = std::min(a->args.size(), b->args.size());
+  for (std::size_t i = 0; i < shared; ++i) {
+    if (const auto c = compare(a->args[i], b->args[i]); c != 0) return c;
+    if (a->kind == Kind::product) {
+      if (const auto c = a->exponents[i] <=> b->exponents[i]; c != 0) return c;
+    }
+    if (a->kind == Kind::sum) {
+      if (const auto c = a->coefs[i] <=> b->coefs[i]; c != 0) return c;
+    }
+  }
+  return a->args.size() <=> b->args.size();
+}
+
+Expr Pool::intern(Node node) {
+  const std::string key = key_of(node);
+  if (const auto found = by_key_.find(key); found != by_key_.end()) return Expr(found->second);
+  node.pool = this;
+  node.id = static_cast<int>(nodes_.size());
+  nodes_.push_back(std::move(node));
+  const Node* stored = &nodes_.back();
+  by_key_.emplace(key, stored);
+  if (stored->kind == Kind::symbol) symbols_.emplace(stored->symbol, stored);
+  return Expr(stored);
+}
+
+Expr Pool::number(Rational value) {
+  Node n;
+  n.kind = Kind::number;
+  n.value = value;
+  return intern(std::move(n));
+}
+
+Expr Pool::leaf(std::string_view name, Role role, int body, bool vector, bool unit_length) {
+  if (const Expr known = find(name)) {
+    assert(known->vector == vector && known->role == role && known->body == body);
+    return known;
+  }
+  Node n;
+  n.kind = Kind::symbol;
+  n.vector = vector;
+  n.unit_length = unit_length;
+  n.symbol = name;
+  n.role = role;
+  n.body = body;
+  return intern(std::move(n));
+}
+
+Expr Pool::symbol(std::string_view name, Role role, int body) { return leaf(name, role, body, false, false); }
+
+Expr Pool::vector_symbol(std::string_view name, Role role, int body, bool unit_length) {
+  return leaf(name, role, body, true, unit_length);
+}
+
+Triad Pool::triad(std::string_view name, Role role, int body) {
+  if (const auto found = triads_.find(name); found != triads_.end()) return found->second;
+  const std::string stem = std::string(name) + (role == Role::world_vector && name == "world" ? "." : "_");
+  Triad axes;
+  for (std::size_t i = 0; i < 3; ++i) axes[i] = vector_symbol(stem + "xyz"[i], role, body, true);
+  const Triad* stored = &triads_.emplace(name, axes).first->second;
+  for (int i = 0; i < 3; ++i) axes_[&*axes[static_cast<std::size_t>(i)]] = {stored, i};
+  return axes;
+}
+
+Pool::Axis Pool::axis_of(Expr leaf) const {
+  const auto found = axes_.find(&*leaf);
+  return found == axes_.end() ? Axis{} : found->second;
+}
+
+Expr Pool::find(std::string_view name) const {
+  const auto found = symbols_.find(name);
+  return found == symbols_.end() ? Expr() : Expr(found->second);
+}
+
+void Pool::name(Expr e, std::string_view name, bool by_let) {
+  if (e->kind == Kind::symbol || e->kind == Kind::number || e->named_by_let || is_zero(e)) return;
+  if (!by_let && !e->name.empty()) return;
+  e->name = name;
+  e->named_by_let = by_let;
+}
+
+bool is_number(Expr e, Rational value) {
+  if (e->vector) return value.is_zero() && e->kind == Kind::sum && e->args.empty();
+  return e->kind == Kind::number && e->value == value;
+}
+
+std::vector<Expr> topological(std::span<const Expr> roots) {
+  std::vector<Expr> order;
+  std::set<const Node*> seen;  // looked up only, never walked: its order does not matter
+  const auto visit = [&](auto&& self, Expr e) -> void {
+    if (!seen.insert(&*e).second) return;
+    for (const Expr arg : e->args) self(self, arg);
+    order.push_back(e);
+  };
+  for (const Expr root : roots) visit(visit, root);
+  return order;
+}
+
+bool depends_on_velocity(Expr e) {
+  for (const Expr n : topological(std::span(&e, 1))) {
+    if (n->kind == Kind::symbol && (n->role == Role::velocity || n->role == Role::spin)) return true;
+  }
+  return false;
+}
+
+Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements, KeepNames names) {
+  std::map<const Node*, Expr> done = replacements;
+  for (const Expr n : topological(std::span(&e, 1))) {
+    if (done.contains(&*n)) continue;
+    std::vector<Expr> args;
+    for (const Expr arg : n->args) args.push_back(done.at(&*arg));
+    const Expr rebuilt = args == n->args ? n : rebuild(n, args);
+    if (names == KeepNames::yes && rebuilt != n && !n->name.empty()) {
+      n->pool->name(rebuilt, n->name, n->named_by_let);
+    }
+    done.emplace(&*n, rebuilt);
+  }
+  return done.at(&*e);
+}
+
+}  // namespace cdot::derive

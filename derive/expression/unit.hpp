@@ -1,0 +1,27 @@
+// Units as products of metres, radians, seconds and kilograms with rational exponents (roots halve
+// them).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "derive/expression/rational.hpp"
+
+namespace cdot::derive {
+
+// Radians are kept only where nothing but seconds stands beside them: an arc, radius times angle,
+// is in metres.
+struct Unit {
+  Rational m{}, rad{}, s{}, kg{};
+
+  friend bool operator==(const Unit&, const Unit&) = default;
+};
+
+Unit operator*(const Unit& a, const Unit& b);
+Unit operator/(const Unit& a, const Unit& b);
+Unit pow(const Unit& u, Rational exponent);
+std::string text(const Unit& u);    // "m", "rad/s", "kg*m^2", "1"
+std::string spoken(const Unit& u);  // "metres", "radians", "metres per second", "a pure number", else text
+
+}  // namespace cdot::derive

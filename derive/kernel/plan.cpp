@@ -1,0 +1,362 @@
+// From a derivation to the functions of the kernel contract, as programs.
+#include "derive/kernel/plan.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "derive/derivation/forms.hpp"
+#include "derive/expression/components.hpp"
+#include "derive/expression/matrix.hpp"
+#include "derive/expression/symbols.hpp"
+#include "derive/kernel/factor.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// A number of J as coef * product of fields.
+struct StoredEntry {
+  Rational coef;
+  std::vector<int> fields;
+};
+
+class BlockPlanner {
+ public:
+  BlockPlanner(const Joint& joint, Block block, std::string name)
+      : joint_(joint), pool_(*joint.pool), width_(columns_per_body(joint.dimension)), pose_(joint) {
+    out_.name = std::move(name);
+    out_.block = std::move(block);
+  }
+
+  KernelBlock plan() {
+    if (rows() == 0) return std::move(out_);
+    store_jacobian();
+    add_position_and_jacobian();
+    add_effective_mass();
+    add("factor", "K = L D L^T; F holds L and, on the diagonal, D^-1", factor_outputs(out_.block));
+    add("solve", "lambda = K^-1 rhs", solve_outputs(out_.block));
+    add_velocity();
+    add_apply();
+    add_dense();
+    add_inverse_mass_jacobian();
+    if (joint_.dimension == 3) {
+      isotropic_ = true;
+      add_effective_mass();
+      add_apply();
+      add_inverse_mass_jacobian();
+      isotropic_ = false;
+    }
+    if (out_.block.immovable < 0) add_what_variants_inherit();
+    return std::move(out_);
+  }
+
+ private:
+  std::size_t rows() const { return out_.block.rows.size(); }
+  std::size_t bodies() const { return joint_.bodies.size(); }
+  void add(std::string name, std::string summary, const std::vector<NamedExpr>& outputs) {
+    if (isotropic_) summary += ", for sphere-like bodies";
+    out_.functions.push_back({std::move(name), std::move(summary), simplify(assemble(outputs)), isotropic_});
+  }
+
+  // Which numbers Jacobian<T> holds: the factors of J's entries that are neither zero nor one.
+  void store_jacobian() {
+    Components components;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      std::vector<StoredEntry> row;
+      for (std::size_t b = 0; b < bodies(); ++b) {
+        const std::string suffix = joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
+        const std::vector<Expr> entries = columns_of(out_.block.rows[i].J[b]);
+        for (std::size_t k = 0; k < width_; ++k) {
+          row.push_back(store(components.of(entries[k]), column_name(k, suffix)));
+        }
+      }
+      J_.push_back(std::move(row));
+    }
+  }
+
+  // v_a_1_x, w_a_1 in the plane, w_a_1_x in space
+  std::string column_name(std::size_t k, const std::string& suffix) const {
+    const std::size_t linear = static_cast<std::size_t>(joint_.dimension);
+    if (k < linear) return "v" + suffix + "_" + "xyz"[k];
+    return "w" + suffix + (linear == 2 ? "" : std::string("_") + "xyz"[k - linear]);
+  }
+
+  StoredEntry store(Expr entry, const std::string& column) {
+    const Term term = split_coefficient(entry);
+    if (is_one(term.e)) return {term.coef, {}};
+    StoredEntry stored{term.coef, {}};
+    const bool plain_factors =
+        term.e->kind == Kind::product && term.e->name.empty() &&
+        std::all_of(term.e->args.begin(), term.e->args.end(), [](Expr f) { return simple(f); }) &&
+        std::all_of(term.e->exponents.begin(), term.e->exponents.end(), [](int k) { return k == 1; });
+    if (!plain_factors) {
+      stored.fields.push_back(field(term.e, column));
+      return stored;
+    }
+    for (const Expr factor : term.e->args) stored.fields.push_back(field(factor, column));
+    return stored;
+  }
+
+  static bool simple(Expr e) { return e->kind == Kind::symbol || !e->name.empty(); }
+
+  int field(Expr e, const std::string& column) {
+    for (std::size_t i = 0; i < out_.fields.size(); ++i) {
+      if (out_.fields[i].value == e) return static_cast<int>(i);
+    }
+    std::string name = !e->name.empty() ? e->name : e->kind == Kind::symbol ? e->symbol : column;
+    const auto taken = [&](const Field& f) { return f.name == name; };
+    while (std::any_of(out_.fields.begin(), out_.fields.end(), taken)) name += "_";
+    out_.fields.push_back({name, e, pool_.symbol("J." + name, Role::given)});
+    return static_cast<int>(out_.fields.size()) - 1;
+  }
+
+  // J's entry in terms of the stored fields.
+  Expr stored(std::size_t row, std::size_t column) const {
+    const StoredEntry& entry = J_[row][column];
+    Expr e = pool_.number(entry.coef);
+    for (const int f : entry.fields) e = e * out_.fields[static_cast<std::size_t>(f)].symbol;
+    return e;
+  }
+
+  void add_position_and_jacobian() {
+    std::vector<NamedExpr> outputs;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      outputs.push_back({element("C", i), pose_.of(out_.block.rows[i].C)});
+    }
+    add("position", "C", outputs);
+    for (const Field& f : out_.fields) outputs.push_back({"J." + f.name, pose_.of(f.value)});
+    add("jacobian", "C and J", outputs);
+  }
+
+  // K in the form that the derivation simplified it to, reading what J has stored. If that form
+  // needs something that J does not hold, the plain sum over J's entries is used.
+  void add_effective_mass() {
+    Components components;
+    std::map<const Node*, Expr> held;
+    for (const Field& f : out_.fields) {
+      held.emplace(&*f.value, f.symbol);
+      held.emplace(&*(-f.value), -f.symbol);
+    }
+    const auto K_of_rows = effective_mass(joint_, out_.block.rows, out_.block.immovable, isotropic_);
+    std::vector<NamedExpr> simplified, plain;
+    bool complete = true;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        const Expr K = substitute(components.of(K_of_rows[i][j]), held);
+        for (const Expr e : topological(std::span(&K, 1))) {
+          complete = complete && (e->kind != Kind::symbol || e->role == Role::given || e->role == Role::inverse_mass ||
+                                  e->role == Role::inverse_inertia || e->role == Role::constant);
+        }
+        simplified.push_back({triangle_element("K", i, j), K});
+        plain.push_back({triangle_element("K", i, j), plain_effective_mass(i, j)});
+      }
+    }
+    const std::string summary = "K = J M^-1 J^T, lower triangle, from J";
+    add("effective_mass", summary, plain);
+    if (complete) keep_if_no_dearer(simplified);
+  }
+
+  Expr plain_effective_mass(std::size_t i, std::size_t j) const {
+    Expr K = pool_.number(0);
+    for (std::size_t b = 0; b < bodies(); ++b) {
+      if (static_cast<int>(b) == out_.block.immovable) continue;
+      for (std::size_t k = 0; k < width_; ++k) {
+        K = K + stored(i, width_ * b + k) * weighted(j, width_ * b + k);
+      }
+    }
+    return K;
+  }
+
+  // A number of (M^-1 J^T)^T.
+  Expr weighted(std::size_t row, std::size_t column) const {
+    return inverse_mass_times(column, [&](std::size_t c) { return stored(row, c); });
+  }
+
+  // Row `column` of M^-1 times a column of numbers: 1/m for what moves the centre, 1/I or the
+  // tensor I^-1 for what turns.
+  template <class Numbers>
+  Expr inverse_mass_times(std::size_t column, Numbers numbers) const {
+    const BodySymbols body = body_symbols(joint_, static_cast<int>(column / width_));
+    const std::size_t k = column % width_, first = column - k + 3;
+    if (k < static_cast<std::size_t>(joint_.dimension)) return body.inv_m * numbers(column);
+    if (joint_.dimension == 2 || isotropic_) return body.inv_I * numbers(column);
+    Expr sum = pool_.number(0);
+    for (std::size_t l = 0; l < 3; ++l) {
+      sum = sum + tensor_component(body.inv_I, k - 3, l) * numbers(first + l);
+    }
+    return sum;
+  }
+
+  std::vector<Expr> velocity_components(std::size_t b) const {
+    const BodySymbols body = body_symbols(joint_, static_cast<int>(b));
+    Components components;
+    std::vector<Expr> v = components.of_vector(body.v);
+    const std::vector<Expr> w = body.w->vector ? components.of_vector(body.w) : std::vector{body.w};
+    v.insert(v.end(), w.begin(), w.end());
+    return v;
+  }
+
+  void add_velocity() {
+    std::vector<NamedExpr> outputs;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      Expr Jv = pool_.number(0);
+      for (std::size_t b = 0; b < bodies(); ++b) {
+        const std::vector<Expr> v = velocity_components(b);
+        for (std::size_t k = 0; k < width_; ++k) Jv = Jv + stored(i, width_ * b + k) * v[k];
+      }
+      outputs.push_back({element("Jv", i), Jv});
+    }
+    add("velocity", "J v", outputs);
+  }
+
+  // J^T lambda
+  Expr force(std::size_t column) const {
+    Expr force = pool_.number(0);
+    for (std::size_t i = 0; i < rows(); ++i) {
+      force = force + stored(i, column) * pool_.symbol("lambda_" + std::to_string(i + 1), Role::multiplier);
+    }
+    return force;
+  }
+
+  // The members of Velocity<T>, in the order of J's columns.
+  static std::string velocity_member(std::size_t k, std::size_t width) {
+    static const char* const planar[] = {"x", "y", "w"};
+    static const char* const spatial[] = {"x", "y", "z", "wx", "wy", "wz"};
+    return width == 3 ? planar[k] : spatial[k];
+  }
+
+  void add_apply() {
+    std::vector<NamedExpr> outputs;
+    for (std::size_t c = 0; c < width_ * bodies(); ++c) {
+      const Expr change = inverse_mass_times(c, [&](std::size_t column) { return force(column); });
+      if (static_cast<int>(c / width_) == out_.block.immovable || is_zero(change)) continue;
+      outputs.push_back({element("v", c / width_) + "." + velocity_member(c % width_, width_),
+                         velocity_components(c / width_)[c % width_] + change});
+    }
+    add("apply", "v += M^-1 J^T lambda", outputs);
+  }
+
+  void add_dense() {
+    std::vector<NamedExpr> J;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      for (std::size_t c = 0; c < width_ * bodies(); ++c) J.push_back({element(element("D", i), c), stored(i, c)});
+    }
+    add("dense", std::string("J with its zeros: ") + (width_ == 3 ? "v_x, v_y, w" : "v, w") + " of each body", J);
+  }
+
+  void add_inverse_mass_jacobian() {
+    std::vector<NamedExpr> outputs;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      for (std::size_t c = 0; c < width_ * bodies(); ++c)
+        outputs.push_back({element(element("D", i), c), weighted(i, c)});
+    }
+    add("inverse_mass_jacobian", "(M^-1 J^T)^T, laid out like dense", outputs);
+  }
+
+  // What no inner loop of a solver asks for: a variant has it from the general block.
+  void add_what_variants_inherit() {
+    if (joint_.dimension == 3) add_other_forms();
+    add_from_pose();
+  }
+
+  // The other two velocity forms in space.
+  void add_other_forms() {
+    add_form("local_jacobian", "form (b), J by v and the body-local w' = A^T w of each body: J diag(E, A)",
+             Form::local);
+    add_form("euler_jacobian", "form (c), J by v and the rates of the Euler parameters: J diag(E, 2 G)", Form::euler);
+  }
+
+  void add_form(const std::string& name, const std::string& summary, Form form) {
+    std::vector<NamedExpr> J;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      for (std::size_t b = 0, c = 0; b < bodies(); ++b) {
+        std::vector<Expr> global;
+        for (std::size_t k = 0; k < 6; ++k) global.push_back(stored(i, 6 * b + k));
+        for (const Expr e : columns_in(form, global, joint_, static_cast<int>(b))) {
+          J.push_back({element(element("D", i), c++), e});
+        }
+      }
+    }
+    add(name, summary, J);
+  }
+
+  void add_from_pose() {
+    std::vector<NamedExpr> C_t, H;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      C_t.push_back({element("C_t", i), pose_.of(out_.block.rows[i].C_t)});
+    }
+    for (std::size_t r = 0; r < out_.block.stiffness.size(); ++r) {
+      for (std::size_t c = 0; c < out_.block.stiffness[r].size(); ++c) {
+        H.push_back({element(element("H", r), c), pose_.of(out_.block.stiffness[r][c])});
+      }
+    }
+    add_gamma();
+    add("time_derivative", "dC/dt at fixed q", C_t);
+    add("stiffness",
+        std::string("d(J^T lambda)/dq: ") + (width_ == 3 ? "x, y, angle" : "x, y, z and small turns") + " of each body",
+        H);
+  }
+
+  // The cheaper of two ways, J's if neither is: it loses fewer digits when the bodies move nearly alike.
+  void add_gamma() {
+    std::vector<NamedExpr> whole, by_entries;
+    for (std::size_t i = 0; i < rows(); ++i) {
+      whole.push_back({element("g", i), pose_.of(out_.block.rows[i].gamma)});
+      by_entries.push_back({element("g", i), pose_.of(out_.block.rows[i].gamma_by_entries)});
+    }
+    add("gamma", "-Jdot v - d/dt(dC/dt)", whole);
+    keep_if_no_dearer(by_entries);
+  }
+
+  // In place of the function added last.
+  void keep_if_no_dearer(const std::vector<NamedExpr>& outputs) {
+    Program other = simplify(assemble(outputs));
+    Program& kept = out_.functions.back().program;
+    if (count(other).total() <= count(kept).total()) kept = std::move(other);
+  }
+
+  const Joint& joint_;
+  Pool& pool_;
+  std::size_t width_;       // columns of J per body
+  bool isotropic_ = false;  // inverse inertias are numbers, not tensors
+  PoseInputs pose_;
+  KernelBlock out_;
+  std::vector<std::vector<StoredEntry>> J_;
+};
+
+bool some_row_vanishes(const Block& block) {
+  return std::any_of(block.rows.begin(), block.rows.end(), [](const ScalarRow& row) {
+    return std::all_of(row.J.begin(), row.J.end(), [](const JacobianEntry& e) { return is_zero(e.v) && is_zero(e.w); });
+  });
+}
+
+template <class Derive>
+KernelBlock plan_block(const Joint& joint, std::string name, Derive derive) {
+  KernelBlock out = BlockPlanner(joint, derive(-1), std::move(name)).plan();
+  if (out.block.rows.empty()) return out;  // a joint of coordinates only
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    Block variant = derive(static_cast<int>(b));
+    if (some_row_vanishes(variant)) continue;
+    out.variants.push_back(BlockPlanner(joint, std::move(variant), joint.bodies[b] + "_immovable").plan());
+  }
+  return out;
+}
+
+}  // namespace
+
+Kernel plan_kernel(const Joint& joint) {
+  Kernel kernel;
+  kernel.joint = &joint;
+  kernel.rows = plan_block(joint, joint.name, [&](int immovable) { return derive_rows(joint, immovable); });
+  for (const Coordinate& coordinate : joint.coordinates) {
+    kernel.coordinates.push_back(plan_block(
+        joint, coordinate.name, [&](int immovable) { return derive_coordinate(joint, coordinate, immovable); }));
+  }
+  for (std::size_t i = 0; i < joint.parameters.size(); ++i) {
+    if (joint.parameters[i].default_value) {
+      kernel.defaults.push_back(plan_default(joint, static_cast<int>(i)));
+    }
+  }
+  return kernel;
+}
+
+}  // namespace cdot::derive

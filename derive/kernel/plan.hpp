@@ -1,0 +1,74 @@
+// What a kernel computes: every function of the contract (runtime/include/cdot/kernel.hpp) as a program, before
+// it becomes text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "derive/derivation/derivation.hpp"
+#include "derive/program/program.hpp"
+
+namespace cdot::derive {
+
+// One number stored by Jacobian<T>.
+struct Field {
+  std::string name;
+  Expr value;   // what `jacobian` computes, in components
+  Expr symbol;  // how later functions refer to it
+};
+
+// A function of the contract. Inputs are found by the names of the program's input operations.
+struct KernelFunction {
+  std::string name;        // "jacobian"
+  std::string summary;     // "C and J"
+  Program program;         // outputs carry the text of what is assigned: "C[0]", "J.t_x"
+  bool isotropic = false;  // the overload for bodies whose inertia is a number, in space
+};
+
+// One row block: the joint, a coordinate, or one of these with a body immovable.
+struct KernelBlock {
+  std::string name;  // of the struct: "line", "slide", "a_immovable"
+  Block block;
+  std::vector<Field> fields;
+  std::vector<KernelFunction> functions;
+  std::vector<KernelBlock> variants;  // with one body immovable
+};
+
+struct DefaultValue {
+  int parameter = 0;
+  Program program;  // outputs "p.t_x", ...
+};
+
+struct Kernel {
+  const Joint* joint = nullptr;
+  KernelBlock rows;
+  std::vector<KernelBlock> coordinates;
+  std::vector<DefaultValue> defaults;
+};
+
+Kernel plan_kernel(const Joint& joint);
+
+// Everything written out in components and read from poses and parameters: arms become c l_x - s
+// l_y, in space xx l_x + xy l_y + xz l_z. Shared by the kernel, the ledger and the hand
+// derivations, so that all are counted alike.
+class PoseInputs {
+ public:
+  explicit PoseInputs(const Joint& joint);
+  Expr of(Expr scalar);  // any scalar expression of the joint
+
+ private:
+  void rotate(const Joint& joint, const Parameter& parameter);
+
+  std::map<const Node*, Expr> rotated_;
+};
+
+// The default of a parameter that has one, in the frame that it is fixed in.
+DefaultValue plan_default(const Joint& joint, int index);
+
+// The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space
+// "f_x_x" to "f_z_z".
+std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter);
+// How a kernel reads a parameter's numbers: symbols, in the same order.
+std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter);
+
+}  // namespace cdot::derive

@@ -1,0 +1,94 @@
+// From poses and parameters to what formulas are made of: arms and directions turned into the
+// world, and back for defaults.
+#include "derive/derivation/forms.hpp"
+#include "derive/expression/components.hpp"
+#include "derive/expression/symbols.hpp"
+#include "derive/kernel/plan.hpp"
+
+namespace cdot::derive {
+
+std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter) {
+  if (parameter.kind == ParameterKind::scalar) return {parameter.name};
+  std::vector<std::string> stems = {parameter.name}, fields;
+  if (!parameter.axes.empty()) stems = {parameter.name + "_x", parameter.name + "_y", parameter.name + "_z"};
+  for (const std::string& stem : stems) {
+    for (int k = 0; k < joint.dimension; ++k) fields.push_back(stem + "_" + "xyz"[k]);
+  }
+  return fields;
+}
+
+std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter) {
+  if (parameter.kind == ParameterKind::scalar) return {parameter.symbol};
+  std::vector<Expr> symbols;
+  for (const std::string& field : fields_of(joint, parameter)) {
+    symbols.push_back(joint.pool->symbol("p." + field, Role::parameter));
+  }
+  return symbols;
+}
+
+PoseInputs::PoseInputs(const Joint& joint) {
+  for (const Parameter& parameter : joint.parameters) {
+    if (parameter.kind != ParameterKind::scalar && parameter.symbol) rotate(joint, parameter);
+  }
+  Components components;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const int body = static_cast<int>(b);
+    const auto A = rotation_matrix(joint, body);
+    const std::vector<Expr> axes = body_axes(*joint.pool, body);
+    for (std::size_t k = 0; k < axes.size() && axes[k]->kind == Kind::symbol; ++k) {
+      const std::vector<Expr> world = components.of_vector(axes[k]);
+      for (std::size_t i = 0; i < world.size(); ++i) rotated_.emplace(&*world[i], A[i][k]);
+    }
+  }
+}
+
+// r = R l for each vector leaf behind the parameter.
+void PoseInputs::rotate(const Joint& joint, const Parameter& parameter) {
+  Components components;
+  const std::vector<Expr> local = local_symbols(joint, parameter);
+  const std::vector<Expr> leaves = parameter.axes.empty() ? std::vector{parameter.symbol} : parameter.axes;
+  for (std::size_t n = 0; n < leaves.size(); ++n) {
+    const std::vector<Expr> world = components.of_vector(leaves[n]);
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      Expr component = local[n * world.size() + i];
+      if (parameter.body >= 0) {
+        const std::vector<Expr> row = rotation_matrix(joint, parameter.body)[i];
+        component = joint.pool->number(0);
+        for (std::size_t k = 0; k < row.size(); ++k) component = component + row[k] * local[n * row.size() + k];
+        joint.pool->name(component, world[i]->symbol, true);
+      }
+      rotated_.emplace(&*world[i], component);
+    }
+  }
+}
+
+Expr PoseInputs::of(Expr scalar) {
+  Components components;
+  return substitute(components.of(scalar), rotated_);
+}
+
+// The default of a parameter in the frame that it is fixed in: R^T (p - x) for a point, R^T u for a
+// vector.
+DefaultValue plan_default(const Joint& joint, int index) {
+  const Parameter& parameter = joint.parameters[static_cast<std::size_t>(index)];
+  PoseInputs pose(joint);
+  Pool& pool = *joint.pool;
+  const std::vector<std::string> fields = fields_of(joint, parameter);
+  std::vector<NamedExpr> outputs;
+  const auto output = [&](Expr e) { outputs.push_back({"p." + fields[outputs.size()], pose.of(e)}); };
+  if (parameter.kind == ParameterKind::scalar) {
+    output(parameter.default_value);
+    return {index, simplify(assemble(outputs))};
+  }
+  std::vector<Expr> values = {parameter.default_value};
+  if (!parameter.default_axes.empty()) values = parameter.default_axes;
+  if (parameter.kind == ParameterKind::point && parameter.body >= 0) {
+    values[0] = values[0] - body_symbols(joint, parameter.body).x;
+  }
+  for (const Expr value : values) {
+    for (const Expr axis : body_axes(pool, parameter.body)) output(dot(axis, value));
+  }
+  return {index, simplify(assemble(outputs))};
+}
+
+}  // namespace cdot::derive

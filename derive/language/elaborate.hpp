@@ -1,0 +1,137 @@
+// A spec's tree to a Joint: names and bodies resolved, includes taken over, types and units
+// checked. Internal to the reader; language/read.hpp is the front door.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "derive/language/evaluate.hpp"
+#include "derive/language/read.hpp"
+#include "derive/syntax/ast.hpp"
+#include "derive/syntax/lexer.hpp"
+
+namespace cdot::derive {
+
+// What a parameter of an included joint is in the joint that includes it.
+struct Given {
+  Value value;
+  std::string text;
+  bool taken = false;
+};
+
+// One file on its way into the joint: the spec itself, or what it includes.
+struct Source {
+  std::shared_ptr<const SourceFile> file;
+  Tokens tokens;
+  JointAst ast;
+  std::string prefix;                  // of the names that it brings in
+  std::vector<int> bodies;             // what its a, b, ... are here; empty: the same
+  std::map<std::string, Given> given;  // its parameters that are none of the joint
+  std::optional<Span> include;         // where the spec includes it; empty: it is the spec
+  std::vector<std::string> including;  // the files on the way to it
+  Diagnostics diagnostics;
+  bool clashed = false;  // with names of the spec: what follows from that is not worth a message
+  std::map<std::string, Span> declared_anywhere;  // also further down
+};
+
+struct Entry {
+  Value value;
+  std::string kind;  // "point", ..., "let", or "arm"
+  Span where;        // in the spec; of what came with an include: the include
+  bool included = false;
+  bool used = false;
+};
+
+class Elaborator {
+ public:
+  Elaborator(const Library& library, int dimension, const ReadOptions& options);
+  void run(Source& spec);
+  void finish(ReadResult& result, Source& spec);
+
+ private:
+  friend class SourceNames;
+
+  void statements(Source& source);
+  // language/elaborate_include.cpp
+  void include(Source& source, const IncludeAst& item);
+  bool includable(Source& source, const IncludeAst& item);
+  bool same_space(Source& source, const IncludeAst& item, const Source& inner);
+  bool map_bodies(Source& source, const IncludeAst& item, Source& inner);
+  void give_parameters(Source& source, const IncludeAst& item, Source& inner);
+  void check_given(Source& source, const IncludeAst& item, const Source& inner);
+  bool take_given(Source& source, const DeclaredAst& d);
+  void report_included(Source& source, const IncludeAst& item, const Source& inner);
+  // language/elaborate_declare.cpp
+  void declare(Source& source, const DeclaredAst& d);
+  bool resolve_body(Source& source, const DeclaredAst& d, Parameter& p);
+  bool resolve_unit(Source& source, const DeclaredAst& d, const Value& given, Parameter& p);
+  Value default_value(Source& source, const DeclaredAst& d);
+  bool default_fits(Source& source, const DeclaredAst& d, Value& given);
+  void default_axes(const Value& given, Parameter& p);
+  bool build_symbol(Source& source, const DeclaredAst& d, Parameter& p, Value& value);
+  bool symbol_is_free(Source& source, const DeclaredAst& d, const std::string& symbol, bool arm);
+  bool build_frame(Source& source, const DeclaredAst& d, Role role, Parameter& p, Value& value);
+  void let(Source& source, const DeclaredAst& d);
+  bool is_component(std::string_view ending) const;
+  std::string vector_of_component(const std::string& name) const;
+  bool name_is_free(Source& source, const Word& word, const std::string& full);
+  void enter(Source& source, const std::string& full, std::string kind, Value value, Span where);
+  // language/elaborate_row.cpp
+  void row(Source& source, const StatementAst& s);
+  std::optional<Value> constraint(Source& source, const StatementAst& s);
+  void add_row(Source& source, const StatementAst& s, Row row);
+  void keep(Source& source, const StatementAst& s, const Row& whole);
+  bool row_makes_sense(Source& source, const StatementAst& s, const Value& C);
+  void coordinate(Source& source, const StatementAst& s);
+  bool free_of_velocity(Source& source, const Ast& ast, const Value& value, std::string_view place);
+  std::string written(const Source& source, const StatementAst& s) const;
+  // checks at the end
+  void check_bodies(Source& spec);
+  void warn_unused(Source& spec);
+  bool arises_in_derivative(Expr e) const;
+
+  Value evaluate(Source& source, const Ast& ast);
+  // In the spec: at that place; in an include: at the statement that includes it.
+  void error(Source& source, Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
+  Span in_spec(const Source& source, Span where) const { return source.include.value_or(where); }
+
+  const Library& library_;
+  std::shared_ptr<Pool> pool_;
+  const ReadOptions& options_;
+  Joint joint_;
+  std::map<std::string, Entry> names_;
+  std::map<int, Span> bodies_;  // those used, and where first
+  std::map<std::string, Span> row_names_, coordinate_names_;
+  Diagnostics* spec_diagnostics_ = nullptr;
+  std::vector<Span> parameters_where_;
+  std::vector<std::shared_ptr<const SourceFile>> included_;
+  int include_count_ = 0;
+  int row_count_ = 0;
+};
+
+// Scope as one source sees them.
+class SourceNames final : public Scope {
+ public:
+  SourceNames(Elaborator& elaborator, Source& source) : e_(elaborator), source_(source) {}
+  const Value* find(const std::string& name) override;
+  int body(const std::string& letter) const override;
+  void use_body(int body, Span where) override;
+  void use_world() override { e_.joint_.uses_world = true; }
+  std::vector<std::string> known() const override;
+  std::string hint(const std::string& name) const override;
+
+ private:
+  Elaborator& e_;
+  Source& source_;
+};
+
+bool depends_on_role(Expr e, Role role);
+bool depends_on_bodies(Expr e);
+
+// Reads and parses; what is wrong goes into the source's diagnostics.
+void parse_source(Source& source);
+
+}  // namespace cdot::derive

@@ -1,0 +1,215 @@
+// Calls of operators: the table's row that fits the arguments, its unit rule, and what to say if
+// none fits.
+#include <algorithm>
+#include <map>
+
+#include "derive/expression/symbols.hpp"
+#include "derive/language/evaluate.hpp"
+#include "derive/syntax/lexer.hpp"
+
+namespace cdot::derive {
+namespace {
+
+unsigned bit_of(const Value& v, bool hand) {
+  switch (v.type) {
+    case Type::scalar: return number_ | (v.zero ? vector_ : 0u);
+    case Type::vector: return vector_;
+    case Type::point: return (v.anchored ? point_ : 0u) | (hand ? vector_ : 0u);
+    case Type::body: return v.body < 0 ? world_ : body_;
+    case Type::frame: return frame_;
+    case Type::matrix: return matrix_;
+    case Type::poison: return 0;
+  }
+  return 0;
+}
+
+bool fits(const Operator& o, const std::vector<Value>& arguments, bool hand) {
+  if (o.takes.size() != arguments.size()) return false;
+  for (std::size_t i = 0; i < arguments.size(); ++i)
+    if ((o.takes[i] & bit_of(arguments[i], hand)) == 0) return false;
+  return true;
+}
+
+std::string takes_in_words(unsigned takes) {
+  std::string out;
+  const auto add = [&](unsigned bit, std::string_view word) {
+    if ((takes & bit) != 0) out += (out.empty() ? "" : " or ") + std::string(word);
+  };
+  add(number_, "a number");
+  add(vector_, "a vector");
+  add(point_, "a declared point");
+  add(frame_, "a frame");
+  add(body_, "a body");
+  return out;
+}
+
+std::string signatures(const std::vector<const Operator*>& candidates) {
+  std::string out;
+  for (const Operator* o : candidates)
+    out += (out.empty() ? "" : "; ") + std::string(o->signature) + ": " + std::string(o->help);
+  return out;
+}
+
+std::string given_in_words(const Value& v) {
+  if (v.type == Type::body && v.body < 0) return "the world";
+  if (v.type == Type::point && !v.anchored) return "one that was computed and belongs to no body";
+  return std::string(in_words(v.type));
+}
+
+std::optional<Unit> unit_given(UnitGiven given, const std::vector<Value>& a) {
+  switch (given) {
+    case UnitGiven::product: {
+      Unit u;
+      for (const Value& v : a) {
+        if (!v.unit) return {};
+        u = u * *v.unit;
+      }
+      return u;
+    }
+    case UnitGiven::same: return a[0].unit;
+    case UnitGiven::root:
+      if (!a[0].unit) return {};
+      return pow(*a[0].unit, Rational(1, 2));
+    case UnitGiven::number: return Unit{};
+    case UnitGiven::radians: return Unit{.rad = 1};
+    case UnitGiven::metres: return Unit{.m = 1};
+    case UnitGiven::speed: return Unit{.m = 1, .s = -1};
+    case UnitGiven::spin: return Unit{.rad = 1, .s = -1};
+    case UnitGiven::mass: return Unit{.kg = 1};
+    case UnitGiven::inertia: return Unit{.m = 2, .kg = 1};
+  }
+  return {};
+}
+
+}  // namespace
+
+// A column of two is a vector to an operator, a matrix of one entry a number.
+Value Evaluator::hand_argument(Value v) { return v.type == Type::matrix ? simplest(*v.matrix, true) : v; }
+
+std::vector<const Operator*> Evaluator::operators_here(const std::string& name) const {
+  std::vector<const Operator*> here;
+  for (const Operator* o : operators_named(name))
+    if (o->is_of(pool_.dimension())) here.push_back(o);
+  return here;
+}
+
+// An operator of the other space only.
+Value Evaluator::elsewhere(const Ast& ast) {
+  const bool plane = pool_.dimension() == 2;
+  static const std::map<std::string_view, std::string_view> instead = {
+      {"perp", "in space a direction across u is an axis of a frame, f.y, or cross(n, u)"},
+      {"angle", "in space: angle(u, v, n) about an axis, angle(u, v), or twist(f, g)"}};
+  const auto fix = instead.find(ast.text);
+  return error(ast.where,
+               quote(operators_named(ast.text)[0]->signature) + " is an operator of " + (plane ? "space" : "the plane"),
+               fix == instead.end() ? "" : std::string(fix->second));
+}
+
+Value Evaluator::call(const Ast& ast) {
+  const auto candidates = operators_here(ast.text);
+  std::vector<Value> arguments;
+  bool poisoned = false;
+  for (const Ast& a : ast.args) {
+    arguments.push_back(hand_argument((*this)(a)));
+    poisoned |= arguments.back().type == Type::poison;
+  }
+  if (candidates.empty()) return is_operator(ast.text) ? elsewhere(ast) : unknown(ast, true);
+  if (!hand_ && candidates[0]->where == Operator::Where::hand)
+    return error(ast.where, quote(ast.text) + " is for .hand files only",
+                 "a spec says where things are; masses are the solver's business");
+  if (poisoned) return {};
+  for (const Operator* o : candidates)
+    if (fits(*o, arguments, hand_)) return apply(*o, arguments, ast);
+  return wrong_arguments(arguments, ast);
+}
+
+Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast& ast) {
+  const auto candidates = operators_here(ast.text);
+  const std::string help = signatures(candidates);
+  const auto right_count = std::find_if(candidates.begin(), candidates.end(),
+                                        [&](const Operator* o) { return o->takes.size() == arguments.size(); });
+  if (right_count == candidates.end()) {
+    diagnostics_.error(ast.where,
+                       quote(ast.text) + " takes " + std::to_string(candidates[0]->takes.size()) +
+                           (candidates.back()->takes.size() != candidates[0]->takes.size()
+                                ? " or " + std::to_string(candidates.back()->takes.size())
+                                : "") +
+                           (candidates.back()->takes.size() == 1 ? " argument" : " arguments") +
+                           (arguments.size() == 1 ? ", here is " : ", here are ") + std::to_string(arguments.size()),
+                       help);
+    return {};
+  }
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    unsigned allowed = 0;
+    for (const Operator* c : candidates)
+      if (c->takes.size() == arguments.size()) allowed |= c->takes[i];
+    if ((allowed & bit_of(arguments[i], hand_)) != 0) continue;
+    const bool subtract = arguments[i].type == Type::point && (allowed & vector_) != 0;
+    return error(ast.args[i].where,
+                 quote(ast.text) + " takes " + takes_in_words(allowed) + " here, not " + given_in_words(arguments[i]),
+                 subtract ? "a difference of points is a vector: pa - pb; the arm of a point: arm(pa)" : help);
+  }
+  return error(ast.where, quote(ast.text) + " is not defined for these arguments", help);
+}
+
+Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, const Ast& ast) {
+  const Value* first_vector = nullptr;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const Value& a = arguments[i];
+    if (a.type == Type::body && a.body >= 0) names_.use_body(a.body, ast.args[i].where);
+    if (a.type == Type::body && a.body < 0) names_.use_world();
+    if (a.type != Type::vector) continue;
+    if (first_vector && first_vector->along != a.along)
+      return error(ast.where, "components along a frame and along other axes are mixed",
+                   "bring both vectors into one frame with local(u, f)");
+    first_vector = &a;
+  }
+  if (o.name == "local" && first_vector && !first_vector->along.empty())
+    return error(ast.args[0].where, "these are components along a frame already");
+  std::vector<Value> built = arguments;
+  for (std::size_t i = 0; i < built.size(); ++i)
+    if (built[i].zero && (o.takes[i] & number_) == 0) built[i] = vector(zero_vector(pool_), {});
+    else if (built[i].type == Type::point && (o.takes[i] & point_) == 0) built[i] = vector(built[i].e, built[i].unit);
+  if (o.name == "arm" && arguments[0].body < 0)
+    return error(ast.args[0].where, "a point of the world has no arm: the world has no centre of mass",
+                 "subtract two points instead");
+  const auto rule = unit_of_call(o, built, ast);
+  if (!rule) return {};
+  Value result = o.build(pool_, built);
+  result.unit = rule->unit;
+  result.ratio = rule->ratio;
+  if (result.type == Type::vector && first_vector && result.along.empty()) {
+    result.along = first_vector->along;
+  }
+  return result;
+}
+
+// The unit that the table's rule gives, as the unit of a Value; empty if the arguments' units are
+// wrong.
+std::optional<Value> Evaluator::unit_of_call(const Operator& o, const std::vector<Value>& a, const Ast& ast) {
+  const auto need = [&](std::initializer_list<Unit> allowed, std::string_view what, std::string fix) {
+    if (!a[0].unit || std::find(allowed.begin(), allowed.end(), *a[0].unit) != allowed.end()) return true;
+    unit_error(ast.args[0].where, quote(o.name) + " takes " + std::string(what) + ", not " + spoken(*a[0].unit),
+               std::move(fix));
+    return hand_;
+  };
+  if (o.unit.needs == UnitNeed::angle &&
+      !need({Unit{}, Unit{.rad = 1}}, "an angle", "divide by a quantity of that unit, such as a wavelength"))
+    return {};
+  if (o.unit.needs == UnitNeed::number &&
+      !need({Unit{}, Unit{.rad = 1}}, "a pure number", "divide by a quantity of that unit"))
+    return {};
+  if (o.unit.needs == UnitNeed::equal && !same_unit(a[0], a[1], hand_)) {
+    unit_error(
+        ast.args[1].where,
+        quote(o.name) + " takes two quantities of one unit, not " + spoken(*a[0].unit) + " and " + spoken(*a[1].unit),
+        "", {ast.args[0].where});
+    if (!hand_) return {};
+  }
+  Value v = scalar(Expr(), unit_given(o.unit.gives, a));
+  const bool keeps = o.unit.gives == UnitGiven::same || o.unit.gives == UnitGiven::root;
+  v.ratio = keeps && a[0].ratio;
+  return v;
+}
+
+}  // namespace cdot::derive

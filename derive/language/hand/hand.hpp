@@ -1,0 +1,98 @@
+// Hand derivations: published formulas as claims, read into matrices of expressions to be judged by
+// `cdot diff`.
+//
+// An entry is read twice over: first its text (read_hand), which tells where it fixes directions
+// other than the spec; then, against a joint that was read with these anchors, its formulas
+// (elaborate_entry). Formulas may be wrong in any way: sums of numbers and vectors, sizes that do
+// not fit, units that do not match. None of this is bad input.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "derive/expression/matrix.hpp"
+#include "derive/language/joint.hpp"
+#include "derive/language/read.hpp"
+#include "derive/syntax/ast.hpp"
+
+namespace cdot::derive {
+
+struct HandFile {
+  std::shared_ptr<const SourceFile> file;
+  std::vector<HandEntryAst> entries;
+  Diagnostics diagnostics;
+};
+
+HandFile read_hand(std::shared_ptr<const SourceFile> file);
+
+// What Cdot derives for some rows of the joint; for `C`, `Cdot`, `J`, `K` in formulas of an entry
+// that does not define them itself. C and Cdot are columns, J has three columns per body.
+struct Generated {
+  Matrix C, Cdot, J, K;
+};
+// For these rows and coordinates, by name and in this order; for all rows of the joint if there are
+// no names.
+using GeneratedRows = std::function<Generated(const std::vector<std::string>& rows)>;
+
+// Another reading of a formula that has no value as it stands.
+struct HandReading {
+  std::string words;   // "with w(b) in place of v(b)"
+  std::string column;  // what that is about: "w_b"
+  Matrix value;
+};
+
+struct HandItem {
+  enum class Kind { quantity, lambda, update, bound, claim };
+  enum class Target { velocity, spin, position, angle };
+  Kind kind = Kind::quantity;
+  std::string what;             // quantity: C, Cdot, J, K or b; claim: one of these or `update`
+  std::optional<Matrix> value;  // empty: see `problem`; claim: the left side; update: what is added, sign included
+  std::optional<Matrix> right;  // claim: the right side
+  Expr expression, right_expression;  // the same, where the author wrote a number or a vector
+  std::string problem;                // why there is no value, in a sentence
+  std::vector<HandReading> readings;  // if there is none
+  Target target = Target::velocity;   // update
+  int body = -1;                      // update
+  bool pushes_only = false;           // bound: lambda >= 0; otherwise lambda is free
+  Span where;
+  std::string text;  // as written
+};
+
+// What an entry says about the same rows.
+struct HandPart {
+  std::vector<std::string> rows;  // names of rows and coordinates; empty: all rows of the joint
+  std::vector<HandItem> items;
+};
+
+struct HandAssumption {
+  std::optional<Matrix> left, right;  // an equation; empty for an anchor or an immovable body
+  Expr left_expression, right_expression;
+  Span where;
+  std::string text;
+};
+
+struct HandEntry {
+  std::string id, title, source, note;
+  std::string listed;                          // the reason why nothing is judged; empty otherwise
+  std::map<std::string, std::string> anchors;  // {"t", "a"}: `assume t on a`
+  std::vector<std::string> immovable;          // bodies
+  Form form = Form::global;                    // of J's columns
+  std::vector<HandAssumption> assumptions;     // all of them, for people too
+  std::vector<std::string> free;               // symbols with Role::given, for any positive number
+  std::vector<HandPart> parts;
+  std::vector<Diagnostic> remarks;  // units that do not match and the like; not errors
+  Span where;
+};
+
+// What `form local` says.
+Form form_of(const HandEntryAst& entry);
+
+// Formulas of an entry. What nobody could evaluate (unknown names) goes into `diagnostics`.
+HandEntry elaborate_entry(const HandEntryAst& entry, const HandFile& file, const ReadResult& joint,
+                          const GeneratedRows& generated, Diagnostics& diagnostics);
+
+}  // namespace cdot::derive

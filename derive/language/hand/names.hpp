@@ -1,0 +1,43 @@
+// What names mean in the formulas of a hand derivation: lets and free symbols of its own, names of the spec, and
+// C, Cdot, J, K, lambda and E.
+#pragma once
+
+#include "derive/language/evaluate.hpp"
+#include "derive/language/hand/hand.hpp"
+
+namespace cdot::derive {
+
+class HandNames final : public Scope {
+ public:
+  HandNames(const HandEntryAst& ast, const HandFile& file, const ReadResult& read, const GeneratedRows& generated)
+      : ast_(ast), file_(file), read_(read), generated_(generated) {}
+
+  // From here on C, J and so on are those of these rows, unless the entry says its own.
+  void begin_part(std::vector<std::string> rows);
+  void say(const std::string& quantity, const Value& value) { said_[quantity] = value; }
+  // Whether the entry may give the name a meaning; if not, says so.
+  bool is_free(const Word& name, Diagnostics& diagnostics) const;
+  void define(const std::string& name, const Value& value) { own_[name] = value; }
+
+  const Value* find(const std::string& name) override;
+  int body(const std::string& letter) const override;
+  void use_body(int, Span) override {}
+  void use_world() override {}
+  std::vector<std::string> known() const override;
+  std::string hint(const std::string& name) const override;
+
+ private:
+  Value quantity(const std::string& name);
+  Value lambda() const;
+
+  const HandEntryAst& ast_;
+  const HandFile& file_;
+  const ReadResult& read_;
+  const GeneratedRows& generated_;
+  std::map<std::string, Value> own_;
+  std::vector<std::string> rows_;  // of this part
+  std::map<std::string, Value> said_;
+  std::optional<Generated> generated_now_;
+};
+
+}  // namespace cdot::derive

@@ -1,0 +1,85 @@
+// A joint as the reader hands it on: names, parameters, constraint rows as expressions. No text, no units to check.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "derive/expression/expr.hpp"
+#include "derive/expression/unit.hpp"
+#include "derive/syntax/source.hpp"
+
+namespace cdot::derive {
+
+// The forms of velocity that J may be written in (derivation/forms.hpp).
+enum class Form { global, local, euler };
+
+enum class ParameterKind { point, vector, unit, frame, scalar };
+
+struct Parameter {
+  std::string name;
+  ParameterKind kind = ParameterKind::scalar;
+  int body = -1;  // the body it is fixed in; -1: the world, or a scalar
+  Unit unit;
+  Expr value;   // as it occurs in expressions: point: its place in the world (x_a + ra); frame: its x axis
+  Expr symbol;  // the leaf behind it: the arm `ra`, the direction `t`, the number; what a kernel reads or rotates
+  std::vector<Expr> axes;          // of a frame in space: its three leaves, `symbol` first
+  Expr default_value;              // may be empty; of the kind of `value`
+  std::vector<Expr> default_axes;  // of a frame in space
+  Span where;
+};
+
+struct Let {
+  std::string name;
+  Expr value;
+  Unit unit;
+  Span where;
+};
+
+enum class RowKind { equality, inequality, velocity };
+
+// One statement `lhs = rhs`. A vector equation counts as one Row with `rows` components here; C, J and K number them
+// one by one.
+struct Row {
+  std::string name;  // given by the author, else C1, C2, ... (of the first component: C1_x, C1_y in a vector row)
+  RowKind kind = RowKind::equality;
+  Expr C;  // lhs - rhs for equality, rhs - lhs for <=, lhs - rhs for >=; velocity rows: the velocity expression
+  Unit unit;
+  Span where;
+  std::string text;  // as written, for people
+  std::string from;  // the included joint that it came from; empty if written here
+  Expr kept;         // with `keep`: the cross product that it is a component of
+};
+
+struct Coordinate {
+  std::string name;
+  Expr value;
+  Unit unit;
+  Span where;
+  std::string text;
+  std::string from;                  // the included joint that it came from; empty if written here
+  std::vector<std::string> held_by;  // rows that leave it no freedom (derivation/free_coordinates.hpp)
+};
+
+// Folders, namespaces and headers of specs are named so.
+inline std::string name_of_space(int dimension) { return dimension == 2 ? "planar" : "spatial"; }
+
+struct Joint {
+  std::shared_ptr<Pool> pool;
+  int dimension = 2;
+  std::string name, title, source;
+  std::string comment;                // the comment block right under or above the header, without `#`, for people
+  std::vector<std::string> includes;  // names of the included joints, in order
+  std::vector<std::string> bodies;    // "a", "b", ... in order
+  std::vector<Parameter> parameters;  // in order of declaration
+  std::vector<Let> lets;
+  std::vector<Row> rows;
+  std::vector<Coordinate> coordinates;
+  std::vector<Coordinate> dropped;         // that an include brought, but rows hold
+  std::shared_ptr<const SourceFile> file;  // for messages of later stages
+  bool uses_world = false;  // some parameter is fixed in the world: momentum is not conserved, and need not be
+  bool uses_time = false;
+};
+
+}  // namespace cdot::derive

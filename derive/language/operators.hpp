@@ -1,0 +1,53 @@
+// The operators of the spec language: one table, read by the reader, by `cdot check --help` and by
+// the tests.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "derive/language/value.hpp"
+
+namespace cdot::derive {
+
+// What an operator may be applied to; several bits where it takes several.
+enum Takes : unsigned {
+  number_ = 1,
+  vector_ = 2,
+  point_ = 4,  // fixed in a body
+  body_ = 8,   // not the world
+  world_ = 16,
+  frame_ = 32,
+  matrix_ = 64
+};
+
+enum class UnitNeed { any, angle, number, equal };  // equal: all arguments have one unit
+enum class UnitGiven { product, same, root, number, radians, metres, speed, spin, mass, inertia };
+
+struct UnitRule {
+  UnitNeed needs;
+  UnitGiven gives;
+};
+
+struct Operator {
+  std::string_view name;
+  std::string_view signature;  // "dot(u, v)"
+  std::vector<unsigned> takes;
+  UnitRule unit;
+  Value (*build)(Pool& pool, std::span<const Value> arguments);  // the unit is set by the rule
+  std::string_view help;
+  enum class Where { anywhere, velocity, hand } where = Where::anywhere;
+  enum class Space { both, planar, spatial } space = Space::both;
+
+  bool is_of(int dimension) const { return space == Space::both || (space == Space::planar) == (dimension == 2); }
+};
+
+const std::vector<Operator>& operators();
+bool is_operator(std::string_view name);
+std::vector<const Operator*> operators_named(std::string_view name);  // of either space
+// What somebody who wrote `word(...)` may have meant; empty if there is no telling.
+std::string suggested_operator(std::string_view word);
+std::string operators_help();
+
+}  // namespace cdot::derive

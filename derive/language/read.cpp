@@ -1,0 +1,61 @@
+#include "derive/language/read.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "derive/language/elaborate.hpp"
+#include "derive/syntax/parse_joint.hpp"
+
+namespace cdot::derive {
+namespace {
+
+bool has_body(const Joint& joint, const std::string& body) {
+  return body == "world" || std::find(joint.bodies.begin(), joint.bodies.end(), body) != joint.bodies.end();
+}
+
+}  // namespace
+
+std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in || std::filesystem::is_directory(path)) throw std::runtime_error(path.string() + ": the file cannot be read");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  return std::make_shared<const SourceFile>(path.string(), std::move(text));
+}
+
+Library load_library(const std::filesystem::path& folder) {
+  Library library;
+  for (const auto& file : std::filesystem::directory_iterator(folder.empty() ? "." : folder))
+    if (file.path().extension() == ".joint") library.emplace(file.path().stem().string(), load_source(file.path()));
+  return library;
+}
+
+int dimension_of(const SourceFile& file) {
+  Diagnostics unheard;
+  const Tokens tokens = lex(file, false, unheard);
+  if (!tokens.readable) return 2;
+  return parse_joint(file, tokens, unheard).dimension == "spatial" ? 3 : 2;
+}
+
+ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library, const ReadOptions& options) {
+  if (!options.anchors.empty()) {
+    // An anchor on a body that the joint does not have is for the caller to report.
+    const ReadResult plain = read_joint(file, library);
+    ReadOptions possible;
+    for (const auto& [name, body] : options.anchors)
+      if (plain.joint && has_body(*plain.joint, body)) possible.anchors.emplace(name, body);
+    if (possible.anchors.size() != options.anchors.size()) return read_joint(std::move(file), library, possible);
+  }
+  ReadResult result;
+  result.file = file;
+  Source spec;
+  spec.file = std::move(file);
+  parse_source(spec);
+  Elaborator elaborator(library, spec.ast.dimension == "spatial" ? 3 : 2, options);
+  elaborator.run(spec);
+  elaborator.finish(result, spec);
+  return result;
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,272 @@
+#include "derive/numbers/numeric.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+namespace cdot::derive {
+namespace {
+
+Triple<double> unit_axis(char letter) {
+  return {letter == 'x' ? 1. : 0., letter == 'y' ? 1. : 0., letter == 'z' ? 1. : 0.};
+}
+
+// A pivot that is this small beside the diagonal entry it was left from is round-off.
+constexpr double negligible = 16 * std::numeric_limits<double>::epsilon();
+
+class Doubles final : public Arithmetic<double> {
+ public:
+  explicit Doubles(const Values& values) : values_(values) {}
+
+  double number(Rational value) override { return value.value(); }
+
+  double scalar_leaf(const Node& symbol) override {
+    if (symbol.role == Role::constant && symbol.symbol == "pi") return std::numbers::pi;
+    return named(symbol.symbol);
+  }
+
+  Triple<double> vector_leaf(const Node& symbol) override {
+    if (is_world_axis(Expr(&symbol))) return unit_axis(symbol.symbol.back());
+    return {named(symbol.symbol + "_x"), named(symbol.symbol + "_y"),
+            symbol.pool->dimension() == 2 ? 0 : named(symbol.symbol + "_z")};
+  }
+
+  double inverse(const double& x) override { return std::fabs(x) >= std::numeric_limits<double>::min() ? 1 / x : 0; }
+
+  Triple<double> direction(const Triple<double>& u) override {
+    const double u_len = length(u);
+    if (u_len == 0) return {1, 0, 0};
+    return {u[0] / u_len, u[1] / u_len, u[2] / u_len};
+  }
+
+  double call(Fn fn, std::span<const double> args) override {
+    const double x = args[0];
+    switch (fn) {
+      case Fn::sqrt: return std::sqrt(x);
+      case Fn::sin: return std::sin(x);
+      case Fn::cos: return std::cos(x);
+      case Fn::tan: return std::tan(x);
+      case Fn::exp: return std::exp(x);
+      case Fn::log: return std::log(x);
+      case Fn::abs: return std::fabs(x);
+      case Fn::sign: return x > 0 ? 1 : x < 0 ? -1 : 0;
+      case Fn::atan2: return std::atan2(x, args[1]);
+      case Fn::inverse: return inverse(x);
+      case Fn::select: return x > 0 ? args[1] : args[2];
+      case Fn::pivot: return std::fabs(x) > negligible * std::fabs(args[1]) ? 1 / x : 0;
+    }
+    return 0;
+  }
+
+ private:
+  double named(const std::string& name) const {
+    const auto found = values_.find(name);
+    if (found == values_.end()) throw std::out_of_range("no value for " + name);
+    return found->second;
+  }
+
+  const Values& values_;
+};
+
+Triple<double> turned(double theta, Triple<double> u) {
+  const double c = std::cos(theta), s = std::sin(theta);
+  return {c * u[0] - s * u[1], s * u[0] + c * u[1], u[2]};
+}
+
+Triple<double> turned(const EulerParameters<double>& e, const Triple<double>& u) {
+  const auto axes = axes_of(e);
+  Triple<double> sum{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t i = 0; i < 3; ++i) sum[i] += axes[k][i] * u[k];
+  }
+  return sum;
+}
+
+EulerParameters<double> random_orientation(Random& random) {
+  EulerParameters<double> e;
+  double square = 0;
+  do {  // uniform on the sphere, by rejection
+    square = 0;
+    for (double& component : e) component = random.between(-1, 1), square += component * component;
+  } while (square > 1 || square < 0.01);
+  for (double& component : e) component /= std::sqrt(square);
+  return e;
+}
+
+bool is_scalar_of_sample(Role role) {
+  return role == Role::parameter || role == Role::time || role == Role::inverse_mass || role == Role::inverse_inertia ||
+         role == Role::multiplier || role == Role::given;
+}
+
+bool is_body_axis(const Joint& joint, const Node& leaf) {
+  return leaf.role == Role::body_vector &&
+         leaf.symbol.starts_with("axis_" + joint.bodies[static_cast<std::size_t>(leaf.body)]);
+}
+
+}  // namespace
+
+struct Numbers::Parts {
+  explicit Parts(Values given) : values(std::move(given)), doubles(values), evaluation(doubles) {}
+  const Values values;
+  Doubles doubles;
+  Evaluation<double> evaluation;
+};
+
+Numbers::Numbers(Values values) : parts_(std::make_unique<Parts>(std::move(values))) {}
+Numbers::~Numbers() = default;
+double Numbers::scalar(Expr e) { return parts_->evaluation.scalar(e); }
+Triple<double> Numbers::vector(Expr e) { return parts_->evaluation.vector(e); }
+
+// splitmix64 (Steele, Lea, Flood, 2014).
+std::uint64_t Random::bits() {
+  std::uint64_t z = (state_ += 0x9E3779B97F4A7C15u);
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+  return z ^ (z >> 31);
+}
+
+double Random::between(double low, double high) {
+  return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
+}
+
+std::vector<Expr> leaves_of(std::span<const Expr> expressions) {
+  std::vector<Expr> leaves;
+  for (const Expr e : topological(expressions)) {
+    if (e->kind == Kind::symbol) leaves.push_back(e);
+  }
+  std::sort(leaves.begin(), leaves.end(), [](Expr a, Expr b) { return a->symbol < b->symbol; });
+  return leaves;
+}
+
+EulerParameters<double> turned_about(std::size_t axis, double amount, const EulerParameters<double>& e) {
+  EulerParameters<double> turn{std::cos(amount / 2), 0, 0, 0};
+  turn[axis + 1] = std::sin(amount / 2);
+  return product(turn, e);
+}
+
+void Sample::Body::move(int dimension, std::size_t k, double amount) {
+  if (k < static_cast<std::size_t>(dimension)) {
+    x[k] += amount;
+  } else if (dimension == 2) {
+    theta += amount;
+  } else {
+    e = turned_about(k - 3, amount, e);
+  }
+}
+
+namespace {
+
+Sample::Body random_body(int dimension, Random& random) {
+  const auto somewhere = [&](double range) { return random.between(-range, range); };
+  Sample::Body body;
+  if (dimension == 2) {
+    body.x = {somewhere(3), somewhere(3)};
+    body.theta = somewhere(3.14);
+    body.v = {somewhere(2), somewhere(2)};
+    body.w[2] = somewhere(2);
+    return body;
+  }
+  for (double& component : body.x) component = somewhere(3);
+  body.e = random_orientation(random);
+  for (Triple<double>* rate : {&body.v, &body.w}) {
+    for (double& component : *rate) component = somewhere(2);
+  }
+  return body;
+}
+
+// Components of an inverse inertia: some positive definite tensor, the same however many of them occur.
+double inverse_inertia_component(const std::string& name, double first) {
+  if (name.ends_with("_xx") || name.ends_with("_yy") || name.ends_with("_zz")) return 1 + first;
+  return 0.2 * (first - 1);
+}
+
+Triple<double> random_direction(int dimension, Random& random, double second) {
+  if (dimension == 2) return turned(1.5 * second, {1, 0});
+  return axes_of(random_orientation(random))[0];
+}
+
+// What leaves other than poses and velocities are, each from its own draw.
+void draw_leaf(const Joint& joint, Expr leaf, Random& random, Sample& sample) {
+  const double first = random.between(0.5, 2), second = random.between(-2, 2);
+  const Pool::Axis axis = joint.pool->axis_of(leaf);
+  const bool tensor = joint.dimension == 3 && leaf->role == Role::inverse_inertia;
+  if (!leaf->vector && is_scalar_of_sample(leaf->role)) {
+    sample.scalars[leaf->symbol] = tensor ? inverse_inertia_component(leaf->symbol, first) : first;
+    if (tensor && is_tensor(leaf)) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t j = i; j < 3; ++j) {
+          const std::string name = tensor_component(leaf, i, j)->symbol;
+          sample.scalars.emplace(name, inverse_inertia_component(name, random.between(0.5, 2)));
+        }
+      }
+    }
+  }
+  if (!leaf->vector || leaf->role == Role::position || leaf->role == Role::velocity || leaf->role == Role::spin) {
+    return;
+  }
+  if (is_world_axis(leaf) || is_body_axis(joint, *leaf)) {
+    sample.local[leaf->symbol] = unit_axis(joint.dimension == 2 ? 'x' : leaf->symbol.back());
+  } else if (axis.triad) {
+    sample.triads.emplace(axis.triad, random_orientation(random));
+  } else if (leaf->unit_length) {
+    sample.local[leaf->symbol] = random_direction(joint.dimension, random, second);
+  } else {
+    sample.local[leaf->symbol] = {first, second, joint.dimension == 2 ? 0 : random.between(-2, 2)};
+  }
+}
+
+}  // namespace
+
+Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std::uint64_t seed) {
+  Random random(seed);
+  Sample sample;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    sample.bodies.push_back(random_body(joint.dimension, random));
+  }
+  sample.leaves = leaves_of(expressions);
+  for (const Expr leaf : sample.leaves) draw_leaf(joint, leaf, random, sample);
+  return sample;
+}
+
+Values world_values(const Joint& joint, const Sample& sample) {
+  Values values = sample.scalars;
+  const auto put = [&](const std::string& name, const Triple<double>& u) {
+    for (std::size_t k = 0; k < static_cast<std::size_t>(joint.dimension); ++k) {
+      values[name + "_" + "xyz"[k]] = u[k];
+    }
+  };
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    const Sample::Body& body = sample.bodies[b];
+    put("x_" + joint.bodies[b], body.x);
+    put("v_" + joint.bodies[b], body.v);
+    if (joint.dimension == 3) {
+      put("w_" + joint.bodies[b], body.w);
+      for (std::size_t k = 0; k < 4; ++k) values[joint.bodies[b] + ".e" + std::to_string(k)] = body.e[k];
+    } else {
+      values["theta_" + joint.bodies[b]] = body.theta;
+      values["w_" + joint.bodies[b]] = body.w[2];
+    }
+  }
+  for (const Expr leaf : sample.leaves) {
+    Triple<double> local{};
+    const Pool::Axis axis = joint.pool->axis_of(leaf);
+    const auto triad = sample.triads.find(axis.triad);
+    if (const auto found = sample.local.find(leaf->symbol); found != sample.local.end()) {
+      local = found->second;
+    } else if (triad != sample.triads.end()) {
+      local = axes_of(triad->second)[static_cast<std::size_t>(axis.index)];
+    } else {
+      continue;
+    }
+    if (leaf->role == Role::body_vector && leaf->body >= 0) {
+      const Sample::Body& body = sample.bodies[static_cast<std::size_t>(leaf->body)];
+      local = joint.dimension == 2 ? turned(body.theta, local) : turned(body.e, local);
+    }
+    put(leaf->symbol, local);
+  }
+  return values;
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,36 @@
+// Builds a Program operation by operation, each once: what the assembler and every pass end in.
+#pragma once
+
+#include <unordered_map>
+
+#include "derive/program/program.hpp"
+
+namespace cdot::derive {
+
+class ProgramBuilder {
+ public:
+  int number(Rational value);
+  // Numeric coefficients of operands move into sums and out of products; nothing is flattened.
+  int sum(std::vector<int> args, std::vector<Rational> coefs, std::string name = {});
+  int product(std::vector<int> args, std::vector<int> exponents, std::string name = {});
+  int function(Fn fn, std::vector<int> args, std::string name = {});
+  int input(const Operation& op);
+  // op with other operands.
+  int rebuild(const Operation& op, std::vector<int> args);
+
+  const Operation& at(int op) const { return program_.ops[static_cast<std::size_t>(op)]; }
+  int size() const { return static_cast<int>(program_.ops.size()); }
+  void output(std::string name, int op) { program_.outputs.push_back({std::move(name), op}); }
+  Program finish() { return std::move(program_); }
+
+ private:
+  int intern(Operation op);
+  void positions_first(Operation& sum) const;
+  // Takes the numeric factor out of an operand: a sum with one term, or a number.
+  Rational pull_coefficient(int& arg) const;
+
+  Program program_;
+  std::unordered_map<std::string, int> by_key_;
+};
+
+}  // namespace cdot::derive

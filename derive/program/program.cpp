@@ -1,0 +1,266 @@
+// Expressions to programs, and what a program costs.
+#include "derive/program/program.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <fmt/format.h>
+
+#include "derive/program/builder.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// Equal for equal operations and for no others: the numbers of one after the other, as bytes.
+std::string key_of(const Operation& op) {
+  std::string key;
+  const auto add = [&](std::int64_t n) { key.append(reinterpret_cast<const char*>(&n), sizeof n); };
+  const auto add_rational = [&](Rational r) { add(r.num()), add(r.den()); };
+  add(static_cast<int>(op.kind));
+  if (op.kind == OpKind::number) add_rational(op.value);
+  if (op.kind == OpKind::input) key += op.input;
+  if (op.kind == OpKind::function) add(static_cast<int>(op.fn));
+  for (std::size_t i = 0; i < op.args.size(); ++i) {
+    add(op.args[i]);
+    if (op.kind == OpKind::sum) add_rational(op.coefs[i]);
+    if (op.kind == OpKind::product) add(op.exponents[i]);
+  }
+  return key;
+}
+
+bool is_number(const Program& program, int op) {
+  return program.ops[static_cast<std::size_t>(op)].kind == OpKind::number;
+}
+
+void add_cost(const Program& program, const Operation& op, Count& count) {
+  const int n = static_cast<int>(op.args.size());
+  if (op.kind == OpKind::sum) {
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      const bool scaled = abs(op.coefs[i]) != Rational(1) && !is_number(program, op.args[i]);
+      count.multiply += scaled ? 1 : 0;
+    }
+    count.add += n - 1 + (lead_of(program, op).negated ? 1 : 0);
+  } else if (op.kind == OpKind::product) {
+    count.multiply += n - 1;
+    for (const int k : op.exponents) count.multiply += k - 1;
+  } else if (op.kind == OpKind::function) {
+    switch (op.fn) {
+      case Fn::sqrt: count.root += 1; break;
+      case Fn::inverse: count.divide += 1, count.compare += 1; break;
+      case Fn::pivot: count.divide += 1, count.compare += 1, count.multiply += 1; break;
+      case Fn::select:
+      case Fn::abs:
+      case Fn::sign: count.compare += 1; break;
+      default: count.call += 1;
+    }
+  }
+}
+
+}  // namespace
+
+Lead lead_of(const Program& program, const Operation& sum) {
+  for (std::size_t i = 0; i < sum.args.size(); ++i) {
+    if (sum.coefs[i].sign() > 0) return {i, false};
+  }
+  for (std::size_t i = 0; i < sum.args.size(); ++i) {
+    if (sum.coefs[i] != Rational(-1) || is_number(program, sum.args[i])) return {i, false};
+  }
+  return {0, true};
+}
+
+int ProgramBuilder::intern(Operation op) {
+  const std::string key = key_of(op);
+  if (const auto found = by_key_.find(key); found != by_key_.end()) {
+    Operation& known = program_.ops[static_cast<std::size_t>(found->second)];
+    if (known.name.empty()) known.name = op.name;
+    return found->second;
+  }
+  program_.ops.push_back(std::move(op));
+  by_key_.emplace(key, size() - 1);
+  return size() - 1;
+}
+
+int ProgramBuilder::number(Rational value) {
+  Operation op;
+  op.value = value;
+  return intern(std::move(op));
+}
+
+int ProgramBuilder::input(const Operation& op) { return intern(op); }
+
+Rational ProgramBuilder::pull_coefficient(int& arg) const {
+  const Operation& op = at(arg);
+  if (op.kind != OpKind::sum || op.args.size() != 1) return Rational(1);
+  arg = op.args[0];
+  return op.coefs[0];
+}
+
+// Sums are taken from the left: x_a - x_b + r keeps the digits of r far from the origin, r + x_a - x_b does not.
+void ProgramBuilder::positions_first(Operation& sum) const {
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < sum.args.size(); ++i) {
+    if (!at(sum.args[i]).is_position) continue;
+    const auto move_up = [&](auto& list) {
+      const auto first = list.begin() + static_cast<std::ptrdiff_t>(next);
+      std::rotate(first, list.begin() + static_cast<std::ptrdiff_t>(i),
+                  list.begin() + static_cast<std::ptrdiff_t>(i + 1));
+    };
+    move_up(sum.args);
+    move_up(sum.coefs);
+    ++next;
+  }
+}
+
+int ProgramBuilder::sum(std::vector<int> args, std::vector<Rational> coefs, std::string name) {
+  Operation op;
+  op.kind = OpKind::sum;
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    const Rational coef = coefs[i] * pull_coefficient(args[i]);
+    std::size_t same = 0;
+    while (same < op.args.size() && op.args[same] != args[i]) ++same;
+    if (same < op.args.size()) {
+      op.coefs[same] = op.coefs[same] + coef;
+    } else {
+      op.args.push_back(args[i]);
+      op.coefs.push_back(coef);
+    }
+  }
+  for (std::size_t i = op.args.size(); i-- > 0;) {
+    if (!op.coefs[i].is_zero()) continue;
+    op.args.erase(op.args.begin() + static_cast<std::ptrdiff_t>(i));
+    op.coefs.erase(op.coefs.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  positions_first(op);
+  if (op.args.empty()) return number(0);
+  if (op.args.size() == 1 && at(op.args[0]).kind == OpKind::number) {
+    return number(op.coefs[0] * at(op.args[0]).value);
+  }
+  if (op.args.size() == 1 && op.coefs[0] == Rational(1)) return op.args[0];
+  // The negative of a sum that exists already is not computed again.
+  Operation negative = op;
+  for (Rational& c : negative.coefs) c = -c;
+  if (op.args.size() > 1) {
+    if (const auto found = by_key_.find(key_of(negative)); found != by_key_.end()) {
+      return sum({found->second}, {Rational(-1)});
+    }
+  }
+  op.name = std::move(name);
+  return intern(std::move(op));
+}
+
+int ProgramBuilder::product(std::vector<int> args, std::vector<int> exponents, std::string name) {
+  Operation op;
+  op.kind = OpKind::product;
+  Rational coef(1);
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    coef = coef * pow(pull_coefficient(args[i]), exponents[i]);
+    if (at(args[i]).kind == OpKind::number) {
+      coef = coef * pow(at(args[i]).value, exponents[i]);
+      continue;
+    }
+    std::size_t same = 0;
+    while (same < op.args.size() && op.args[same] != args[i]) ++same;
+    if (same < op.args.size()) {
+      op.exponents[same] += exponents[i];
+    } else {
+      op.args.push_back(args[i]);
+      op.exponents.push_back(exponents[i]);
+    }
+  }
+  if (coef.is_zero()) return number(0);
+  if (op.args.empty()) return number(coef);
+  const bool plain = op.args.size() == 1 && op.exponents[0] == 1;
+  if (coef == Rational(1)) op.name = std::move(name);
+  const int core = plain ? op.args[0] : intern(std::move(op));
+  return coef == Rational(1) ? core : sum({core}, {coef}, std::move(name));
+}
+
+int ProgramBuilder::function(Fn fn, std::vector<int> args, std::string name) {
+  Operation op;
+  op.kind = OpKind::function;
+  op.fn = fn;
+  op.args = std::move(args);
+  if (fn == Fn::inverse || fn == Fn::abs) {
+    // 1/(-x) = -1/x, |-x| = |x|; other factors stay inside.
+    int inner = op.args[0];
+    if (pull_coefficient(inner) == Rational(-1)) {
+      op.args[0] = inner;
+      op.name = name;
+      const int core = intern(std::move(op));
+      return fn == Fn::abs ? core : sum({core}, {Rational(-1)});
+    }
+  }
+  op.name = std::move(name);
+  return intern(std::move(op));
+}
+
+int ProgramBuilder::rebuild(const Operation& op, std::vector<int> args) {
+  switch (op.kind) {
+    case OpKind::number: return number(op.value);
+    case OpKind::input: return input(op);
+    case OpKind::sum: return sum(std::move(args), op.coefs, op.name);
+    case OpKind::product: return product(std::move(args), op.exponents, op.name);
+    case OpKind::function: return function(op.fn, std::move(args), op.name);
+  }
+  return 0;
+}
+
+Program assemble(const std::vector<NamedExpr>& outputs) {
+  ProgramBuilder builder;
+  std::map<const Node*, int> done;
+  std::vector<Expr> roots;
+  for (const NamedExpr& output : outputs) roots.push_back(output.e);
+  for (const Expr e : topological(roots)) {
+    Operation op;
+    op.name = e->name;
+    std::vector<int> args;
+    for (const Expr arg : e->args) args.push_back(done.at(&*arg));
+    switch (e->kind) {
+      case Kind::number: op.value = e->value; break;
+      case Kind::symbol:
+        op.kind = OpKind::input;
+        op.input = e->symbol;
+        op.is_position = e->role == Role::position;
+        break;
+      case Kind::sum:
+        op.kind = OpKind::sum;
+        op.coefs = e->coefs;
+        break;
+      case Kind::product:
+        op.kind = OpKind::product;
+        op.exponents = e->exponents;
+        break;
+      default: op.kind = OpKind::function; op.fn = e->fn;
+    }
+    done.emplace(&*e, builder.rebuild(op, std::move(args)));
+  }
+  for (const NamedExpr& output : outputs) builder.output(output.name, done.at(&*output.e));
+  return builder.finish();
+}
+
+Count count(const Program& program) {
+  std::vector<bool> needed(program.ops.size());
+  for (const Output& output : program.outputs) needed[static_cast<std::size_t>(output.op)] = true;
+  Count total;
+  for (std::size_t i = program.ops.size(); i-- > 0;) {
+    if (!needed[i]) continue;
+    add_cost(program, program.ops[i], total);
+    for (const int arg : program.ops[i].args) needed[static_cast<std::size_t>(arg)] = true;
+  }
+  return total;
+}
+
+std::string text(const Count& c) {
+  std::string s;
+  const auto part = [&](int n, const char* what) {
+    if (n > 0) s += fmt::format("{}{} {}", s.empty() ? "" : ", ", n, what);
+  };
+  part(c.add, "+");
+  part(c.multiply, "*");
+  part(c.divide, "/");
+  part(c.root, "sqrt");
+  part(c.compare, "<");
+  part(c.call, "call");
+  return s.empty() ? "nothing" : s;
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,72 @@
+// A function of a kernel as a flat list of scalar operations by index: the form that passes rewrite
+// and printers read.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "derive/expression/expr.hpp"
+
+namespace cdot::derive {
+
+enum class OpKind { number, input, sum, product, function };
+
+// Operands come before their users. Sums and products have any number of operands.
+struct Operation {
+  OpKind kind = OpKind::number;
+  Rational value;            // number
+  std::string input;         // input: the symbol's name
+  bool is_position = false;  // input: a coordinate of a centre of mass (large, so differences come first)
+  Fn fn = Fn::sqrt;          // function
+  std::vector<int> args;
+  std::vector<Rational> coefs;  // sum
+  std::vector<int> exponents;   // product, positive
+  std::string name;             // from the spec, or empty
+};
+
+struct Output {
+  std::string name;  // "C1", "K21", ...
+  int op = 0;
+};
+
+struct Program {
+  std::vector<Operation> ops;
+  std::vector<Output> outputs;
+};
+
+// The term that a sum opens with: the first positive one; without one, the first with a number that
+// takes the minus sign, -2 x; else the first, negated, -x, which costs an operation.
+struct Lead {
+  std::size_t term = 0;
+  bool negated = false;
+};
+Lead lead_of(const Program& program, const Operation& sum);
+
+// Operations by kind. A power x^n is n - 1 products; a subtraction or negation counts as an
+// addition; the guarded inverse is a division and a comparison, a guarded pivot another product
+// besides.
+struct Count {
+  int add = 0, multiply = 0, divide = 0, root = 0, compare = 0, call = 0;
+
+  int total() const { return add + multiply + divide + root + compare + call; }
+  friend bool operator==(const Count&, const Count&) = default;
+};
+std::string text(const Count& count);  // "8 + 6 * 1 / 1 root"
+
+struct NamedExpr {
+  std::string name;
+  Expr e;  // written out in components
+};
+
+// The program that computes `outputs`, shared work shared, nothing else done.
+Program assemble(const std::vector<NamedExpr>& outputs);
+
+// The cheapest of what the passes find: common pairs of terms and of factors shared, common factors
+// taken out.
+Program simplify(const Program& program);
+
+// Only operations that an output needs count.
+Count count(const Program& program);
+
+}  // namespace cdot::derive

@@ -1,0 +1,24 @@
+// What all passes over programs are made of: a copy in which some operations become others.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "derive/program/builder.hpp"
+
+namespace cdot::derive {
+
+// How often an operation is used by needed operations and outputs.
+std::vector<int> use_counts(const Program& program);
+
+// Copies the needed operations; `rewrite` may build something else in the place of an operation (its operands, in
+// terms of the new program, are given), or say nullopt to keep it.
+using Rewrite =
+    std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index, const std::vector<int>& new_index)>;
+Program rewritten(const Program& program, const Rewrite& rewrite);
+
+// The place of an operand; the number of operands if it is none of them.
+std::size_t index_of(const std::vector<int>& args, int arg);
+
+}  // namespace cdot::derive

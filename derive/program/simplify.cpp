@@ -1,0 +1,249 @@
+// Passes from program to program. Each finds its best single rewriting, deterministically: the most frequent pair, the
+// first of equals. They are run in several orders and the cheapest program wins, for sharing and factoring compete.
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include "derive/program/rewrite.hpp"
+#include "derive/program/share_pairs.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// Terms of `sum` from which `factor` can be taken without computing anything twice.
+std::vector<std::size_t> terms_with(const Program& program, const Operation& sum, int factor,
+                                    const std::vector<int>& uses) {
+  std::vector<std::size_t> terms;
+  for (std::size_t i = 0; i < sum.args.size(); ++i) {
+    const Operation& term = program.ops[static_cast<std::size_t>(sum.args[i])];
+    const bool own = uses[static_cast<std::size_t>(sum.args[i])] == 1;
+    const bool contains = term.kind == OpKind::product && own && index_of(term.args, factor) < term.args.size();
+    if (sum.args[i] == factor || contains) terms.push_back(i);
+  }
+  return terms;
+}
+
+struct Factoring {
+  int sum = 0, factor = 0;
+  std::vector<std::size_t> terms;
+};
+
+std::optional<Factoring> best_factoring(const Program& program) {
+  const std::vector<int> uses = use_counts(program);
+  std::optional<Factoring> best;
+  for (std::size_t s = 0; s < program.ops.size(); ++s) {
+    const Operation& sum = program.ops[s];
+    if (uses[s] == 0 || sum.kind != OpKind::sum) continue;
+    std::set<int> factors;
+    for (const int arg : sum.args) {
+      const Operation& term = program.ops[static_cast<std::size_t>(arg)];
+      if (term.kind == OpKind::product) factors.insert(term.args.begin(), term.args.end());
+    }
+    for (const int factor : factors) {
+      std::vector<std::size_t> terms = terms_with(program, sum, factor, uses);
+      if (terms.size() >= 2 && (!best || terms.size() > best->terms.size())) {
+        best = Factoring{static_cast<int>(s), factor, std::move(terms)};
+      }
+    }
+  }
+  return best;
+}
+
+// a x + b x = x (a + b)
+std::optional<Program> take_out_factor(const Program& program) {
+  const std::optional<Factoring> f = best_factoring(program);
+  if (!f) return std::nullopt;
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
+        if (index != f->sum) return std::nullopt;
+        std::vector<int> inner, outer;
+        std::vector<Rational> inner_coefs, outer_coefs;
+        for (std::size_t i = 0; i < op.args.size(); ++i) {
+          if (std::find(f->terms.begin(), f->terms.end(), i) == f->terms.end()) {
+            outer.push_back(at[static_cast<std::size_t>(op.args[i])]);
+            outer_coefs.push_back(op.coefs[i]);
+            continue;
+          }
+          const Operation& term = program.ops[static_cast<std::size_t>(op.args[i])];
+          std::vector<int> args, exponents;
+          if (op.args[i] != f->factor) {
+            for (std::size_t k = 0; k < term.args.size(); ++k) {
+              const int left = term.exponents[k] - (term.args[k] == f->factor ? 1 : 0);
+              if (left == 0) continue;
+              args.push_back(at[static_cast<std::size_t>(term.args[k])]);
+              exponents.push_back(left);
+            }
+          }
+          inner.push_back(builder.product(std::move(args), std::move(exponents)));
+          inner_coefs.push_back(op.coefs[i]);
+        }
+        const int rest = builder.sum(std::move(inner), std::move(inner_coefs));
+        const int taken = builder.product({at[static_cast<std::size_t>(f->factor)], rest}, {1, 1});
+        outer.push_back(taken);
+        outer_coefs.push_back(Rational(1));
+        return builder.sum(std::move(outer), std::move(outer_coefs), op.name);
+      });
+}
+
+// -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for whatever uses the sum, not one per term.
+Program take_out_coefficients(const Program& program) {
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
+        // What has a name in the spec keeps it.
+        if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
+        const bool alike =
+            std::all_of(op.coefs.begin(), op.coefs.end(), [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
+        const bool negative = std::all_of(op.coefs.begin(), op.coefs.end(), [](Rational c) { return c.sign() < 0; });
+        const Rational factor = (negative ? Rational(-1) : Rational(1)) * (alike ? abs(op.coefs[0]) : Rational(1));
+        if (factor == Rational(1)) return std::nullopt;
+        std::vector<int> args;
+        std::vector<Rational> coefs;
+        for (std::size_t i = 0; i < op.args.size(); ++i) {
+          args.push_back(at[static_cast<std::size_t>(op.args[i])]);
+          coefs.push_back(op.coefs[i] / factor);
+        }
+        const int core = builder.sum(std::move(args), std::move(coefs));
+        return builder.sum({core}, {factor});
+      });
+}
+
+// (x + y) + z = x + y + z and -(x - y) = y - x, where the inner sum is nobody else's.
+bool flattens(const Operation& outer, Rational coef, const Operation& inner, int uses) {
+  if (inner.kind != OpKind::sum || uses != 1) return false;
+  if (abs(coef) != Rational(1) && inner.args.size() > 1) return false;  // 2 (x + y) is cheaper
+  const bool opens_with_minus = outer.args.size() == 1 && outer.coefs[0] == Rational(-1);
+  const bool has_minus = std::any_of(inner.coefs.begin(), inner.coefs.end(), [](Rational c) { return c.sign() < 0; });
+  return inner.name.empty() || (opens_with_minus && has_minus);
+}
+
+Program flatten_sums(const Program& program) {
+  const std::vector<int> uses = use_counts(program);
+  std::vector<bool> absorbed(program.ops.size());
+  for (std::size_t i = 0; i < program.ops.size(); ++i) {
+    if (uses[i] == 0 || program.ops[i].kind != OpKind::sum) continue;
+    const Operation& outer = program.ops[i];
+    for (std::size_t k = 0; k < outer.args.size(); ++k) {
+      const auto a = static_cast<std::size_t>(outer.args[k]);
+      absorbed[a] = flattens(outer, outer.coefs[k], program.ops[a], uses[a]);
+    }
+  }
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
+        if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // nobody reads it
+        if (op.kind != OpKind::sum) return std::nullopt;
+        std::vector<int> args;
+        std::vector<Rational> coefs;
+        const auto add = [&](auto&& self, const Operation& sum, Rational factor) -> void {
+          for (std::size_t i = 0; i < sum.args.size(); ++i) {
+            const std::size_t arg = static_cast<std::size_t>(sum.args[i]);
+            if (absorbed[arg]) {
+              self(self, program.ops[arg], factor * sum.coefs[i]);
+            } else {
+              args.push_back(at[arg]);
+              coefs.push_back(factor * sum.coefs[i]);
+            }
+          }
+        };
+        add(add, op, Rational(1));
+        return builder.sum(std::move(args), std::move(coefs), op.name);
+      });
+}
+
+// u + r = x_a - x_b where u = x_a - x_b - r: what was taken away and is added again costs an operation and digits.
+// The sum, and which of its terms is a sum as well.
+using Cancelling = std::pair<std::size_t, std::size_t>;
+std::optional<Cancelling> find_cancelling(const Program& program) {
+  const std::vector<int> uses = use_counts(program);
+  for (std::size_t s = 0; s < program.ops.size(); ++s) {
+    const Operation& outer = program.ops[s];
+    if (uses[s] == 0 || outer.kind != OpKind::sum) continue;
+    for (std::size_t k = 0; k < outer.args.size(); ++k) {
+      const Operation& inner = program.ops[static_cast<std::size_t>(outer.args[k])];
+      if (inner.kind != OpKind::sum) continue;
+      for (std::size_t i = 0; i < inner.args.size(); ++i) {
+        const std::size_t same = index_of(outer.args, inner.args[i]);
+        if (same < outer.args.size() && outer.coefs[same] == -(outer.coefs[k] * inner.coefs[i])) {
+          return Cancelling{s, k};
+        }
+      }
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Program> cancel_terms(const Program& program) {
+  const std::optional<Cancelling> found = find_cancelling(program);
+  if (!found) return std::nullopt;
+  return rewritten(
+      program,
+      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
+        if (index != static_cast<int>(found->first)) return std::nullopt;
+        std::vector<int> args;
+        std::vector<Rational> coefs;
+        const auto add = [&](const Operation& sum, Rational factor, std::size_t but) {
+          for (std::size_t i = 0; i < sum.args.size(); ++i) {
+            if (i == but) continue;
+            args.push_back(at[static_cast<std::size_t>(sum.args[i])]);
+            coefs.push_back(factor * sum.coefs[i]);
+          }
+        };
+        const Operation& inner = program.ops[static_cast<std::size_t>(op.args[found->second])];
+        add(inner, op.coefs[found->second], inner.args.size());
+        add(op, Rational(1), found->second);
+        return builder.sum(std::move(args), std::move(coefs), op.name);
+      });
+}
+
+using Pass = std::optional<Program> (*)(const Program&);
+
+Program exhaust(Program program, Pass pass) {
+  while (std::optional<Program> next = pass(program)) program = std::move(*next);
+  return program;
+}
+
+// What an operation costs beside an addition; a division or root weighs as on current processors.
+int weight(const Count& c) { return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call; }
+
+// The cheapest that the passes find from here.
+Program searched(const Program& program) {
+  static constexpr Pass orders[][3] = {{share_factors, share_terms, take_out_factor},
+                                       {take_out_factor, share_factors, share_terms},
+                                       {share_terms, take_out_factor, share_factors},
+                                       {share_terms, share_factors, take_out_factor},
+                                       {take_out_factor, share_terms, share_factors}};
+  Program best = program;
+  for (bool improved = true; improved;) {
+    improved = false;
+    const Program start = best;
+    for (const auto& order : orders) {
+      for (const bool coefficients_out : {false, true}) {
+        const auto tidied = [&](const Program& p) {
+          return flatten_sums(coefficients_out ? take_out_coefficients(p) : p);
+        };
+        Program candidate = tidied(start);
+        for (const Pass pass : order) candidate = flatten_sums(exhaust(std::move(candidate), pass));
+        candidate = tidied(candidate);
+        if (weight(count(candidate)) >= weight(count(best))) continue;
+        best = std::move(candidate);
+        improved = true;
+      }
+    }
+  }
+  // Of equals, x - w (2 y + z) rather than x + w (-2 y - z).
+  Program positive = flatten_sums(take_out_coefficients(best));
+  return weight(count(positive)) <= weight(count(best)) ? positive : best;
+}
+
+}  // namespace
+
+Program simplify(const Program& program) {
+  const Program best = searched(exhaust(program, cancel_terms));
+  if (!find_cancelling(program)) return best;
+  const Program as_written = searched(program);
+  return weight(count(best)) <= weight(count(as_written)) ? best : as_written;
+}
+
+}  // namespace cdot::derive

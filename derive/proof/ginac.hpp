@@ -1,0 +1,139 @@
+// GiNaC's view of a joint's expressions, and a decision whether one of them vanishes. Nothing that
+// includes this header hands GiNaC's text on: its order of terms changes from run to run.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "derive/derivation/derivation.hpp"
+#include "derive/numbers/numeric.hpp"
+#include "derive/proof/ginac_point.hpp"
+
+namespace cdot::derive {
+
+// Expressions of a joint as GiNaC's, over one of two sets of coordinates:
+//   names  arms and directions are symbols r_x, r_y, whose time derivative is w x r; in space a triad is A(e) of Euler
+//          parameters of its own, de/dt = 1/2 G^T w
+//   raw    every body is x, y, theta, in space x, y, z and Euler parameters e; what is fixed in it is R(theta) or A(e)
+//          times constants
+// In both, rate() is GiNaC's own chain rule over the symbols.
+class Algebra final : public Arithmetic<ex> {
+ public:
+  enum class Route { names, raw };
+  Algebra(const Joint& joint, Route route, int immovable = -1);
+
+  ex of(Expr scalar) { return evaluation_.scalar(scalar); }
+  Triple<ex> of_vector(Expr vector) { return evaluation_.vector(vector); }
+  // Tells the zero test which sums of vectors its expressions are about.
+  void shorten(Expr root);
+  // The coordinate and velocity symbols of a body: x, y, theta and v_x, v_y, w; in space x, y, z, e0, e1, e2, e3 and
+  // v_x, ..., w_z.
+  std::vector<ex> coordinates(int body);
+  std::vector<ex> velocities(int body);
+  // The derivative of e as the body moves along column k of J at unit rate.
+  ex slope(const ex& e, int body, std::size_t k);
+  // d e/dt along the motion; the velocities count as constant.
+  ex rate(const ex& e);
+  // Decides whether e vanishes wherever it is defined, given that unit vectors have length 1 and so
+  // on.
+  enum class Zero {
+    yes,    // by algebra
+    shown,  // too much for algebra, but zero at `exact_points` random points modulo a prime
+    no,
+    undecided
+  };
+  Zero is_zero(const ex& e);
+  bool vanishes(const ex& e) { return is_zero(e) <= Zero::shown; }
+  // After Zero::no: a pose at which it shows, in the joint's names, and how much it is there.
+  const std::string& witness() const { return witness_; }
+  // Reduced by the same relations: a numerator as a polynomial, zero where e is; the second one
+  // without what cancels.
+  std::optional<ex> numerator(const ex& e);
+  std::optional<ex> reduced_numerator(const ex& e);
+  ex other_coordinates(const ex& polynomial);
+  // The factors of such a numerator, in the joint's names: "u_x", "ratio".
+  std::vector<std::string> factors_of(const ex& polynomial) const;
+  std::vector<ex> symbols_in(const ex& e) const;
+
+  ex number(Rational value) override;
+  ex scalar_leaf(const Node& symbol) override;
+  Triple<ex> vector_leaf(const Node& symbol) override;
+  ex inverse(const ex& x) override { return GiNaC::pow(x, -1); }
+  ex call(Fn fn, std::span<const ex> args) override;
+
+ private:
+  // A symbol that stands for a compound, with the relation that it obeys; it may contain earlier
+  // ones.
+  struct Atom {
+    enum class Kind { square, inverse } kind;  // symbol^2 = operand; symbol operand = 1
+    GiNaC::realsymbol symbol;                  // kept as what it is: a copy as plain `symbol` would be another one
+    ex operand;
+  };
+  struct Leaf {
+    GiNaC::realsymbol symbol;
+    ex rate;
+  };
+
+  ex leaf(const std::string& name, const ex& rate);
+  Triple<ex> free_vector(const Node& symbol);
+  Triple<ex> vector_of_body(const Node& symbol);
+  // Euler parameters that are nobody's function; of `body`, they turn with it.
+  EulerParameters<ex> orientation(const std::string& name, int body);
+  bool moves(int body) const { return body >= 0 && body != immovable_; }
+
+  bool replace(const ex& x, const ex& compound, const std::string& name);
+  ex in_names(ex e) const;
+  ex atomised(const ex& e);
+  ex atomised_power(const ex& base, const ex& exponent);
+  ex atomised_function(const ex& e);
+  ex inverse_of(const ex& base);
+  ex root_of(const ex& base);
+  ex turned(bool cosine, const ex& angle);
+  ex symbol_for(const ex& compound);
+  bool differs_at_random(const ex& e, std::uint64_t seed);
+  bool vanishes_at_points(const ex& e) const;
+
+  // What one test, and all tests together, may take, in factors of terms that are multiplied. Every
+  // test that is given up halves what the next may take: it is likely to be as long.
+  static constexpr std::int64_t most_work = 500000, least_work = most_work / 64;
+  static constexpr std::int64_t most_work_in_all = 6 * most_work;
+  struct TooLong : std::runtime_error {
+    TooLong() : std::runtime_error("too much to multiply out") {}
+  };
+  void spend(std::size_t work);  // throws TooLong
+  GiNaC::exvector ordered(const ex& e);
+  Modular fingerprint(const ex& e);
+  GiNaC::realsymbol fresh_symbol(const std::string& name = "");
+  ex multiplied(const ex& a, const ex& b);
+  ex raised(const ex& polynomial, int exponent);
+  ex expanded(const ex& e);
+  ex square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square);
+  ex inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand);
+  ex inverse_cancelled(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand);
+  ex reduced(const ex& polynomial);
+  ex without_inverses(const ex& polynomial);
+
+  const Joint& joint_;
+  Route route_;
+  int immovable_;
+  std::map<std::string, Leaf> leaves_;
+  std::vector<Atom> atoms_;
+  std::vector<std::vector<ex>> units_;                   // symbols whose squares sum to 1
+  GiNaC::exmap known_;                                   // symbols for compounds of which nothing is known
+  GiNaC::exmap atomised_;                                // what atomised() made of compounds, by their old variables
+  GiNaC::exmap inverses_;                                // by their operand in normal form
+  std::vector<std::pair<ex, ex>> roots_;                 // operand -> symbol
+  std::vector<std::pair<ex, std::array<ex, 2>>> turns_;  // angle -> (cos, sin)
+  GiNaC::exmap change_;                                  // of variables, before an expression is tested
+  std::vector<std::pair<ex, ex>> meanings_;              // of symbols without a name, as they came up
+  std::int64_t allowance_ = most_work, left_for_test_ = most_work, left_in_all_ = most_work_in_all;
+  PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
+  std::string witness_;
+  Evaluation<ex> evaluation_;
+};
+
+// e or -e, so that its first term by name is positive: what is zero where e is, in one form.
+Expr with_leading_sign(Expr e);
+
+}  // namespace cdot::derive

@@ -1,0 +1,35 @@
+// GiNaC's expressions at one random point modulo a prime: what decides, up to a vanishing
+// probability, where algebra would take too long, and what sorts terms in the same way on every run.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "derive/numbers/modular_point.hpp"
+#include "derive/proof/ginac_names.hpp"
+
+namespace cdot::derive {
+
+class PointValues {
+ public:
+  // Only squares have roots, as among the reals; or everything has some value as its root.
+  enum class Roots { of_squares, of_all };
+  PointValues(std::uint64_t seed, Roots roots) : point_(seed), roots_(roots) {}
+
+  // Small whole numbers, which angles have to be.
+  void put(const ex& symbol) { values_[symbol] = Modular(point_.small()); }
+  void put_direction(const std::vector<ex>& unit_vector);
+
+  Modular of(const ex& e);
+
+ private:
+  Modular compound(const ex& e);
+  Modular power(Modular base, const numeric& exponent) const;
+  Modular function(const ex& e);
+
+  ModularPoint point_;
+  Roots roots_;
+  std::map<ex, Modular, GiNaC::ex_is_less> values_;
+};
+
+}  // namespace cdot::derive

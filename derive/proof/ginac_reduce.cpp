@@ -1,0 +1,172 @@
+// Polynomials multiplied out and reduced by the relations of their symbols, with every product of
+// two terms counted: what would take too long is given up, at the same place on every machine.
+#include <algorithm>
+
+#include "derive/proof/ginac.hpp"
+
+namespace cdot::derive {
+
+namespace {
+
+std::size_t size_of(const ex& polynomial) { return is_a<GiNaC::add>(polynomial) ? polynomial.nops() : 1; }
+
+// How many powers of symbols all terms together have, and one more for each term.
+std::size_t weight_of(const ex& polynomial) {
+  const auto weight = [](const ex& term) {
+    if (!is_a<GiNaC::mul>(term)) return std::size_t{2};
+    return term.nops() + (is_a<numeric>(term.op(term.nops() - 1)) ? 0 : 1);
+  };
+  if (!is_a<GiNaC::add>(polynomial)) return weight(polynomial);
+  std::size_t total = 0;
+  for (const ex& term : polynomial) total += weight(term);
+  return total;
+}
+
+}  // namespace
+
+void Algebra::spend(std::size_t work) {
+  const auto count = static_cast<std::int64_t>(work);
+  if (count > left_for_test_) {  // all of it is gone, wherever in the sum this happened to come up
+    left_in_all_ -= left_for_test_;
+    left_for_test_ = 0;
+    allowance_ = std::max(allowance_ / 2, least_work);
+    throw TooLong{};
+  }
+  left_for_test_ -= count;
+  left_in_all_ -= count;
+}
+
+// The operands of a sum or product in an order that does not depend on the run, as GiNaC's does; nor
+// does the sign of a factor, (x - y) or (y - x), count.
+GiNaC::exvector Algebra::ordered(const ex& e) {
+  std::vector<std::pair<std::int64_t, ex>> keyed;
+  for (const ex& part : e) keyed.emplace_back(std::abs(fingerprint(part).centred()), part);
+  std::sort(keyed.begin(), keyed.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  GiNaC::exvector parts;
+  for (const auto& [key, part] : keyed) parts.push_back(part);
+  return parts;
+}
+
+Modular Algebra::fingerprint(const ex& e) try { return prints_.of(e); } catch (const UndefinedHere&) {
+  return Modular(0);
+}
+
+GiNaC::realsymbol Algebra::fresh_symbol(const std::string& name) {
+  const GiNaC::realsymbol symbol = name.empty() ? GiNaC::realsymbol() : GiNaC::realsymbol(name);
+  prints_.put(symbol);
+  return symbol;
+}
+
+// a * b, both multiplied out already.
+ex Algebra::multiplied(const ex& a, const ex& b) {
+  spend(size_of(a) * weight_of(b) + weight_of(a) * size_of(b));
+  return (a * b).expand();
+}
+
+ex Algebra::raised(const ex& polynomial, int exponent) {
+  if (!is_a<GiNaC::add>(polynomial)) return pow(polynomial, exponent);
+  ex result = 1;
+  for (int k = 0; k < exponent; ++k) result = multiplied(result, polynomial);
+  return result;
+}
+
+// What GiNaC's expand() gives.
+ex Algebra::expanded(const ex& e) {
+  if (e.info(GiNaC::info_flags::expanded)) {
+    if (is_a<GiNaC::add>(e)) spend(weight_of(e));  // as without GiNaC's mark, which may be missing
+    return e;
+  }
+  if (is_a<GiNaC::add>(e)) {
+    GiNaC::exvector terms;
+    for (const ex& term : e) {
+      terms.push_back(expanded(term));
+      spend(weight_of(terms.back()));
+    }
+    return ex(GiNaC::add(terms)).expand();
+  }
+  if (is_a<GiNaC::power>(e) && e.op(1).info(GiNaC::info_flags::posint)) {
+    return raised(expanded(e.op(0)), ex_to<numeric>(e.op(1)).to_int());
+  }
+  if (!is_a<GiNaC::mul>(e)) return e;
+  GiNaC::exvector factors;
+  for (const ex& factor : ordered(e)) factors.push_back(expanded(factor));
+  std::stable_sort(factors.begin(), factors.end(), [](const ex& a, const ex& b) { return size_of(a) < size_of(b); });
+  ex result = 1;
+  for (const ex& factor : factors) {
+    result = size_of(factor) == 1 ? result * factor : multiplied(result, factor);
+  }
+  return result.expand();
+}
+
+// Powers of `symbol` from two on are replaced by means of symbol^2 = square. The polynomial must be
+// expanded.
+ex Algebra::square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square) {
+  const int degree = polynomial.degree(symbol);
+  if (degree < 2) return polynomial;
+  spend(weight_of(polynomial) * static_cast<std::size_t>(degree));
+  ex out = 0;
+  for (int k = 0; k <= degree; ++k) {
+    out += polynomial.coeff(symbol, k) * pow(square, k / 2) * pow(symbol, k % 2);
+  }
+  return expanded(out);
+}
+
+// The numerator over the power of `operand` that symbol = 1/operand needs.
+ex Algebra::inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
+  const int degree = polynomial.degree(symbol);
+  if (degree < 1) return polynomial;
+  spend(weight_of(polynomial) * static_cast<std::size_t>(degree));
+  ex out = 0;
+  for (int k = 0; k <= degree; ++k) {
+    out += polynomial.coeff(symbol, k) * pow(operand, degree - k);
+  }
+  return expanded(out);
+}
+
+// Where the terms with symbol = 1/operand are multiples of the operand, both go.
+ex Algebra::inverse_cancelled(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
+  ex out = polynomial;
+  for (int k = polynomial.degree(symbol); k > 0; --k) {
+    ex quotient;
+    const ex factor = out.coeff(symbol, k);
+    spend(weight_of(out) + size_of(factor) * weight_of(operand));
+    if (factor.is_zero() || !divide(factor, operand, quotient)) continue;
+    out = expanded(out - factor * pow(symbol, k) + quotient * pow(symbol, k - 1));
+  }
+  return out;
+}
+
+ex Algebra::reduced(const ex& polynomial) {
+  ex p = expanded(polynomial);
+  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
+    if (atom->kind == Atom::Kind::square) p = square_reduced(p, atom->symbol, atom->operand);
+  }
+  return p;
+}
+
+ex Algebra::without_inverses(const ex& polynomial) {
+  ex p = expanded(polynomial);
+  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
+    p = atom->kind == Atom::Kind::square ? square_reduced(p, atom->symbol, atom->operand)
+                                         : inverse_removed(p, atom->symbol, atom->operand);
+  }
+  return p;
+}
+
+// The same polynomial by the other of two coordinates on a circle: t^2 = 1 - s^2 where s^2 = 1 -
+// t^2 was used.
+ex Algebra::other_coordinates(const ex& polynomial) try {
+  ex p = polynomial;
+  for (const Atom& atom : atoms_) {
+    if (atom.kind != Atom::Kind::square) continue;
+    for (const ex& t : symbols_in(atom.operand)) {
+      if (!expanded(atom.operand - 1 + t * t).is_zero()) continue;
+      p = square_reduced(p, ex_to<GiNaC::symbol>(t), 1 - atom.symbol * atom.symbol);
+    }
+  }
+  return p;
+} catch (const TooLong&) {
+  return polynomial;
+}
+
+}  // namespace cdot::derive

@@ -1,0 +1,223 @@
+#include "derive/proof/momentum.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <set>
+
+#include "derive/proof/words.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// What a row of J makes of all bodies moving as one: of a unit velocity, and of a unit spin about
+// the origin.
+struct Felt {
+  Expr translation;  // sum of J_v, a vector
+  Expr rotation;     // sum of J_w + x cross J_v, since v = w cross x; in space a vector
+};
+
+Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
+  Felt felt{zero_vector(*joint.pool), zero_spin(*joint.pool)};
+  for (std::size_t b = 0; b < J.size(); ++b) {
+    felt.translation = felt.translation + J[b].v;
+    felt.rotation = felt.rotation + J[b].w + cross(body_symbols(joint, static_cast<int>(b)).x, J[b].v);
+  }
+  return felt;
+}
+
+// Where C = 0, a centre of mass that stands in C with a number as its factor is a function of
+// everything else: substituting it is how `pa = pb` says that the two points are one.
+GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
+  GiNaC::exmap solved;
+  const auto put = [&](const ex& C) {
+    const ex rest = C.subs(solved, GiNaC::subs_options::no_pattern);
+    for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+      const auto q = names.coordinates(static_cast<int>(b));
+      for (int k = 0; k < joint.dimension; ++k) {
+        const ex& x = q[static_cast<std::size_t>(k)];
+        const ex slope = rest.diff(ex_to<GiNaC::symbol>(x));
+        if (!is_a<numeric>(slope) || slope.is_zero()) continue;
+        const ex value = (x - rest / slope).expand();
+        for (auto& [symbol, earlier] : solved) earlier = earlier.subs(x == value).expand();
+        solved[x] = value;
+        return;
+      }
+    }
+  };
+  for (const Row& row : joint.rows) {
+    if (row.kind != RowKind::equality) continue;
+    if (!row.C->vector) {
+      put(names.of(row.C));
+    } else {
+      for (const Expr component : components_of(row.C)) put(names.of(component));
+    }
+  }
+  return solved;
+}
+
+class Momentum {
+ public:
+  Momentum(const Joint& joint, Algebra& names)
+      : joint_(joint), names_(names), on_constraint_(on_the_constraint(joint, names)) {}
+
+  bool vanishes(const ex& e) {
+    if (is_zero(e)) return true;
+    if (!is_zero(e.subs(on_constraint_, GiNaC::subs_options::no_pattern))) return false;
+    only_on_constraint_ = true;
+    return true;
+  }
+  bool translation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.translation)); }
+  bool rotation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.rotation)); }
+  // A vector C that turns with the bodies, dC/dt = w x C, is felt by its components along the axes e
+  // of the world, e . (w x C) = w . (C x e), and that only where C is not zero.
+  bool turns_with_the_bodies(const ScalarRow& row, const Felt& felt) {
+    if (row.component < 0 || row.kind != RowKind::equality) return false;
+    const Expr axis = world_axes(*joint_.pool)[static_cast<std::size_t>(row.component)];
+    for (const Expr e : components_of(felt.rotation - cross(row.row->C, axis))) {
+      if (names_.is_zero(names_.of(e)) != Algebra::Zero::yes) return false;
+    }
+    only_on_constraint_ = true;
+    return true;
+  }
+  bool only_on_constraint() const { return only_on_constraint_; }
+  bool proved() const { return proved_; }
+
+  // The fewest terms of a row whose removal leaves nothing to feel.
+  std::vector<Expr> breaking_terms(const std::vector<Expr>& terms, const std::vector<Felt>& felt_by_term) {
+    constexpr std::size_t most_terms = 8;
+    if (terms.size() > most_terms) return terms;
+    std::vector<unsigned> subsets;
+    for (unsigned s = 1; s < 1u << terms.size(); ++s) subsets.push_back(s);
+    std::stable_sort(subsets.begin(), subsets.end(),
+                     [](unsigned a, unsigned b) { return std::popcount(a) < std::popcount(b); });
+    for (const unsigned subset : subsets) {
+      Felt rest{zero_vector(*joint_.pool), zero_spin(*joint_.pool)};
+      std::vector<Expr> removed;
+      for (std::size_t i = 0; i < terms.size(); ++i) {
+        if (subset >> i & 1) {
+          removed.push_back(terms[i]);
+        } else {
+          rest = {rest.translation + felt_by_term[i].translation, rest.rotation + felt_by_term[i].rotation};
+        }
+      }
+      if (translation_vanishes(rest) && rotation_vanishes(rest)) return removed;
+    }
+    return terms;
+  }
+
+ private:
+  bool is_zero(const ex& e) {
+    const Algebra::Zero zero = names_.is_zero(e);
+    proved_ = proved_ && zero != Algebra::Zero::shown;
+    return zero <= Algebra::Zero::shown;
+  }
+  bool all_vanish(const std::vector<Expr>& scalars) {
+    return std::all_of(scalars.begin(), scalars.end(), [&](Expr e) { return vanishes(names_.of(e)); });
+  }
+
+  const Joint& joint_;
+  Algebra& names_;
+  GiNaC::exmap on_constraint_;
+  bool only_on_constraint_ = false;
+  bool proved_ = true;  // nothing has been shown by points alone
+};
+
+// The terms of a scalar row, each with its sign.
+std::vector<Expr> terms_of_row(const ScalarRow& row, Expr written) {
+  Expr whole = row.row == nullptr ? written : row.row->C;
+  std::vector<Expr> terms;
+  for (const Term& term : terms_of(whole)) {
+    const Expr e = term.coef * term.e;
+    terms.push_back(!e->vector ? e : components_of(e)[static_cast<std::size_t>(row.component)]);
+  }
+  return terms;
+}
+
+// How the author may have written what a common motion changes in these terms.
+std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joint, bool rotation) {
+  std::set<std::string> words;
+  const std::vector<Expr> leaves = leaves_of(terms);
+  const auto guilty = [&](Expr leaf) {
+    if (rotation) return leaf->role == Role::angle || is_world_axis(leaf);
+    return leaf->role == Role::position;
+  };
+  for (const Expr leaf : leaves) {
+    if (!guilty(leaf)) continue;
+    const std::string body = leaf->body < 0 ? "" : joint.bodies[static_cast<std::size_t>(leaf->body)];
+    if (leaf->role == Role::angle) words.insert("angle(" + body + ")");
+    else if (leaf->role == Role::position) words.insert("x(" + body + ")");
+    else words.insert({".x", ".y", ".z"});
+    for (const Let& let : joint.lets) {
+      const std::vector<Expr> inside = leaves_of(std::span(&let.value, 1));
+      if (std::find(inside.begin(), inside.end(), leaf) != inside.end()) words.insert(let.name);
+    }
+    for (const Parameter& p : joint.parameters) {
+      const bool point = p.kind == ParameterKind::point && p.body == leaf->body;
+      if (point && leaf->role == Role::position) words.insert(p.name);
+    }
+  }
+  return words;
+}
+
+std::vector<Span> spans_of(const std::vector<Expr>& terms, const Joint& joint, Span where, bool rotation) {
+  if (!joint.file) return {};
+  return occurrences(*joint.file, where, spellings(terms, joint, rotation));
+}
+
+std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, const Joint& joint) {
+  const char* const changes = row.kind == RowKind::velocity ? " gives " : " changes C by ";
+  if (rotation) {
+    return "angular momentum is not conserved: " + row.name + " resists turning all bodies " + "together, which" +
+           changes + said(felt.rotation, joint) + " per radian";
+  }
+  return "momentum is not conserved: " + row.name + " resists moving all bodies together, which" + changes +
+         said(felt.translation, joint) + " per metre";
+}
+
+Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt, bool rotation,
+           Momentum& momentum) {
+  Expr written;
+  Span where;
+  for (const Coordinate& c : joint.coordinates) {
+    if (c.name == block.name) written = c.value, where = c.where;
+  }
+  if (row.row != nullptr) where = row.row->where;
+  const std::vector<Expr> terms = terms_of_row(row, written);
+  std::vector<Felt> felt_by_term;
+  for (const Expr term : terms) {
+    const bool velocity = row.kind == RowKind::velocity;
+    felt_by_term.push_back(felt_by(isolate_velocities(velocity ? term : time_derivative(term, joint), joint), joint));
+  }
+  const std::vector<Expr> guilty = momentum.breaking_terms(terms, felt_by_term);
+  Law law{LawId::momentum, Verdict::fails, {}, {}, row.row, {}};
+  law.text = sentence(row, felt, rotation, joint);
+  std::vector<std::string> parts;
+  for (const Expr term : guilty) parts.push_back(said(term, joint));
+  if (terms.size() > 1) law.text += "; it is the doing of " + listed(parts);
+  law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is "
+                       "fixed in the world"
+                     : "use differences of points, or say which point is fixed in the world";
+  law.parts = spans_of(guilty, joint, where, rotation);
+  return law;
+}
+
+}  // namespace
+
+Law conserves_momentum(const Joint& joint, const Block& block, Algebra& names) {
+  Law law{LawId::momentum, Verdict::does_not_apply, {}, {}, nullptr, {}};
+  if (joint.uses_world || block.immovable >= 0) return law;
+  Momentum momentum(joint, names);
+  for (const ScalarRow& row : block.rows) {
+    const Felt felt = felt_by(row.J, joint);
+    if (!momentum.translation_vanishes(felt)) {
+      return broken(joint, block, row, felt, false, momentum);
+    }
+    if (!momentum.turns_with_the_bodies(row, felt) && !momentum.rotation_vanishes(felt))
+      return broken(joint, block, row, felt, true, momentum);
+  }
+  law.verdict = momentum.proved() ? Verdict::holds : Verdict::shown;
+  if (momentum.only_on_constraint()) law.text = "where C = 0";
+  return law;
+}
+
+}  // namespace cdot::derive

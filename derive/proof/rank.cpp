@@ -1,0 +1,50 @@
+#include "derive/proof/rank.hpp"
+
+namespace cdot::derive {
+namespace {
+
+// "the row of J of C3 is 2 C1 - C2"
+std::string dependence_text(const GenericRank::Dependence& d, const Block& block) {
+  const auto name = [&](int row) { return block.rows[static_cast<std::size_t>(row)].name; };
+  if (d.on.empty()) return "the row of J of " + name(d.row) + " is zero";
+  std::string sum;
+  for (const int row : d.on) {
+    if (d.coefs.empty()) {
+      sum += (sum.empty() ? "" : " and ") + name(row);
+      continue;
+    }
+    const Rational coef = -d.coefs[static_cast<std::size_t>(row)];
+    sum += coef.sign() < 0 ? (sum.empty() ? "-" : " - ") : (sum.empty() ? "" : " + ");
+    sum += (abs(coef) == Rational(1) ? "" : abs(coef).text() + " ") + name(row);
+  }
+  if (!d.coefs.empty()) return "the row of J of " + name(d.row) + " is that of " + sum;
+  return "the row of J of " + name(d.row) + " is a combination of those of " + sum +
+         ", with factors that depend on the pose or on parameters";
+}
+
+}  // namespace
+
+Law rows_are_independent(const Block& block) {
+  Law law;
+  law.id = LawId::rank;
+  if (block.immovable >= 0) {  // a row may well speak of that body alone
+    law.verdict = Verdict::does_not_apply;
+    return law;
+  }
+  const GenericRank found = generic_rank(columns_of(block.rows));
+  if (found.poses == 0) {
+    law.verdict = Verdict::undecided;
+    law.text = "no pose was found at which every row is defined";
+    return law;
+  }
+  if (found.dependences.empty()) return law;
+  law.verdict = Verdict::fails;
+  const GenericRank::Dependence& first = found.dependences.front();
+  law.row = block.rows[static_cast<std::size_t>(first.row)].row;
+  law.text = std::to_string(block.rows.size()) + " rows, but only " + std::to_string(found.rank) +
+             " independent: " + dependence_text(first, block);
+  law.fix = "drop one of these rows: the others hold it already";
+  return law;
+}
+
+}  // namespace cdot::derive

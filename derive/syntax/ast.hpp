@@ -1,0 +1,117 @@
+// What the parser makes of a text: trees in which every node knows where it stands. No names are
+// looked up here.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "derive/expression/rational.hpp"
+#include "derive/expression/unit.hpp"
+#include "derive/syntax/source.hpp"
+
+namespace cdot::derive {
+
+// A unit as written: `deg` is a radian with the factor pi/180.
+struct WrittenUnit {
+  Unit unit;
+  int degrees = 0;  // power of pi/180
+  Span where;
+};
+
+// A name and where it stands; an empty text where the parser missed one.
+struct Word {
+  std::string text;
+  Span where;
+};
+
+struct Ast {
+  enum class Kind {
+    broken,     // reported already
+    number,     // value [unit]
+    name,       // text
+    call,       // text(args...)
+    sum,        // args joined by ops '+' and '-'; ops[0] is '+'
+    product,    // args joined by ops '*' and '/'; ops[0] is '*'
+    negate,     // -args[0]
+    power,      // args[0] ^ args[1]
+    member,     // args[0].text
+    transpose,  // args[0]'
+    matrix      // [args], row_lengths
+  };
+  Kind kind = Kind::broken;
+  Span where;
+  std::string text;
+  Rational value;
+  std::optional<WrittenUnit> unit;
+  std::vector<Ast> args;
+  std::string ops;
+  std::vector<int> row_lengths;
+};
+
+struct DeclaredAst {
+  std::string kind;  // point vector unit frame scalar
+  Word name;
+  std::optional<WrittenUnit> unit;
+  Word body;  // empty text: a scalar, or reported already
+  std::optional<Ast> value;
+  Span where;
+  bool broken = false;
+};
+
+struct IncludeAst {
+  Word joint;
+  std::vector<Word> bodies;        // empty: the same as here
+  std::vector<DeclaredAst> given;  // name and value: what parameters of the joint are here
+  Word prefix;                     // may be empty
+  Span where;
+};
+
+// One statement of a spec. `include` and declarations hold one item each: the parser splits lists.
+struct StatementAst {
+  enum class Kind { include, declare, let, row, coordinate };
+  Kind kind = Kind::row;
+  Span where;
+  IncludeAst include;
+  DeclaredAst declared;   // declare, coordinate, let (name, unit and value)
+  Word label;             // of a row
+  bool velocity = false;  // row
+  std::string relation;   // "=", "<=", ">="
+  Span relation_where;
+  Ast left, right;  // row
+  Word keep;        // row: how many of its components, as written
+  int first_token = 0, end_token = 0;
+};
+
+struct JointAst {
+  Word name;
+  std::string dimension;  // "planar" or "spatial"; empty if the header is missing
+  std::string title, source, comment;
+  std::vector<StatementAst> statements;
+};
+
+// One item of an entry of a hand derivation.
+struct HandItemAst {
+  enum class Kind { assume, let, free, rows, quantity, lambda, update, bound, claim };
+  Kind kind = Kind::let;
+  Word word;                // let, quantity, claim: what; update: v, w, x or angle; assume: the anchored name
+  Word body;                // update, anchor, immovable
+  std::vector<Word> names;  // free, rows
+  bool flag = false;        // update: -=; bound: lambda >= 0; assume: the body is immovable
+  Ast left, right;          // right: the expression; left: of a claim or an assumed equation
+  Span where;
+  std::string text;
+  bool broken = false;
+};
+
+struct HandEntryAst {
+  std::string id, title, source, note, listed;
+  std::string form;                            // of the velocities: global, local or euler
+  std::map<std::string, std::string> anchors;  // of parameters that the entry fixes elsewhere
+  std::vector<std::string> immovable;
+  std::vector<HandItemAst> items;
+  Span where;
+};
+
+}  // namespace cdot::derive

@@ -1,0 +1,46 @@
+# cdot_add_joints(TARGET name SPECS file.joint...): a target that links cdot::runtime gets joints of its own. At build
+# time `cdot derive` proves the specs and writes their kernels below the target's build folder, where
+# #include <cdot/planar/NAME.hpp> finds them; a file added to the target makes the runtime know them by name.
+# A spec may include the shipped ones and those beside it.
+function(cdot_add_joints)
+  cmake_parse_arguments(arg "" "TARGET" "SPECS" ${ARGN})
+  if(NOT arg_TARGET OR NOT arg_SPECS OR arg_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "usage: cdot_add_joints(TARGET name SPECS file.joint...)")
+  endif()
+  if(NOT TARGET cdot::cdot)
+    message(FATAL_ERROR "cdot_add_joints: this cdot was built without its generator (CDOT_DERIVE=OFF)")
+  endif()
+  set(out ${CMAKE_CURRENT_BINARY_DIR}/cdot_joints/${arg_TARGET})
+  set(specs "")
+  set(kernels ${out}/cdot/planar/registry.hpp ${out}/cdot/spatial/registry.hpp)
+  foreach(spec ${arg_SPECS})
+    cmake_path(ABSOLUTE_PATH spec BASE_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
+    list(APPEND specs ${spec})
+    file(STRINGS ${spec} header REGEX "^joint +[^ ]+ +(planar|spatial)" LIMIT_COUNT 1)
+    if(header MATCHES "^joint +([^ ]+) +(planar|spatial)")
+      list(APPEND kernels ${out}/cdot/${CMAKE_MATCH_2}/${CMAKE_MATCH_1}.hpp)
+    endif()
+  endforeach()
+  # `cdot derive` leaves alone what is right already, so the ledger's time alone says when it last ran.
+  add_custom_command(OUTPUT ${out}/cdot/ledger.csv BYPRODUCTS ${kernels}
+    COMMAND cdot::cdot derive --specs ${CDOT_SPECS} -o ${out}/cdot ${specs}
+    COMMAND ${CMAKE_COMMAND} -E touch ${out}/cdot/ledger.csv
+    DEPENDS cdot::cdot ${specs} COMMENT "Deriving the joints of ${arg_TARGET}" VERBATIM)
+  file(CONFIGURE OUTPUT ${out}/add_joints.cpp CONTENT [=[
+// Written by cdot_add_joints. Makes the joints of this target known to the runtime before main().
+#include <cdot/planar/registry.hpp>
+#include <cdot/spatial/registry.hpp>
+#include <cdot/detail/add_joints.hpp>
+
+namespace {
+[[maybe_unused]] const bool added = [] {
+  cdot::add_joints<cdot::Planar>(std::type_identity<cdot::planar::Joints>{});
+  cdot::add_joints<cdot::Spatial>(std::type_identity<cdot::spatial::Joints>{});
+  return true;
+}();
+}  // namespace
+]=] @ONLY)
+  target_sources(${arg_TARGET} PRIVATE ${out}/add_joints.cpp ${out}/cdot/ledger.csv)
+  set_source_files_properties(${out}/add_joints.cpp PROPERTIES OBJECT_DEPENDS ${out}/cdot/ledger.csv)
+  target_include_directories(${arg_TARGET} BEFORE PRIVATE ${out})
+endfunction()

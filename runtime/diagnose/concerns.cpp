@@ -1,0 +1,139 @@
+#include "runtime/diagnose/concerns.hpp"
+
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cdot/methods.hpp>
+
+namespace cdot {
+namespace {
+
+// Of an oscillation, radians per step up to which a method is stable: Euler's symplectic and RATTLE 2, exactly; the
+// Runge-Kutta methods where their stability regions cut the imaginary axis. Half of that is far from exact already.
+double stable_radians(Integrator integrator) {
+  switch (integrator) {
+    case Integrator::euler:
+    case Integrator::implicit:
+    case Integrator::rattle: return 2;
+    case Integrator::rk4: return 2.828;
+    case Integrator::dop853: return 5;
+  }
+  return 2;
+}
+
+constexpr double sharp_turn = 0.5;                       // [rad] per step: a chord is 1 % shorter than its arc
+constexpr double slow_turn = 0.02, needs_no_help = 0.5;  // [rad] per step
+constexpr double sweeps_per_condition = 4;               // that leave little of an error
+constexpr double float_noise = 6e-8, blurred = 0.01;
+
+std::string listed(const std::vector<int>& joints, const Names& names) {
+  constexpr std::size_t most = 6;
+  std::vector<std::string> words;
+  for (std::size_t k = 0; k < joints.size() && k < most; ++k) words.push_back(names.joint(joints[k]));
+  if (joints.size() > most) words.push_back(fmt::format("{} more", joints.size() - most));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Concern>& concerns) {
+  for (const Diagnosis::Redundant& redundant : island.redundant)
+    if (redundant.conflicting)
+      concerns.push_back(
+          {true,
+           fmt::format("{} contradict each other: row {} of {} misses the others by {:.3g} m or rad; all of "
+                       "them are met as well as can be, in the sense of least squares",
+                       listed(redundant.joints, names), redundant.row.row, names.joint(redundant.row.joint),
+                       std::abs(redundant.missed)),
+           "correct the anchors or the lengths of one of them, or remove it"});
+  const int harmless = static_cast<int>(
+      std::count_if(island.redundant.begin(), island.redundant.end(), [](const auto& r) { return !r.conflicting; }));
+  if (harmless > 0)
+    concerns.push_back(
+        {false,
+         fmt::format("{} row{} follow{} from others: the motion is the same without, only how the joints "
+                     "share their load is anybody's choice",
+                     harmless, harmless == 1 ? "" : "s", harmless == 1 ? "s" : ""),
+         ""});
+}
+
+void on_stiffness(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
+                  std::vector<Concern>& concerns) {
+  if (settings.local_error > 0 || !(island.stiffest.square > 0)) return;
+  const double omega = std::sqrt(island.stiffest.square), radians = h * omega;
+  const double stable = stable_radians(settings.integrator);
+  if (!(radians > stable / 2)) return;
+  const bool tension = island.stiffest.tension > 0.5 * island.stiffest.square;
+  std::string fix = fmt::format("substeps = {:.0f} or more", std::ceil(radians / 0.5) * settings.substeps);
+  if (tension && settings.integrator != Integrator::implicit) fix += ", integrator = \"implicit\"";
+  // Between bodies it is rows of the direct solver.
+  if (tension && settings.integrator == Integrator::implicit && settings.solver == Solver::iterative)
+    fix += ", solver = \"direct\"";
+  fix += ", or integrator = \"dop853\" with local_error = 1e-6";
+  concerns.push_back(
+      {true,
+       fmt::format("{} makes {} swing with {:.3g} rad/s, {:.2g} rad per substep: {} {}",
+                   tension ? "the tension of the joints" : "a spring", names.body(island.stiffest.body), omega, radians,
+                   name_of(integrators, settings.integrator),
+                   radians > stable ? fmt::format("is unstable from {:.2g} on", stable) : "is far off there"),
+       fix});
+}
+
+void on_spin(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
+             std::vector<Concern>& concerns) {
+  const double radians = h * island.fastest_spin;
+  if (settings.local_error > 0 || !(radians > sharp_turn)) return;
+  concerns.push_back(
+      {true,
+       fmt::format("{} turns by {:.2g} rad per substep: {} follows turns of less than about {}",
+                   names.body(island.spinning), radians, name_of(integrators, settings.integrator), sharp_turn),
+       fmt::format("substeps = {:.0f} or more, or integrator = \"dop853\" with local_error = 1e-6",
+                   std::ceil(radians / sharp_turn) * settings.substeps)});
+}
+
+// What tension stiffens is taken as inertia by the linearly implicit step: where h omega is small without it, that only
+// slows down what turns.
+void on_damping(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
+                std::vector<Concern>& concerns) {
+  if (settings.integrator != Integrator::implicit) return;
+  const double radians = h * std::sqrt(std::max(0.0, island.stiffest.square)), turn = h * island.fastest_spin;
+  if (radians > needs_no_help || turn < slow_turn) return;
+  concerns.push_back(
+      {true,
+       fmt::format("implicit slows down what turns, as {} does by {:.2g} rad per substep, and no tension "
+                   "here needs it: the stiffest motion swings by {:.2g} rad per substep",
+                   names.body(island.spinning), turn, radians),
+       "integrator = \"rattle\""});
+}
+
+void on_condition(const Diagnosis::Island& island, const Settings& settings, bool single, const Names& names,
+                  std::vector<Concern>& concerns) {
+  const double sweeps = settings.iterations;
+  if (settings.solver == Solver::iterative && island.condition > sweeps_per_condition * sweeps)
+    concerns.push_back(
+        {true,
+         fmt::format("K's condition is {:.2g}, of masses from {:.3g} to {:.3g} kg: {} sweeps of the iterative "
+                     "solver leave much of an error",
+                     island.condition, island.lightest, island.heaviest, settings.iterations),
+         "solver = \"direct\""});
+  if (single && island.condition * float_noise > blurred)
+    concerns.push_back(
+        {true,
+         fmt::format("K's condition is {:.2g}, near {}: floats blur its forces by some {:.0e} of them",
+                     island.condition, names.joint(island.weakest.joint), island.condition * float_noise),
+         "precision = \"double\""});
+}
+
+}  // namespace
+
+std::vector<Concern> concerns_about(const Diagnosis::Island& island, const Settings& settings, bool single, double h,
+                                    const Names& names) {
+  std::vector<Concern> concerns;
+  on_rows(island, names, concerns);
+  on_stiffness(island, settings, h, names, concerns);
+  on_spin(island, settings, h, names, concerns);
+  on_damping(island, settings, h, names, concerns);
+  on_condition(island, settings, single, names, concerns);
+  return concerns;
+}
+
+}  // namespace cdot

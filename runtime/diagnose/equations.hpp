@@ -1,0 +1,99 @@
+// K of an island's joints at the present poses, factored, and its products, for diagnoses: effects are left out, and
+// inequalities that do not touch.
+#pragma once
+
+#include <cmath>
+
+#include <cdot/diagnose.hpp>
+
+#include "runtime/number/arbitrary.hpp"
+#include "runtime/state/world_state.hpp"
+
+namespace cdot {
+
+template <class S>
+class Equations {
+ public:
+  using T = typename S::Scalar;
+
+  Equations(WorldState<S>& world, Island<S>& island) : world_(world) {
+    for (const Segment<S>& segment : island.segments)
+      if (is_joint(*segment.batch) && segment.batch->ops->rows > 0 && segment.begin < segment.end)
+        segments_.push_back(segment);
+    evaluate();
+    system_.build(segments_, world.bodies);
+    system_.choose(takes_part);
+    joints_.resize(static_cast<size_t>(system_.rows()));
+    C_.resize(joints_.size());
+    system_.each_row([&](int row, const Batch<S>& batch, int i) {
+      if (!out(row)) ++rows_;
+      joints_[row] = {batch.joint[i / batch.ops->rows], i % batch.ops->rows};
+      C_[row] = batch.kinds[i % batch.ops->rows] == RowKind::velocity ? 0.0 : double(batch.C[i]);
+    });
+    system_.assemble(world.bodies);
+    dependent_ = system_.factor();
+  }
+
+  // [m, rad]: joints that miss each other by less are not said to contradict.
+  static constexpr T slight = T(by_precision<T>(1e-5, 1e-9));
+
+  static bool takes_part(const Batch<S>& batch, int i) {
+    return is_joint(batch) && (batch.kinds[i % batch.ops->rows] != RowKind::inequality || batch.C[i] <= slight);
+  }
+
+  const std::vector<Segment<S>>& segments() const { return segments_; }
+  int rows() const { return rows_; }
+  int rank() const { return rows_ - dependent_; }
+  size_t size() const { return joints_.size(); }
+  Diagnosis::Row joint(size_t row) const { return joints_[row]; }
+  double C(size_t row) const { return C_[row]; }
+  bool out(size_t row) const { return system_.fixed[row] != System<S>::free; }
+  bool dependent(size_t row) const { return !out(row) && system_.dependent(static_cast<int>(row)); }
+  bool kept(size_t row) const { return !out(row) && !dependent(row); }
+  // K_ii, and what elimination leaves of it.
+  double diagonal(size_t row) const { return system_.diagonal(static_cast<int>(row)); }
+  double pivot(size_t row) const { return system_.pivot(static_cast<int>(row)); }
+
+  std::vector<double> multiply(const std::vector<double>& x) const {
+    std::vector<double> y(size());
+    if (rows_ > 0) system_.multiply(x.data(), y.data());
+    return y;
+  }
+  // Of the kept rows; the others are 0.
+  std::vector<double> solve(std::vector<double> b) {
+    for (size_t r = 0; r < size(); ++r)
+      if (!kept(r)) b[r] = 0;
+    if (rows_ > 0) system_.solve_factored(b.data());
+    for (size_t r = 0; r < size(); ++r)
+      if (!kept(r)) b[r] = 0;
+    return b;
+  }
+
+  // C and J at the present poses.
+  void evaluate() {
+    for (const Segment<S>& segment : segments_)
+      segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world_.bodies, T(world_.time));
+  }
+  // f(row, batch, i) as System::each_row.
+  template <class F>
+  void each_row(F f) {
+    system_.each_row(f);
+  }
+
+ private:
+  static bool is_joint(const Batch<S>& batch) { return !batch.law || batch.law->reported; }
+
+  WorldState<S>& world_;
+  std::vector<Segment<S>> segments_;
+  System<S> system_;
+  std::vector<Diagnosis::Row> joints_;
+  std::vector<double> C_;
+  int rows_ = 0, dependent_ = 0;
+};
+
+// The stiffest motion of the island; the step's length decides what Integrator::implicit takes off it.
+template <class S>
+Diagnosis::Stiffest stiffest_motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations,
+                                    typename S::Scalar h);
+
+}  // namespace cdot

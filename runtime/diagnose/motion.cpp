@@ -1,0 +1,208 @@
+// How fast forces turn round that a step takes as they are at its start. Within the joints, M dv/dt = f(q) + J(q)^T
+// lambda with the lambda of now; a small motion w then feels -G w with
+//
+//   G w = -d/de [f(q + e w) + J(q + e w)^T lambda],  w <- P M^-1 G w,  P onto J w = 0,
+//
+// whose largest eigenvalue is omega^2 of the stiffest oscillation. An explicit step h follows it while h omega < 2.
+#include "runtime/motion/motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/diagnose/equations.hpp"
+#include "runtime/solve/solve.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr int most_rounds = 200;
+constexpr double settled = 1e-3;  // of omega^2, from one round to the next ten
+
+template <class S>
+class Motion {
+ public:
+  using T = typename S::Scalar;
+  using Velocities = std::vector<typename S::Velocity>;
+
+  Motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations)
+      : world_(world), island_(island), equations_(equations), pose_(world.bodies.pose) {
+    // Euler's methods solve for the forces of springs on coordinates; the others take them as they are.
+    const Integrator integrator = world.settings.integrator;
+    if (integrator == Integrator::euler || integrator == Integrator::implicit) return;
+    for (const Segment<S>& segment : island.segments)
+      if (segment.batch->law && segment.batch->law->force) coordinate_springs_.push_back(segment);
+  }
+
+  // The forces that the joints exert now: J dv/dt = gamma.
+  void find_forces(T h) {
+    free_accelerations(world_, island_);
+    Velocities rate = world_.bodies.velocity_rate;
+    for (const Segment<S>& segment : equations_.segments()) {
+      Batch<S>& batch = *segment.batch;
+      batch.ops->velocity(batch, segment.begin, segment.end, rate.data(), batch.scratch.data());
+      batch.ops->gamma(batch, segment.begin, segment.end, world_.bodies, T(world_.time), batch.bias.data());
+    }
+    std::vector<double> b(equations_.size());
+    equations_.each_row(
+        [&](int row, Batch<S>& batch, int i) { b[row] = double(batch.bias[i]) - double(batch.scratch[i]); });
+    const std::vector<double> force = equations_.solve(b);
+    // stiffen_bodies() wants the impulses of a step.
+    equations_.each_row(
+        [&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]) * h, batch.correction[i] = 0; });
+    world_.last_step = double(h);
+    solves_as_step_ = world_.settings.integrator == Integrator::implicit && world_.settings.solver == Solver::direct;
+    if (world_.settings.integrator == Integrator::implicit) stiffen_bodies(world_, island_, h);
+    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]); });
+    if (!solves_as_step_) return;
+    island_.system.choose(Equations<S>::takes_part);
+    island_.system.assemble(world_.bodies);
+    island_.system.factor();
+  }
+
+  // P M^-1 G w, at a distance that C's curvature bears and round-off does not disturb.
+  Velocities stiffened(const Velocities& w, bool tension, bool springs) {
+    const T e = T(1e-3) * island_.size / std::max(T(largest(w)), T(1e-30));
+    const Velocities ahead = rates(w, e, tension, springs), behind = rates(w, -e, tension, springs);
+    Velocities change(w.size());
+    for (int i : island_.bodies) change[i] = S::sum(S::sum({}, behind[i], T(0.5) / e), ahead[i], T(-0.5) / e);
+    world_.bodies.pose = pose_;
+    equations_.evaluate();
+    return within_joints(change);
+  }
+
+  // change - M^-1 J^T K^-1 J change
+  Velocities within_joints(Velocities change) {
+    for (const Segment<S>& segment : equations_.segments()) {
+      Batch<S>& batch = *segment.batch;
+      batch.ops->velocity(batch, segment.begin, segment.end, change.data(), batch.scratch.data());
+    }
+    find_corrections(change);
+    for (const Segment<S>& segment : equations_.segments())
+      segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world_.bodies,
+                                segment.batch->correction.data(), change.data());
+    if (solves_as_step_) island_.system.pull(world_.bodies, change.data());
+    return change;
+  }
+
+  // Turns count by what they move at the mechanism's size.
+  double product(const Velocities& v, const Velocities& w) const {
+    double sum = 0;
+    for (int i : island_.bodies) sum += product(v[i], w[i]);
+    return sum;
+  }
+  double product(const typename S::Velocity& v, const typename S::Velocity& w) const {
+    T a[S::freedom], b[S::freedom];
+    S::write(v, a), S::write(w, b);
+    const double arm = double(island_.size);
+    double sum = 0;
+    for (int k = 0; k < S::freedom; ++k) sum += double(a[k]) * double(b[k]) * (k < S::lengths ? 1 : arm * arm);
+    return sum;
+  }
+
+ private:
+  double largest(const Velocities& w) const {
+    double square = 0;
+    for (int i : island_.bodies) square = std::max(square, product(w[i], w[i]));
+    return std::sqrt(square);
+  }
+
+  // -K^-1 J change, J change being in the scratch.
+  void find_corrections(const Velocities& change) {
+    if (solves_as_step_) {
+      island_.system.load([](const Batch<S>& batch, int i) { return -double(batch.scratch[i]); });
+      island_.system.load_tensions(change.data());
+      island_.system.solve();
+      island_.system.store([](Batch<S>& batch, int i, double lambda) { batch.correction[i] = T(lambda); });
+      return;
+    }
+    std::vector<double> b(equations_.size());
+    equations_.each_row([&](int row, Batch<S>& batch, int i) { b[row] = -double(batch.scratch[i]); });
+    const std::vector<double> impulse = equations_.solve(b);
+    equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.correction[i] = T(impulse[row]); });
+  }
+
+  Velocities rates(const Velocities& w, T e, bool tension, bool springs) {
+    Bodies<S>& all = world_.bodies;
+    for (int i : island_.bodies) all.pose[i] = S::moved(pose_[i], S::sum({}, w[i], e));
+    if (springs) {
+      push_free_bodies(world_, island_);
+      for (const Segment<S>& segment : coordinate_springs_) push_by(segment);
+    } else {
+      for (int i : island_.bodies) all.velocity_rate[i] = {};
+    }
+    if (tension) {
+      equations_.evaluate();
+      for (const Segment<S>& segment : equations_.segments())
+        segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all, segment.batch->lambda.data(),
+                                  all.velocity_rate.data());
+    }
+    return all.velocity_rate;
+  }
+
+  void push_by(const Segment<S>& segment) {
+    Batch<S>& batch = *segment.batch;
+    batch.ops->evaluate(batch, segment.begin, segment.end, world_.bodies, T(world_.time));
+    find_known_forces(world_, batch, segment.begin, segment.end);
+    batch.ops->apply(batch, segment.begin, segment.end, world_.bodies, batch.lower.data(),
+                     world_.bodies.velocity_rate.data());
+  }
+
+  WorldState<S>& world_;
+  Island<S>& island_;
+  Equations<S>& equations_;
+  std::vector<Segment<S>> coordinate_springs_;
+  const std::vector<typename S::Pose> pose_;
+  bool solves_as_step_ = false;  // by the system of the linearly implicit step, what tension stiffens included
+};
+
+template <class S>
+std::vector<typename S::Velocity> any_motion(const WorldState<S>& world, const Island<S>& island) {
+  std::vector<typename S::Velocity> w(world.bodies.pose.size());
+  Arbitrary arbitrary;
+  for (int i : island.bodies) {
+    typename S::Scalar numbers[S::freedom];
+    for (auto& number : numbers) number = typename S::Scalar(arbitrary() - 0.5);
+    w[i] = S::read_velocity(numbers);
+  }
+  return w;
+}
+
+}  // namespace
+
+template <class S>
+Diagnosis::Stiffest stiffest_motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations,
+                                    typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Motion<S> motion(world, island, equations);
+  motion.find_forces(h);
+  Diagnosis::Stiffest found;
+  auto w = motion.within_joints(any_motion(world, island));
+  double before = 0;
+  for (int round = 0; round < most_rounds; ++round) {
+    const double length = std::sqrt(motion.product(w, w));
+    if (!(length > 0) || !std::isfinite(length)) return found;
+    for (int i : island.bodies) w[i] = S::sum({}, w[i], T(1 / length));
+    auto next = motion.stiffened(w, true, true);
+    found.square = motion.product(w, next);
+    const double size = std::sqrt(motion.product(next, next));
+    if (!(size > 0) || !std::isfinite(size)) return found;
+    if (round % 10 == 9) {
+      if (std::abs(size - before) < settled * size) break;
+      before = size;
+    }
+    if (round + 1 < most_rounds) w = std::move(next);
+  }
+  found.tension = motion.product(w, motion.stiffened(w, true, false));
+  for (int i : island.bodies)
+    if (found.body < 0 || motion.product(w[i], w[i]) > motion.product(w[found.body], w[found.body])) found.body = i;
+  return found;
+}
+
+#define CDOT_INSTANTIATE(S) \
+  template Diagnosis::Stiffest stiffest_motion(WorldState<S>&, Island<S>&, Equations<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

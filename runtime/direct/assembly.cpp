@@ -1,0 +1,181 @@
+// Which numbers of K come from which joints, and their values from J and the masses. Apart from
+// direct/system.cpp, which solves.
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/direct/ldlt_kernels.hpp"
+#include "runtime/direct/system.hpp"
+
+namespace cdot {
+namespace {
+
+// K += J weighted^T over the columns of one body. A and B are the numbers of rows, 0: known at run
+// time only.
+template <class S, int A, int B>
+void add_product(const typename System<S>::Product& product, const typename System<S>::Real* J,
+                 const typename System<S>::Real* weighted, typename System<S>::Real* K) {
+  const int rows = A ? A : product.rows, columns = B ? B : product.columns;
+  J += product.J;
+  weighted += product.weighted;
+  K += product.to.at;
+  for (int r = 0; r < rows; ++r) {
+    for (int s = 0; s < columns; ++s) {
+      typename System<S>::Real sum = 0;
+      for (int c = 0; c < S::freedom; ++c)
+        sum += J[r * product.J_stride + c] * weighted[s * product.weighted_stride + c];
+      K[r * product.to.stride + s] += sum;
+    }
+  }
+}
+
+template <class S>
+using AddProduct = decltype(System<S>::Product::add);
+
+template <class S, int A, int... B>
+constexpr std::array<AddProduct<S>, sizeof...(B)> products_of(std::integer_sequence<int, B...>) {
+  return {add_product<S, A, B>...};
+}
+template <class S, int... A>
+constexpr std::array<std::array<AddProduct<S>, sizeof...(A)>, sizeof...(A)> all_products(
+    std::integer_sequence<int, A...> sizes) {
+  return {products_of<S, A>(sizes)...};
+}
+template <class S>
+constexpr auto products = all_products<S>(dense::Sizes{});
+
+}  // namespace
+
+template <class S>
+void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies,
+                      const std::vector<int>& tension_rows) {
+  blocks.clear();
+  tensions.clear();
+  rows_ = 0;
+  lawful_ = taut_ = false;
+  int numbers = 0;
+  const auto add = [&](std::vector<Block>& to, Batch<S>* batch, int slot, int rows) {
+    to.push_back({batch, slot, 0, rows, numbers, {}});
+    rows_ += rows;
+    numbers += rows * S::freedom * batch->ops->bodies;
+  };
+  for (const Segment<S>& segment : segments) {
+    lawful_ |= segment.batch->law != nullptr;
+    const int rows = segment.batch->ops->rows;
+    for (int slot = segment.begin; rows > 0 && slot < segment.end; ++slot) add(blocks, segment.batch, slot, rows);
+  }
+  tension_of_.clear();
+  for (size_t i = 0; i < tension_rows.size(); ++i) {
+    if (tension_rows[i] == 0) continue;
+    add(tensions, blocks[i].batch, blocks[i].slot, tension_rows[i]);
+    tension_of_.push_back(static_cast<int>(i));
+  }
+  jacobian_.assign(static_cast<size_t>(numbers), 0.0);
+  weighted_ = jacobian_;
+  const auto n = static_cast<size_t>(rows_);
+  for (auto* vector : {&b, &lambda, &softness, &right_side_, &product_, &unmet_}) vector->assign(n, 0.0);
+  for (auto& vector : shared_) vector.assign(n, 0.0);
+  lower.assign(n, -std::numeric_limits<Real>::infinity());
+  upper.assign(n, std::numeric_limits<Real>::infinity());
+  for (auto* flags : {&fixed, &broken, &out_, &held_}) flags->assign(n, 0);
+  order_rows(bodies);
+  list_products(bodies);
+  slacken();
+  built_ = true;
+}
+
+template <class S>
+std::vector<int> System<S>::movable_bodies(const Block& block, const Bodies<S>& bodies) const {
+  std::vector<int> movable;
+  const int count = block.batch->ops->bodies;
+  for (int k = 0; k < count; ++k) {
+    const int body = block.batch->body[block.slot * count + k];
+    if (!bodies.immovable(body)) movable.push_back(body);
+  }
+  std::sort(movable.begin(), movable.end());
+  return movable;
+}
+
+// Blocks over the same bodies (a joint, its limit, its motor) are eliminated as one group; rows are
+// numbered in the order of elimination.
+template <class S>
+void System<S>::order_rows(const Bodies<S>& bodies) {
+  std::map<std::vector<int>, int> group_over;
+  std::map<int, std::vector<int>> groups_at;  // by body
+  std::vector<int> rows, group, within;       // rows by group, the others by block
+  const auto place = [&](const Block& block) {
+    const auto over = movable_bodies(block, bodies);
+    const auto [found, is_new] = group_over.emplace(over, static_cast<int>(rows.size()));
+    if (is_new) {
+      for (int body : over) groups_at[body].push_back(found->second);
+      rows.push_back(0);
+    }
+    group.push_back(found->second);
+    within.push_back(rows[found->second]);
+    rows[found->second] += block.rows;
+  };
+  for (const Block& block : blocks) place(block);
+  for (const Block& tension : tensions) place(tension);  // after the rows of their joints, which are not soft
+  std::vector<std::pair<int, int>> coupled;
+  for (const auto& [body, groups] : groups_at)
+    for (int i : groups)
+      for (int j : groups)
+        if (j < i) coupled.emplace_back(i, j);
+  ldlt_.analyse(rows, coupled, BasicLdlt<Real>::template pivot_share<T>);
+  size_t i = 0;
+  for (auto* list : {&blocks, &tensions})
+    for (Block& block : *list) block.first = ldlt_.first(group[i]) + within[i], ++i;
+}
+
+template <class S>
+void System<S>::list_products(const Bodies<S>& bodies) {
+  struct Use {
+    const Block* block;
+    int position;
+  };
+  std::map<int, std::vector<Use>> uses;  // by movable body
+  for (auto* list : {&blocks, &tensions}) {
+    for (Block& block : *list) {
+      const Batch<S>& batch = *block.batch;
+      block.own = ldlt_.place(block.first, block.first);
+      for (int k = 0; k < batch.ops->bodies; ++k) {
+        const int body = batch.body[block.slot * batch.ops->bodies + k];
+        if (!bodies.immovable(body)) uses[body].push_back({&block, k});
+      }
+    }
+  }
+  products_.clear();
+  const auto width = [](const Block& block) { return S::freedom * block.batch->ops->bodies; };
+  for (const auto& [body, list] : uses) {
+    for (const Use& u : list) {
+      for (const Use& v : list) {
+        const Block &row = *u.block, &column = *v.block;
+        if (row.first <= column.first) continue;
+        products_.push_back({products<S>[dense::kind(row.rows)][dense::kind(column.rows)],
+                             row.jacobian + S::freedom * u.position, column.jacobian + S::freedom * v.position,
+                             width(row), width(column), row.rows, column.rows, ldlt_.place(row.first, column.first)});
+      }
+    }
+  }
+}
+
+template <class S>
+void System<S>::assemble(const Bodies<S>& bodies) {
+  std::vector<Real>& K = ldlt_.values();
+  std::fill(K.begin(), K.end(), 0.0);
+  for (const Block& block : blocks)
+    block.batch->ops->dense(*block.batch, block.slot, bodies, jacobian_.data() + block.jacobian,
+                            weighted_.data() + block.jacobian, K.data() + block.own.at, block.own.stride);
+  assemble_tensions(bodies);
+  for (const Product& product : products_) product.add(product, jacobian_.data(), weighted_.data(), K.data());
+}
+
+#define CDOT_INSTANTIATE(S) template class System<S>;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,112 @@
+// Rows that depend on others and ask for something else than these: joints that cannot all hold, as a triangle whose
+// third side is too long. Whichever row elimination meets last is dropped; its error is then shared by all rows that
+// take part in the contradiction, such that the sum of squares is least.
+//
+//   K lambda = b - Z y,  Z^T Z y = Z^T b,  the columns of Z spanning the left null space of K:
+//   z_d = e_d - (K_II^-1 K_Id on the rows I that were kept), for every dropped row d.
+//
+// Z^T b is what the dropped rows miss, so that where nothing contradicts nothing is computed. The small system is
+// solved by conjugate gradients, whose products are a solve and a multiplication with the factor and the K at hand.
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/direct/system.hpp"
+
+namespace cdot {
+namespace {
+
+// Below this, and below this share of the largest b, a row that is missed is round-off.
+template <class T>
+constexpr double least_slight = by_precision<T>(1e-5, 1e-11);
+template <class T>
+constexpr double least_share = by_precision<T>(1e-4, 1e-9);
+
+constexpr double solved = 1e-24;  // of the square of what was missed at first
+
+template <class Real>
+Real product(const std::vector<Real>& x, const std::vector<Real>& y) {
+  Real sum = 0;
+  for (size_t i = 0; i < x.size(); ++i) sum += x[i] * y[i];
+  return sum;
+}
+
+}  // namespace
+
+// w becomes Z^T w, in the places of the dropped rows; 0 elsewhere.
+template <class S>
+void System<S>::contract(std::vector<Real>& w) {
+  for (int r = 0; r < rows_; ++r) right_side_[r] = kept(r) ? w[r] : Real(0);
+  ldlt_.solve(right_side_.data(), right_side_.data());
+  ldlt_.multiply(right_side_.data(), product_.data());
+  for (int r = 0; r < rows_; ++r) w[r] = ldlt_.dependent(r) ? w[r] - product_[r] : Real(0);
+}
+
+// to = Z y, y in the places of the dropped rows.
+template <class S>
+void System<S>::expand(const std::vector<Real>& y, std::vector<Real>& to) {
+  ldlt_.multiply(y.data(), product_.data());
+  for (int r = 0; r < rows_; ++r) to[r] = kept(r) ? product_[r] : Real(0);
+  ldlt_.solve(to.data(), to.data());
+  for (int r = 0; r < rows_; ++r) to[r] = kept(r) ? -to[r] : y[r];
+}
+
+template <class S>
+typename System<S>::Real System<S>::slight(Real scale) {
+  return std::max(Real(least_slight<T>), least_share<T> * scale);
+}
+
+// What the dropped rows miss, into `missed`. False if that is round-off.
+template <class S>
+bool System<S>::misses_rows(std::vector<Real>& missed) {
+  ldlt_.multiply(lambda.data(), product_.data());
+  Real largest = 0, scale = 0;
+  for (int r = 0; r < rows_; ++r) {
+    missed[r] = 0;
+    if (out_[r]) continue;
+    scale = std::max(scale, std::abs(b[r]));
+    if (!ldlt_.dependent(r)) continue;
+    missed[r] = b[r] - product_[r] - softness[r] * lambda[r];
+    largest = std::max(largest, std::abs(missed[r]));
+  }
+  return largest > slight(scale);
+}
+
+template <class S>
+void System<S>::share_contradictions() {
+  if (softened_ != Softened::no) return;
+  auto& [missed, step, image, y] = shared_;
+  contradicted_ = dependent_ > 0 && misses_rows(missed);
+  if (!contradicted_) return;
+  std::fill(y.begin(), y.end(), 0.0);
+  step = missed;
+  Real left = product(missed, missed);
+  const Real enough = solved * left;
+  for (int round = 0; round < rows_ && left > enough; ++round) {
+    expand(step, image);
+    contract(image);
+    const Real share = left / product(step, image);
+    for (int r = 0; r < rows_; ++r) {
+      y[r] += share * step[r];
+      missed[r] -= share * image[r];
+    }
+    const Real before = left;
+    left = product(missed, missed);
+    for (int r = 0; r < rows_; ++r) step[r] = missed[r] + left / before * step[r];
+  }
+  expand(y, unmet_);
+  for (int r = 0; r < rows_; ++r) image[r] = kept(r) ? unmet_[r] : Real(0);
+  ldlt_.solve(image.data(), image.data());
+  for (int r = 0; r < rows_; ++r)
+    if (kept(r)) lambda[r] -= image[r];
+}
+
+#define CDOT_INSTANTIATE(S)                                 \
+  template System<S>::Real System<S>::slight(Real);         \
+  template bool System<S>::misses_rows(std::vector<Real>&); \
+  template void System<S>::share_contradictions();
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

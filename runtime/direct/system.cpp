@@ -1,0 +1,175 @@
+#include "runtime/direct/system.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+namespace cdot {
+
+template <class S>
+void System<S>::exchange(const Batch<S>* batch, int slot, int last, int marked, char value) {
+  for (Block& block : blocks) {
+    if (block.batch != batch || (block.slot != slot && block.slot != last)) continue;
+    if (block.slot == marked) std::fill_n(broken.begin() + block.first, block.rows, value);
+    block.slot = block.slot == slot ? last : slot;
+  }
+  for (Block& tension : tensions) {
+    if (tension.batch != batch || (tension.slot != slot && tension.slot != last)) continue;
+    tension.slot = tension.slot == slot ? last : slot;
+  }
+}
+
+template <class S>
+void System<S>::remove(const Batch<S>* batch, int slot, int last) {
+  exchange(batch, slot, last, slot, 1);
+  ldlt_.doubt_lasting();
+}
+
+template <class S>
+void System<S>::put_back(const Batch<S>* batch, int slot, int last) {
+  exchange(batch, slot, last, last, 0);
+}
+
+template <class S>
+void System<S>::load_laws() {
+  each_row([&](int row, const Batch<S>& batch, int i) {
+    if (!batch.law) return;
+    softness[row] = batch.softness[i];
+    lower[row] = batch.lower[i];
+    upper[row] = batch.upper[i];
+  });
+}
+
+template <class S>
+int System<S>::factor() {
+  char any = 0;
+  for (int r = 0; r < rows_; ++r) any |= out_[r] = fixed[r] | broken[r];
+  any_out_ = any != 0;
+  softened_ = Softened::no;
+  dependent_ = ldlt_.factor(softness.data(), any_out_ ? out_.data() : nullptr);
+  if (taut_ && dependent_ > 0)
+    each_tension_row([&](const Block&, int, int row) { dependent_ -= ldlt_.dependent(row); });
+  return dependent_;
+}
+
+template <class S>
+void System<S>::solve() {
+  solve_rows();
+  share_contradictions();
+}
+
+template <class S>
+void System<S>::solve_rows() {
+  if (softened_ == Softened::no) {
+    solve_kept_rows();
+    if (!drops_rows_by_round_off()) return;
+    soften(Softened::slightly);
+  }
+  solve_softly();
+}
+
+template <class S>
+void System<S>::solve_kept_rows() {
+  if (!any_out_) return ldlt_.solve(b.data(), lambda.data());
+  bool any_fixed = false;
+  for (int r = 0; r < rows_; ++r) {
+    if (broken[r]) lambda[r] = 0.0;
+    right_side_[r] = out_[r] ? lambda[r] : Real(0);
+    any_fixed |= right_side_[r] != 0.0;
+  }
+  if (any_fixed) {
+    ldlt_.multiply(right_side_.data(), product_.data());
+    for (int r = 0; r < rows_; ++r)
+      if (!out_[r]) right_side_[r] = -product_[r];
+  }
+  for (int r = 0; r < rows_; ++r)
+    if (!out_[r]) right_side_[r] += b[r];
+  ldlt_.solve(right_side_.data(), lambda.data());
+}
+
+// Moves rows that left their bounds onto them, and lets rows go whose bound pushes the wrong way.
+// True if none had to.
+template <class S>
+bool System<S>::revise_active_set(bool one_by_one) {
+  ldlt_.multiply(lambda.data(), product_.data());
+  Real scale = 0;
+  for (int r = 0; r < rows_; ++r) scale = std::max(scale, std::abs(b[r]));
+  const Real tolerance = by_precision<Real>(1e-12) * scale;
+  bool settled = true;
+  for (int r = rows_ - 1; r >= 0; --r) {
+    if (broken[r]) continue;
+    if (!fixed[r]) {
+      if (lambda[r] >= lower[r] && lambda[r] <= upper[r]) continue;
+      fixed[r] = lambda[r] < lower[r] ? at_lower : at_upper;
+      lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
+    } else {
+      const Real excess = product_[r] + softness[r] * lambda[r] - b[r];  // J v + bias after it
+      const bool holds = fixed[r] == at_lower ? excess >= -tolerance : excess <= tolerance;
+      if (holds || lower[r] == upper[r]) continue;
+      fixed[r] = free;
+    }
+    settled = false;
+    if (one_by_one) return false;
+  }
+  return settled;
+}
+
+// The largest share of b by which a row within its bounds may miss it.
+template <class Real>
+constexpr double missed = by_precision<Real>(1e-9);
+// Of its own diagonal: what makes a row that depends on others one of its own.
+constexpr double slight_softness = 1e-8;
+
+// A motor and the limit that it runs into are one row twice: whichever elimination meets last is
+// dropped as dependent, whatever it asks for. Where that leaves a row with a bound unsatisfied,
+// such rows become slightly soft, so that the weaker of the two reaches its bound. True if there
+// were any.
+template <class S>
+bool System<S>::part_contradicting_rows() {
+  const auto bounded = [&](int r) { return std::isfinite(lower[r]) || std::isfinite(upper[r]); };
+  Real scale = 0;
+  for (int r = 0; r < rows_; ++r) scale = std::max(scale, std::abs(b[r]));
+  bool any = false;
+  for (int r = 0; r < rows_; ++r)
+    any |= bounded(r) && !fixed[r] && !broken[r] &&
+           std::abs(product_[r] + softness[r] * lambda[r] - b[r]) > missed<Real> * scale;
+  for (int r = 0; any && r < rows_; ++r)
+    if (bounded(r)) softness[r] += slight_softness * ldlt_.diagonal(r);
+  return any;
+}
+
+template <class S>
+int System<S>::find_active_set() {
+  // Exchanging all offenders at once is fast but may cycle; one at a time, always the last, does
+  // not (Murty's rule).
+  const int fast = 10, slow = std::min(2 * rows_, 200);
+  int dependent = 0;
+  for (int round = 0; round < fast + slow; ++round) {
+    dependent = factor();
+    solve_rows();
+    if (revise_active_set(round >= fast)) break;
+  }
+  return dependent;
+}
+
+template <class S>
+int System<S>::solve_bounded() {
+  fixed = held_;  // the rows that were held back in the step before
+  for (int r = 0; r < rows_; ++r) {
+    if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
+    if (!std::isfinite(lambda[r])) fixed[r] = free;
+  }
+  int dependent = find_active_set();
+  if (dependent > 0 && part_contradicting_rows()) dependent = find_active_set();
+  share_contradictions();
+  held_ = fixed;
+  for (int r = 0; r < rows_; ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
+  return dependent;
+}
+
+#define CDOT_INSTANTIATE(S) template class System<S>;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

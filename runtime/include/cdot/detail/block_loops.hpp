@@ -1,0 +1,343 @@
+// The loops of BlockOps, written once for every generated row block. The only place that calls
+// kernels in step().
+#pragma once
+
+#include <algorithm>
+#include <type_traits>
+
+#include <cdot/detail/block.hpp>
+#include <cdot/detail/kernel_forms.hpp>
+#include <cdot/detail/turns.hpp>
+
+namespace cdot {
+
+// Joint owns the parameters; Block is the joint, one of its coordinates, or either with a body
+// immovable.
+template <class S, class Joint, class Block, Kernels kernels = Kernels::balanced>
+struct BlockLoops {
+  using T = typename S::Scalar;
+  using Real = ExactNumber<T>;
+  using Pose = typename S::Pose;
+  using Velocity = typename S::Velocity;
+  using InverseMass = typename S::InverseMass;
+  using Parameters = typename Joint::template Parameters<T>;
+  using Jacobian = typename Block::template Jacobian<T>;
+  static constexpr int bodies = Block::bodies;
+  static constexpr int rows = Block::rows;
+  static constexpr int width = S::freedom * bodies;
+  static constexpr int triangle = rows * (rows + 1) / 2;
+  static_assert(
+      rows <= most_rows && bodies <= most_bodies,
+      "a joint with more rows or bodies than most_rows, most_bodies of runtime/include/cdot/detail/block.hpp");
+  using Turns = TurnCounters<S, Joint, Block>;
+
+  // An empty struct (all entries of J known) has size 1 but holds nothing.
+  template <class Struct>
+  static constexpr int numbers() {
+    return std::is_empty_v<Struct> ? 0 : static_cast<int>(sizeof(Struct) / sizeof(T));
+  }
+
+  // Generated structs hold numbers of type T and nothing else; here they lie in arrays of T.
+  template <class Struct, class Number>
+  static auto& as(Number* numbers_of, int slot) {
+    using Target = std::conditional_t<std::is_const_v<Number>, const Struct, Struct>;
+    if constexpr (std::is_empty_v<Struct>) {
+      static Struct nothing;  // there is no array to point into
+      return static_cast<Target&>(nothing);
+    } else {
+      return *reinterpret_cast<Target*>(numbers_of + slot * numbers<Struct>());
+    }
+  }
+
+  static const int* bodies_of(const Batch<S>& batch, int slot) { return batch.body.data() + slot * bodies; }
+
+  template <class Item>
+  static void gather(const std::vector<Item>& from, const int* body, Item (&to)[bodies]) {
+    for (int k = 0; k < bodies; ++k) to[k] = from[static_cast<size_t>(body[k])];
+  }
+
+  static void count_parameters(Batch<S>& batch, int slot, const Pose (&q)[bodies], T time) {
+    if constexpr (Turns::of_parameters() > 0)
+      Turns::count_parameters(q, batch.parameters.data() + slot * numbers<Parameters>(), time,
+                              batch.counters.data() + slot * Turns::count);
+  }
+  static void count_angle(Batch<S>& batch, int slot, T (&C)[rows]) {
+    if constexpr (Turns::is_angle()) Turns::count_angle(C[0], batch.counters.data() + slot * Turns::count);
+  }
+  static void start_counting(Batch<S>& batch, int slot, const Bodies<S>& all, T time) {
+    Pose q[bodies];
+    gather(all.pose, bodies_of(batch, slot), q);
+    Turns::start(q, batch.parameters.data() + slot * numbers<Parameters>(), time,
+                 batch.counters.data() + slot * Turns::count);
+  }
+
+  static void evaluate(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      Pose q[bodies];
+      gather(all.pose, bodies_of(batch, slot), q);
+      count_parameters(batch, slot, q, time);
+      const Parameters& p = as<Parameters>(batch.parameters.data(), slot);
+      T C[rows];
+      Block::jacobian(q, p, time, C, as<Jacobian>(batch.jacobian.data(), slot));
+      count_angle(batch, slot, C);
+      for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
+      T drift[rows] = {};
+      if constexpr (Block::explicit_time) Block::time_derivative(q, p, time, drift);
+      for (int r = 0; r < rows; ++r) batch.bias[slot * rows + r] = drift[r];
+    }
+  }
+
+  static void position(Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      Pose q[bodies];
+      gather(all.pose, bodies_of(batch, slot), q);
+      count_parameters(batch, slot, q, time);
+      T C[rows];
+      Block::position(q, as<Parameters>(batch.parameters.data(), slot), time, C);
+      count_angle(batch, slot, C);
+      for (int r = 0; r < rows; ++r) batch.C[slot * rows + r] = C[r];
+    }
+  }
+
+  static void gamma(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time, T* out) {
+    for (int slot = begin; slot < end; ++slot) {
+      Pose q[bodies];
+      Velocity v[bodies];
+      gather(all.pose, bodies_of(batch, slot), q);
+      gather(all.velocity, bodies_of(batch, slot), v);
+      T g[rows];
+      Block::gamma(q, v, as<Parameters>(batch.parameters.data(), slot), time, g);
+      for (int r = 0; r < rows; ++r) out[slot * rows + r] = g[r];
+    }
+  }
+
+  static void effective_mass(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {
+    for (int slot = begin; slot < end; ++slot) {
+      InverseMass m[bodies];
+      gather(all.effective_mass, bodies_of(batch, slot), m);
+      T K[triangle];
+      Block::effective_mass(as<Jacobian>(batch.jacobian.data(), slot), m, K);
+      for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = K[k];
+    }
+  }
+
+  static void factorize(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {
+    for (int slot = begin; slot < end; ++slot) {
+      const auto& J = as<Jacobian>(batch.jacobian.data(), slot);
+      InverseMass m[bodies];
+      gather(all.effective_mass, bodies_of(batch, slot), m);
+      T F[triangle];
+      if constexpr (kernels == Kernels::robust) {
+        factor_by_rows<Block, width>(J, m, F);
+      } else {
+        T K[triangle];
+        Block::effective_mass(J, m, K);
+        if constexpr (kernels == Kernels::fast) invert(K, F);
+        else Block::factor(K, F);
+      }
+      for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = F[k];
+    }
+  }
+
+  // lambda = K^-1 b by what factorize() left.
+  static void solve(const Batch<S>& batch, int slot, const T (&b)[rows], T (&lambda)[rows]) {
+    T F[triangle];
+    for (int k = 0; k < triangle; ++k) F[k] = batch.factor[slot * triangle + k];
+    if constexpr (kernels == Kernels::fast) {
+      multiply(F, b, lambda);
+    } else {
+      Block::solve(F, b, lambda);
+    }
+  }
+
+  static void velocity(const Batch<S>& batch, int begin, int end, const Velocity* of, T* out) {
+    for (int slot = begin; slot < end; ++slot) {
+      Velocity v[bodies];
+      for (int k = 0; k < bodies; ++k) v[k] = of[bodies_of(batch, slot)[k]];
+      T Jv[rows];
+      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
+      for (int r = 0; r < rows; ++r) out[slot * rows + r] = Jv[r];
+    }
+  }
+
+  static void apply(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, const T* impulses, Velocity* to) {
+    for (int slot = begin; slot < end; ++slot) {
+      T lambda[rows];
+      for (int r = 0; r < rows; ++r) lambda[r] = impulses[slot * rows + r];
+      push(batch, slot, all, lambda, to);
+    }
+  }
+
+  // to += M^-1 J^T lambda
+  static void push(const Batch<S>& batch, int slot, const Bodies<S>& all, const T (&lambda)[rows], Velocity* to) {
+    const int* body = bodies_of(batch, slot);
+    Velocity v[bodies];
+    InverseMass m[bodies];
+    gather(all.effective_mass, body, m);
+    for (int k = 0; k < bodies; ++k) v[k] = to[body[k]];
+    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), m, lambda, v);
+    for (int k = 0; k < bodies; ++k) to[body[k]] = v[k];
+  }
+
+  // K lambda = -(J v + bias)
+  static void iterate(const Batch<S>& batch, int begin, int end, Bodies<S>& all, T* impulses) {
+    for (int slot = begin; slot < end; ++slot) {
+      Velocity v[bodies];
+      gather(all.velocity, bodies_of(batch, slot), v);
+      T Jv[rows], b[rows], lambda[rows];
+      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
+      for (int r = 0; r < rows; ++r) b[r] = -(Jv[r] + batch.bias[slot * rows + r]);
+      solve(batch, slot, b, lambda);
+      for (int r = 0; r < rows; ++r) impulses[slot * rows + r] += lambda[r];
+      push(batch, slot, all, lambda, all.velocity.data());
+    }
+  }
+
+  // Row by row, since each row may stop at a bound of its own:
+  // (K_rr + softness) change = -(J v + bias + softness lambda), lower <= lambda + change <= upper
+  static void iterate_bounded(Batch<S>& batch, int begin, int end, Bodies<S>& all) {
+    for (int slot = begin; slot < end; ++slot) {
+      Velocity v[bodies];
+      gather(all.velocity, bodies_of(batch, slot), v);
+      T Jv[rows], change[rows];
+      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
+      const T* K = batch.factor.data() + slot * triangle;
+      for (int r = 0; r < rows; ++r) {
+        const int i = slot * rows + r;
+        const T softness = batch.softness[i], before = batch.lambda[i];
+        const T b = -(Jv[r] + batch.bias[i] + softness * before);
+        const T wanted = before + b * inverse(K[r * (r + 1) / 2 + r] + softness);
+        const T after =
+            select(wanted < batch.lower[i], batch.lower[i], select(wanted > batch.upper[i], batch.upper[i], wanted));
+        batch.lambda[i] = after;
+        change[r] = after - before;
+        for (int s = r + 1; s < rows; ++s) Jv[s] += K[s * (s + 1) / 2 + r] * change[r];
+      }
+      push(batch, slot, all, change, all.velocity.data());
+    }
+  }
+
+  // K lambda = -C, displacement = M^-1 J^T lambda
+  static void correct(Batch<S>& batch, int begin, int end, Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      position(batch, slot, slot + 1, all, time);
+      T b[rows], lambda[rows];
+      for (int r = 0; r < rows; ++r) b[r] = -batch.C[slot * rows + r];
+      solve(batch, slot, b, lambda);
+      displace(batch, slot, all, lambda);
+    }
+  }
+
+  // The same row by row, for the part of C that the law calls an error.
+  static void correct_bounded(Batch<S>& batch, int begin, int end, Bodies<S>& all, T time) {
+    for (int slot = begin; slot < end; ++slot) {
+      position(batch, slot, slot + 1, all, time);
+      T error[rows], lambda[rows];
+      batch.law->error(batch, slot, error);
+      const T* K = batch.factor.data() + slot * triangle;
+      for (int r = 0; r < rows; ++r) {
+        lambda[r] = -error[r] * inverse(K[r * (r + 1) / 2 + r]);
+        for (int s = r + 1; s < rows; ++s) error[s] += K[s * (s + 1) / 2 + r] * lambda[r];
+      }
+      displace(batch, slot, all, lambda);
+    }
+  }
+
+  static void displace(Batch<S>& batch, int slot, Bodies<S>& all, const T (&lambda)[rows]) {
+    const int* body = bodies_of(batch, slot);
+    Velocity moved[bodies] = {};
+    InverseMass m[bodies];
+    gather(all.effective_mass, body, m);
+    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), m, lambda, moved);
+    for (int r = 0; r < rows; ++r) batch.correction[slot * rows + r] += lambda[r];
+    for (int k = 0; k < bodies; ++k) {
+      const size_t i = static_cast<size_t>(body[k]);
+      all.pose[i] = S::moved(all.pose[i], moved[k]);
+      all.displacement[i] = S::sum(all.displacement[i], moved[k], T(1));
+    }
+  }
+
+  static void dense(const Batch<S>& batch, int slot, const Bodies<S>& all, Real* J, Real* weighted, Real* K,
+                    int stride) {
+    using Exact = typename S::Exact;
+    typename Exact::InverseMass m[bodies];
+    for (int k = 0; k < bodies; ++k)
+      m[k] = exact<typename Exact::InverseMass, T>(all.effective_mass[static_cast<size_t>(bodies_of(batch, slot)[k])]);
+    const auto entries = exact<typename Block::template Jacobian<Real>, T>(as<Jacobian>(batch.jacobian.data(), slot));
+    Real own[triangle];
+    Block::dense(entries, *reinterpret_cast<Real(*)[rows][width]>(J));
+    Block::inverse_mass_jacobian(entries, m, *reinterpret_cast<Real(*)[rows][width]>(weighted));
+    Block::effective_mass(entries, m, own);
+    for (int r = 0; r < rows; ++r)
+      for (int s = 0; s <= r; ++s) K[r * stride + s] = own[r * (r + 1) / 2 + s];
+  }
+
+  static void transposed(const Batch<S>& batch, int slot, const T* impulses, Velocity* impulse) {
+    InverseMass one[bodies];
+    for (int k = 0; k < bodies; ++k) one[k] = S::unit_mass();
+    T lambda[rows];
+    for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
+    Velocity sum[bodies] = {};
+    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), one, lambda, sum);
+    for (int k = 0; k < bodies; ++k) impulse[k] = sum[k];
+  }
+
+  static void stiffness_of(const Batch<S>& batch, int slot, const Bodies<S>& all, T time, const T (&lambda)[rows],
+                           T (&H)[width][width]) {
+    Pose q[bodies];
+    gather(all.pose, bodies_of(batch, slot), q);
+    Block::stiffness(q, as<Parameters>(batch.parameters.data(), slot), time, lambda, H);
+  }
+
+  static void stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, T time, const T* impulses, T* to) {
+    T lambda[rows], H[width][width];
+    for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
+    stiffness_of(batch, slot, all, time, lambda, H);
+    for (int r = 0; r < width; ++r) std::copy_n(H[r], width, to + r * width);
+  }
+
+  static void add_stiffness(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, T time,
+                            typename S::Stiffness* stiffness) {
+    for (int slot = begin; slot < end; ++slot) {
+      const int* body = bodies_of(batch, slot);
+      T lambda[rows], H[width][width];
+      for (int r = 0; r < rows; ++r) lambda[r] = batch.lambda[slot * rows + r] + batch.correction[slot * rows + r];
+      stiffness_of(batch, slot, all, time, lambda, H);
+      for (int k = 0; k < bodies; ++k) S::subtract(stiffness[body[k]], H, k);
+    }
+  }
+
+  static constexpr auto starter() -> decltype(BlockOps<S>::start_counting) {
+    if constexpr (Turns::count > 0) return start_counting;
+    else return nullptr;
+  }
+
+  static constexpr BlockOps<S> ops() {
+    return {bodies,
+            rows,
+            numbers<Parameters>(),
+            numbers<Jacobian>(),
+            Turns::count,
+            Block::explicit_time,
+            starter(),
+            evaluate,
+            position,
+            gamma,
+            effective_mass,
+            factorize,
+            velocity,
+            apply,
+            iterate,
+            iterate_bounded,
+            correct,
+            correct_bounded,
+            dense,
+            transposed,
+            add_stiffness,
+            stiffness,
+            nullptr,
+            nullptr};
+  }
+};
+
+}  // namespace cdot

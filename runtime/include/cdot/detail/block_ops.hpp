@@ -1,0 +1,67 @@
+// The table of functions by which the solvers know a row block, one constant for each: its loops; none where a joint
+// has coordinates only; and other ways to solve the same rows where these exist.
+#pragma once
+
+#include <cdot/detail/block_loops.hpp>
+
+namespace cdot {
+
+template <class... Arguments>
+void do_nothing(Arguments...) {}
+
+// The rows of a joint that has coordinates only.
+template <class S, class Joint>
+constexpr BlockOps<S> ops_without_rows() {
+  using Parameters = typename Joint::template Parameters<typename S::Scalar>;
+  BlockOps<S> ops{};
+  ops.bodies = Joint::bodies;
+  ops.parameter_size = sizeof(Parameters) / sizeof(typename S::Scalar);
+  ops.evaluate = ops.position = do_nothing;
+  ops.gamma = do_nothing;
+  ops.effective_mass = do_nothing;
+  ops.factorize = do_nothing;
+  ops.velocity = do_nothing;
+  ops.apply = do_nothing;
+  ops.iterate = do_nothing;
+  ops.iterate_bounded = do_nothing;
+  ops.correct = ops.correct_bounded = do_nothing;
+  ops.dense = do_nothing;
+  ops.transposed = do_nothing;
+  ops.add_stiffness = do_nothing;
+  ops.stiffness = do_nothing;
+  return ops;
+}
+
+// Only what solves differs.
+template <class S, class Joint, class Block, Kernels kernels>
+constexpr BlockOps<S> make_other_ops() {
+  using Other = BlockLoops<S, Joint, Block, kernels>;
+  BlockOps<S> ops = BlockLoops<S, Joint, Block>::ops();
+  ops.factorize = Other::factorize;
+  if constexpr (kernels == Kernels::fast) {
+    ops.iterate = Other::iterate;
+    ops.correct = Other::correct;
+  }
+  return ops;
+}
+
+template <class S, class Joint, class Block, Kernels kernels>
+inline constexpr BlockOps<S> other_ops = make_other_ops<S, Joint, Block, kernels>();
+
+template <class S, class Joint, class Block>
+constexpr BlockOps<S> make_block_ops() {
+  if constexpr (Block::rows == 0) {
+    return ops_without_rows<S, Joint>();
+  } else {
+    BlockOps<S> ops = BlockLoops<S, Joint, Block>::ops();
+    constexpr int forms = is_extended<typename S::Scalar> ? 1 : Block::rows;  // there one form is enough
+    if constexpr (forms == 2) ops.fast = &other_ops<S, Joint, Block, Kernels::fast>;
+    if constexpr (forms > 1) ops.robust = &other_ops<S, Joint, Block, Kernels::robust>;
+    return ops;
+  }
+}
+
+template <class S, class Joint, class Block>
+inline constexpr BlockOps<S> block_ops = make_block_ops<S, Joint, Block>();
+
+}  // namespace cdot

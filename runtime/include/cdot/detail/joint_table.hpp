@@ -1,0 +1,89 @@
+// Every registered joint as row blocks: joint, coordinates, immovable variants, made from the
+// generated structs by one template. What the registry knows at compile time, a World looks up here
+// by number.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include <cdot/detail/block_ops.hpp>
+#include <cdot/joints.hpp>
+
+namespace cdot {
+
+// A row block for general bodies, and those in which one body is immovable: (index of that body,
+// its loops). Extended precision, where nobody counts instructions, does without the latter.
+template <class S>
+struct BlockVariants {
+  const BlockOps<S>* general;
+  std::vector<std::pair<int, const BlockOps<S>*>> immovable;
+
+  // The cheapest block for these bodies. With several immovable bodies one variant serves: the
+  // others' inverse masses are 0 in the data.
+  const BlockOps<S>* choose(const Bodies<S>& bodies, std::span<const int> body) const {
+    for (const auto& [index, ops] : immovable)
+      if (bodies.immovable(body[static_cast<size_t>(index)])) return ops;
+    return general;
+  }
+  // In whichever form its rows are solved.
+  bool has(const BlockOps<S>* ops) const {
+    const auto is = [&](const BlockOps<S>* one) {
+      return ops == one || (ops && (ops == one->fast || ops == one->robust));
+    };
+    return is(general) ||
+           std::any_of(immovable.begin(), immovable.end(), [&](const auto& one) { return is(one.second); });
+  }
+};
+
+template <class S>
+struct JointEntry {
+  BlockVariants<S> rows;
+  std::vector<BlockVariants<S>> coordinates;  // in the order of JointType::coordinates
+  // Writes the default of parameter `index`, computed from the poses, the parameters before it and
+  // the time.
+  void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters, typename S::Scalar time);
+};
+
+template <class S, class Joint, class Block>
+BlockVariants<S> block_variants() {
+  BlockVariants<S> variants{&block_ops<S, Joint, Block>, {}};
+  const auto add = [&]<class Variant>(std::type_identity<Variant>) {
+    variants.immovable.emplace_back(Variant::immovable_body, &block_ops<S, Joint, Variant>);
+  };
+  if constexpr (requires { typename Block::Immovable; } && !is_extended<typename S::Scalar>) {
+    [&]<class... Variants>(std::type_identity<std::tuple<Variants...>>) {
+      (add(std::type_identity<Variants>{}), ...);
+    }(std::type_identity<typename Block::Immovable>{});
+  }
+  return variants;
+}
+
+template <class S, class Joint>
+JointEntry<S> joint_entry() {
+  using T = typename S::Scalar;
+  JointEntry<S> entry{block_variants<S, Joint, Joint>(), {}, nullptr};
+  [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {
+    (entry.coordinates.push_back(block_variants<S, Joint, Coordinates>()), ...);
+  }(std::type_identity<typename Joint::Coordinates>{});
+  entry.default_value = [](int index, const typename S::Pose* q, T* parameters, T time) {
+    using Parameters = typename Joint::template Parameters<T>;
+    using Poses = const typename S::Pose[Joint::bodies];
+    Joint::default_value(index, reinterpret_cast<Poses&>(*q), *reinterpret_cast<Parameters*>(parameters), time);
+  };
+  return entry;
+}
+
+// In the order of joint_types(). Defined for a space by one file that includes the generated
+// registry; cdot/detail/add_joints.hpp adds to it.
+template <class S>
+std::vector<JointEntry<S>>& joint_entries();
+
+template <class S, class... Joints>
+std::vector<JointEntry<S>> make_joint_entries(std::type_identity<std::tuple<Joints...>>) {
+  return {joint_entry<S, Joints>()...};
+}
+
+}  // namespace cdot

@@ -1,0 +1,59 @@
+// Other ways to the numbers that solve a row block's K lambda = rhs than the kernel's own factor and solve. They need a
+// kernel's contract only, so they are written here once and not generated for every joint.
+#pragma once
+
+#include <cdot/kernel.hpp>
+
+namespace cdot {
+
+// K = L D L^T of J M^-1 J^T without K: each row of J is made conjugate to those before it,
+//   L_rs = j_r M^-1 j_s / D_s,   j_r -= L_rs j_s,   D_r = j_r M^-1 j_r,
+// so that no pivot is a difference of large numbers. Where K's pivots lose the square of a block's condition in digits
+// (a long arm on a body of little inertia), these lose the condition. F is laid out as the kernel's factor leaves it.
+template <class Block, int columns, class Jacobian, class InverseMass, class T, int triangle>
+void factor_by_rows(const Jacobian& J, const InverseMass (&m)[Block::bodies], T (&F)[triangle]) {
+  constexpr int rows = Block::rows;
+  const T round_off = T(64 * std::numeric_limits<typename ScalarOf<T>::type>::epsilon());
+  T D[rows][columns], W[rows][columns];
+  Block::dense(J, D);
+  Block::inverse_mass_jacobian(J, m, W);
+  const auto product = [](const T(&x)[columns], const T(&y)[columns]) {
+    T sum = x[0] * y[0];
+    for (int c = 1; c < columns; ++c) sum = sum + x[c] * y[c];
+    return sum;
+  };
+  for (int r = 0; r < rows; ++r) {
+    T* const row = F + r * (r + 1) / 2;
+    const T before = product(D[r], W[r]);
+    for (int s = 0; s < r; ++s) {
+      row[s] = product(D[r], W[s]) * F[s * (s + 3) / 2];
+      for (int c = 0; c < columns; ++c) {
+        D[r][c] = D[r][c] - row[s] * D[s][c];
+        W[r][c] = W[r][c] - row[s] * W[s][c];
+      }
+    }
+    const T left = product(D[r], W[r]);
+    // A row that depends on those before it leaves the squares of round-off.
+    row[r] = select(left > round_off * round_off * before, T(1) / left, T(0));
+  }
+}
+
+// K^-1 of two rows in the place of its factors: solving is two products side by side instead of one substitution after
+// the other. Where K is singular, the impulse is left to the row with the larger entry.
+template <class T>
+void invert(const T (&K)[3], T (&G)[3]) {
+  const T inv_det = pivot(K[0] * K[2] - K[1] * K[1], K[0] * K[2]);
+  const bool first = K[0] >= K[2];
+  const T alone = inverse(select(first, K[0], K[2])), none(0);
+  const bool regular = inv_det > none;
+  G[0] = select(regular, K[2] * inv_det, select(first, alone, none));
+  G[1] = select(regular, -K[1] * inv_det, none);
+  G[2] = select(regular, K[0] * inv_det, select(first, none, alone));
+}
+template <class T>
+void multiply(const T (&G)[3], const T (&rhs)[2], T (&lambda)[2]) {
+  lambda[0] = G[0] * rhs[0] + G[1] * rhs[1];
+  lambda[1] = G[1] * rhs[0] + G[2] * rhs[1];
+}
+
+}  // namespace cdot

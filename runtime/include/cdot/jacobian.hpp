@@ -1,0 +1,45 @@
+// The whole system's D with D v = 0: rows by joint, columns by movable body, in blocks and in
+// numbers. Apart from the solvers, which never build it.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <cdot/world.hpp>
+
+namespace cdot {
+
+struct SystemMatrix {
+  struct Joint {
+    int joint;              // of the World
+    int first, rows;        // rows of D
+    std::vector<int> body;  // positions in `bodies` of those that can move
+  };
+  int freedom;                // columns of a body: 3 in the plane, 6 in space
+  std::vector<int> bodies;    // movable ones, in the order of the World
+  std::vector<Joint> joints;  // that hold a movable body
+  int rows = 0, columns = 0;
+  std::vector<double> D, K;  // [rows][columns], [rows][rows]: K = D M^-1 D^T
+  std::vector<char> frozen;  // by column: 1 where its body cannot move that way
+  int rank = 0, degrees_of_freedom = 0;
+
+  double entry(int row, int column) const { return D[row * columns + column]; }
+  // True if the joint says nothing about the body's motion (position in `bodies`).
+  bool empty_block(const Joint& joint, int body) const;
+};
+
+// Of all joints at the present poses, effects left out.
+template <class S>
+SystemMatrix system_matrix(BasicWorld<S>& world);
+
+// Pairs of joints that hold the same movable body, and so cannot be solved at once; and colours
+// such that no two joints of a pair share one, first come first served.
+struct ConflictGraph {
+  std::vector<std::pair<int, int>> edges;  // positions in SystemMatrix::joints, ascending
+  std::vector<int> colour;
+  int colours = 0;
+};
+ConflictGraph conflicts(const SystemMatrix& system);
+
+}  // namespace cdot

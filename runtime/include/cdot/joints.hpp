@@ -1,0 +1,41 @@
+// The joints by name: what the generated registry holds, as data that a reader of scenes can list
+// and look up.
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <cdot/kernel.hpp>
+
+namespace cdot {
+
+struct CoordinateInfo {
+  std::string_view name;  // "angle", "slide"
+  std::string_view unit;  // "rad", "m"
+};
+
+struct JointType {
+  std::string_view name;
+  std::string_view title;  // what it does, in a sentence
+  int bodies;
+  std::vector<std::string_view> body_names;  // "a", "b", ...
+  std::vector<std::string_view> row_names;
+  std::vector<RowKind> row_kinds;
+  std::vector<ParameterInfo> parameters;
+  std::vector<CoordinateInfo> coordinates;
+  int parameter_size;  // numbers in Parameters<T>
+  bool explicit_time;
+};
+
+enum class Dimension { planar, spatial };
+
+// For cdot/detail/add_joints.hpp, before any World is made. Throws std::logic_error if the name is taken.
+void add_joint_type(Dimension dimension, JointType type);
+
+// Every registered joint of a dimension, in the order of its registry.
+std::span<const JointType> joint_types(Dimension dimension);
+// nullptr if there is none of that name.
+const JointType* find_joint_type(Dimension dimension, std::string_view name);
+
+}  // namespace cdot

@@ -1,0 +1,79 @@
+// The names of solvers, drift corrections, integrators, forms of kernels, precisions and answers to a step that fails,
+// as scenes, commands and reports spell them: one table each.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <cdot/settings.hpp>
+#include <cdot/step_result.hpp>
+
+namespace cdot {
+
+template <class Method>
+struct Named {
+  std::string_view name;
+  Method method;
+};
+
+inline constexpr std::array<Named<Solver>, 2> solvers{{
+    {"direct", Solver::direct},
+    {"iterative", Solver::iterative},
+}};
+inline constexpr std::array<Named<Drift>, 3> drifts{{
+    {"projection", Drift::projection},
+    {"baumgarte", Drift::baumgarte},
+    {"none", Drift::none},
+}};
+inline constexpr std::array<Named<Integrator>, 5> integrators{{
+    {"euler", Integrator::euler},
+    {"implicit", Integrator::implicit},
+    {"rattle", Integrator::rattle},
+    {"rk4", Integrator::rk4},
+    {"dop853", Integrator::dop853},
+}};
+inline constexpr std::array<Named<Kernels>, 3> kernel_forms{{
+    {"fast", Kernels::fast},
+    {"balanced", Kernels::balanced},
+    {"robust", Kernels::robust},
+}};
+
+// Is it float?
+inline constexpr std::array<Named<bool>, 2> precisions{{
+    {"double", false},
+    {"float", true},
+}};
+
+inline constexpr std::array<Named<OnFailure>, 2> failure_answers{{
+    {"stop", OnFailure::stop},
+    {"retry", OnFailure::retry},
+}};
+
+template <class Table>
+std::vector<std::string> names_of(const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& row : table) names.emplace_back(row.name);
+  return names;
+}
+
+// What `name` stands for; it must be a name of the table.
+template <class Table>
+auto method_called(const Table& table, std::string_view name) {
+  auto found = table.front().method;
+  for (const auto& row : table)
+    if (row.name == name) found = row.method;
+  return found;
+}
+
+template <class Table, class Method>
+std::string_view name_of(const Table& table, Method method) {
+  std::string_view found;
+  for (const auto& row : table)
+    if (row.method == method) found = row.name;
+  return found;
+}
+
+}  // namespace cdot

@@ -1,0 +1,168 @@
+// A thin pack of 4, 8 or 16 numbers over the vector extensions of GCC and Clang: what a kernel
+// needs to run as many joints at once. Every operation is lane by lane what the scalar one is, so
+// that the bits agree.
+#pragma once
+
+#include <cmath>
+#include <cstring>
+#include <type_traits>
+
+#include <cdot/kernel.hpp>
+
+// Vectors wider than the target's registers pass through memory. Everything here is inlined, so the
+// calling convention that GCC warns about does not matter.
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic ignored "-Wpsabi"
+#endif
+
+namespace cdot {
+
+// One by one: GCC 12 drops the attribute where the number of bytes depends on a template parameter.
+template <class T, int width>
+struct VectorOf;
+template <>
+struct VectorOf<float, 4> {
+  typedef float Lanes __attribute__((vector_size(16)));
+  typedef int Bits __attribute__((vector_size(16)));
+};
+template <>
+struct VectorOf<float, 8> {
+  typedef float Lanes __attribute__((vector_size(32)));
+  typedef int Bits __attribute__((vector_size(32)));
+};
+template <>
+struct VectorOf<float, 16> {
+  typedef float Lanes __attribute__((vector_size(64)));
+  typedef int Bits __attribute__((vector_size(64)));
+};
+template <>
+struct VectorOf<double, 4> {
+  typedef double Lanes __attribute__((vector_size(32)));
+  typedef long long Bits __attribute__((vector_size(32)));
+};
+template <>
+struct VectorOf<double, 8> {
+  typedef double Lanes __attribute__((vector_size(64)));
+  typedef long long Bits __attribute__((vector_size(64)));
+};
+template <>
+struct VectorOf<double, 16> {
+  typedef double Lanes __attribute__((vector_size(128)));
+  typedef long long Bits __attribute__((vector_size(128)));
+};
+
+// What a comparison gives: per lane all bits set, or none.
+template <class T, int width>
+struct Mask {
+  using Vector = typename VectorOf<T, width>::Bits;
+  Vector lanes;
+
+  friend Mask operator&&(const Mask& a, const Mask& b) { return {a.lanes & b.lanes}; }
+  friend Mask operator||(const Mask& a, const Mask& b) { return {a.lanes | b.lanes}; }
+  friend Mask operator!(const Mask& a) { return {~a.lanes}; }
+  bool operator[](int lane) const { return lanes[lane] != 0; }
+};
+
+template <class T, int width>
+struct Pack {
+  using Vector = typename VectorOf<T, width>::Lanes;
+  Vector lanes;
+
+  Pack() = default;
+  Pack(const Vector& v) : lanes(v) {}
+  // Every lane x. A template, so that T(1) and T(0.5) in a kernel mean the same in a pack of
+  // floats.
+  template <class Number>
+  requires(std::is_arithmetic_v<Number>) Pack(Number x) : lanes(Vector{} + static_cast<T>(x)) {}
+
+  T operator[](int lane) const { return lanes[lane]; }
+  void set(int lane, T x) { lanes[lane] = x; }
+
+  static Pack load(const T* from) {
+    Pack p;
+    std::memcpy(&p.lanes, from, sizeof(Vector));
+    return p;
+  }
+  void store(T* to) const { std::memcpy(to, &lanes, sizeof(Vector)); }
+
+  friend Pack operator+(const Pack& a, const Pack& b) { return Pack(a.lanes + b.lanes); }
+  friend Pack operator-(const Pack& a, const Pack& b) { return Pack(a.lanes - b.lanes); }
+  friend Pack operator*(const Pack& a, const Pack& b) { return Pack(a.lanes * b.lanes); }
+  friend Pack operator/(const Pack& a, const Pack& b) { return Pack(a.lanes / b.lanes); }
+  friend Pack operator-(const Pack& a) { return Pack(-a.lanes); }
+  friend Pack operator+(const Pack& a) { return a; }
+  Pack& operator+=(const Pack& b) { return *this = *this + b; }
+  Pack& operator-=(const Pack& b) { return *this = *this - b; }
+  Pack& operator*=(const Pack& b) { return *this = *this * b; }
+  Pack& operator/=(const Pack& b) { return *this = *this / b; }
+
+  using Comparison = Mask<T, width>;
+  friend Comparison operator<(const Pack& a, const Pack& b) { return {a.lanes < b.lanes}; }
+  friend Comparison operator<=(const Pack& a, const Pack& b) { return {a.lanes <= b.lanes}; }
+  friend Comparison operator>(const Pack& a, const Pack& b) { return {a.lanes > b.lanes}; }
+  friend Comparison operator>=(const Pack& a, const Pack& b) { return {a.lanes >= b.lanes}; }
+  friend Comparison operator==(const Pack& a, const Pack& b) { return {a.lanes == b.lanes}; }
+  friend Comparison operator!=(const Pack& a, const Pack& b) { return {a.lanes != b.lanes}; }
+
+  // Bitwise, as the hardware does it: an Inf or NaN in the lane not chosen does not leak.
+  friend Pack select(const Comparison& condition, const Pack& a, const Pack& b) {
+    using Bits = typename Comparison::Vector;
+    Bits x, y;
+    std::memcpy(&x, &a.lanes, sizeof x);
+    std::memcpy(&y, &b.lanes, sizeof y);
+    const Bits chosen = (x & condition.lanes) | (y & ~condition.lanes);
+    Pack p;
+    std::memcpy(&p.lanes, &chosen, sizeof chosen);
+    return p;
+  }
+};
+
+template <class T, int width>
+struct ScalarOf<Pack<T, width>> {
+  using type = T;
+};
+
+// f lane by lane through the scalar library function: equal bits, whatever the width.
+template <class T, int width, class F>
+Pack<T, width> each_lane(const Pack<T, width>& a, F f) {
+  Pack<T, width> result;
+  for (int i = 0; i < width; ++i) result.set(i, f(a[i]));
+  return result;
+}
+
+template <class T, int width>
+Pack<T, width> abs(const Pack<T, width>& a) {
+  return each_lane(a, [](T x) { return std::fabs(x); });
+}
+template <class T, int width>
+Pack<T, width> sqrt(const Pack<T, width>& a) {
+  return each_lane(a, [](T x) { return std::sqrt(x); });
+}
+template <class T, int width>
+Pack<T, width> sin(const Pack<T, width>& a) {
+  return each_lane(a, [](T x) { return std::sin(x); });
+}
+template <class T, int width>
+Pack<T, width> cos(const Pack<T, width>& a) {
+  return each_lane(a, [](T x) { return std::cos(x); });
+}
+template <class T, int width>
+Pack<T, width> tan(const Pack<T, width>& a) {
+  return each_lane(a, [](T x) { return std::tan(x); });
+}
+template <class T, int width>
+Pack<T, width> exp(const Pack<T, width>& a) {
+  return each_lane(a, [](T x) { return std::exp(x); });
+}
+template <class T, int width>
+Pack<T, width> log(const Pack<T, width>& a) {
+  return each_lane(a, [](T x) { return std::log(x); });
+}
+template <class T, int width>
+Pack<T, width> atan2(const Pack<T, width>& y, const Pack<T, width>& x) {
+  Pack<T, width> result;
+  for (int i = 0; i < width; ++i) result.set(i, std::atan2(y[i], x[i]));
+  return result;
+}
+
+}  // namespace cdot

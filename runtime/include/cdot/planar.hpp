@@ -1,0 +1,153 @@
+// Everything that the runtime knows about the plane: what a pose is, how it moves, what a velocity
+// weighs. The solvers see only this struct's members, so another dimension is another struct like
+// it.
+#pragma once
+
+#include <cmath>
+
+#include <cdot/joints.hpp>
+#include <cdot/kernel.hpp>
+#include <cdot/precision.hpp>
+#include <cdot/settings.hpp>
+
+namespace cdot {
+
+namespace planar {
+// What a caller hands in and out, in doubles whatever the World computes in.
+struct Place {
+  double x, y, angle;
+};
+// A force [N] and a torque about the centre of mass [N m].
+struct Wrench {
+  double force_x = 0, force_y = 0, torque = 0;
+};
+}  // namespace planar
+
+template <class T>
+struct Planar {
+  using Scalar = T;
+  using Exact = Planar<ExactNumber<T>>;
+  using InDoubles = Planar<double>;
+  using BodyDefinition = cdot::BodyDefinition;
+  using Place = planar::Place;
+  using Wrench = planar::Wrench;
+  static constexpr Dimension dimension = Dimension::planar;
+  static constexpr bool has_gyroscopes = false;  // an inertia is one number and never turns
+  struct Gyroscope {};
+  using Pose = planar::Pose<T>;
+  using Velocity = planar::Velocity<T>;  // also a displacement, an acceleration, or an impulse by components
+  using InverseMass = planar::InverseMass<T>;
+  static constexpr int freedom = 3;  // numbers in a Velocity
+
+  static Pose pose(T x, T y, T angle) { return {x, y, std::cos(angle), std::sin(angle), angle}; }
+
+  static Pose placed(const Place& p) { return pose(T(p.x), T(p.y), T(p.angle)); }
+  static Place place_of(const Pose& q) { return {double(q.x), double(q.y), double(q.angle)}; }
+  static Place place_of(const BodyDefinition& d) { return {d.x, d.y, d.angle}; }
+  static Velocity velocity_of(const BodyDefinition& d) { return {T(d.vx), T(d.vy), T(d.w)}; }
+  static Wrench wrench_of(const BodyDefinition& d) { return {d.force_x, d.force_y, d.torque}; }
+  static InverseMass inverse_mass_of(const BodyDefinition& d) {
+    const bool turns = !d.is_static && !d.fixed_rotation && d.inertia > 0;
+    const ExactNumber<T> one = 1;
+    return {d.is_static ? T(0) : T(one / d.mass), turns ? T(one / d.inertia) : T(0)};
+  }
+  static Velocity components(const Wrench& f) { return {T(f.force_x), T(f.force_y), T(f.torque)}; }
+  static Velocity rounded(const planar::Velocity<ExactNumber<T>>& v) { return {T(v.x), T(v.y), T(v.w)}; }
+  static void add(Wrench& sum, const Velocity& impulse, double time) {
+    sum.force_x += double(impulse.x / time);
+    sum.force_y += double(impulse.y / time);
+    sum.torque += double(impulse.w / time);
+  }
+
+  // c and s are recomputed from the angle: composing rotations would let them leave the unit
+  // circle.
+  static Pose moved(const Pose& q, const Velocity& d) { return pose(q.x + d.x, q.y + d.y, q.angle + d.w); }
+
+  // A pose as plain numbers, for integrators that combine them: {x, y, angle}, and their rates of change.
+  static constexpr int pose_numbers = 3;
+  static constexpr int lengths = 2;  // the first of these, and of a Velocity
+  static void write(const Pose& q, T* to) { to[0] = q.x, to[1] = q.y, to[2] = q.angle; }
+  static Pose read(const T* from) { return pose(from[0], from[1], from[2]); }
+  static void write(const Velocity& v, T* to) { to[0] = v.x, to[1] = v.y, to[2] = v.w; }
+  static Velocity read_velocity(const T* from) { return {from[0], from[1], from[2]}; }
+  static void write_rate(const Pose&, const Velocity& v, T* to) { to[0] = v.x, to[1] = v.y, to[2] = v.w; }
+
+  // v + scale * d
+  static Velocity sum(const Velocity& v, const Velocity& d, T scale) {
+    return {v.x + scale * d.x, v.y + scale * d.y, v.w + scale * d.w};
+  }
+
+  static Velocity difference(const Pose& q, const Pose& start) {
+    return {q.x - start.x, q.y - start.y, q.angle - start.angle};
+  }
+
+  // M^-1 f
+  static Velocity weighted(const InverseMass& m, const Velocity& f) { return {m.m * f.x, m.m * f.y, m.I * f.w}; }
+
+  // M a: what a force would have to be
+  static Velocity force(const InverseMass& m, const Velocity& a) {
+    return {inverse(m.m) * a.x, inverse(m.m) * a.y, inverse(m.I) * a.w};
+  }
+
+  static Velocity damped(const Velocity& v, T linear, T angular) { return {v.x * linear, v.y * linear, v.w * angular}; }
+
+  static double dot(const Velocity& f, const Velocity& v) {
+    return double(f.x) * double(v.x) + double(f.y) * double(v.y) + double(f.w) * double(v.w);
+  }
+
+  static bool slower(const Velocity& v, T speed) {
+    return v.x * v.x + v.y * v.y < speed * speed && std::fabs(v.w) < speed;
+  }
+
+  // A spring with damping from a point of body a to a point of body b, given in their frames.
+  struct PointSpring {
+    int body_a, body_b;
+    T ax, ay, bx, by;
+    T stiffness, rest_length, damping;
+  };
+  static PointSpring point_spring(const SpringDefinition& d) {
+    return {d.body_a, d.body_b, T(d.ax), T(d.ay), T(d.bx), T(d.by), T(d.stiffness), T(d.rest_length), T(d.damping)};
+  }
+  // Length, and the direction from a to b together with the arms: what its force and its energy
+  // need.
+  struct Stretch {
+    T length, x, y;  // direction of length 1; zero where the points coincide
+    T arm_a, arm_b;  // r x direction: the levers of a pull along it
+  };
+  static Stretch stretch(const PointSpring& spring, const Pose& a, const Pose& b) {
+    const T ra_x = a.c * spring.ax - a.s * spring.ay, ra_y = a.s * spring.ax + a.c * spring.ay;
+    const T rb_x = b.c * spring.bx - b.s * spring.by, rb_y = b.s * spring.bx + b.c * spring.by;
+    const T dx = (b.x - a.x) + (rb_x - ra_x), dy = (b.y - a.y) + (rb_y - ra_y);
+    const T length = std::sqrt(dx * dx + dy * dy), scale = inverse(length);
+    const T x = dx * scale, y = dy * scale;
+    return {length, x, y, ra_x * y - ra_y * x, rb_x * y - rb_y * x};
+  }
+  // The pull on a; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
+  static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a, const Velocity& b) {
+    const T rate = s.x * (b.x - a.x) + s.y * (b.y - a.y) + s.arm_b * b.w - s.arm_a * a.w;
+    return spring.stiffness * (s.length - spring.rest_length) + spring.damping * rate;
+  }
+  static Velocity pull_on_a(const Stretch& s, T f) { return {f * s.x, f * s.y, f * s.arm_a}; }
+  static Velocity pull_on_b(const Stretch& s, T f) { return {-f * s.x, -f * s.y, -f * s.arm_b}; }
+
+  // What a row block's d(J^T lambda)/dq says about one body's turning; the rest is left alone, so
+  // that linear momentum stays what it is.
+  using Stiffness = T;
+  template <int width>
+  static void subtract(Stiffness& stiffness, const T (&H)[width][width], int body) {
+    stiffness -= H[3 * body + 2][3 * body + 2];
+  }
+  // I + h stiffness, where that stiffens (tension).
+  static InverseMass stiffened(const InverseMass& m, Stiffness stiffness, T h) {
+    const T added = select(stiffness > T(0), h * stiffness, T(0));
+    return {m.m, m.I / (T(1) + added * m.I)};
+  }
+
+  static Velocity gravity(const Settings& s) { return {T(s.gravity_x), T(s.gravity_y), T(0)}; }
+
+  static InverseMass unit_mass() { return {T(1), T(1)}; }
+
+  static bool immovable(const InverseMass& m) { return m.m == 0 && m.I == 0; }
+};
+
+}  // namespace cdot

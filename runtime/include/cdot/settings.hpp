@@ -1,0 +1,157 @@
+// What a scene says to a World: plain data with its defaults, in doubles whatever the World
+// computes in. Apart from cdot/world.hpp so that a reader of scenes can fill it without seeing a World.
+#pragma once
+
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace cdot {
+
+// Thrown by everything that sets a World up, with a sentence that says what is wrong and what would
+// be right. step() never throws.
+struct Error : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+enum class Solver {
+  iterative,  // sequential impulses: coarse, cheap, for large scenes
+  direct      // sparse LDL^T of each island's K: exact to round-off, for mechanisms
+};
+
+enum class Drift {
+  none,       // velocities only; C grows with time
+  baumgarte,  // a share of C is fed back into the velocities: J v = -(baumgarte / h) C
+  projection  // Newton on C after every step, the velocities projected as well
+};
+
+enum class Integrator {
+  euler,     // symplectic Euler: first order, cheap
+  implicit,  // linearly implicit in what the joints' tension stiffens: heavy loads on light chains stay quiet
+  rattle,    // RATTLE: second order, symmetric, C and Cdot held to round-off
+  rk4,       // Runge-Kutta of order 4 on accelerations, poses and velocities projected after each step
+  dop853     // Dormand-Prince of order 8, likewise
+};
+
+constexpr bool works_on_accelerations(Integrator integrator) {
+  return integrator == Integrator::rk4 || integrator == Integrator::dop853;
+}
+
+// How the iterative solver solves the rows of one joint together, where a joint has several; tests/bench/ulp has what
+// each costs and what it is worth.
+enum class Kernels {
+  fast,      // K^-1 of two rows kept in place of its factors
+  balanced,  // K = L D L^T
+  robust     // the same factors from J, without K: half the digits lost to long arms and heavy loads
+};
+
+struct Settings {
+  Solver solver = Solver::direct;
+  Integrator integrator = Integrator::euler;
+  // Of rk4 and dop853: 0: step(h) takes steps of h / substeps; above, it covers h in steps of their own length, each
+  // with an estimated error below this, in [m], [rad], [m/s] and [rad/s].
+  double local_error = 0;
+  Drift drift = Drift::projection;
+  int iterations = 10;     // of the iterative solver, per substep
+  int substeps = 1;        // step(h) takes this many steps of h / substeps
+  double baumgarte = 0.2;  // share of C removed per step, 0 to 1
+  Kernels kernels = Kernels::balanced;
+  bool warm_start = true;  // the iterative solver starts from the impulses of the step before
+  double gravity_x = 0;    // [m/s^2]
+  double gravity_y = 0;
+  double gravity_z = 0;       // in space
+  double sleep_after = 0;     // [s] that an island must rest before it sleeps; 0: nothing ever sleeps
+  double sleep_speed = 1e-3;  // [m/s] and [rad/s] below which a body counts as resting
+};
+
+// Why these methods do not go together; nullptr if they do.
+constexpr const char* wrong_with_methods(const Settings& s) {
+  const bool accelerations = works_on_accelerations(s.integrator);
+  if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4 and dop853 only";
+  if (s.integrator == Integrator::rattle && s.drift != Drift::projection)
+    return "rattle holds the joints by itself: it needs drift = projection";
+  if (!accelerations) return nullptr;
+  if (s.drift == Drift::baumgarte)
+    return "baumgarte feeds velocities of Euler's steps: rk4 and dop853 need drift = projection";
+  if (s.drift == Drift::none && s.solver == Solver::iterative)
+    return "what the iterative solver leaves in accelerations only drift = projection takes away";
+  return nullptr;
+}
+
+struct BodyDefinition {
+  double x = 0, y = 0, angle = 0;   // centre of mass [m], [rad]
+  double vx = 0, vy = 0, w = 0;     // [m/s], [rad/s]
+  double mass = 0;                  // [kg]; must be > 0 unless is_static
+  double inertia = 0;               // about the centre of mass [kg m^2]; 0: a point mass, which does not turn
+  bool is_static = false;           // immovable: inverse mass and inertia exactly 0
+  bool fixed_rotation = false;      // inverse inertia exactly 0
+  double force_x = 0, force_y = 0;  // constant, at the centre of mass [N]
+  double torque = 0;                // constant [N m]
+  double linear_damping = 0;        // [1/s]: force = -mass * linear_damping * v
+  double angular_damping = 0;       // [1/s]
+};
+
+// Symmetric, about the centre of mass in the body's frame [kg m^2].
+struct Inertia {
+  double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
+};
+
+// Why no body has this tensor; nullptr if one may, or if it is 0.
+const char* wrong_with(const Inertia& inertia);
+
+struct SpatialBodyDefinition {
+  double x = 0, y = 0, z = 0;                       // centre of mass [m]
+  double e0 = 1, e1 = 0, e2 = 0, e3 = 0;            // orientation as a quaternion of any length but 0
+  double vx = 0, vy = 0, vz = 0;                    // [m/s]
+  double wx = 0, wy = 0, wz = 0;                    // in world axes [rad/s]
+  double mass = 0;                                  // [kg]; must be > 0 unless is_static
+  Inertia inertia = {};                             // all 0: a point mass, which does not turn
+  bool is_static = false;                           // immovable
+  bool fixed_rotation = false;                      // inverse inertia exactly 0
+  double force_x = 0, force_y = 0, force_z = 0;     // constant, at the centre of mass [N]
+  double torque_x = 0, torque_y = 0, torque_z = 0;  // constant, in world axes [N m]
+  double linear_damping = 0, angular_damping = 0;   // [1/s]
+};
+
+struct NamedValue {
+  std::string name;
+  // In the plane 2 for a point, vector, unit or frame; in space 3, and for a frame its x axis (3),
+  // its x and y axes (6) or all three (9); 1 for a scalar.
+  std::vector<double> numbers;
+};
+
+// How stiff something soft is: either a frequency [Hz] with a damping ratio, referred to the
+// effective mass that the row sees, or a stiffness [N/m, N m/rad] with a damping [N s/m, N m
+// s/rad]. Which one is told by `by_frequency`.
+struct Softness {
+  bool by_frequency = true;
+  double frequency = 0, damping_ratio = 0;
+  double stiffness = 0, damping = 0;
+};
+
+struct JointDefinition {
+  std::string type;                    // as in the specs: "revolute", "distance", ...
+  std::vector<int> bodies;             // in the order of the spec: a, b, ...
+  std::vector<NamedValue> parameters;  // the others take the spec's default from the present pose
+  std::optional<Softness> soft;        // the joint's own equality rows as springs
+};
+
+// A spring with damping between a point of one body and a point of another: tension = stiffness *
+// (length - rest) + damping * d(length)/dt.
+struct SpringDefinition {
+  int body_a = 0, body_b = 0;
+  double ax = 0, ay = 0, az = 0;  // in the frames of the bodies [m]; z only in space
+  double bx = 0, by = 0, bz = 0;
+  double stiffness = 0;    // [N/m]
+  double rest_length = 0;  // [m]
+  double damping = 0;      // [N s/m]
+};
+
+// What was accepted but does nothing, in a sentence about that joint.
+struct Note {
+  int joint;
+  std::string text;
+};
+
+}  // namespace cdot

@@ -1,0 +1,77 @@
+// What acts on bodies without a joint: gravity, constant forces, springs between points, drag.
+#include <cdot/spaces.hpp>
+
+#include "runtime/motion/motion.hpp"
+
+namespace cdot {
+namespace {
+
+// to += M^-1 of what the spring exerts, over a time h.
+template <class S>
+void pull(const Bodies<S>& all, const typename S::PointSpring& spring, typename S::Scalar h,
+          std::vector<typename S::Velocity>& to) {
+  using T = typename S::Scalar;
+  const auto a = static_cast<size_t>(spring.body_a), b = static_cast<size_t>(spring.body_b);
+  const auto stretch = S::stretch(spring, all.pose[a], all.pose[b]);
+  const T impulse = h * S::tension(spring, stretch, all.velocity[a], all.velocity[b]);
+  // Of what never moves not even 0 times a force: where a stage goes astray that is infinite.
+  const auto push = [&](size_t body, const auto& on_body) {
+    if (!all.immovable(static_cast<int>(body)))
+      to[body] = S::sum(to[body], S::weighted(all.effective_mass[body], on_body), T(1));
+  };
+  push(a, S::pull_on_a(stretch, impulse));
+  push(b, S::pull_on_b(stretch, impulse));
+}
+
+}  // namespace
+
+template <class S>
+void push_free_bodies(WorldState<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies) all.velocity_rate[i] = all.acceleration[i];
+  for (const Drag<S>& drag : island.drags) {
+    const auto slowing = S::damped(all.velocity[drag.body], drag.linear, drag.angular);
+    all.velocity_rate[drag.body] = S::sum(all.velocity_rate[drag.body], slowing, T(-1));
+  }
+  for (const auto& spring : island.springs) pull(all, spring, T(1), all.velocity_rate);
+}
+
+template <class S>
+void free_accelerations(WorldState<S>& world, Island<S>& island) {
+  push_free_bodies(world, island);
+  if constexpr (S::has_gyroscopes) {
+    Bodies<S>& all = world.bodies;
+    for_each_gyroscope(world, island, [&](const auto& gyroscope, int i) {
+      S::add_gyroscopic_rate(gyroscope, all.inverse_mass[i], all.velocity_rate[i]);
+    });
+  }
+}
+
+template <class S>
+void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  // dv/dt = -d v, implicitly: v / (1 + h d) never overshoots 0. Before the forces, so that it does
+  // not dampen the h g of a body that hangs at rest.
+  for (const Drag<S>& drag : island.drags)
+    all.velocity[drag.body] =
+        S::damped(all.velocity[drag.body], T(1) / (T(1) + h * drag.linear), T(1) / (T(1) + h * drag.angular));
+  for (const auto& spring : island.springs) pull(all, spring, h, all.velocity);
+  // What tension stiffens, a torque turns less.
+  const bool stiffened = world.settings.integrator == Integrator::implicit;
+  for (int i : island.bodies) {
+    const auto& rate = all.acceleration[i];
+    all.velocity[i] = S::sum(
+        all.velocity[i], stiffened ? S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], rate)) : rate, h);
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                     \
+  template void push_free_bodies(WorldState<S>&, Island<S>&);   \
+  template void free_accelerations(WorldState<S>&, Island<S>&); \
+  template void apply_forces(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

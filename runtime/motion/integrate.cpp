@@ -1,0 +1,54 @@
+// Symplectic Euler: the velocities have been advanced first, the poses follow with the new ones.
+// First order. A body whose inertia tensor turns with it goes about its mean spin of the step,
+// second order by itself, and keeps its angular momentum.
+#include <cdot/spaces.hpp>
+
+#include "runtime/motion/motion.hpp"
+
+namespace cdot {
+
+template <class S>
+void turn_inertias(WorldState<S>& world, Island<S>& island) {
+  Bodies<S>& all = world.bodies;
+  for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
+    S::turn(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
+    S::turn_acceleration(gyroscope, all.inverse_mass[i], all.acceleration[i]);
+    // Under geometric stiffness the effective mass is that of the step's start until the next.
+    if (world.settings.integrator != Integrator::implicit) all.effective_mass[i] = all.inverse_mass[i];
+  });
+}
+
+template <class S>
+void set_inertias(WorldState<S>& world, Island<S>& island) {
+  Bodies<S>& all = world.bodies;
+  for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
+    S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
+    S::turn_acceleration(gyroscope, all.inverse_mass[i], all.acceleration[i]);
+    all.effective_mass[i] = all.inverse_mass[i];
+  });
+}
+
+template <class S>
+void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  Bodies<S>& all = world.bodies;
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island,
+                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
+  for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], S::sum({}, all.velocity[i], h));
+  if constexpr (S::has_gyroscopes) {
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
+    turn_inertias(world, island);
+  }
+  island.evaluated = island.factored = false;
+}
+
+#define CDOT_INSTANTIATE(T)                                                  \
+  template void turn_inertias(WorldState<Spatial<T>>&, Island<Spatial<T>>&); \
+  template void set_inertias(WorldState<Spatial<T>>&, Island<Spatial<T>>&);
+CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+#define CDOT_INSTANTIATE(S) template void integrate(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

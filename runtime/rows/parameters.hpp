@@ -1,0 +1,35 @@
+// A joint's parameters as a scene names them, turned into the numbers that its kernel reads.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include <cdot/joints.hpp>
+#include <cdot/settings.hpp>
+
+namespace cdot {
+
+// S computes in doubles. All numbers of Parameters<double>: given ones checked and normalised, the
+// others by the spec's default from the poses of the joint's bodies. Throws Error.
+template <class S>
+std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given, const typename S::Pose* poses,
+                                      double time);
+
+// Those given take the place of what stood in `numbers`; the others stay. Returns those given. Throws Error.
+std::vector<const ParameterInfo*> change_parameters(const JointType& type, const std::vector<NamedValue>& given,
+                                                    std::vector<double>& numbers);
+
+// Moves the points that such a joint has in the world: those that its spec has on the world, and those on bodies for
+// which fixed_in_world(body) holds.
+template <class Fixed>
+void move_world_points(const JointType& type, const std::vector<int>& bodies, Fixed fixed_in_world,
+                       const std::array<double, 3>& by, double sign, std::vector<double>& numbers) {
+  for (const ParameterInfo& info : type.parameters) {
+    if (info.kind != ParameterKind::point) continue;
+    if (info.body >= 0 && !fixed_in_world(bodies[static_cast<size_t>(info.body)])) continue;
+    double* const point = numbers.data() + info.offset;
+    for (int k = 0; k < info.size; ++k) point[k] += sign * by[static_cast<size_t>(k)];
+  }
+}
+
+}  // namespace cdot

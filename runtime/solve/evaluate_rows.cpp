@@ -1,0 +1,71 @@
+// Evaluates the rows of an island, once per step, before the solver of the settings sees them.
+#include <algorithm>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/solve/solve.hpp"
+#include "runtime/solve/tension.hpp"
+
+namespace cdot {
+
+template <class S>
+void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  // The impulses at hand are those of the forces over the step before.
+  const T share = world.last_step > 0 ? h * (h / T(world.last_step)) : h;
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies) all.stiffness[i] = {};
+  for (const Segment<S>& segment : island.segments)
+    segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all, T(world.time),
+                                      all.stiffness.data());
+  tighten_tensions(world, island, share);
+  // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq, an implicit Euler step of the
+  // turning forces: v starts as (M + h G)^-1 M v.
+  for (int i : island.bodies) {
+    all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.stiffness[i], share);
+    all.velocity[i] = S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
+  }
+  island.factored = false;
+}
+
+template <class S>
+void factorize_rows(WorldState<S>& world, Island<S>& island) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    // The direct solver builds its own K; a law looks at K's diagonal whatever the solver.
+    if (!batch.law && world.settings.solver == Solver::direct) continue;
+    const auto fill = batch.law ? batch.ops->effective_mass : batch.ops->factorize;
+    fill(batch, segment.begin, segment.end, world.bodies);
+  }
+}
+
+template <class S>
+void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  if (!island.evaluated)
+    for (const Segment<S>& segment : island.segments)
+      segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, T(world.time));
+  island.evaluated = true;
+  factorize_rows(world, island);
+  const T share = T(world.settings.baumgarte) / h;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (batch.law) {
+      batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
+    } else if (world.settings.drift == Drift::baumgarte) {
+      const int rows = batch.ops->rows;
+      const T* const C = batch.C.data();
+      T* const bias = batch.bias.data();
+      for (int i = segment.begin * rows; i < segment.end * rows; ++i) bias[i] += share * C[i];
+    }
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                            \
+  template void stiffen_bodies(WorldState<S>&, Island<S>&, S::Scalar); \
+  template void factorize_rows(WorldState<S>&, Island<S>&);            \
+  template void evaluate_rows(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

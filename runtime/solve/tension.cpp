@@ -1,0 +1,168 @@
+#include "runtime/solve/tension.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/number/arbitrary.hpp"
+
+namespace cdot {
+namespace {
+
+// A pivot below this share of the largest entry is what round-off left.
+template <class T>
+constexpr double slight = by_precision<T>(1e-4, 1e-9);
+
+// The symmetric part of -d(J^T lambda)/dq of one slot over its movable bodies, and what elimination leaves of it.
+template <class S>
+class Stiffness {
+ public:
+  using T = typename S::Scalar;
+  static constexpr int widest = S::freedom * most_bodies;
+  using Row = std::array<double, widest>;
+
+  // At the poses of `at`; `all` tells which bodies move.
+  Stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, const Bodies<S>& at, double time, const T* lambda)
+      : bodies_(batch.ops->bodies), width_(S::freedom * bodies_) {
+    T H[widest * widest];
+    batch.ops->stiffness(batch, slot, at, T(time), lambda, H);
+    bool moves[most_bodies];
+    for (int k = 0; k < bodies_; ++k) moves[k] = !all.immovable(batch.body[slot * bodies_ + k]);
+    for (int r = 0; r < width_; ++r) {
+      for (int k = 0; k <= r / S::freedom; ++k) {
+        const bool both = moves[k] && moves[r / S::freedom];
+        for (int c = S::freedom * k; c < S::freedom * (k + 1); ++c) {
+          const double entry = both ? -0.5 * (double(H[r * width_ + c]) + double(H[c * width_ + r])) : 0.0;
+          of_[r][c] = entry;
+          largest_ = std::max(largest_, std::abs(entry));
+        }
+      }
+    }
+  }
+
+  // The row of the displacement that is held most, over its pivot. False if none is held any more.
+  bool find_row(Row& w, double& pivot, bool any_sign) const {
+    int held = -1;
+    double most = slight<T> * largest_;
+    for (int k = 0; k < bodies_; ++k) {
+      for (int c = S::freedom * k; c < S::freedom * k + S::lengths; ++c) {
+        const double size = any_sign ? std::abs(of_[c][c]) : of_[c][c];
+        if (size > most) most = size, held = c;
+      }
+    }
+    if (held < 0) return false;
+    pivot = of_[held][held];
+    const double scale = 1 / pivot;
+    for (int c = 0; c < width_; ++c) w[c] = (c <= held ? of_[held][c] : of_[c][held]) * scale;
+    return true;
+  }
+  void eliminate(const Row& w, double pivot) {
+    for (int r = 0; r < width_; ++r) {
+      const double share = pivot * w[r];
+      for (int c = 0; c <= r; ++c) of_[r][c] -= share * w[c];
+    }
+  }
+
+  // Nothing is left but what bodies' own turnings have.
+  bool only_turns() const {
+    double left = 0;
+    for (int r = 0; r < width_; ++r)
+      for (int c = 0; c <= r; ++c)
+        if (r / S::freedom != c / S::freedom || r % S::freedom < S::lengths || c % S::freedom < S::lengths)
+          left = std::max(left, std::abs(of_[r][c]));
+    return left <= slight<T> * largest_;
+  }
+
+ private:
+  int bodies_, width_;
+  double of_[widest][widest];  // the lower triangle counts
+  double largest_ = 0;
+};
+
+// Somewhere else: no direction there is a special one.
+template <class S>
+Bodies<S> elsewhere(const Bodies<S>& all, typename S::Scalar size) {
+  using T = typename S::Scalar;
+  Arbitrary arbitrary;
+  Bodies<S> other;
+  for (const auto& q : all.pose) {
+    T numbers[S::freedom];
+    for (int k = 0; k < S::freedom; ++k) numbers[k] = T(4 * arbitrary() - 2) * (k < S::lengths ? size : T(1));
+    other.pose.push_back(S::moved(q, S::read_velocity(numbers)));
+  }
+  return other;
+}
+
+// Of a slot that couples displacements, and beside these own turnings only. Others (what slides along an axis that
+// turns) stay with the own turnings.
+template <class S>
+int rows_of(const WorldState<S>& world, const Batch<S>& batch, int slot, const Bodies<S>& at) {
+  using T = typename S::Scalar;
+  T lambda[most_rows];
+  std::fill_n(lambda, most_rows, T(1));
+  Stiffness<S> stiffness(batch, slot, world.bodies, at, world.time, lambda);
+  typename Stiffness<S>::Row w;
+  double pivot;
+  int rows = 0;
+  for (; stiffness.find_row(w, pivot, true); ++rows) stiffness.eliminate(w, pivot);
+  return stiffness.only_turns() ? rows : 0;
+}
+
+// What a row takes over is not the body's own turning.
+template <class S>
+void leave_to_row(typename S::Stiffness& own, const double* w, double pivot) {
+  typename S::Scalar taken[S::freedom][S::freedom] = {};
+  for (int r = S::lengths; r < S::freedom; ++r)
+    for (int c = S::lengths; c < S::freedom; ++c) taken[r][c] = typename S::Scalar(pivot * w[r] * w[c]);
+  S::subtract(own, taken, 0);
+}
+
+}  // namespace
+
+template <class S>
+std::vector<int> tension_rows(const WorldState<S>& world, const Island<S>& island) {
+  const Integrator integrator = world.settings.integrator;
+  if (integrator != Integrator::implicit && !works_on_accelerations(integrator)) return {};
+  const Bodies<S> at = elsewhere(world.bodies, island.size);
+  std::vector<int> rows;
+  for (const Segment<S>& segment : island.segments)
+    for (int slot = segment.begin; segment.batch->ops->rows > 0 && slot < segment.end; ++slot)
+      rows.push_back(rows_of(world, *segment.batch, slot, at));
+  return std::count(rows.begin(), rows.end(), 0) == std::ssize(rows) ? std::vector<int>{} : rows;
+}
+
+template <class S>
+void tighten_tensions(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  System<S>& system = island.system;
+  system.slacken();
+  if (world.settings.solver != Solver::direct) return;
+  for (const auto& tension : system.tensions) {
+    const Batch<S>& batch = *tension.batch;
+    if (world.joints[batch.joint[tension.slot]].broken) continue;
+    T lambda[most_rows];
+    for (int r = 0, i = tension.slot * batch.ops->rows; r < batch.ops->rows; ++r, ++i)
+      lambda[r] = batch.lambda[i] + batch.correction[i];
+    Stiffness<S> stiffness(batch, tension.slot, world.bodies, world.bodies, world.time, lambda);
+    typename Stiffness<S>::Row w;
+    double pivot;
+    const int bodies = batch.ops->bodies;
+    for (int r = 0; r < tension.rows && stiffness.find_row(w, pivot, false); ++r) {
+      if (r + 1 < tension.rows) stiffness.eliminate(w, pivot);
+      system.tighten(tension, r, w.data(), pivot * double(h));
+      for (int k = 0; k < bodies; ++k)
+        leave_to_row<S>(world.bodies.stiffness[batch.body[tension.slot * bodies + k]], w.data() + S::freedom * k,
+                        pivot);
+    }
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                                       \
+  template std::vector<int> tension_rows(const WorldState<S>&, const Island<S>&); \
+  template void tighten_tensions(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

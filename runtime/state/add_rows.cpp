@@ -1,0 +1,104 @@
+#include "runtime/state/add_rows.hpp"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <limits>
+
+#include <cdot/detail/joint_table.hpp>
+#include <cdot/spaces.hpp>
+
+#include "runtime/state/probe.hpp"
+
+namespace cdot {
+namespace {
+
+template <class S>
+int find_batch(WorldState<S>& world, const BlockOps<S>* ops, const Law<S>* law, const std::vector<RowKind>& kinds) {
+  for (size_t i = 0; i < world.batches.size(); ++i)
+    if (world.batches[i]->ops == ops && world.batches[i]->law == law) return static_cast<int>(i);
+  world.batches.push_back(std::make_unique<Batch<S>>());
+  world.batches.back()->ops = ops;
+  world.batches.back()->law = law;
+  world.batches.back()->kinds = kinds;
+  return static_cast<int>(world.batches.size()) - 1;
+}
+
+template <class Item>
+void grow(std::vector<Item>& array, int by, Item value = Item{}) {
+  array.insert(array.end(), static_cast<size_t>(by), value);
+}
+
+}  // namespace
+
+template <class S>
+void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law, std::vector<RowKind> kinds,
+              std::span<const double> constants) {
+  using T = typename S::Scalar;
+  ops = ops->with(world.settings.kernels);
+  const int index = find_batch(world, ops, law, kinds);
+  Batch<S>& batch = *world.batches[index];
+  JointRecord& record = world.joints[joint];
+  record.added.add(index), record.added.add(ops->rows), record.added.add(ops->bodies);
+  record.added.bytes(constants.data(), constants.size_bytes());
+  record.places.push_back({index, batch.count()});
+  batch.joint.push_back(joint);
+  batch.body.insert(batch.body.end(), record.bodies.begin(), record.bodies.end());
+  for (int k = 0; k < ops->parameter_size; ++k) batch.parameters.push_back(T(record.parameters[k]));
+  grow(batch.jacobian, ops->jacobian_size);
+  grow(batch.factor, batch.triangle());
+  for (auto* array : {&batch.C, &batch.bias, &batch.lambda, &batch.correction, &batch.scratch}) grow(*array, ops->rows);
+  if (law) {
+    grow(batch.softness, ops->rows);
+    grow(batch.lower, ops->rows, -std::numeric_limits<T>::infinity());
+    grow(batch.upper, ops->rows, std::numeric_limits<T>::infinity());
+    grow(batch.mode, ops->rows, Mode::bounded);
+    for (double constant : constants) batch.constants.push_back(T(constant));
+  }
+  if (ops->start_counting) {
+    grow(batch.counters, ops->counters);
+    ops->start_counting(batch, batch.count() - 1, world.bodies, T(world.time));
+  }
+  world.prepared = false;
+}
+
+template <class S>
+void check_joint(const WorldState<S>& world, int joint) {
+  if (joint < 0 || joint >= static_cast<int>(world.joints.size()))
+    throw Error(fmt::format("there is no joint number {}", joint));
+}
+
+template <class S>
+int coordinate_index(int type, std::string_view name) {
+  const JointType& joint = joint_types(S::dimension)[static_cast<size_t>(type)];
+  std::string known;
+  for (size_t k = 0; k < joint.coordinates.size(); ++k) {
+    if (joint.coordinates[k].name == name) return static_cast<int>(k);
+    known += fmt::format("{}`{}`", known.empty() ? "" : ", ", joint.coordinates[k].name);
+  }
+  throw Error(fmt::format("joint `{}` has no free coordinate `{}`; it has {}", joint.name, name,
+                          known.empty() ? "none" : known));
+}
+
+template <class S>
+int add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordinate, const Law<S>* law,
+                       std::span<const double> constants) {
+  check_joint(world, joint);
+  JointRecord& record = world.joints[joint];
+  const int index = coordinate_index<S>(record.type, coordinate);
+  if (record.places.empty()) return -1;
+  check_value(world, record, index);
+  const auto& variants = joint_entries<S>()[record.type].coordinates[index];
+  add_rows(world, joint, variants.choose(world.bodies, record.bodies), law, {RowKind::equality}, constants);
+  return static_cast<int>(record.places.size()) - 1;
+}
+
+#define CDOT_INSTANTIATE(S)                                                                                       \
+  template void add_rows(WorldState<S>&, int, const BlockOps<S>*, const Law<S>*, std::vector<RowKind>,            \
+                         std::span<const double>);                                                                \
+  template int add_coordinate_row(WorldState<S>&, int, std::string_view, const Law<S>*, std::span<const double>); \
+  template void check_joint(const WorldState<S>&, int);                                                           \
+  template int coordinate_index<S>(int, std::string_view);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,227 @@
+// One joint or coordinate evaluated at the present poses without touching the World's own rows:
+// what every question about a World is answered from.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include <cdot/detail/joint_table.hpp>
+
+#include "runtime/state/world_state.hpp"
+
+namespace cdot {
+
+template <class S>
+class Probe {
+ public:
+  using T = typename S::Scalar;
+  explicit Probe(const WorldState<S>& world) : world_(world) {}
+
+  // The rows of a joint, or the row of one of its coordinates, with no body taken as immovable.
+  void look_at(const JointRecord& joint, int coordinate = -1) {
+    const JointEntry<S>& entry = joint_entries<S>()[joint.type];
+    const BlockVariants<S>& variants = coordinate < 0 ? entry.rows : entry.coordinates[coordinate];
+    ops_ = variants.general;
+    batch_.ops = ops_;
+    batch_.parameters.assign(joint.parameters.begin(), joint.parameters.end());
+    batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
+    for (auto* array : {&batch_.C, &batch_.bias, &batch_.scratch}) array->assign(static_cast<size_t>(ops_->rows), T(0));
+    batch_.body.resize(joint.bodies.size());
+    for (auto* array : {&bodies_.velocity, &bodies_.displacement}) array->resize(joint.bodies.size());
+    bodies_.pose.resize(joint.bodies.size());
+    bodies_.effective_mass.resize(joint.bodies.size());
+    for (size_t k = 0; k < joint.bodies.size(); ++k) {
+      const auto i = static_cast<size_t>(joint.bodies[k]);
+      batch_.body[k] = static_cast<int>(k);
+      bodies_.pose[k] = world_.bodies.pose[i];
+      bodies_.velocity[k] = world_.bodies.velocity[i];
+      bodies_.effective_mass[k] = world_.bodies.inverse_mass[i];
+    }
+    if (ops_->start_counting) count_on(joint, variants);
+    ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
+  }
+
+  int rows() const { return ops_->rows; }
+  double C(int row) const { return double(batch_.C[row]); }
+
+  // J v + dC/dt of every row.
+  const std::vector<T>& Cdot() {
+    ops_->velocity(batch_, 0, 1, bodies_.velocity.data(), batch_.scratch.data());
+    for (int r = 0; r < ops_->rows; ++r) batch_.scratch[r] += batch_.bias[r];
+    return batch_.scratch;
+  }
+
+  // True if C, where it holds, has no direction: a step along the row's own M^-1 J^T changes C as
+  // much as one back, so that the C that J promises is not there. That is what a distance of length
+  // 0 is.
+  bool at_kink(int row) {
+    if (!(std::abs(C(row)) <= 1e-9)) return false;
+    std::vector<T> lambda(static_cast<size_t>(ops_->rows), T(0));
+    lambda[row] = T(1);
+    auto& step = bodies_.displacement;
+    std::fill(step.begin(), step.end(), typename S::Velocity{});
+    ops_->apply(batch_, 0, 1, bodies_, lambda.data(), step.data());
+    ops_->velocity(batch_, 0, 1, step.data(), batch_.scratch.data());
+    const T promised = batch_.scratch[row];
+    if (!(promised > T(0))) return false;
+    // A joint that is small itself has its kink near, and one that is large does not see small steps: it is a kink only
+    // if it is one at every scale.
+    for (const T wanted : {T(1e-3), T(1e-6), T(1e-9), T(1e3) * resolution()}) {
+      if (wanted == T(0)) continue;  // all bodies are at the origin
+      const T forth = C_after(wanted / promised)[row], back = C_after(-wanted / promised)[row];
+      if (!(std::abs(forth - back) < T(0.01) * T(2) * wanted)) return false;
+    }
+    return true;
+  }
+
+  // The first row whose C has no value here, as an angle has none that is told by axes which point against each other:
+  // a body moves by a hair, by a thousandth of it, and C changes by the same. -1 if there is none; whole turns are
+  // counted and no jump.
+  int jumping_row() {
+    const T hair = T(by_precision<T>(1e-2, 1e-6)), least = std::max(T(0.01), T(1e3) * resolution());
+    const std::vector<T> here = batch_.C;
+    std::vector<T> near(here.size());
+    for (size_t k = 0; k < bodies_.pose.size(); ++k)
+      for (int c = 0; c < S::freedom; ++c) {
+        const T by = c < S::lengths ? hair * reach() : hair;
+        near = C_moved(k, c, T(1e-3) * by);
+        C_moved(k, c, by);
+        for (size_t r = 0; r < here.size(); ++r) {
+          const T jump = std::abs(batch_.C[r] - here[r]);
+          if (jump > least && std::abs(near[r] - here[r]) > jump / 2) return static_cast<int>(r);
+        }
+      }
+    return -1;
+  }
+
+  // J and (M^-1 J^T)^T, [rows][freedom * bodies].
+  void dense(ExactNumber<T>* J, ExactNumber<T>* weighted) const {
+    std::vector<ExactNumber<T>> K(static_cast<size_t>(ops_->rows * ops_->rows));
+    ops_->dense(batch_, 0, bodies_, J, weighted, K.data(), ops_->rows);
+  }
+
+  // J^T lambda on the body at this position of the joint.
+  typename S::Velocity impulse_on(int position, const std::vector<T>& lambda) const {
+    std::vector<typename S::Velocity> impulses(static_cast<size_t>(ops_->bodies));
+    ops_->transposed(batch_, 0, lambda.data(), impulses.data());
+    return impulses[position];
+  }
+
+ private:
+  // Whole turns as the World has counted them, if it has; else from none.
+  void count_on(const JointRecord& joint, const BlockVariants<S>& variants) {
+    batch_.counters.assign(static_cast<size_t>(ops_->counters), T(0));
+    ops_->start_counting(batch_, 0, bodies_, T(world_.time));
+    for (const Place& place : joint.places) {
+      const Batch<S>& kept = *world_.batches[place.batch];
+      if (!variants.has(kept.ops)) continue;
+      const auto from = kept.counters.begin() + place.slot * kept.ops->counters;
+      std::copy_n(from, kept.ops->counters, batch_.counters.begin());
+    }
+  }
+
+  // How far bodies are from the first.
+  T reach() const {
+    T far = 0, from[S::pose_numbers], to[S::pose_numbers];
+    S::write(bodies_.pose[0], from);
+    for (const auto& pose : bodies_.pose) {
+      S::write(pose, to);
+      for (int c = 0; c < S::lengths; ++c) far = std::max(far, std::abs(to[c] - from[c]));
+    }
+    return far;
+  }
+
+  // What two places are told apart by, where the bodies are.
+  T resolution() const {
+    T far = 0;
+    for (const auto& pose : bodies_.pose) {
+      far = std::max({far, std::abs(pose.x), std::abs(pose.y)});
+      if constexpr (requires { pose.z; }) far = std::max(far, std::abs(pose.z));
+    }
+    return far * std::numeric_limits<T>::epsilon();
+  }
+
+  const std::vector<T>& C_moved(size_t body, int component, T by) {
+    T numbers[S::freedom] = {};
+    numbers[component] = by;
+    std::fill(bodies_.displacement.begin(), bodies_.displacement.end(), typename S::Velocity{});
+    bodies_.displacement[body] = S::read_velocity(numbers);
+    return C_after(T(1));
+  }
+
+  // C of all rows where `scale` times the displacements lead.
+  const std::vector<T>& C_after(T scale) {
+    const auto poses = bodies_.pose;
+    for (size_t k = 0; k < poses.size(); ++k)
+      bodies_.pose[k] = S::moved(poses[k], S::sum({}, bodies_.displacement[k], scale));
+    ops_->position(batch_, 0, 1, bodies_, T(world_.time));
+    bodies_.pose = poses;
+    return batch_.C;
+  }
+
+  const WorldState<S>& world_;
+  const BlockOps<S>* ops_ = nullptr;
+  Batch<S> batch_;    // one slot
+  Bodies<S> bodies_;  // those of the joint only, in its order
+};
+
+// lambda of a joint's rows in the last substep, drift correction included; zeros where it has none.
+template <class S>
+std::vector<typename S::Scalar> total_impulse(const WorldState<S>& world, const JointRecord& joint) {
+  const auto rows = joint_types(S::dimension)[joint.type].row_kinds.size();
+  std::vector<typename S::Scalar> lambda(rows, 0);
+  if (joint.places.empty() || joint.broken) return lambda;
+  const Batch<S>& batch = *world.batches[joint.places[0].batch];
+  for (size_t r = 0; r < rows; ++r) {
+    const size_t i = joint.places[0].slot * rows + r;
+    lambda[r] = batch.lambda[i] + batch.correction[i];
+  }
+  return lambda;
+}
+
+template <class S>
+bool is_soft(const WorldState<S>& world, const JointRecord& joint) {
+  if (joint.places.empty()) return false;
+  const Law<S>* law = world.batches[joint.places[0].batch]->law;
+  return law && !law->reported;
+}
+
+inline constexpr const char* why_it_jumps =
+    "it jumps however little a body moves, as an angle does that is told by axes which point against each other. Turn "
+    "one of the joint's frames round";
+
+// Refuses a coordinate that has no value here, for an effect on it.
+template <class S>
+void check_value(const WorldState<S>& world, const JointRecord& record, int coordinate) {
+  const JointType& type = joint_types(S::dimension)[record.type];
+  Probe<S> probe(world);
+  probe.look_at(record, coordinate);
+  if (probe.jumping_row() >= 0)
+    throw Error(fmt::format("coordinate `{}` of joint `{}` has no value here: {}", type.coordinates[coordinate].name,
+                            type.name, why_it_jumps));
+}
+
+// Refuses rows that have no value where the bodies are, or no direction where they hold. A velocity row has no C; a
+// soft one is a spring, which may have no direction.
+template <class S>
+void check_rows(const WorldState<S>& world, const JointRecord& record, bool soft) {
+  const JointType& type = joint_types(S::dimension)[record.type];
+  Probe<S> probe(world);
+  probe.look_at(record);
+  if (const int row = probe.jumping_row(); row >= 0)
+    throw Error(fmt::format("row {} of joint `{}` has no value here: {}", row + 1, type.name, why_it_jumps));
+  if (soft) return;
+  for (size_t r = 0; r < type.row_kinds.size(); ++r) {
+    if (type.row_kinds[r] == RowKind::velocity) continue;
+    probe.look_at(record);
+    if (probe.at_kink(static_cast<int>(r)))
+      throw Error(
+          fmt::format("row {} of joint `{}` has no direction here: C = 0 at its kink, as a distance of length 0. Hold "
+                      "the points together with a `revolute`",
+                      r + 1, type.name));
+  }
+}
+
+}  // namespace cdot

@@ -1,0 +1,55 @@
+#include <fmt/format.h>
+
+#include <cdot/step_result.hpp>
+
+namespace cdot {
+namespace {
+
+const char* what_went_wrong(StepProblem problem) {
+  switch (problem) {
+    case StepProblem::not_finite: return "a pose or velocity came out not finite";
+    case StepProblem::joints_apart: return "Newton did not bring the joints together that the motion drew apart";
+    case StepProblem::bad_step:
+    case StepProblem::none: break;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string likely_fix(StepProblem problem, OnFailure tried) {
+  const std::string or_retry = tried == OnFailure::retry ? "" : "; or on_failure = \"retry\"";
+  switch (problem) {
+    case StepProblem::not_finite:
+      return "a shorter step; the direct solver; integrator implicit where loads are heavy or springs stiff" + or_retry;
+    case StepProblem::joints_apart: return "a shorter step: at most a tenth of a radian in each" + or_retry;
+    case StepProblem::bad_step: return "a step is a finite number of seconds above 0";
+    case StepProblem::none: break;
+  }
+  return "";
+}
+
+const char* name_of(StepProblem problem) {
+  switch (problem) {
+    case StepProblem::not_finite: return "not_finite";
+    case StepProblem::joints_apart: return "joints_apart";
+    case StepProblem::bad_step: return "bad_step";
+    case StepProblem::none: break;
+  }
+  return "none";
+}
+
+std::string in_words(const StepResult& result, const std::string& body, const std::string& joint) {
+  if (result.problem == StepProblem::bad_step) return fmt::format("there is no step of {} s", result.length);
+  std::string text = fmt::format("the step of {:.6g} s at t = {:.6g} s ", result.length, result.time);
+  if (result) {
+    text += fmt::format("was taken in {} part{}", result.parts, result.parts == 1 ? "" : "s");
+    return text + (result.direct ? " by the direct solver" : "");
+  }
+  text += fmt::format("failed in island {}: {}", result.island, what_went_wrong(result.problem));
+  if (result.joint >= 0) text += fmt::format("; look at {}, row {}", joint, result.row + 1);
+  if (result.body >= 0) text += fmt::format("; {} moved fastest", body);
+  return text;
+}
+
+}  // namespace cdot

@@ -1,0 +1,98 @@
+#include "runtime/step/between.hpp"
+
+#include <algorithm>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/solve/projection.hpp"
+
+namespace cdot {
+namespace {
+
+// f(lambda, forces, count) for every run of the island's rows, forces being where theirs are kept.
+template <class S, class F>
+void each_run_of_forces(Island<S>& island, F f) {
+  auto* forces = island.flow.end_forces.data();
+  for (const Segment<S>& segment : island.segments) {
+    const int rows = segment.batch->ops->rows, count = (segment.end - segment.begin) * rows;
+    f(segment.batch->lambda.data() + segment.begin * rows, forces, count);
+    forces += count;
+  }
+}
+
+// f_i = h sum_j between_ij k_j
+template <class S>
+void find_further_terms(Flow<S>& flow, const RungeKuttaOf<S>& method) {
+  using T = typename S::Scalar;
+  const size_t n = flow.now.size();
+  std::fill(flow.further_terms.begin(), flow.further_terms.end(), T(0));
+  for (int i = 0; i < method.further_terms; ++i) {
+    T* term = flow.further_terms.data() + static_cast<size_t>(i) * n;
+    for (int j = 0; j <= method.stages + method.further_stages; ++j) {
+      const T weight = flow.length * T(method.between[i][j]), *rate = flow.rates.data() + static_cast<size_t>(j) * n;
+      if (weight == T(0)) continue;
+      for (size_t k = 0; k < n; ++k) term[k] += weight * rate[k];
+    }
+  }
+}
+
+template <class S>
+void keep_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+  Flow<S>& flow = island.flow;
+  read_numbers(world, island, flow.end.data());
+  each_run_of_forces(island, [](auto* lambda, auto* forces, int count) { std::copy_n(lambda, count, forces); });
+  for (int stage = 1; stage <= method.further_stages; ++stage)
+    take_stage(world, island, method, method.stages + stage, time - flow.length, flow.length);
+  find_further_terms(flow, method);
+  flow.end_kept = true;
+}
+
+// The formula above RungeKutta::between.
+template <class S>
+void interpolate(Flow<S>& flow, const RungeKuttaOf<S>& method) {
+  using T = typename S::Scalar;
+  const size_t n = flow.now.size();
+  const T h = flow.length, theta = T(1) - flow.ahead / h;
+  const T *first = flow.rates.data(), *last = first + static_cast<size_t>(method.stages) * n;
+  for (size_t k = 0; k < n; ++k) {
+    const T d = flow.end[k] - flow.start[k], r = h * first[k] - d;
+    T sum = 0;
+    for (int i = method.further_terms - 1; i >= 0; --i)
+      sum = (i % 2 == 0 ? T(1) - theta : theta) * (flow.further_terms[static_cast<size_t>(i) * n + k] + sum);
+    sum = theta * (d - h * last[k] - r + sum);
+    flow.now[k] = flow.start[k] + theta * (d + (T(1) - theta) * (r + sum));
+  }
+}
+
+}  // namespace
+
+template <class S>
+void go_between(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+  Flow<S>& flow = island.flow;
+  if (!flow.end_kept) keep_end(world, island, method, time);
+  interpolate(flow, method);
+  set_numbers(world, island, flow.now.data());
+  settle(world, island, time - flow.ahead, true);
+}
+
+template <class S>
+void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+  Flow<S>& flow = island.flow;
+  set_numbers(world, island, flow.end.data());
+  evaluate_anew(world, island, time);
+  island.factored = false;
+  each_run_of_forces(island, [](auto* lambda, const auto* forces, int count) { std::copy_n(forces, count, lambda); });
+  const auto* rate = flow.rates.data() + static_cast<size_t>(method.stages) * flow.end.size();
+  for (int i : island.bodies) {
+    world.bodies.velocity_rate[i] = S::read_velocity(rate + S::pose_numbers);
+    rate += numbers_per_body<S>;
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                                                \
+  template void go_between(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar); \
+  template void go_to_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

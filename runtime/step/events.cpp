@@ -1,0 +1,295 @@
+#include "runtime/step/events.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/motion/motion.hpp"
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+
+namespace cdot {
+namespace {
+
+// What is not told apart, as a share of what C, its rate and its force are made of.
+template <class T>
+constexpr T slight = T(by_precision<T>(1e-4, 1e-9));
+template <class S>
+using Told = typename Flow<S>::Told;
+template <class T>
+constexpr T infinite = std::numeric_limits<T>::infinity();
+
+// f(batch, slot) for all with rows that come and go.
+template <class S, class F>
+void each_guarded_slot(const Island<S>& island, F f) {
+  for (const Segment<S>& segment : island.segments) {
+    if (!segment.batch->law || !segment.batch->law->guard) continue;
+    for (int slot = segment.begin; slot < segment.end; ++slot) f(*segment.batch, slot);
+  }
+}
+
+// f(batch, index, guard, told) for every row that comes and goes, guards at the C at hand.
+template <class S, class F>
+void each_guarded_row(Island<S>& island, F f) {
+  Guard<typename S::Scalar> guards[most_rows];
+  auto told = island.flow.told.begin();
+  each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
+    batch.law->guard(batch, slot, guards);
+    for (int r = 0; r < batch.ops->rows; ++r) f(batch, slot * batch.ops->rows + r, guards[r], *told++);
+  });
+}
+
+// Raises what is not told apart of the rows of one slot to a slight share of
+//   C       what a displacement by the island's size and a turn of 1 rad make of it: c
+//   rate    the sum of all |J v|; sqrt(c dJv/dt), what acceleration makes of it on that way; less moves nothing in h
+//   force   dJv/dt + rate^2 / c over K
+// where dJv/dt is the largest of the sum of all |J dv/dt|, a linear acceleration being taken for an angular one too,
+// and of what the row's own force keeps from it, K lambda. A row without a direction here is taken for a length.
+template <class S>
+void tell_apart(const WorldState<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
+                typename S::Scalar h, Told<S>* told) {
+  using T = typename S::Scalar;
+  using Real = ExactNumber<T>;
+  const Bodies<S>& all = world.bodies;
+  const int rows = batch.ops->rows, bodies = batch.ops->bodies, width = S::freedom * bodies;
+  Real J[most_rows * S::freedom * most_bodies], weighted[most_rows * S::freedom * most_bodies],
+      K[most_rows * most_rows];
+  batch.ops->dense(batch, slot, all, J, weighted, K, rows);
+  for (int r = 0; r < rows; ++r) {
+    T c = 0, rate = 0, acceleration = 0, inverse_mass = 0;
+    for (int k = 0; k < bodies; ++k) {
+      const int body = batch.body[slot * bodies + k];
+      if (all.immovable(body)) continue;
+      T v[S::freedom], dv[S::freedom], linear = 0;
+      S::write(all.velocity[body], v), S::write(all.velocity_rate[body], dv);
+      for (int i = 0; i < S::freedom; ++i) {
+        const T j = T(std::abs(J[r * width + S::freedom * k + i]));
+        if (i < S::lengths) linear = std::max(linear, std::abs(dv[i]));
+        c = std::max(c, i < S::lengths ? j * island.size : j);
+        rate += j * std::abs(v[i]);
+        acceleration += j * (i < S::lengths ? std::abs(dv[i]) : std::max(std::abs(dv[i]), linear / island.size));
+      }
+      inverse_mass += all.inverse_mass[body].m;
+    }
+    const T k = c > T(0) ? T(K[r * rows + r]) : inverse_mass;
+    if (!(c > T(0))) c = island.size;
+    acceleration = std::max(acceleration, k * std::abs(batch.lambda[slot * rows + r]));
+    rate = std::max({rate, std::sqrt(acceleration * c), std::numeric_limits<T>::epsilon() / slight<T> * c / h});
+    told[r].C = slight<T> * c;
+    told[r].rate = std::max(told[r].rate, slight<T> * rate);
+    told[r].force = std::max(told[r].force, slight<T> * (acceleration + rate * rate / c) / k);
+  }
+}
+
+// With dv/dt as it is: without joints, then with them.
+template <class S>
+void tell_apart(const WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  auto* told = island.flow.told.data();
+  each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
+    tell_apart(world, island, batch, slot, h, told);
+    told += batch.ops->rows;
+  });
+}
+
+// J v of every row under a law, into the batches' scratch.
+template <class S>
+void find_rates(WorldState<S>& world, Island<S>& island) {
+  for (const Segment<S>& segment : island.segments) {
+    if (!segment.batch->law) continue;
+    const auto* velocity = world.bodies.velocity.data();
+    segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, velocity, segment.batch->scratch.data());
+  }
+}
+
+template <class S>
+void clear_laws(Island<S>& island) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law) continue;
+    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
+      batch.softness[i] = batch.lower[i] = batch.upper[i] = 0;
+  }
+}
+
+template <class S>
+void solve(WorldState<S>& world, Island<S>& island) {
+  island.factored = false;
+  if (world.settings.solver == Solver::direct) return solve_direct(world, island);
+  factorize_rows(world, island);
+  solve_iterative(world, island, typename S::Scalar(0));
+}
+
+// Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. What has stopped is `held`:
+// by sweeps its rate is not quite 0. A motor's force is nothing beside an impulse, unless it has no bound.
+template <class S>
+void stop_what_hits(WorldState<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  bool hits = false;
+  find_rates(world, island);
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
+    const T rate = batch.scratch[i] + batch.bias[i];
+    hits |= guard.one_sided() && guard.gap() <= told.C && (guard.lower == T(0) ? rate : -rate) < -told.rate;
+  });
+  if (!hits) return;
+  clear_laws(island);
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
+    if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= told.C)) return;
+    batch.lower[i] = guard.lower;
+    batch.upper[i] = guard.upper;
+    batch.bias[i] -= guard.rate;
+  });
+  solve(world, island);
+  for (const Segment<S>& segment : island.segments)
+    for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
+      segment.batch->correction[i] += segment.batch->lambda[i];
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
+    if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= told.C)) return;
+    batch.bias[i] += guard.rate;
+    if (batch.lambda[i] != T(0)) batch.mode[i] = Mode::held;
+  });
+}
+
+// What each row may do, as bounds of its force. True if for some it depends on the forces.
+template <class S>
+bool offer_bounds(WorldState<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  bool open = false;
+  find_rates(world, island);
+  clear_laws(island);
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
+    const T missing = guard.rate - (batch.scratch[i] + batch.bias[i]);
+    const bool slow = std::abs(missing) <= T(4) * told.rate || batch.mode[i] == Mode::held;
+    batch.mode[i] = Mode::held;
+    batch.lower[i] = guard.lower;
+    batch.upper[i] = guard.upper;
+    if (guard.bilateral()) return;
+    open = true;
+    if (guard.one_sided() && !(slow && guard.gap() <= told.C)) {
+      batch.mode[i] = Mode::off;
+      batch.lower[i] = batch.upper[i] = 0;
+    } else if (!guard.one_sided() && !slow) {
+      batch.mode[i] = Mode::pushed;
+      batch.lower[i] = batch.upper[i] = missing > T(0) ? guard.upper : guard.lower;
+    }
+  });
+  return open;
+}
+
+// Forces and accelerations are complementary: what might hold does, as far as its bounds allow. A force at a bound: the
+// row lets go, or slips.
+template <class S>
+void decide_by_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  ask_for_gamma(world, island, time);
+  std::swap(world.bodies.velocity, world.bodies.velocity_rate);
+  solve(world, island);
+  std::swap(world.bodies.velocity, world.bodies.velocity_rate);
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>&) {
+    if (batch.mode[i] != Mode::held) return;
+    const T force = batch.lambda[i];
+    if (!guard.bilateral() && (force <= batch.lower[i] || force >= batch.upper[i])) {
+      batch.mode[i] = guard.one_sided() ? Mode::off : Mode::pushed;
+      batch.lower[i] = batch.upper[i] = force;
+    } else {
+      batch.lower[i] = -infinite<T>;
+      batch.upper[i] = infinite<T>;
+    }
+  });
+}
+
+// Of one row; infinite where nothing can happen.
+template <class S>
+typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard, const Told<S>& told,
+                             typename S::Scalar rate) {
+  using T = typename S::Scalar;
+  const T force = batch.lambda[i];
+  switch (batch.mode[i]) {
+    case Mode::off: return guard.gap() / told.C;
+    case Mode::held:
+      return std::min(force - guard.lower, guard.upper - force) / (told.force + slight<T> * std::abs(force));
+    case Mode::pushed:
+      if (guard.lower == guard.upper) return infinite<T>;
+      return (force == guard.upper ? guard.rate - rate : rate - guard.rate) / told.rate;
+    case Mode::bounded: break;
+  }
+  return infinite<T>;
+}
+
+}  // namespace
+
+template <class S>
+void count_guarded_rows(Island<S>& island) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  flow.guarded = 0;
+  for (const Segment<S>& segment : island.segments)
+    if (segment.batch->law && segment.batch->law->guard)
+      flow.guarded += (segment.end - segment.begin) * segment.batch->ops->rows;
+  for (auto* margins : {&flow.row_rates, &flow.margins, &flow.margins_chosen, &flow.low, &flow.high})
+    margins->assign(static_cast<size_t>(flow.guarded), infinite<T>);
+  flow.told.resize(static_cast<size_t>(flow.guarded));
+}
+
+template <class S>
+void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+  if (island.flow.guarded > 0) {
+    std::fill(island.flow.told.begin(), island.flow.told.end(), Told<S>{});
+    free_accelerations(world, island);
+    tell_apart(world, island, h);
+    stop_what_hits(world, island);
+    if (offer_bounds(world, island)) {
+      decide_by_forces(world, island, time);
+      evaluate_anew(world, island, time);
+    }
+  }
+  hold_velocities(world, island);
+  island.factored = world.settings.solver == Solver::direct;
+  note_rates(world, island);
+  accelerate(world, island, time);
+  tell_apart(world, island, h);
+  measure_margins(island);
+  island.flow.margins_chosen = island.flow.margins;
+}
+
+template <class S>
+void note_rates(WorldState<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  if (island.flow.guarded == 0) return;
+  find_rates(world, island);
+  size_t k = 0;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>&, const Told<S>&) {
+    island.flow.row_rates[k++] = batch.scratch[i] + batch.bias[i];
+  });
+}
+
+template <class S>
+void measure_margins(Island<S>& island) {
+  using T = typename S::Scalar;
+  size_t k = 0;
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
+    island.flow.margins[k] = margin_of(batch, i, guard, told, island.flow.row_rates[k]);
+    ++k;
+  });
+}
+
+template <class S>
+void drop_modes(Island<S>& island) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law) continue;
+    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i) batch.mode[i] = Mode::bounded;
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                                     \
+  template void count_guarded_rows(Island<S>&);                                 \
+  template void choose_modes(WorldState<S>&, Island<S>&, S::Scalar, S::Scalar); \
+  template void note_rates(WorldState<S>&, Island<S>&);                         \
+  template void measure_margins(Island<S>&);                                    \
+  template void drop_modes(Island<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,252 @@
+// RATTLE: half a kick with the joints' impulses along J at the start, such that C = 0 after the drift; the drift; half
+// a kick with impulses along J at the end, such that J v = -dC/dt there. Second order and symmetric: what it does to
+// the energy does not add up. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Limits, motors and friction act at the end
+// of the step, of first order.
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/motion/motion.hpp"
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/step/integrators.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr int most_in_vain = 4;  // rounds that do not bring the error down
+// As far as Newton goes if it can: what is left of C pushes the velocities by C / h.
+template <class T>
+constexpr T round_off = T(by_precision<T>(1e-7, 1e-15));
+
+// Rows without a position tell the first half of a step nothing: it repeats what they exerted in the second half of the
+// one before. From 0 on that would be nothing and twice their share by turns, for ever. Here half of what they exert in
+// h.
+template <class S>
+void exert_at_start(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    for (int i = segment.begin * batch.ops->rows; batch.law && i < segment.end * batch.ops->rows; ++i)
+      batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
+  }
+  const T time = T(world.time);
+  accelerate(world, island, time);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
+      batch.lambda[i] *= batch.law ? T(0) : h / 2;
+  }
+  evaluate_anew(world, island, time);  // gamma took the place of dC/dt
+}
+
+template <class S>
+bool has_velocity_rows(const Island<S>& island) {
+  return std::any_of(island.segments.begin(), island.segments.end(), [](const Segment<S>& segment) {
+    const auto& kinds = segment.batch->kinds;
+    return !segment.batch->law && std::find(kinds.begin(), kinds.end(), RowKind::velocity) != kinds.end();
+  });
+}
+
+// A state that is not the end of a step: on its joints, with the factor of its exact rows. Returns by how much the
+// impulses of the rows belong to this step: h over the step that they are of.
+template <class S>
+typename S::Scalar begin(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  if (island.evaluated) return world.last_step > 0 ? h / T(world.last_step) : T(0);
+  settle_poses(world, island);
+  evaluate_anew(world, island, typename S::Scalar(world.time));
+  clear_correction(world, island);
+  hold_velocities(world, island);
+  fill_lambda(island, T(0));
+  island.evaluated = true;
+  island.factored = world.settings.solver == Solver::direct;
+  if (has_velocity_rows(island)) exert_at_start(world, island, h);
+  return T(1);
+}
+
+// velocity += h dv/dt of all forces, springs on coordinates among them, at the velocities that are in flow.velocity.
+template <class S>
+void kick(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  Bodies<S>& all = world.bodies;
+  std::vector<typename S::Velocity>& other = island.flow.velocity;
+  const auto exchange = [&] {
+    for (size_t k = 0; k < island.bodies.size(); ++k) std::swap(other[k], all.velocity[island.bodies[k]]);
+  };
+  exchange();
+  push_free_bodies(world, island);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law || !batch.law->force) continue;
+    find_known_forces(world, batch, segment.begin, segment.end);
+    batch.ops->apply(batch, segment.begin, segment.end, all, batch.lower.data(), all.velocity_rate.data());
+  }
+  exchange();
+  for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.velocity_rate[i], h);
+}
+
+// What the joints exerted at the end of the step before, they exert at the start of this one: the first guess.
+template <class S>
+void guess_impulses(WorldState<S>& world, Island<S>& island, typename S::Scalar share) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    const int rows = batch.ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i)
+      batch.correction[i] = batch.scratch[i] = share * batch.lambda[i];
+    batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.scratch.data(),
+                     world.bodies.velocity.data());
+  }
+}
+
+// poses = start + h velocity; bodies whose inertia turns with them about their mean spin.
+template <class S>
+void drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  Bodies<S>& all = world.bodies;
+  const std::vector<typename S::Pose>& start = island.flow.pose;
+  for (size_t k = 0; k < start.size(); ++k) all.pose[island.bodies[k]] = start[k];
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island,
+                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
+  for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], S::sum({}, all.velocity[i], h));
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
+}
+
+// The half step turned the bodies' velocities round: 2 |change| > |v| in the metric of the masses.
+template <class S>
+bool turned_round(const WorldState<S>& world, const Island<S>& island) {
+  double change = 0, before = 0;
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    const int i = island.bodies[k];
+    const auto& m = world.bodies.inverse_mass[i];
+    const auto& start = island.flow.velocity[k];
+    const auto d = S::sum(world.bodies.velocity[i], start, typename S::Scalar(-1));
+    change += S::dot(S::force(m, d), d);
+    before += S::dot(S::force(m, start), start);
+  }
+  return 4 * change > before;
+}
+
+// From the factor of the start: K lambda = -C / h, velocity += M^-1 J^T lambda, and the drift again, with what Broyden
+// learns on the way. False if the error does not shrink, the step being too long for it; or if it did so by throwing
+// the bodies back, where a joint's directions turn round as those of a rope do whose length passes through 0.
+template <class S>
+bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const T time = T(world.time) + h;
+  System<S>& system = island.system;
+  island.flow.search.begin([&](size_t row) { return system.diagonal(static_cast<int>(row)); });
+  T least = std::numeric_limits<T>::infinity();
+  bool astray = false;
+  for (int vain = 0;;) {
+    drift(world, island, h);
+    island.residual = find_errors(world, island, time);
+    if (!(island.residual > round_off<T> * island.scale)) return !astray || !turned_round(world, island);
+    if (island.residual < T(0.7) * least) least = island.residual, vain = 0;
+    else if (island.residual <= converged<T> * island.scale)  // round-off may stop it earlier than that
+      return !astray || !turned_round(world, island);
+    else if (++vain > most_in_vain) return island.residual <= T(10) * converged<T> * island.scale;
+    astray |= vain > 0;
+    solve_errors(island, T(-1) / h);
+    if (!island.flow.search.next(system.lambda.data())) return false;
+    apply_solution(world, island, world.bodies.velocity.data());
+  }
+}
+
+// Motors, limits and friction are solved for with the exact rows. Springs have pushed as forces.
+template <class S>
+void solve_bounded_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  factorize_rows(world, island);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law) continue;
+    const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
+    if (batch.law->force) {  // what it would add to the bias is no rate, and the next kick asks for rates
+      for (int i = begin; i < end; ++i) batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
+      continue;
+    }
+    batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
+    for (int i = begin; i < end; ++i) {
+      batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
+      batch.upper[i] *= T(0.5);
+    }
+  }
+  island.factored = false;
+  if (world.settings.solver == Solver::direct) solve_direct(world, island);
+  else solve_iterative(world, island, T(1));
+}
+
+template <class S>
+bool has_laws(const Island<S>& island) {
+  return std::any_of(island.segments.begin(), island.segments.end(),
+                     [](const Segment<S>& segment) { return segment.batch->law != nullptr; });
+}
+
+// The velocities at the end: J v = -dC/dt, the impulses in lambda.
+template <class S>
+void hold_end(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  if (has_laws(island)) return solve_bounded_rows(world, island, h);
+  island.factored = false;
+  if (world.settings.solver == Solver::direct) return solve_direct(world, island);
+  factorize_rows(world, island);
+  solve_iterative(world, island, typename S::Scalar(1));
+}
+
+// Half a kick at the start, and what the joints are expected to exert there.
+template <class S>
+void start_half(WorldState<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
+  for (size_t k = 0; k < island.bodies.size(); ++k) world.bodies.velocity[island.bodies[k]] = island.flow.velocity[k];
+  clear_correction(world, island);
+  kick(world, island, h / 2);
+  guess_impulses(world, island, share);
+}
+
+// Where the drift of RATTLE does not find the joints, and by sweeps: poses go there with J renewed on the way. The
+// displacement over h belongs to the velocities, and what caused it to the impulses; unless it undoes the
+// motion. (Sweeps leave something of it to the next step, and need all that they found.)
+template <class S>
+void drift_with_renewed_directions(WorldState<S>& world, Island<S>& island, typename S::Scalar h,
+                                   typename S::Scalar at_start) {
+  using T = typename S::Scalar;
+  drift(world, island, h);
+  scale_corrections(island, h);
+  hold_poses(world, island, T(world.time) + h, false);
+  tell_joints_apart(world, island, at_start);
+  const bool keep = world.settings.solver == Solver::iterative || bends_the_path(world, island, double(h));
+  add_corrections(world, island, keep ? T(1) / h : T(0));
+}
+
+}  // namespace
+
+template <class S>
+void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  Flow<S>& flow = island.flow;
+  const T share = begin(world, island, h), at_start = island.residual;
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    flow.pose[k] = all.pose[island.bodies[k]];
+    flow.velocity[k] = all.velocity[island.bodies[k]];
+  }
+  start_half(world, island, h, share);
+  const bool by_sweeps = world.settings.solver == Solver::iterative;
+  if (by_sweeps || !drift_onto_joints(world, island, h)) {
+    if (!by_sweeps) start_half(world, island, h, share);
+    drift_with_renewed_directions(world, island, h, at_start);
+  }
+  // The velocity that the end will have, to second order: 2 v_half - v_start.
+  for (size_t k = 0; k < island.bodies.size(); ++k)
+    flow.velocity[k] = S::sum(S::sum({}, all.velocity[island.bodies[k]], T(2)), flow.velocity[k], T(-1));
+  evaluate_anew(world, island, T(world.time) + h);
+  kick(world, island, h / 2);
+  hold_end(world, island, h);
+  island.evaluated = true;
+}
+
+#define CDOT_INSTANTIATE(S) template void step_rattle(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

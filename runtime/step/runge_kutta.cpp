@@ -1,0 +1,201 @@
+#include "runtime/step/runge_kutta.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/motion/motion.hpp"
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/step/events.hpp"
+
+namespace cdot {
+namespace {
+
+template <class S>
+void read_rates(const WorldState<S>& world, Island<S>& island, int stage) {
+  typename S::Scalar* to = island.flow.rates.data() + static_cast<size_t>(stage) * island.flow.now.size();
+  for (int i : island.bodies) {
+    S::write_rate(world.bodies.pose[i], world.bodies.velocity[i], to);
+    S::write(world.bodies.velocity_rate[i], to + S::pose_numbers);
+    to += numbers_per_body<S>;
+  }
+}
+
+// now = start + h sum_j weights_j rates_j
+template <class S>
+void combine(Flow<S>& flow, const ExactNumber<typename S::Scalar>* weights, int count, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const size_t n = flow.start.size();
+  std::fill(flow.now.begin(), flow.now.end(), T(0));
+  for (int j = 0; j < count; ++j) {
+    if (weights[j] == 0) continue;
+    const T weight = T(weights[j]), *rates = flow.rates.data() + static_cast<size_t>(j) * n;
+    for (size_t k = 0; k < n; ++k) flow.now[k] += weight * rates[k];
+  }
+  for (size_t k = 0; k < n; ++k) flow.now[k] = flow.start[k] + h * flow.now[k];
+}
+
+// The largest of an embedded estimate, number by number in units of unit(k).
+template <class S, class F>
+double largest_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, int estimate, typename S::Scalar h, F unit) {
+  const size_t n = flow.now.size();
+  double weights[most_stages];
+  const typename S::Scalar* rates[most_stages];
+  int terms = 0;
+  for (int j = 0; j <= method.stages; ++j) {
+    if (method.error[estimate][j] == 0) continue;
+    weights[terms] = method.error[estimate][j];
+    rates[terms++] = flow.rates.data() + static_cast<size_t>(j) * n;
+  }
+  if (terms == 0) return 0;
+  double worst = 0;
+  for (size_t k = 0; k < n; ++k) {
+    double sum = 0;
+    for (int j = 0; j < terms; ++j) sum += weights[j] * double(rates[j][k]);
+    const double error = std::abs(double(h) * sum) / unit(k);
+    if (!(error <= worst)) worst = error;
+  }
+  return worst;
+}
+
+// Both estimates as one.
+template <class S, class F>
+double estimated_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h, F unit) {
+  const double first = largest_error(flow, method, 0, h, unit), second = largest_error(flow, method, 1, h, unit);
+  if (second == 0) return first;
+  return first * first / std::sqrt(first * first + 0.01 * second * second);
+}
+
+}  // namespace
+
+template <class S>
+void read_numbers(const WorldState<S>& world, const Island<S>& island, typename S::Scalar* to) {
+  for (int i : island.bodies) {
+    S::write(world.bodies.pose[i], to);
+    S::write(world.bodies.velocity[i], to + S::pose_numbers);
+    to += numbers_per_body<S>;
+  }
+}
+
+template <class S>
+void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S::Scalar* from) {
+  for (int i : island.bodies) {
+    world.bodies.pose[i] = S::read(from);
+    world.bodies.velocity[i] = S::read_velocity(from + S::pose_numbers);
+    from += numbers_per_body<S>;
+  }
+}
+
+template <class S>
+void take_stage(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+                typename S::Scalar time, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  combine(island.flow, method.a[stage], stage, h);
+  set_numbers(world, island, island.flow.now.data());
+  evaluate_anew(world, island, time + T(method.c[stage]) * h);
+  island.factored = false;
+  accelerate(world, island, time + T(method.c[stage]) * h);
+  read_rates(world, island, stage);
+}
+
+template <class S>
+void take_stages(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                 typename S::Scalar h) {
+  for (int stage = 1; stage < method.stages; ++stage) take_stage(world, island, method, stage, time, h);
+  combine(island.flow, method.a[method.stages], method.stages, h);
+  set_numbers(world, island, island.flow.now.data());
+}
+
+template <class S>
+void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
+  const bool holds = world.settings.drift == Drift::projection && !island.segments.empty();
+  for (int i : island.bodies) world.bodies.displacement[i] = {};
+  if (holds) hold_poses(world, island, time, fresh);
+  evaluate_anew(world, island, time);
+  island.factored = false;
+  if (holds) {
+    hold_velocities(world, island);
+    if constexpr (S::has_gyroscopes) set_inertias(world, island);
+    island.factored = world.settings.solver == Solver::direct;
+  }
+  note_rates(world, island);
+  accelerate(world, island, time);
+}
+
+template <class S>
+void settle_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+  settle(world, island, time, false);
+  measure_margins(island);
+  read_rates(world, island, method.stages);
+}
+
+template <class S>
+double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed) {
+  constexpr double epsilon = std::numeric_limits<typename S::Scalar>::epsilon();
+  return estimated_error(island.flow, method, h,
+                         [&](size_t k) {
+                           const double size = std::abs(double(island.flow.start[k]));
+                           const bool velocity = k % numbers_per_body<S> >= S::pose_numbers;
+                           return std::max(velocity ? 1 + size : 1.0, epsilon * size / allowed);
+                         }) /
+         allowed;
+}
+
+template <class S>
+double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
+  return estimated_error(island.flow, method, h, [&](size_t k) {
+    const int number = static_cast<int>(k % numbers_per_body<S>), of_velocity = number - S::pose_numbers;
+    const bool velocity = of_velocity >= 0;
+    const double size = (velocity ? of_velocity : number) < S::lengths ? double(island.size) : 1.0;
+    return velocity ? size + std::abs(double(island.flow.start[k])) : size;
+  });
+}
+
+template <class S>
+void prepare_flow(Island<S>& island, const RungeKuttaOf<S>& method) {
+  Flow<S>& flow = island.flow;
+  const size_t n = island.bodies.size() * numbers_per_body<S>;
+  flow.start.assign(n, 0);
+  flow.now.assign(n, 0);
+  flow.rates.assign(n * static_cast<size_t>(method.stages + 1 + method.further_stages), 0);
+  flow.end.assign(n, 0);
+  flow.further_terms.assign(n * static_cast<size_t>(method.further_terms), 0);
+  size_t rows = 0;
+  for (const Segment<S>& segment : island.segments)
+    rows += static_cast<size_t>((segment.end - segment.begin) * segment.batch->ops->rows);
+  flow.end_forces.assign(rows, 0);
+  count_guarded_rows(island);
+}
+
+template <class S>
+void keep_start(const WorldState<S>& world, Island<S>& island) {
+  read_numbers(world, island, island.flow.start.data());
+  read_rates(world, island, 0);
+  island.flow.residual = island.residual;
+}
+
+template <class S>
+void go_back(WorldState<S>& world, Island<S>& island) {
+  set_numbers(world, island, island.flow.start.data());
+  island.residual = island.flow.residual;
+}
+
+#define CDOT_INSTANTIATE(S)                                                                                \
+  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                          \
+  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                           \
+  template void take_stage(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
+  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                                       \
+  template void prepare_flow(Island<S>&, const RungeKuttaOf<S>&);                                          \
+  template void keep_start(const WorldState<S>&, Island<S>&);                                              \
+  template void go_back(WorldState<S>&, Island<S>&);                                                       \
+  template void take_stages(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
+  template void settle_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                 \
+  template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);              \
+  template double share_of_size(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,293 @@
+// A step of a Runge-Kutta method as the World asks for it: in one piece, or by as many as the error estimate wants, the
+// last of which may end beyond it; cut at events.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/step/between.hpp"
+#include "runtime/step/events.hpp"
+#include "runtime/step/integrators.hpp"
+#include "runtime/step/runge_kutta.hpp"
+
+namespace cdot {
+namespace {
+
+// In one step(), and in a row; beyond them its rest is left to Euler's: something chatters, or jams.
+constexpr int most_events = 32, most_slivers = 1000;
+constexpr double sliver = 1e-4;      // of the longest step so far
+constexpr int most_rejections = 30;  // in a row
+// The same of attempts that do not end on the joints, or only where these undo the motion: at steps hundreds of times
+// shorter too. Then no length is to blame, but velocities that contradict each other, as a motor's and a bar's.
+constexpr int most_astray = 5;
+// In units of the mechanism's size, and [rad]: a step whose error is estimated above this has nothing to do with the
+// motion, as where tension makes a chain stiffer than the step can follow.
+constexpr double absurd = 0.3;
+// Of a fixed step: shorter parts than this share of it are not tried before the rest of it is left to Euler's.
+constexpr double smallest_part = 1.0 / 16;
+template <class S>
+constexpr auto slight_displacement = typename S::Scalar(1e-6);  // of its size, and [rad]
+constexpr int most_searches = 60;                               // for one event
+constexpr int furthest_reach = 64;                              // of a step of its own length, in step()s
+
+// In units of what is not told apart, from where a row stood when its mode was chosen, which is steps ago for one that
+// creeps: an event is behind us, and just behind us.
+constexpr double passed = -1, just_passed = -3;
+
+template <class T>
+double furthest(const std::vector<T>& chosen, const std::vector<T>& now) {
+  double worst = 0;
+  for (size_t k = 0; k < now.size(); ++k) worst = std::min(worst, double(now[k]) - std::min(double(chosen[k]), 0.0));
+  return worst;
+}
+
+// The share of the way from `low` to `high` at which the first row has just passed its event, by straight lines.
+template <class S>
+double first_event(const Flow<S>& flow) {
+  const double aim = 0.5 * (passed + just_passed);
+  double first = 1;
+  for (size_t k = 0; k < flow.high.size(); ++k) {
+    const double base = std::min(double(flow.margins_chosen[k]), 0.0) + aim;
+    const double low = double(flow.low[k]) - base, high = double(flow.high[k]) - base;
+    if (high < 0 && low > high) first = std::min(first, low / (low - high));
+  }
+  return first;
+}
+
+// The state at the first event of a step of h that was seen to pass one. Returns the time until there.
+template <class S>
+typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                               typename S::Scalar time, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  flow.high = flow.margins;
+  T low = 0, high = h;
+  for (int search = 0; search < most_searches; ++search) {
+    // Every third time in the middle, where straight lines mislead.
+    const double share = search % 3 == 2 ? 0.5 : std::clamp(first_event(flow), 0.001, 0.999);
+    const T at = low + T(share) * (high - low);
+    if (!(at > low && at < high)) break;
+    go_back(world, island);
+    take_stages(world, island, method, time, at);
+    settle_end(world, island, method, time + at);
+    const double margin = furthest(flow.margins_chosen, flow.margins);
+    if (margin < passed) {
+      high = at;
+      flow.high = flow.margins;
+      if (margin >= just_passed) return at;
+    } else {
+      low = at;
+      flow.low = flow.margins;
+    }
+  }
+  go_back(world, island);
+  take_stages(world, island, method, time, high);
+  settle_end(world, island, method, time + high);
+  return high;
+}
+
+// Of a step that should be `best` long where `left` remains, and `reach` may be gone. To end where a state is asked for
+// costs less than to look back, if that shortens the step a little only.
+template <class T>
+T length_of_step(T best, T left, T reach) {
+  if (!(best > T(0)) || (best > T(0.95) * left && best < T(1.6) * left)) return left;
+  if (reach > left) return std::min(best, reach);
+  return best < left ? left / std::ceil(left / best) : left;  // equal parts: no sliver remains
+}
+
+// The step ended so far from the joints that to bring it back onto them undid its motion: it passed a pose where the
+// directions of a joint turn round, as those of a rope do where its length passes through 0.
+template <class S>
+bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S::Scalar h) {
+  const auto slight = [&](int i) {
+    return S::slower(world.bodies.displacement[i], slight_displacement<S> * island.size);
+  };
+  if (std::all_of(island.bodies.begin(), island.bodies.end(), slight)) return false;
+  return !bends_the_path(world, island, double(h));
+}
+
+// A step of h, at its end on the constraints. Returns its error, as error_now() tells it in units of what is allowed:
+// above 1 (or no number) the state is none.
+template <class S, class F>
+double try_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                typename S::Scalar h, F error_now) {
+  take_stages(world, island, method, time, h);
+  double error = method.error_at_end ? 0 : error_now();
+  if (!(error <= 1)) return error;
+  settle_end(world, island, method, time + h);
+  if (method.error_at_end) error = error_now();
+  const bool lost = left_the_joints(world, island, island.flow.residual) || went_astray(world, island, h);
+  return lost ? std::numeric_limits<double>::infinity() : error;
+}
+
+// Of a fixed step of `whole` what is `left`, or the largest of its halves, quarters ... whose error is not absurd:
+// those of all parts of the step add up. Returns its length; Flow::margins are those of its end. 0 if none is short
+// enough.
+template <class S>
+typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                                   typename S::Scalar time, typename S::Scalar left, typename S::Scalar whole) {
+  using T = typename S::Scalar;
+  T h = left;
+  do {
+    const double allowed = absurd * double(h / whole);
+    if (try_step(world, island, method, time, h, [&] { return share_of_size(island, method, h) / allowed; }) <= 1)
+      return h;
+    ++world.counts.rejected;
+    go_back(world, island);
+    h /= 2;
+  } while (h >= T(smallest_part) * whole);
+  return T(0);
+}
+
+// A step as long as the error allows, but within `reach`. Returns as take_fixed_step() does.
+template <class S>
+typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                                      typename S::Scalar time, typename S::Scalar left, typename S::Scalar reach) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  const T proposed = flow.next_step;
+  T h = length_of_step(proposed, left, reach);
+  int astray = 0;
+  for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
+    const double error = try_step(world, island, method, time, h,
+                                  [&] { return error_of_step(island, method, h, world.settings.local_error); });
+    // 0.9 of the step that would just do; a NaN shrinks like the worst.
+    const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
+    flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
+    if (error <= 1) {
+      // One that was cut short tells nothing against the length that was proposed; after one that was too long none
+      // grows.
+      if (attempt == 0 && h < proposed) flow.next_step = std::max(flow.next_step, proposed);
+      if (attempt > 0) flow.next_step = std::min(flow.next_step, h);
+      return h;
+    }
+    ++world.counts.rejected;
+    astray = std::isinf(error) ? astray + 1 : 0;
+    h = length_of_step(flow.next_step, left, reach);
+    go_back(world, island);
+  }
+  flow.next_step = proposed;
+  return T(0);
+}
+
+// The state as it was found, on its constraints, with the accelerations.
+template <class S>
+void begin(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+  if (island.flow.known) return;
+  drop_modes(island);
+  island.continuous = false;
+  settle_poses(world, island);
+  island.continuous = true;
+  evaluate_anew(world, island, time);
+  choose_modes(world, island, time, h);
+  island.flow.known = true;
+}
+
+// The forces of the joints as impulses over h, and back.
+template <class S>
+void scale_forces(const Island<S>& island, typename S::Scalar by) {
+  for (const Segment<S>& segment : island.segments) {
+    const int rows = segment.batch->ops->rows;
+    for (int i = segment.begin * rows; i < segment.end * rows; ++i) segment.batch->lambda[i] *= by;
+  }
+}
+
+// What is left of a step, by the sturdiest of the other methods: linearly implicit, as it starts from `time`. It wants
+// the impulses of a step before.
+template <class S>
+void leave_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+  ++world.counts.rescued;
+  fill_lambda(island, typename S::Scalar(0));
+  evaluate_anew(world, island, time);
+  island.factored = false;
+  accelerate(world, island, time);
+  scale_forces(island, h);
+  drop_modes(island);
+  island.continuous = island.evaluated = island.factored = false;
+  island.flow.forget();
+  island.flow.slivers = 0;
+  const Integrator own = std::exchange(world.settings.integrator, Integrator::implicit);
+  const double last_step = std::exchange(world.last_step, double(h));
+  const bool tense = island.rescue.built();
+  if (tense) island.rescue.follow(island.system), std::swap(island.system, island.rescue);
+  step_euler(world, island, h);
+  if (tense) std::swap(island.system, island.rescue);
+  world.settings.integrator = own;
+  world.last_step = last_step;
+  for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
+  scale_forces(island, 1 / h);
+  island.evaluated = island.factored = false;
+  island.continuous = true;
+}
+
+template <class S>
+void count_step(StepCounts& counts, typename S::Scalar h) {
+  ++counts.taken;
+  counts.shortest = std::min(counts.shortest, double(h));
+  counts.longest = std::max(counts.longest, double(h));
+}
+
+// From `done` on until h is reached, or passed. Returns the end.
+template <class S>
+typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                              typename S::Scalar done, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Flow<S>& flow = island.flow;
+  for (int events = 0; done < h;) {
+    const T time = T(world.time) + done, left = h - done;
+    if (events > most_events || flow.slivers > most_slivers) {
+      leave_to_euler(world, island, time, left);
+      return h;
+    }
+    begin(world, island, time, h);
+    keep_start(world, island);
+    flow.low = flow.margins;
+    flow.end_kept = false;
+    // Whoever looks at the loads after every step may change what follows.
+    const T reach = world.after_substep.empty() ? furthest_reach * h : left;
+    flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, left, reach)
+                                                 : take_fixed_step(world, island, method, time, left, h);
+    if (!(flow.length > T(0))) {
+      leave_to_euler(world, island, time, left);
+      return h;
+    }
+    flow.longest = std::max(flow.longest, flow.length);
+    flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
+    if (flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed) {
+      flow.length = go_to_event(world, island, method, time, flow.length);
+      ++world.counts.events;
+      ++events;
+      flow.known = false;
+    }
+    count_step<S>(world.counts, flow.length);
+    done = flow.length == left ? h : done + flow.length;
+  }
+  return done;
+}
+
+}  // namespace
+
+template <class S>
+void step_runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const RungeKuttaOf<S>& method = runge_kutta<S>(world.settings.integrator);
+  Flow<S>& flow = island.flow;
+  if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
+  clear_correction(world, island);
+  T end = flow.ahead;
+  if (end > T(0) && end <= h) go_to_end(world, island, method, T(world.time) + end);
+  end = take_steps(world, island, method, end, h);
+  flow.ahead = end - h;
+  if (flow.ahead > T(0)) go_between(world, island, method, T(world.time) + end);
+  scale_forces(island, h);
+}
+
+#define CDOT_INSTANTIATE(S) template void step_runge_kutta(WorldState<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,157 @@
+#include "runtime/tool/accuracy/command.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <iterator>
+
+#include "runtime/tool/accuracy/state.hpp"
+#include "runtime/tool/run/output.hpp"
+#include "runtime/tool/run/process.hpp"
+#include "runtime/tool/run/simulate.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr double reference_share = 1.0 / 9;  // of the budget, at most, for each of three methods of a reference
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+Fingerprint fingerprint_of(const Scene& scene, const AccuracyOptions& options) {
+  std::string decisive = text_of(scene.file) + fmt::format("\nuntil {}\n", scene.duration);
+  if (!options.reference.empty()) decisive += text_of(options.reference);
+  return {hash_of_program(), hash_of(decisive)};
+}
+
+std::string output_of(const Scene& scene, const AccuracyOptions& options) {
+  if (!options.output.empty()) return options.output;
+  return std::filesystem::path(scene.file).stem().string() + ".accuracy";
+}
+
+Effort effort_of(const AccuracyOptions& options) {
+  Effort effort;
+  effort.cpu = reference_share * options.sweep.budget;
+  return effort;
+}
+
+// What is shown and kept on the way, both at most a few times a second.
+class Companion {
+ public:
+  Companion(const std::string& path, const Fingerprint& fingerprint, const SweepState& state, bool shown)
+      : path_(path), fingerprint_(fingerprint), state_(&state), shown_(shown), start_(Clock::now()), last_(start_) {}
+  ~Companion() { clear(); }
+
+  void grown(double used, double planned, const std::string& doing) {
+    const auto now = Clock::now();
+    if (first_used_ < 0) first_used_ = used;
+    if (now - last_ < std::chrono::milliseconds(500)) return;
+    last_ = now;
+    write_state(path_, fingerprint_, *state_);
+    if (!shown_) return;
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double pace = used > first_used_ ? elapsed / (used - first_used_) : 0;
+    fmt::print(stderr, "\r{:78}\r{:3.0f} %  about {:.0f} s left  {}", "", std::min(100.0, 100 * used / planned),
+               std::ceil(pace * std::max(planned - used, 0.0)), doing);
+    std::fflush(stderr);
+    printed_ = true;
+  }
+  void say(const std::string& doing) {
+    if (!shown_) return;
+    fmt::print(stderr, "\r{:78}\r{}", "", doing);
+    std::fflush(stderr);
+    printed_ = true;
+  }
+  void clear() {
+    if (printed_) fmt::print(stderr, "\r{:78}\r", "");
+    printed_ = false;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  std::string path_;
+  Fingerprint fingerprint_;
+  const SweepState* state_;
+  bool shown_, printed_ = false;
+  double first_used_ = -1;
+  Clock::time_point start_, last_;
+};
+
+SweepOptions chosen(const AccuracyOptions& options) {
+  SweepOptions sweep = options.sweep;
+  std::erase_if(sweep.ways, [&](const Way& way) { return name_of(way).find(options.only) == std::string::npos; });
+  if (!sweep.ways.empty()) return sweep;
+  std::string known;
+  for (const Way& way : options.sweep.ways) known += "\n  " + name_of(way);
+  throw Error(fmt::format("no way of solving has \"{}\" in its name; there are{}", options.only, known));
+}
+
+void write_files(const std::string& output, const AccuracyReport& report) {
+  write_file(output + ".csv", accuracy_csv(report));
+  write_file(output + ".json", accuracy_json(report));
+  write_file(output + ".svg", accuracy_svg(report));
+}
+
+// What there is to say about the start of a scene, once: the ways share it.
+std::string warnings_of(const Scene& scene) {
+  std::string warnings;
+  if (scene.dimension == Dimension::planar) world_at_start<Planar<double>>(scene, warnings);
+  else world_at_start<Spatial<double>>(scene, warnings);
+  return warnings;
+}
+
+}  // namespace
+
+AccuracyReport report_of(const Scene& scene, const SweepOptions& options, const SweepState& state) {
+  AccuracyReport report{scene, state.reference, static_cast<int>(options.ways.size()), options.rounds, {}, {}, {}, {},
+                        {}};
+  report.answers = answers_of(state, options.ways);
+  report.failures = failures_of(state, options.ways);
+  report.costs = costs_of(report.answers, state.reference);
+  report.frontier = frontier_of(report.costs, state.reference.resolution(), noticeable);
+  report.advice = advice_from(report.costs, report.frontier);
+  return report;
+}
+
+AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& options) {
+  const SweepOptions ways = chosen(options);
+  const std::string output = output_of(scene, options), state_path = output + ".state.json";
+  const Fingerprint fingerprint = fingerprint_of(scene, options);
+  SweepState state;
+  if (options.resume) state = read_state(state_path, fingerprint);
+  fmt::print(stderr, "{}", warnings_of(scene));
+
+  const Interrupt interrupt;
+  const Stop stop = [] { return Interrupt::asked(); };
+  Companion companion(state_path, fingerprint, state, options.progress);
+  if (state.reference.frames.empty()) {
+    companion.say("making the reference");
+    state.reference = options.reference.empty() ? make_reference_run(scene, effort_of(options), stop)
+                                                : read_reference_run(options.reference, scene);
+    if (stop()) state.reference = {};  // half of one is none
+  }
+  const SweepHooks hooks{
+      stop, [&](double used, double planned, const std::string& doing) { companion.grown(used, planned, doing); }};
+  const bool finished = !stop() && sweep(scene, ways, state, hooks);
+  companion.clear();
+  if (!finished) {
+    write_state(state_path, fingerprint, state);
+    fmt::print(stderr, "interrupted: {} runs are kept in {}; --resume goes on from there\n", state.points.size(),
+               state_path);
+    return {};
+  }
+  const AccuracyReport report = report_of(scene, ways, state);
+  write_files(output, report);
+  std::remove(state_path.c_str());
+  AccuracyOutcome outcome{true, !report.answers.empty(), options.json ? accuracy_json(report) : accuracy_text(report)};
+  if (!options.json) outcome.out += fmt::format("\n  written         {0}.csv, {0}.json, {0}.svg\n", output);
+  return outcome;
+}
+
+}  // namespace cdot

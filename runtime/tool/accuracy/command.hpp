@@ -1,0 +1,47 @@
+// `cdot-run accuracy`: what accuracy costs in time, as text, CSV, JSON and a picture.
+#pragma once
+
+#include <string>
+
+#include "runtime/tool/accuracy/sweep.hpp"
+
+namespace cdot {
+
+struct AccuracyOptions {
+  std::string reference;  // a CSV file; empty: made here
+  std::string output;     // <output>.csv, .json, .svg; empty: <scene>.accuracy in the present folder
+  std::string only;       // ways whose name contains this; empty: all
+  SweepOptions sweep;
+  bool resume = false, json = false, progress = false;
+};
+
+inline constexpr double noticeable = 0.05;  // an error smaller by less is no gain
+
+// All that was found, ready to be shown.
+struct AccuracyReport {
+  Scene scene;
+  ReferenceRun reference;
+  int ways = 0, rounds = 0;
+  std::vector<Point> answers, failures;
+  std::vector<CostedError> costs;     // of the answers
+  std::vector<std::size_t> frontier;  // indices into the answers, ascending by cost
+  std::vector<Advice> advice;
+};
+AccuracyReport report_of(const Scene& scene, const SweepOptions& options, const SweepState& state);
+
+std::string reference_text(const AccuracyReport& report);  // how far it can be trusted
+std::string accuracy_text(const AccuracyReport& report);
+std::string accuracy_json(const AccuracyReport& report);
+std::string accuracy_csv(const AccuracyReport& report);
+std::string accuracy_svg(const AccuracyReport& report);
+// "rk4, direct, step 0.0125 s"
+std::string knob_text(const AccuracyReport& report, const Point& point);
+
+struct AccuracyOutcome {
+  bool finished = false;  // false: interrupted, `out` is empty
+  bool answered = false;  // some way of solving the scene has an answer
+  std::string out;        // for stdout
+};
+AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& options);
+
+}  // namespace cdot

@@ -1,0 +1,194 @@
+#include "runtime/tool/accuracy/reference.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "runtime/tool/accuracy/compose.hpp"
+#include "runtime/tool/run/process.hpp"
+
+namespace cdot {
+namespace {
+
+std::string settled_text(const Refined& method) {
+  if (!method.found()) return method.name + " finds no end";
+  return fmt::format("{} {} {:.1e}", method.name, method.at_its_floor ? "settles to" : "still changes by",
+                     method.change());
+}
+
+// What `second` says about `first`: the reference that they make together.
+ReferenceRun pair_of(const Refined& first, const Refined& second, const std::vector<double>& times,
+                     Dimension dimension) {
+  ReferenceRun reference;
+  reference.times = times;
+  reference.made_by = first.name + " and " + second.name + (first.way.extended ? ", in extended precision" : "");
+  reference.settled = settled_text(first) + ", " + settled_text(second);
+  reference.frames = first.change() <= second.change() ? first.best.frames : second.best.frames;
+  reference.disagree.assign(times.size(), std::numeric_limits<double>::infinity());
+  if (!first.found() || !second.found()) return reference;
+  reference.disagree = distances(first.best.frames, second.best.frames, dimension);
+  for (const Refined* method : {&first, &second})
+    for (std::size_t k = 0; method->at_its_floor && k < times.size(); ++k)
+      reference.disagree[k] = std::max(reference.disagree[k], method->changes[k]);
+  return reference;
+}
+
+// Of places, angles, speeds and spins, each relative to the largest in the motion.
+Nudge nudge_by(double share, const ReferenceRun& reference, unsigned seed) {
+  Nudge nudge{0, 1, 0, 0, seed};
+  for (const Frame& frame : reference.frames)
+    for (const BodyState& b : frame.bodies) {
+      nudge.position = std::max(nudge.position, std::hypot(b.x, b.y, b.z));
+      nudge.angle = std::max(nudge.angle, std::abs(b.angle));
+      nudge.speed = std::max(nudge.speed, std::hypot(b.vx, b.vy, b.vz));
+      nudge.spin = std::max(nudge.spin, std::hypot(b.w, b.wx, std::hypot(b.wy, b.wz)));
+    }
+  nudge.position *= share, nudge.angle *= share, nudge.speed *= share, nudge.spin *= share;
+  return nudge;
+}
+
+Sensitivity sensitivity_of(const Scene& scene, const ReferenceRun& reference, const Refined& method, const Stop& stop) {
+  constexpr int starts = 3;  // of each kind
+  const auto growth = [&](double share) {
+    double worst = 0;
+    for (unsigned seed = 0; seed < starts; ++seed) {
+      const Trajectory beside =
+          trajectory_of(scene, method.way, method.knob, reference.times, stop, nudge_by(share, reference, seed));
+      worst = std::max(worst, largest(distances(beside.frames, method.best.frames, scene.dimension)));
+    }
+    return worst;
+  };
+  const double condition = growth(1e-9) / 1e-9;
+  if (!method.way.extended) return {condition, growth(1e-15), 1e-15};
+  // No start can be given as finely as extended precision rounds: what becomes of it is told from larger changes.
+  constexpr double slight = by_precision<long double>(1e-15);
+  return {condition, condition * slight, slight};
+}
+
+// What three methods may cost, for all that are asked.
+class Purse {
+ public:
+  explicit Purse(const Effort& each) : each_(each), start_(cpu_now()) {}
+  // For one, where so many are still to come.
+  Effort share(int to_come) const {
+    const double left = 3 * each_.cpu - (cpu_now() - start_);
+    return {each_.evaluations, std::min(each_.cpu, left / to_come)};
+  }
+
+ private:
+  Effort each_;
+  double start_;
+};
+
+// Methods one after the other, in one precision, and the two of them that agree best.
+class Comparison {
+ public:
+  Comparison(const Scene& scene, const std::vector<double>& times, bool extended, const Stop& stop)
+      : scene_(scene), times_(times), extended_(extended), stop_(stop) {}
+
+  void ask(Integrator integrator, const Effort& effort) {
+    Refined method = refined(integrator, extended_, scene_, times_, effort, stop_);
+    for (const Refined& other : methods_) {
+      const ReferenceRun pair = pair_of(other, method, times_, scene_.dimension);
+      if (!best_.frames.empty() && pair.disagreement() >= best_.disagreement()) continue;
+      best_ = pair;
+      finer_would_help_ = !other.at_its_floor || !method.at_its_floor;
+    }
+    methods_.push_back(std::move(method));
+  }
+  // Runge-Kutta on accelerations against RATTLE on impulses, which share no formula but the kernels'; or, where the
+  // motion is not reversible, against a Runge-Kutta method of another order.
+  void ask_two(const Purse& purse) {
+    ask(Integrator::dop853, purse.share(3));
+    Effort effort = purse.share(2);
+    if (!reversible(scene_)) return ask(Integrator::rk4, effort);
+    // RATTLE takes about as many steps as the first has evaluations, or it does not get there.
+    effort.evaluations = std::min(effort.evaluations, 5 * first().evaluations);
+    ask(Integrator::rattle, effort);
+  }
+  bool agrees() const { return best_.disagreement() <= wanted_agreement; }
+  // By more than chance.
+  bool better_than(const Comparison& other) const { return 2 * best_.disagreement() < other.best_.disagreement(); }
+  bool finer_would_help() const { return finer_would_help_; }
+  const Refined& first() const { return methods_.front(); }
+  ReferenceRun& best() { return best_; }
+
+ private:
+  const Scene& scene_;
+  const std::vector<double>& times_;
+  bool extended_;
+  const Stop& stop_;
+  std::vector<Refined> methods_;
+  ReferenceRun best_;
+  bool finer_would_help_ = false;
+};
+
+}  // namespace
+
+std::string verdict_on(double disagreement, const Sensitivity& sensitivity, bool finer_would_help) {
+  // Methods that differ by so much more than round-off in the start makes, at most, are excused by it: they take
+  // thousands of steps, and round in each.
+  constexpr double excused = 30;
+  if (disagreement <= excused * sensitivity.round_off) return "round-off forbids more";
+  if (finer_would_help) return "the methods are not fine enough yet: --budget";
+  return "no step mends it: round-off is magnified on the way, as where a mechanism may go on in two ways";
+}
+
+double ReferenceRun::disagreement() const { return largest(disagree); }
+double ReferenceRun::resolution() const { return 10 * disagreement(); }
+
+double ReferenceRun::agreed_until(double bound) const {
+  double until = 0;
+  for (std::size_t k = 0; k < disagree.size() && disagree[k] <= bound; ++k) until = times[k];
+  return until;
+}
+
+// By two methods in doubles; where these do not agree as wanted, by the same in extended precision; and where these do
+// not either, a third is asked in the precision in which they agree better.
+ReferenceRun make_reference_run(const Scene& scene, const Effort& effort, const Stop& stop) {
+  const std::vector<double> times = equal_times(scene.duration, sample_count);
+  const Purse purse(effort);
+  Comparison doubles(scene, times, false, stop), extended(scene, times, true, stop);
+  for (Comparison* comparison : {&doubles, &extended}) {
+    comparison->ask_two(purse);
+    if (comparison->agrees()) return comparison->best();
+  }
+  Comparison& better = extended.better_than(doubles) ? extended : doubles;
+  if (reversible(scene)) better.ask(Integrator::rk4, purse.share(1));
+  ReferenceRun& best = better.best();
+  if (better.agrees() || !better.first().found()) return best;
+  best.sensitivity = sensitivity_of(scene, best, better.first(), stop);
+  best.verdict = verdict_on(best.disagreement(), best.sensitivity, better.finer_would_help());
+  return best;
+}
+
+Errors errors_of(const Trajectory& trajectory, const ReferenceRun& reference, const Scene& scene) {
+  Errors errors;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (std::size_t k = 0; k < trajectory.frames.size(); ++k) {
+    const Apart here = apart(trajectory.frames[k], reference.frames[k], scene.dimension);
+    const double energy = reference.frames[k].energy;
+    errors.position = std::max(errors.position, here.position);
+    errors.angle = std::max(errors.angle, here.angle);
+    errors.energy = std::max(errors.energy, std::abs(trajectory.frames[k].energy - energy));
+    least = std::min(least, energy), most = std::max(most, energy);
+  }
+  // Between its samples the reference has no energy, unless it is the same at all of them.
+  const double swing = std::max(trajectory.most_energy - least, most - trajectory.least_energy);
+  if (reversible(scene) && most - least <= 1e-3 * swing) errors.energy = std::max(errors.energy, swing);
+  errors.C = trajectory.C;
+  errors.Cdot = trajectory.Cdot;
+  return errors;
+}
+
+double size_of(const ReferenceRun& reference) {
+  double size = 1;
+  for (const Frame& frame : reference.frames)
+    for (const BodyState& a : frame.bodies)
+      for (const BodyState& b : reference.frames.front().bodies)
+        size = std::max(size, std::hypot(a.x - b.x, a.y - b.y, a.z - b.z));
+  return size;
+}
+
+}  // namespace cdot

@@ -1,0 +1,186 @@
+// What `cdot-run accuracy` says, for people and for programs.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/tool/accuracy/command.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr double useful_agreement = 1e-9;  // up to where two references agreed so well, a run may be judged
+
+double until(const AccuracyReport& report) { return report.reference.times.back(); }
+
+// The step of a fixed-step way; the samples divide the time evenly, but for a given reference's.
+double step_of(const AccuracyReport& report, const Point& point) {
+  return until(report) / static_cast<double>(report.reference.times.size()) / knob_at(point.way, point.level).steps;
+}
+
+std::string frontier_text(const AccuracyReport& report) {
+  std::string text = fmt::format("\n  {:>8}  {:>9} {:>6}  {:>8} {:>8} {:>10}  {}\n", "error", "us CPU/s", "+-", "|C|",
+                                 "|Cdot|", "energy [J]", "the frontier: nothing is cheaper and more accurate");
+  for (const std::size_t k : report.frontier) {
+    const Point& point = report.answers[k];
+    text += fmt::format("  {:8.1e}  {:9.4g} {:4.0f} %  {:8.1e} {:8.1e} {:10.1e}  {}\n", report.costs[k].error,
+                        1e6 * point.cost(), 100 * point.spread(), point.errors.C, point.errors.Cdot,
+                        point.errors.energy, knob_text(report, point));
+  }
+  return text;
+}
+
+std::string time_text(double seconds) {
+  if (seconds < 1e-3) return fmt::format("{:.3g} us", 1e6 * seconds);
+  return seconds < 1 ? fmt::format("{:.3g} ms", 1e3 * seconds) : fmt::format("{:.3g} s", seconds);
+}
+
+// One sentence for all decades that one point serves.
+std::string advice_text(const AccuracyReport& report) {
+  std::string text = "\n";
+  const std::vector<Advice>& advice = report.advice;
+  for (std::size_t k = 0; k < advice.size();) {
+    std::size_t last = k;
+    while (last + 1 < advice.size() && advice[last + 1].point == advice[k].point) ++last;
+    const Point& point = report.answers[advice[k].point];
+    const std::string range = last == k ? fmt::format("1e{}", advice[k].decade)
+                                        : fmt::format("1e{} to 1e{}", advice[k].decade, advice[last].decade);
+    text += fmt::format("  for {} use {}: {} per simulated second", range, knob_text(report, point),
+                        time_text(point.cost()));
+    if (advice[last].factor) text += fmt::format("; ten times more accuracy costs {:.2g}x", *advice[last].factor);
+    text += "\n";
+    k = last + 1;
+  }
+  if (advice.empty()) text += "  nothing that was tried is accurate to 1e-1\n";
+  return text;
+}
+
+nlohmann::ordered_json json_of(const AccuracyReport& report, const Point& point) {
+  const Way& way = point.way;
+  nlohmann::ordered_json json = {
+      {"method", name_of(way)},
+      {"integrator", name_of(integrators, way.integrator)},
+      {"solver", name_of(solvers, way.solver)},
+      {"drift", name_of(drifts, way.drift)},
+      {"iterations", way.solver == Solver::direct ? 0 : way.iterations},
+      {"precision", way.single ? "float" : "double"},
+      {"step", way.adaptive ? 0 : step_of(report, point)},
+      {"local_error", knob_at(way, point.level).local_error},
+      {"failure", point.failure},
+  };
+  if (!point.failure.empty()) return json;
+  const Errors& errors = point.errors;
+  json["error"] = errors.trajectory();
+  json["position_error"] = errors.position;
+  json["angle_error"] = errors.angle;
+  json["C"] = errors.C;
+  json["Cdot"] = errors.Cdot;
+  json["energy_error"] = errors.energy;
+  json["cpu_per_second"] = point.cost();
+  json["cpu_spread"] = point.spread();
+  json["rounds"] = point.rounds;
+  return json;
+}
+
+// Is it the motion itself that forbids to know more?
+std::string sensitivity_text(const ReferenceRun& reference) {
+  const Sensitivity& s = reference.sensitivity;
+  if (!s.known()) return {};
+  return fmt::format(
+      "                  starts that differ by 1e-9 of their numbers end {:.1e} apart, by {:.0e}: {:.1e}\n"
+      "                  {}\n",
+      1e-9 * s.condition, s.slight, s.round_off, reference.verdict);
+}
+
+}  // namespace
+
+std::string knob_text(const AccuracyReport& report, const Point& point) {
+  const double local = knob_at(point.way, point.level).local_error;
+  return name_of(point.way) + (local > 0 ? fmt::format(", local error {:.0e}", local)
+                                         : fmt::format(", step {:.4g} s", step_of(report, point)));
+}
+
+std::string reference_text(const AccuracyReport& report) {
+  const ReferenceRun& reference = report.reference;
+  if (reference.disagree.empty()) return fmt::format("  reference       {}, as given\n", reference.made_by);
+  const double apart = reference.disagreement();
+  std::string text = fmt::format("  reference       {} agree to {:.1e} m, rad\n", reference.made_by, apart);
+  if (apart <= wanted_agreement) return text;
+  text += fmt::format("                  more than {:.0e} apart: {}\n", wanted_agreement, reference.settled);
+  text += sensitivity_text(reference);
+  text += fmt::format("                  errors below {:.1e}, ten times as much, are not told apart\n",
+                      reference.resolution());
+  const double good = reference.agreed_until(useful_agreement);
+  if (apart > 1e-6 && good > 0)
+    text += fmt::format("                  until {0:.4g} s they agree to {1:.0e}: use --until {0:.4g}\n", good,
+                        useful_agreement);
+  return text;
+}
+
+std::string accuracy_text(const AccuracyReport& report) {
+  const Scene& scene = report.scene;
+  std::string text = fmt::format("{}\n", scene.title.empty() ? scene.file : scene.title);
+  text += fmt::format("  bodies, joints  {}, {}\n", scene.bodies.size(), scene.joints.size());
+  text += reference_text(report);
+  text +=
+      fmt::format("  error           the largest |x - x_ref| [m] or angle [rad] of a body, {} times up to {:.6g} s\n",
+                  report.reference.times.size(), until(report));
+  text += fmt::format("  measured        {} ways, {} runs with an answer, {} without; medians of {} rounds in turns\n",
+                      report.ways, report.answers.size(), report.failures.size(), report.rounds);
+  return text + frontier_text(report) + advice_text(report);
+}
+
+std::string accuracy_json(const AccuracyReport& report) {
+  nlohmann::ordered_json points = nlohmann::ordered_json::array(), failures = points, advice = points;
+  for (const Point& point : report.answers) points.push_back(json_of(report, point));
+  for (const Point& point : report.failures) failures.push_back(json_of(report, point));
+  for (const Advice& a : report.advice) {
+    advice.push_back({{"error", std::pow(10.0, a.decade)}, {"point", a.point}});
+    if (a.factor) advice.back()["ten_times_more_accuracy_costs"] = *a.factor;
+  }
+  const nlohmann::ordered_json json = {
+      {"scene", report.scene.file},
+      {"title", report.scene.title},
+      {"until", until(report)},
+      {"samples", report.reference.times.size()},
+      {"rounds", report.rounds},
+      {"reference",
+       {{"made_by", report.reference.made_by},
+        {"disagreement", report.reference.disagreement()},
+        {"condition", report.reference.sensitivity.condition},
+        {"round_off", report.reference.sensitivity.round_off},
+        {"resolution", report.reference.resolution()}}},
+      {"points", points},
+      {"failures", failures},
+      {"frontier", report.frontier},
+      {"advice", advice},
+  };
+  return json.dump(2) + "\n";
+}
+
+std::string accuracy_csv(const AccuracyReport& report) {
+  std::string text =
+      "method,integrator,solver,drift,iterations,precision,step,local_error,error,position_error,angle_error,C,Cdot,"
+      "energy_error,cpu_per_second,cpu_spread,frontier,failure\n";
+  const auto begin = [&](const Point& point) {
+    const Way& way = point.way;
+    const double local = knob_at(way, point.level).local_error;
+    return fmt::format("\"{}\",{},{},{},{},{},{},{}", name_of(way), name_of(integrators, way.integrator),
+                       name_of(solvers, way.solver), name_of(drifts, way.drift),
+                       way.solver == Solver::direct ? 0 : way.iterations, way.single ? "float" : "double",
+                       local > 0 ? 0 : step_of(report, point), local);
+  };
+  for (std::size_t k = 0; k < report.answers.size(); ++k) {
+    const Point& point = report.answers[k];
+    const Errors& e = point.errors;
+    const bool best = std::find(report.frontier.begin(), report.frontier.end(), k) != report.frontier.end();
+    text += fmt::format("{},{},{},{},{},{},{},{},{},{},\n", begin(point), e.trajectory(), e.position, e.angle, e.C,
+                        e.Cdot, e.energy, point.cost(), point.spread(), best ? 1 : 0);
+  }
+  for (const Point& point : report.failures) text += fmt::format("{},,,,,,,,,0,\"{}\"\n", begin(point), point.failure);
+  return text;
+}
+
+}  // namespace cdot

@@ -1,0 +1,150 @@
+#include "runtime/tool/commands/diagnose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cdot/methods.hpp>
+
+namespace cdot {
+namespace {
+
+constexpr std::size_t most_islands = 12, most_rows_listed = 12;
+
+std::string method_text(const Scene& scene) {
+  const Settings& s = scene.settings;
+  std::string text = fmt::format("{} {}, {}", name_of(solvers, s.solver), name_of(integrators, s.integrator),
+                                 name_of(precisions, scene.single));
+  if (s.local_error > 0) return text + fmt::format(", steps of its own to a local error of {:.1e}", s.local_error);
+  return text + fmt::format(", substeps of {:.4g} s", scene.step / s.substeps);
+}
+
+std::string rows_text(const Scene& scene, const WorstOfIsland& worst) {
+  const Diagnosis::Island& island = worst.island;
+  std::string text = fmt::format("  rank            {} of {} rows", island.rank, island.rows);
+  if (worst.rank_time > 0) text += fmt::format(", least at t = {:.4g} s", worst.rank_time);
+  text += "\n";
+  for (std::size_t k = 0; k < island.redundant.size() && k < most_rows_listed; ++k) {
+    const Diagnosis::Redundant& row = island.redundant[k];
+    std::string others;
+    for (int joint : row.joints)
+      if (joint != row.row.joint) others += (others.empty() ? "" : ", ") + joint_name(scene, joint);
+    text += fmt::format("  {:15} row {} of {}: {} {}\n", row.conflicting ? "conflicting" : "redundant", row.row.row,
+                        joint_name(scene, row.row.joint), row.conflicting ? "contradicts" : "follows from",
+                        others.empty() ? "the other rows of that joint" : others);
+  }
+  if (island.redundant.size() > most_rows_listed)
+    text += fmt::format("                  and {} more\n", island.redundant.size() - most_rows_listed);
+  return text;
+}
+
+std::string at_time(double time) { return time > 0 ? fmt::format(" at t = {:.4g} s", time) : ""; }
+
+std::string island_text(const Scene& scene, const WorstOfIsland& worst, int number) {
+  const Diagnosis::Island& island = worst.island;
+  std::string text =
+      fmt::format("island {}: {} {}", number, island.bodies.size(), island.bodies.size() == 1 ? "body" : "bodies");
+  if (!island.bodies.empty()) text += fmt::format(", from {}", body_name(scene, island.bodies.front()));
+  text += "\n";
+  if (island.rows > 0) {
+    text += rows_text(scene, worst);
+    text += fmt::format("  condition of K  {:.3g}{}; the smallest pivot is {:.2g} of its row's, in row {} of {}\n",
+                        island.condition, at_time(worst.condition_time), island.smallest_pivot, island.weakest.row,
+                        joint_name(scene, island.weakest.joint));
+  }
+  if (island.heaviest > 0)
+    text += fmt::format("  masses          {:.4g} to {:.4g} kg\n", island.lightest, island.heaviest);
+  if (island.stiffest.square > 0) {
+    const bool tension = island.stiffest.tension > 0.5 * island.stiffest.square;
+    text += fmt::format("  stiffest        {:.4g} rad/s of {}{}, by {}\n", std::sqrt(island.stiffest.square),
+                        body_name(scene, island.stiffest.body), at_time(worst.stiffest_time),
+                        tension ? "the tension of the joints" : "its springs");
+  }
+  if (island.fastest_spin > 0)
+    text += fmt::format("  fastest turn    {:.4g} rad/s of {}{}\n", island.fastest_spin,
+                        body_name(scene, island.spinning), at_time(worst.spin_time));
+  return text;
+}
+
+nlohmann::ordered_json row_json(const Scene& scene, const Diagnosis::Row& row) {
+  if (row.joint < 0) return nullptr;
+  return {{"joint", scene.joints[static_cast<std::size_t>(row.joint)].name}, {"row", row.row}};
+}
+
+nlohmann::ordered_json redundant_json(const Scene& scene, const Diagnosis::Redundant& redundant) {
+  nlohmann::ordered_json json = row_json(scene, redundant.row);
+  json["joints"] = nlohmann::ordered_json::array();
+  for (int joint : redundant.joints) json["joints"].push_back(scene.joints[static_cast<std::size_t>(joint)].name);
+  json["missed"] = redundant.missed;
+  json["conflicting"] = redundant.conflicting;
+  return json;
+}
+
+nlohmann::ordered_json island_json(const Scene& scene, const WorstOfIsland& worst) {
+  const Diagnosis::Island& island = worst.island;
+  const auto named = [&](int body) -> nlohmann::ordered_json {
+    if (body < 0) return nullptr;
+    return scene.bodies[static_cast<std::size_t>(body)].name;
+  };
+  nlohmann::ordered_json redundant = nlohmann::ordered_json::array();
+  for (const auto& row : island.redundant) redundant.push_back(redundant_json(scene, row));
+  return {{"bodies", island.bodies.size()},
+          {"rows", island.rows},
+          {"rank", island.rank},
+          {"rank_time", worst.rank_time},
+          {"redundant", redundant},
+          {"condition", island.condition},
+          {"condition_time", worst.condition_time},
+          {"smallest_pivot", island.smallest_pivot},
+          {"weakest", row_json(scene, island.weakest)},
+          {"lightest", island.lightest},
+          {"heaviest", island.heaviest},
+          {"stiffest", std::sqrt(std::max(0.0, island.stiffest.square))},
+          {"stiffest_time", worst.stiffest_time},
+          {"stiffest_body", named(island.stiffest.body)},
+          {"fastest_spin", island.fastest_spin},
+          {"spin_time", worst.spin_time},
+          {"spinning", named(island.spinning)}};
+}
+
+}  // namespace
+
+std::string diagnosis_text(const Scene& scene, const RunResult& result) {
+  std::string text =
+      fmt::format("{}\nmethod: {}\n", scene.title.empty() ? scene.file : scene.title, method_text(scene));
+  if (result.diagnoses == 1 && !result.diagnosis.empty())
+    text += fmt::format("at t = {:.4g} s\n", result.diagnosis.front().rank_time);
+  else
+    text +=
+        fmt::format("the worst of {} poses from t = {:.4g} to {:.4g} s\n", result.diagnoses, result.start, result.time);
+  for (std::size_t k = 0; k < result.diagnosis.size() && k < most_islands; ++k)
+    text += island_text(scene, result.diagnosis[k], static_cast<int>(k));
+  if (result.diagnosis.size() > most_islands)
+    text += fmt::format("and {} more islands, all in --json\n", result.diagnosis.size() - most_islands);
+  const std::vector<Concern> concerns = concerns_about(scene, result.diagnosis, false);
+  for (const Concern& one : concerns) {
+    text += fmt::format("{}: {}\n", one.warning ? "warning" : "note", one.what);
+    if (!one.fix.empty()) text += fmt::format("  likely fix: {}\n", one.fix);
+  }
+  const std::string why = failure(scene, result);
+  if (!why.empty()) text += fmt::format("FAILED: {}\n", why);
+  if (concerns.empty() && why.empty()) text += "nothing speaks against this method\n";
+  return text;
+}
+
+std::string diagnosis_json(const Scene& scene, const RunResult& result) {
+  nlohmann::ordered_json json = {{"scene", scene.file},
+                                 {"title", scene.title},
+                                 {"method", method_text(scene)},
+                                 {"poses", result.diagnoses},
+                                 {"start", result.start},
+                                 {"time", result.time},
+                                 {"islands", nlohmann::ordered_json::array()}};
+  for (const WorstOfIsland& one : result.diagnosis) json["islands"].push_back(island_json(scene, one));
+  json["concerns"] = concerns_json(concerns_about(scene, result.diagnosis, false));
+  json["failure"] = failure(scene, result);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace cdot

@@ -1,0 +1,93 @@
+#include "runtime/tool/commands/list.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cdot/joints.hpp>
+
+namespace cdot {
+namespace {
+
+const char* kind_name(ParameterKind kind) {
+  switch (kind) {
+    case ParameterKind::point: return "point";
+    case ParameterKind::vector: return "vector";
+    case ParameterKind::unit: return "unit";
+    case ParameterKind::frame: return "frame";
+    case ParameterKind::scalar: return "scalar";
+  }
+  return "";
+}
+
+const char* kind_name(RowKind kind) {
+  switch (kind) {
+    case RowKind::equality: return "equality";
+    case RowKind::inequality: return "inequality";
+    case RowKind::velocity: return "velocity";
+  }
+  return "";
+}
+
+std::string body_name(const ParameterInfo& parameter) {
+  if (parameter.kind == ParameterKind::scalar) return "";
+  return parameter.body < 0 ? "world" : std::string(1, static_cast<char>('a' + parameter.body));
+}
+
+}  // namespace
+
+namespace {
+
+std::string list_text(Dimension dimension) {
+  std::string text;
+  for (const JointType& type : joint_types(dimension)) {
+    text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, type.bodies == 1 ? "body" : "bodies",
+                        type.row_kinds.size(), type.row_kinds.size() == 1 ? "" : "s");
+    for (const ParameterInfo& parameter : type.parameters) {
+      const std::string body = body_name(parameter);
+      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_name(parameter.kind), parameter.unit,
+                          body.empty() ? "" : " on " + body, parameter.has_default ? ", optional" : "");
+    }
+    for (const CoordinateInfo& coordinate : type.coordinates) {
+      text += fmt::format("    {:<12} coordinate [{}]: limit, motor, spring, damper, friction\n", coordinate.name,
+                          coordinate.unit);
+    }
+  }
+  return text;
+}
+
+void add_to(nlohmann::ordered_json& list, Dimension dimension) {
+  for (const JointType& type : joint_types(dimension)) {
+    nlohmann::ordered_json joint = {
+        {"type", type.name}, {"dimension", dimension == Dimension::planar ? 2 : 3}, {"bodies", type.bodies}};
+    for (const RowKind kind : type.row_kinds) joint["rows"].push_back(kind_name(kind));
+    joint["parameters"] = nlohmann::ordered_json::array();
+    for (const ParameterInfo& parameter : type.parameters) {
+      joint["parameters"].push_back({{"name", parameter.name},
+                                     {"kind", kind_name(parameter.kind)},
+                                     {"body", body_name(parameter)},
+                                     {"unit", parameter.unit},
+                                     {"has_default", parameter.has_default}});
+    }
+    joint["coordinates"] = nlohmann::ordered_json::array();
+    for (const CoordinateInfo& coordinate : type.coordinates) {
+      joint["coordinates"].push_back({{"name", coordinate.name}, {"unit", coordinate.unit}});
+    }
+    list.push_back(joint);
+  }
+}
+
+}  // namespace
+
+std::string list_text() {
+  return "In the plane (dimension = 2)\n\n" + list_text(Dimension::planar) + "\nIn space (dimension = 3)\n\n" +
+         list_text(Dimension::spatial);
+}
+
+std::string list_json() {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  add_to(list, Dimension::planar);
+  add_to(list, Dimension::spatial);
+  return list.dump(2) + "\n";
+}
+
+}  // namespace cdot

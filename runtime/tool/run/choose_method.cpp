@@ -1,0 +1,61 @@
+#include "runtime/tool/run/choose_method.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/tool/run/trajectory.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr int most_tries = 8;     // per integrator
+constexpr double finer = 0.01;    // share of the local error of the run that is compared with
+constexpr double finest = 1e-15;  // local error: beyond it there is only round-off
+constexpr double safety = 0.5;    // of the accuracy asked for
+
+Way way_of(Integrator integrator) { return {integrator, Solver::direct, Drift::projection, 0, false, true}; }
+
+double distance_between(const Trajectory& a, const Trajectory& b, Dimension dimension) {
+  double worst = a.finite && b.finite ? 0 : std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < std::min(a.frames.size(), b.frames.size()); ++k)
+    worst = std::max(worst, apart(a.frames[k], b.frames[k], dimension).larger());
+  return worst;
+}
+
+// The loosest local error found whose run is as near to a finer one as asked.
+Choice try_integrator(const Scene& scene, Integrator integrator) {
+  const Way way = way_of(integrator);
+  const std::vector<double> times = equal_times(scene.duration, looks_for_accuracy);
+  Choice best{integrator, 0, std::numeric_limits<double>::infinity(), false, 0};
+  double local_error = scene.accuracy;
+  for (int attempt = 0; attempt < most_tries && local_error > finest; ++attempt) {
+    const Trajectory run = trajectory_of(scene, way, {1, local_error}, times);
+    // The finer one begins with half the step: the same steps would hide the same error in both.
+    const Trajectory better = trajectory_of(scene, way, {2, finer * local_error}, times);
+    const double achieved = distance_between(run, better, scene.dimension);
+    if (achieved < best.achieved)
+      best = {integrator, local_error, achieved, achieved <= safety * scene.accuracy, run.counts.evaluations};
+    if (best.reached) break;
+    // Errors follow the local error about in proportion; a tenth at least, so that it comes to an end.
+    local_error *= std::clamp(0.5 * safety * scene.accuracy / achieved, 1e-4, 0.1);
+  }
+  return best;
+}
+
+}  // namespace
+
+Choice choose_method(const Scene& scene) {
+  const Choice fourth = try_integrator(scene, Integrator::rk4);
+  const Choice eighth = try_integrator(scene, Integrator::dop853);
+  if (fourth.reached != eighth.reached) return fourth.reached ? fourth : eighth;
+  if (!fourth.reached) return fourth.achieved < eighth.achieved ? fourth : eighth;
+  return fourth.evaluations < eighth.evaluations ? fourth : eighth;
+}
+
+Scene solved_by(const Choice& choice, Scene scene) {
+  scene.step = scene.duration / looks_for_accuracy;
+  scene.accuracy = 0;
+  return solved_by(way_of(choice.integrator), {1, choice.local_error}, std::move(scene));
+}
+
+}  // namespace cdot

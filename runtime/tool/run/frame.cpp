@@ -1,0 +1,119 @@
+#include "runtime/tool/run/frame.hpp"
+
+#include <cmath>
+
+#include <cdot/rotation.hpp>
+
+namespace cdot {
+namespace {
+
+// The cubic with values p, q and slopes u, v at the ends of a step of length h, at the share s of
+// it.
+double cubic(double p, double u, double q, double v, double h, double s) {
+  const double s2 = s * s, s3 = s2 * s;
+  return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * h * u + (3 * s2 - 2 * s3) * q + (s3 - s2) * h * v;
+}
+
+double linear(double p, double q, double s) { return (1 - s) * p + s * q; }
+
+template <class T>
+BodyState state_of(const planar::Place& q, const planar::Velocity<T>& v) {
+  return {q.x, q.y, q.angle, double(v.x), double(v.y), double(v.w)};
+}
+
+template <class T>
+BodyState state_of(const spatial::Place& q, const spatial::Velocity<T>& v) {
+  return {q.x,  q.y,  0,    double(v.x),  double(v.y),  0,           q.z, double(v.z), q.e0,
+          q.e1, q.e2, q.e3, double(v.wx), double(v.wy), double(v.wz)};
+}
+
+spatial::Pose<double> orientation_of(const BodyState& b) {
+  return spatial::oriented(0.0, 0.0, 0.0, b.e0, b.e1, b.e2, b.e3);
+}
+
+// The orientation at the share s of a step: the rotation vector from its start goes along the cubic
+// whose slopes are those of the angular velocities; at the end dr/dt = w - r x w / 2 + r x (r x w)
+// / 12, to fourth order.
+void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState& to) {
+  using Vector = spatial::Vector<double>;
+  const auto from = orientation_of(a);
+  const Vector r = spatial::turn_between(from, orientation_of(b)), w = {b.wx, b.wy, b.wz};
+  const Vector across = spatial::cross(r, w);
+  const Vector end = w - 0.5 * across + (1.0 / 12) * spatial::cross(r, across);
+  const auto q = spatial::turned_by(from, Vector{cubic(0, a.wx, r.x, end.x, h, s), cubic(0, a.wy, r.y, end.y, h, s),
+                                                 cubic(0, a.wz, r.z, end.z, h, s)});
+  to.e0 = q.e0, to.e1 = q.e1, to.e2 = q.e2, to.e3 = q.e3;
+  to.wx = linear(a.wx, b.wx, s), to.wy = linear(a.wy, b.wy, s), to.wz = linear(a.wz, b.wz, s);
+}
+
+// How far apart two times may be and still be the same, relative to a step.
+constexpr double same_time = 1e-6;
+
+}  // namespace
+
+template <class S>
+Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
+  Frame frame;
+  frame.time = time;
+  frame.bodies.reserve(static_cast<std::size_t>(bodies));
+  for (int k = 0; k < bodies; ++k) frame.bodies.push_back(state_of(world.place(k), world.velocity(k)));
+  frame.energy = world.energy();
+  frame.worst = world.worst_position_error();
+  return frame;
+}
+
+#define CDOT_INSTANTIATE(S) template Frame frame_of(const BasicWorld<S>&, double, int);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+CDOT_FOR_EACH_EXTENDED_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+bool finite(const Frame& frame) {
+  for (const BodyState& b : frame.bodies) {
+    if (!std::isfinite(b.x + b.y + b.z + b.angle + b.vx + b.vy + b.vz + b.w)) return false;
+    if (!std::isfinite(b.e0 + b.e1 + b.e2 + b.e3 + b.wx + b.wy + b.wz)) return false;
+  }
+  return true;
+}
+
+Frame between(const Frame& before, const Frame& after, double time) {
+  const double h = after.time - before.time, s = (time - before.time) / h;
+  Frame frame = after;
+  frame.time = time;
+  for (std::size_t k = 0; k < frame.bodies.size(); ++k) {
+    const BodyState &a = before.bodies[k], &b = after.bodies[k];
+    frame.bodies[k] = {cubic(a.x, a.vx, b.x, b.vx, h, s),
+                       cubic(a.y, a.vy, b.y, b.vy, h, s),
+                       cubic(a.angle, a.w, b.angle, b.w, h, s),
+                       linear(a.vx, b.vx, s),
+                       linear(a.vy, b.vy, s),
+                       linear(a.w, b.w, s),
+                       cubic(a.z, a.vz, b.z, b.vz, h, s),
+                       linear(a.vz, b.vz, s)};
+    turn(a, b, h, s, frame.bodies[k]);
+  }
+  frame.energy = linear(before.energy, after.energy, s);
+  return frame;
+}
+
+Sampler::Sampler(std::vector<double> ascending_times, Take take)
+    : times_(std::move(ascending_times)), take_(std::move(take)) {}
+
+void Sampler::step(const Frame& before, const Frame& after) {
+  const double slack = same_time * (after.time - before.time);
+  for (; next_ < times_.size() && times_[next_] <= after.time + slack; ++next_) {
+    const double time = times_[next_];
+    const bool at_end = std::abs(time - after.time) <= slack;
+    Frame frame = at_end ? after : between(before, after, time);
+    frame.time = time;
+    take_(frame);
+  }
+}
+
+std::vector<double> every(double dt, double until) {
+  std::vector<double> times;
+  const auto last = static_cast<long long>(std::floor(until / dt * (1 + 1e-12)));
+  for (long long k = 0; k <= last; ++k) times.push_back(static_cast<double>(k) * dt);
+  return times;
+}
+
+}  // namespace cdot

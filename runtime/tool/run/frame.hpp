@@ -1,0 +1,50 @@
+// The state of a scene at one time, and frames picked at the times that somebody asked for. Steps
+// are never shortened to hit such a time: what is written does not change what is simulated.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <cdot/world.hpp>
+
+namespace cdot {
+
+struct BodyState {
+  double x, y, angle, vx, vy, w;  // in space without meaning: angle, w
+  double z = 0, vz = 0;           // and the rest only in space
+  double e0 = 1, e1 = 0, e2 = 0, e3 = 0, wx = 0, wy = 0, wz = 0;
+};
+
+struct Frame {
+  double time = 0;
+  std::vector<BodyState> bodies;
+  double energy = 0;  // [J]
+  WorstError worst;   // |C| of the joint that is off most [m], [rad]
+};
+
+template <class S>
+Frame frame_of(const BasicWorld<S>& world, double time, int bodies);
+bool finite(const Frame& frame);
+
+// Between two steps: positions by the cubic that has both ends' positions and velocities, the rest
+// linear. Its error is of fourth order in the step, that of the step itself of first.
+Frame between(const Frame& before, const Frame& after, double time);
+
+// Hands on the frames at given times as the steps go by.
+class Sampler {
+ public:
+  using Take = std::function<void(const Frame&)>;
+  Sampler(std::vector<double> ascending_times, Take take);
+  // `before` and `after` are the ends of a step, equal at the start.
+  void step(const Frame& before, const Frame& after);
+
+ private:
+  std::vector<double> times_;
+  std::size_t next_ = 0;
+  Take take_;
+};
+
+// 0, dt, 2 dt, … up to `until`.
+std::vector<double> every(double dt, double until);
+
+}  // namespace cdot

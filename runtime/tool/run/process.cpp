@@ -1,0 +1,27 @@
+#include "runtime/tool/run/process.hpp"
+
+#include <csignal>
+#include <ctime>
+
+namespace cdot {
+namespace {
+
+volatile std::sig_atomic_t interrupted = 0;
+void interrupt(int) { interrupted = 1; }
+
+}  // namespace
+
+double cpu_now() {
+  timespec now{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Interrupt::Interrupt() {
+  interrupted = 0;
+  previous_ = std::signal(SIGINT, interrupt);
+}
+Interrupt::~Interrupt() { std::signal(SIGINT, previous_); }
+bool Interrupt::asked() { return interrupted != 0; }
+
+}  // namespace cdot

@@ -1,0 +1,150 @@
+// What cdot-run says at the end of a run, for people and for programs.
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/tool/run/simulate.hpp"
+
+namespace cdot {
+
+namespace {
+
+// The name of a body or a joint; empty if there is none.
+template <class List>
+std::string name_in(const List& list, int index) {
+  const bool known = index >= 0 && static_cast<std::size_t>(index) < list.size();
+  return known ? list[static_cast<std::size_t>(index)].name : std::string();
+}
+
+std::string failed_step_text(const Scene& scene, const StepResult& step) {
+  return fmt::format("{}. Likely fix: {}",
+                     in_words(step, fmt::format("body \"{}\"", name_in(scene.bodies, step.body)),
+                              fmt::format("joint \"{}\"", name_in(scene.joints, step.joint))),
+                     likely_fix(step.problem, scene.on_failure));
+}
+
+nlohmann::ordered_json failed_step_json(const Scene& scene, const StepResult& step) {
+  return {{"problem", name_of(step.problem)},
+          {"time", step.time},
+          {"length", step.length},
+          {"island", step.island},
+          {"body", name_in(scene.bodies, step.body)},
+          {"joint", name_in(scene.joints, step.joint)},
+          {"row", step.row + 1}};
+}
+
+}  // namespace
+
+std::string failure(const Scene& scene, const RunResult& result) {
+  if (result.failed_step) return failed_step_text(scene, *result.failed_step);
+  if (!result.finite) return fmt::format("unstable: not finite at t = {:.6g} s", result.time);
+  if (result.worst_error > scene.tolerance) {
+    return fmt::format("joint \"{}\" is off by {:.3g} at t = {:.6g} s, more than the tolerance of {:.3g}",
+                       result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance);
+  }
+  if (result.choice && !result.choice->reached)
+    return fmt::format("the accuracy of {:.1e} was not reached: two runs differ by {:.1e}; a shorter run may reach it",
+                       scene.accuracy, result.choice->achieved);
+  return {};
+}
+
+namespace {
+
+std::string own_steps_text(const StepCounts& counts) {
+  std::string text =
+      fmt::format("  own steps       {}, from {:.3g} s to {:.3g} s", counts.taken, counts.shortest, counts.longest);
+  if (counts.rejected > 0) text += fmt::format(", {} rejected", counts.rejected);
+  if (counts.events > 0) text += fmt::format(", {} event{} located", counts.events, counts.events == 1 ? "" : "s");
+  return text + "\n";
+}
+
+std::string choice_text(const Scene& scene, const Choice& choice) {
+  return fmt::format(
+      "  accuracy        {:.1e} asked for: {}, local error {:.1e}; {:.1e} achieved, from a run of a hundredth of "
+      "that{}\n",
+      scene.accuracy, name_of(integrators, choice.integrator), choice.local_error, choice.achieved,
+      choice.reached ? "" : ": NOT reached");
+}
+
+nlohmann::ordered_json choice_json(const Scene& scene, const Choice& choice) {
+  return {{"asked", scene.accuracy},           {"integrator", name_of(integrators, choice.integrator)},
+          {"local_error", choice.local_error}, {"achieved", choice.achieved},
+          {"reached", choice.reached},         {"evaluations", choice.evaluations}};
+}
+
+}  // namespace
+
+std::string summary_text(const Scene& scene, const RunResult& result) {
+  std::string text = fmt::format("{}\n", scene.title.empty() ? scene.file : scene.title);
+  text += fmt::format("  bodies, joints  {}, {}\n", scene.bodies.size(), scene.joints.size());
+  const bool own_steps = result.choice || scene.settings.local_error > 0;
+  text += fmt::format("  time            {:.6g} s", result.time);
+  if (!own_steps) text += fmt::format(" in {} steps of {:.6g} s", result.steps, scene.step);
+  if (result.start > 0) text += fmt::format(", from the state at {:.6g} s", result.start);
+  text += "\n";
+  if (scene.single) text += "  precision       float\n";
+  if (own_steps) text += own_steps_text(result.counts);
+  if (result.counts.rescued > 0)
+    text += fmt::format("  left to Euler   {} times a step that passed events without end, or whose error was absurd\n",
+                        result.counts.rescued);
+  if (result.choice) text += choice_text(scene, *result.choice);
+  text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
+                      result.steps > 0 ? 1e6 * result.cpu / static_cast<double>(result.steps) : 0.0);
+  if (!result.worst_joint.empty()) {
+    text += fmt::format("  worst |C|       {:.3g} (joint \"{}\", t = {:.6g} s)\n", result.worst_error,
+                        result.worst_joint, result.worst_error_time);
+  }
+  text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, at most {:.3g} J apart\n",
+                      result.energy_start, result.energy_end, result.energy_drift);
+  if (result.redundant_rows > 0) text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
+  if (result.counts.retried > 0)
+    text += fmt::format("  retried         {} step{} failed and went well in parts, {} of them by the direct solver\n",
+                        result.counts.retried, result.counts.retried == 1 ? "" : "s", result.counts.direct);
+  for (const std::string& joint : result.broken_joints) text += fmt::format("  broken          \"{}\"\n", joint);
+  for (const std::string& note : result.notes) text += fmt::format("  note            {}\n", note);
+  for (const Concern& concern : concerns_about(scene, result.diagnosis, true))
+    text += fmt::format("  warning         {}. Likely fix: {}\n", concern.what, concern.fix);
+  const std::string why = failure(scene, result);
+  if (!why.empty()) text += fmt::format("  FAILED          {}\n", why);
+  return text;
+}
+
+std::string summary_json(const Scene& scene, const RunResult& result) {
+  const std::string why = failure(scene, result);
+  nlohmann::ordered_json json = {
+      {"scene", scene.file},
+      {"title", scene.title},
+      {"ok", why.empty()},
+      {"failure", why},
+      {"bodies", scene.bodies.size()},
+      {"joints", scene.joints.size()},
+      {"start", result.start},
+      {"time", result.time},
+      {"precision", name_of(precisions, scene.single)},
+      {"step", scene.step},
+      {"steps", result.steps},
+      {"cpu", result.cpu},
+      {"worst_error", result.worst_error},
+      {"worst_error_joint", result.worst_joint},
+      {"worst_error_time", result.worst_error_time},
+      {"energy_start", result.energy_start},
+      {"energy_end", result.energy_end},
+      {"energy_drift", result.energy_drift},
+      {"redundant_rows", result.redundant_rows},
+      {"retried", {{"steps", result.counts.retried}, {"direct", result.counts.direct}}},
+      {"broken_joints", result.broken_joints},
+      {"notes", result.notes},
+      {"concerns", concerns_json(concerns_about(scene, result.diagnosis, true))},
+  };
+  if (result.counts.taken > 0)
+    json["own_steps"] = {{"taken", result.counts.taken},
+                         {"rejected", result.counts.rejected},
+                         {"events", result.counts.events},
+                         {"rescued", result.counts.rescued}};
+  if (result.failed_step) json["failed_step"] = failed_step_json(scene, *result.failed_step);
+  if (result.choice) json["accuracy"] = choice_json(scene, *result.choice);
+  return json.dump(2) + "\n";
+}
+
+}  // namespace cdot

@@ -1,0 +1,228 @@
+#include "runtime/tool/run/simulate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ctime>
+#include <fmt/format.h>
+
+#include "runtime/tool/run/process.hpp"
+
+namespace cdot {
+namespace {
+
+// [m], [rad], and per second: what a start may be off unreported, and how well it is projected.
+template <class T>
+constexpr double start_tolerance = std::is_same_v<T, float> ? 1e-4 : 1e-6;
+template <class T>
+constexpr double start_projected = by_precision<T>(1e-5, 1e-12);
+
+// A line on stderr that is written over, at most a few times a second.
+class Progress {
+ public:
+  Progress(bool wanted, double until) : wanted_(wanted), until_(until) {}
+  ~Progress() {
+    if (shown_) fmt::print(stderr, "\r{:60}\r", "");
+  }
+  void at(double time) {
+    if (!wanted_ || ++calls_ % 64 != 0) return;
+    const std::time_t now = std::time(nullptr);
+    if (now == last_) return;
+    if (last_ != 0) {
+      fmt::print(stderr, "\r{:3.0f} %  {:.4g} s of {:.4g} s", 100 * time / until_, time, until_);
+      shown_ = true;
+    }
+    last_ = now;
+  }
+
+ private:
+  bool wanted_, shown_ = false;
+  double until_;
+  unsigned calls_ = 0;
+  std::time_t last_ = 0;
+};
+
+void judge(const Scene& scene, const Frame& frame, RunResult& result) {
+  const WorstError& worst = frame.worst;
+  if (worst.joint >= 0 && worst.value >= result.worst_error) {
+    result.worst_error = worst.value;
+    result.worst_error_time = frame.time;
+    result.worst_joint = scene.joints[static_cast<std::size_t>(worst.joint)].name;
+  }
+  result.finite = finite(frame) && std::isfinite(worst.value);
+  result.energy_drift = std::max(result.energy_drift, std::abs(frame.energy - result.energy_start));
+  result.energy_end = frame.energy;
+  result.time = frame.time;
+}
+
+template <class S>
+void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
+  for (std::size_t k = 0; k < scene.joints.size(); ++k) {
+    if (world.broken(static_cast<int>(k))) result.broken_joints.push_back(scene.joints[k].name);
+  }
+  result.redundant_rows = world.redundant_rows();
+  result.counts = world.step_counts();
+  for (const Note& note : world.notes()) {
+    const std::string& joint = scene.joints[static_cast<std::size_t>(note.joint)].name;
+    result.notes.push_back(fmt::format("joint \"{}\" {}", joint, note.text));
+  }
+  result.interrupted = Interrupt::asked();
+}
+
+// A method that chooses its steps gives the state at any time by its own interpolant: none has to be guessed between
+// two.
+std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
+  std::vector<double> ends = every(scene.step, scene.duration);
+  ends.push_back(scene.duration);
+  for (const auto* times : {&options.row_times, &options.film_times})
+    for (double time : *times)
+      if (time <= scene.duration) ends.push_back(time);
+  std::sort(ends.begin(), ends.end());
+  // Times that only round-off tells apart are one.
+  const double same = 1e-9 * scene.duration;
+  ends.erase(std::unique(ends.begin(), ends.end(), [&](double a, double b) { return b - a < same; }), ends.end());
+  return ends;
+}
+
+constexpr double same_time = 1e-9;  // of the duration
+
+// The times at which steps end: those of a run that goes on from a state are those of the run that it was taken from.
+class Steps {
+ public:
+  Steps(const Scene& scene, const RunOptions& options) : step_(scene.step), start_(options.from.time()) {
+    if (!(start_ < scene.duration * (1 - 1e-12)))
+      throw Error(fmt::format("the state is that at {:.6g} s and the run ends at {:.6g} s: nothing is left to do",
+                              start_, scene.duration));
+    if (scene.settings.local_error > 0) {
+      ends_ = own_ends(scene, options);
+      const auto later = std::upper_bound(ends_.begin(), ends_.end(), start_ + same_time * scene.duration);
+      first_ = later - ends_.begin() - 1;
+      count_ = static_cast<long long>(ends_.size()) - first_ - 1;
+      if (std::abs(time(0) - start_) > same_time * scene.duration) ends_[static_cast<std::size_t>(first_)] = start_;
+    } else {
+      first_ = std::llround(start_ / step_);
+      if (std::abs(time(0) - start_) > 1e-6 * step_) first_ = 0, offset_ = start_;
+      count_ = static_cast<long long>(std::ceil((scene.duration - time(0)) / step_ * (1 - 1e-12)));
+    }
+  }
+  long long count() const { return count_; }
+  // Of the end of so many steps.
+  double time(long long k) const {
+    return ends_.empty() ? offset_ + static_cast<double>(first_ + k) * step_
+                         : ends_[static_cast<std::size_t>(first_ + k)];
+  }
+  double length(long long k) const { return ends_.empty() ? step_ : time(k) - time(k - 1); }
+
+ private:
+  double step_, start_, offset_ = 0;
+  std::vector<double> ends_;
+  long long first_ = 0, count_ = 0;
+};
+
+// Those that a run from there on still meets.
+std::vector<double> from_time(std::vector<double> times, double start, double step) {
+  times.erase(times.begin(), std::lower_bound(times.begin(), times.end(), start - 1e-6 * step));
+  return times;
+}
+
+template <class S>
+BasicWorld<S> world_of_run(const Scene& scene, const RunOptions& options, std::string& warnings) {
+  if (options.from.empty()) return world_at_start<S>(scene, warnings);
+  BasicWorld<S> world = build_world_in<S>(scene);
+  try {
+    world.restore(options.from);
+  } catch (const Error& error) {
+    throw Error(fmt::format("the state does not fit {}: {}", scene.file, error.what()));
+  }
+  return world;
+}
+
+template <class S>
+void look(const Scene& scene, BasicWorld<S>& world, RunResult& result) {
+  add_diagnosis(diagnose(world, scene.step / scene.settings.substeps), world.time(), result.diagnosis);
+  ++result.diagnoses;
+}
+
+template <class S>
+RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string& warnings) {
+  RunResult result;
+  BasicWorld<S> world = world_of_run<S>(scene, options, warnings);
+  const Steps steps(scene, options);
+  result.start = steps.time(0);
+  Sampler rows(
+      from_time(options.row_times, result.start, scene.step), options.row ? options.row : [](const Frame&) {});
+  Sampler film(from_time(options.film_times, result.start, scene.step),
+               [&](const Frame& frame) { result.film.push_back(frame); });
+  const bool every_step = options.row && options.row_times.empty();
+  Progress progress(options.progress, scene.duration);
+  const Interrupt interrupt;
+
+  const int bodies = static_cast<int>(scene.bodies.size());
+  Frame before = frame_of(world, result.start, bodies), after = before;
+  result.energy_start = before.energy;
+  auto next_diagnosis = options.diagnose_times.begin();
+  for (long long k = 0;; ++k) {
+    judge(scene, after, result);
+    if (!result.finite) break;
+    if (every_step) options.row(after);
+    rows.step(before, after);
+    film.step(before, after);
+    if (options.keep_state && result.state.empty() && after.time >= *options.keep_state * (1 - 1e-12))
+      result.state = world.snapshot();
+    const auto due =
+        std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
+    if (due != next_diagnosis) look(scene, world, result);
+    next_diagnosis = due;
+    if (k == steps.count() || Interrupt::asked()) break;
+    const double start = cpu_now();
+    const StepResult step = world.step(steps.length(k + 1));
+    result.cpu += cpu_now() - start;
+    if (!step) {
+      result.failed_step = step;
+      if (options.keep_state && result.state.empty()) result.state = world.snapshot();
+      if (!options.diagnose_times.empty()) look(scene, world, result);
+      break;
+    }
+    result.steps = k + 1;
+    std::swap(before, after);
+    after = frame_of(world, steps.time(k + 1), bodies);
+    progress.at(after.time);
+  }
+  finish(scene, world, result);
+  return result;
+}
+
+}  // namespace
+
+template <class S>
+BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
+  BasicWorld<S> world = build_world_in<S>(scene);
+  if (scene.project && !world.project(start_projected<typename S::Scalar>)) {
+    warnings +=
+        fmt::format("{}: warning: the start could not be projected: joints contradict each other\n", scene.file);
+  }
+  warnings += inconsistency_report(scene, world, start_tolerance<typename S::Scalar>);
+  world.prepare();
+  return world;
+}
+
+RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings) {
+  if (scene.accuracy > 0) {
+    const Choice choice = choose_method(scene);
+    const Scene chosen = solved_by(choice, scene);
+    RunResult result = simulate(chosen, options, warnings);
+    result.choice = choice;
+    return result;
+  }
+  if (scene.dimension == Dimension::planar)
+    return scene.single ? simulate_in<Planar<float>>(scene, options, warnings)
+                        : simulate_in<Planar<double>>(scene, options, warnings);
+  return scene.single ? simulate_in<Spatial<float>>(scene, options, warnings)
+                      : simulate_in<Spatial<double>>(scene, options, warnings);
+}
+
+#define CDOT_INSTANTIATE(S) template BasicWorld<S> world_at_start(const Scene&, std::string&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+CDOT_FOR_EACH_EXTENDED_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

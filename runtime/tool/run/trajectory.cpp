@@ -1,0 +1,160 @@
+#include "runtime/tool/run/trajectory.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <cdot/rotation.hpp>
+
+#include "runtime/tool/run/process.hpp"
+#include "runtime/tool/run/simulate.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr double least_measured = 2e-3;  // [s]: a shorter run is repeated,
+constexpr int most_repeats = 16;         // but no more often: every run builds a World, which may cost more than it
+
+// Calls after_step() after every step(h), and at_sample(time, cpu so far) at every one of the times, until that returns
+// false.
+template <class S, class F, class G>
+void run(BasicWorld<S>& world, const Knob& knob, const std::vector<double>& times, F after_step, G at_sample) {
+  double from = 0, cpu = 0;
+  for (const double to : times) {
+    const double h = (to - from) / knob.steps;
+    const double start = cpu_now();
+    for (int k = 0; k < knob.steps; ++k) {
+      world.step(h);
+      after_step();
+    }
+    cpu += cpu_now() - start;
+    if (!at_sample(to, cpu)) return;
+    from = to;
+  }
+}
+
+template <class T, class Random>
+void move_body(World<T>& world, int body, const Nudge& by, Random off) {
+  const auto q = world.place(body);
+  const auto v = world.velocity(body);
+  world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.w + by.spin * off()});
+  world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.angle + by.angle * off()});
+}
+// The velocity first: a body whose tensor turns with it takes its momentum from both.
+template <class T, class Random>
+void move_body(SpatialWorld<T>& world, int body, const Nudge& by, Random off) {
+  const auto q = world.place(body);
+  const auto v = world.velocity(body);
+  const auto turned =
+      spatial::turned_by(world.pose(body), {T(by.angle * off()), T(by.angle * off()), T(by.angle * off())});
+  world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.z + by.speed * off(),
+                            v.wx + by.spin * off(), v.wy + by.spin * off(), v.wz + by.spin * off()});
+  world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.z + by.position * off(),
+                        double(turned.e0), double(turned.e1), double(turned.e2), double(turned.e3)});
+}
+
+template <class S>
+void move_start(BasicWorld<S>& world, int bodies, const Nudge& by) {
+  if (by.position == 0 && by.angle == 0 && by.speed == 0 && by.spin == 0) return;
+  std::mt19937 random(by.seed);
+  // -1 to 1, of the generator's own bits: the same with every library.
+  const auto off = [&] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
+  for (int body = 0; body < bodies; ++body)
+    if (!world.is_static(body)) move_body(world, body, by, off);
+  world.project(0);
+}
+
+// What joints and energy are off by, at worst.
+template <class S>
+class Onlooker {
+ public:
+  Onlooker(const BasicWorld<S>& world, Trajectory& trajectory) : world_(world), trajectory_(trajectory) {}
+  void look() {
+    const double start = cpu_now();
+    trajectory_.C = std::max(trajectory_.C, world_.worst_position_error().value);
+    trajectory_.Cdot = std::max(trajectory_.Cdot, world_.worst_velocity_error().value);
+    const double energy = world_.energy();
+    trajectory_.least_energy = first_ ? energy : std::min(trajectory_.least_energy, energy);
+    trajectory_.most_energy = first_ ? energy : std::max(trajectory_.most_energy, energy);
+    first_ = false;
+    trajectory_.looking += cpu_now() - start;
+  }
+
+ private:
+  const BasicWorld<S>& world_;
+  Trajectory& trajectory_;
+  bool first_ = true;
+};
+
+}  // namespace
+
+Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
+                         const Stop& stop, const Nudge& nudge, bool watched) {
+  return in_space_of(scene, way, [&]<class S>(S) {
+    Trajectory trajectory;
+    std::string warnings;  // the caller has seen them: they are the scene's, not the way's
+    BasicWorld<S> world = world_at_start<S>(solved_by(way, knob, scene), warnings);
+    const int bodies = static_cast<int>(scene.bodies.size());
+    move_start(world, bodies, nudge);
+    Onlooker<S> onlooker(world, trajectory);
+    const auto after_step = [&] {
+      if (watched) onlooker.look();
+    };
+    run(world, knob, times, after_step, [&](double time, double cpu) {
+      trajectory.cpu = watched ? cpu - trajectory.looking : cpu;
+      if (!watched) onlooker.look();
+      trajectory.counts = world.step_counts();
+      const Frame frame = frame_of(world, time, bodies);
+      trajectory.finite = finite(frame);
+      if (!trajectory.finite) return false;
+      trajectory.frames.push_back(frame);
+      trajectory.stopped = stop && stop();
+      return !trajectory.stopped;
+    });
+    return trajectory;
+  });
+}
+
+double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
+              const Stop& stop) {
+  return in_space_of(scene, way, [&]<class S>(S) {
+    const Scene own = solved_by(way, knob, scene);
+    std::string warnings;
+    double total = 0;
+    int runs = 0;
+    for (bool stopped = false; !stopped && total < least_measured && runs < most_repeats; ++runs) {
+      BasicWorld<S> world = world_at_start<S>(own, warnings);
+      double whole = 0;
+      const auto nothing = [] {};
+      run(world, knob, times, nothing, [&](double, double cpu) {
+        whole = cpu;
+        stopped = stop && stop();
+        return !stopped;
+      });
+      total += whole;
+    }
+    return total / runs;
+  });
+}
+
+Apart apart(const Frame& a, const Frame& b, Dimension dimension) {
+  const auto orientation = [](const BodyState& s) { return spatial::oriented(0.0, 0.0, 0.0, s.e0, s.e1, s.e2, s.e3); };
+  Apart worst;
+  for (std::size_t k = 0; k < a.bodies.size(); ++k) {
+    const BodyState &is = a.bodies[k], &was = b.bodies[k];
+    const double turned = dimension == Dimension::planar
+                              ? std::abs(is.angle - was.angle)
+                              : spatial::norm(spatial::turn_between(orientation(is), orientation(was)));
+    worst.position = std::max(worst.position, std::hypot(is.x - was.x, is.y - was.y, is.z - was.z));
+    worst.angle = std::max(worst.angle, turned);
+  }
+  return worst;
+}
+
+std::vector<double> equal_times(double until, int count) {
+  std::vector<double> times;
+  for (int k = 1; k <= count; ++k) times.push_back(until * k / count);
+  return times;
+}
+
+}  // namespace cdot

@@ -1,0 +1,75 @@
+#include "runtime/tool/run/worst.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+namespace cdot {
+namespace {
+
+Names names_of(const Scene& scene) {
+  return {[&](int body) { return body_name(scene, body); }, [&](int joint) { return joint_name(scene, joint); }};
+}
+
+void add_island(const Diagnosis::Island& now, double time, WorstOfIsland& worst) {
+  Diagnosis::Island& kept = worst.island;
+  if (now.rank < kept.rank || now.redundant.size() > kept.redundant.size()) {
+    kept.rows = now.rows, kept.rank = now.rank, kept.redundant = now.redundant;
+    worst.rank_time = time;
+  }
+  if (now.condition > kept.condition) {
+    kept.condition = now.condition, kept.smallest_pivot = now.smallest_pivot, kept.weakest = now.weakest;
+    worst.condition_time = time;
+  }
+  if (now.stiffest.square > kept.stiffest.square) kept.stiffest = now.stiffest, worst.stiffest_time = time;
+  if (now.fastest_spin > kept.fastest_spin) {
+    kept.fastest_spin = now.fastest_spin, kept.spinning = now.spinning;
+    worst.spin_time = time;
+  }
+  kept.farthest = std::max(kept.farthest, now.farthest);
+}
+
+}  // namespace
+
+std::string body_name(const Scene& scene, int body) {
+  const auto at = static_cast<std::size_t>(body);
+  return body >= 0 && at < scene.bodies.size() ? "\"" + scene.bodies[at].name + "\"" : "nothing";
+}
+std::string joint_name(const Scene& scene, int joint) {
+  const auto at = static_cast<std::size_t>(joint);
+  return joint >= 0 && at < scene.joints.size() ? "\"" + scene.joints[at].name + "\"" : "no joint";
+}
+
+std::vector<double> diagnose_times(double duration, int count) {
+  std::vector<double> times;
+  for (int k = 0; k < count; ++k) times.push_back(duration * k / count);
+  return times;
+}
+
+void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>& worst) {
+  for (const Diagnosis::Island& island : now.islands) {
+    const auto known = std::find_if(worst.begin(), worst.end(), [&](const WorstOfIsland& one) {
+      return !one.island.bodies.empty() && !island.bodies.empty() && one.island.bodies.front() == island.bodies.front();
+    });
+    if (known != worst.end()) add_island(island, time, *known);
+    else worst.push_back({island, time, time, time, time});
+  }
+}
+
+std::vector<Concern> concerns_about(const Scene& scene, const std::vector<WorstOfIsland>& worst, bool warnings_only) {
+  std::vector<Concern> all;
+  for (const WorstOfIsland& one : worst)
+    for (Concern& concern : concerns_about(one.island, scene.settings, scene.single,
+                                           scene.step / scene.settings.substeps, names_of(scene)))
+      if ((concern.warning || !warnings_only) && std::find(all.begin(), all.end(), concern) == all.end())
+        all.push_back(std::move(concern));
+  return all;
+}
+
+nlohmann::ordered_json concerns_json(const std::vector<Concern>& concerns) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const Concern& one : concerns)
+    json.push_back({{"level", one.warning ? "warning" : "note"}, {"what", one.what}, {"fix", one.fix}});
+  return json;
+}
+
+}  // namespace cdot

@@ -1,0 +1,136 @@
+// From a scene to a World: the names are gone, what the World refuses is reported in the lines of
+// the scene.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <limits>
+
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot {
+namespace {
+
+template <class S>
+void add_effects(BasicWorld<S>& world, int joint, const SceneJoint& source) {
+  for (const SceneEffects& effects : source.effects) {
+    const std::string& coordinate = effects.coordinate;
+    if (effects.limit) add_limit(world, joint, coordinate, *effects.limit);
+    if (effects.motor) add_motor(world, joint, coordinate, *effects.motor);
+    for (const SceneSpring& spring : effects.springs) {
+      const double rest = spring.rest ? *spring.rest : world.coordinate(joint, coordinate);
+      add_spring(world, joint, coordinate, {spring.softness, rest});
+    }
+    if (effects.friction) add_friction(world, joint, coordinate, *effects.friction);
+  }
+  if (source.breaking) set_breaking_load(world, joint, *source.breaking);
+}
+
+template <class S>
+void add_joint(BasicWorld<S>& world, const SceneJoint& source) {
+  JointDefinition definition = source.definition;
+  for (int& body : definition.bodies) body = body == world_body ? world.ground() : body;
+  add_effects(world, world.add_joint(definition), source);
+}
+
+template <class S>
+void add_spring(BasicWorld<S>& world, SpringDefinition spring) {
+  for (int* body : {&spring.body_a, &spring.body_b}) *body = *body == world_body ? world.ground() : *body;
+  world.add_spring(spring);
+}
+
+// "C2 = -0.25, Cdot1 = -3": positions first; rows are numbered where there are several.
+std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::size_t joint_rows) {
+  std::string list;
+  for (const bool velocity : {false, true}) {
+    for (const Inconsistency& row : rows) {
+      if (row.joint != joint || row.velocity != velocity) continue;
+      const std::string number = joint_rows > 1 ? std::to_string(row.row + 1) : "";
+      list += fmt::format("{}{}{} = {:.3g}", list.empty() ? "" : ", ", velocity ? "Cdot" : "C", number, row.value);
+    }
+  }
+  return list;
+}
+
+constexpr int most_told = 5;  // joints that the start does not fit; of others their number
+
+// A scene whose bodies are all far away, against how far they are apart, is counted from among them.
+constexpr double far_away = 1000;
+
+Vec3 position_of(const SceneBody& body, Dimension dimension) {
+  if (dimension == Dimension::planar) return {body.definition.x, body.definition.y, 0};
+  return {body.spatial.x, body.spatial.y, body.spatial.z};
+}
+
+template <class S>
+void choose_origin(const Scene& scene, BasicWorld<S>& world) {
+  if (scene.bodies.empty()) return;
+  Vec3 centre;
+  double apart = 1, distance = 0;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const SceneBody& body : scene.bodies) {
+      const double x = position_of(body, S::dimension)[axis];
+      low = std::min(low, x);
+      high = std::max(high, x);
+    }
+    centre[axis] = double(float(std::round(0.5 * (low + high))));  // exact in either precision
+    apart = std::max(apart, high - low);
+    distance = std::max(distance, std::abs(centre[axis]));
+  }
+  if (distance > far_away * apart) world.set_origin(centre[0], centre[1], centre[2]);
+}
+
+}  // namespace
+
+template <class S>
+BasicWorld<S> build_world_in(const Scene& scene) {
+  BasicWorld<S> world(scene.settings);
+  choose_origin(scene, world);
+  world.on_failure(scene.on_failure);
+  for (const SceneBody& body : scene.bodies) {
+    if constexpr (S::dimension == Dimension::planar) world.add_body(body.definition);
+    else world.add_body(body.spatial);
+  }
+  std::string report;
+  int mistakes = 0;
+  for (const SceneJoint& joint : scene.joints) {
+    try {
+      add_joint(world, joint);
+    } catch (const Error& error) {
+      report += scene.source->paragraph("error", joint.where, fmt::format("{}: {}", joint.name, error.what()), "");
+      ++mistakes;
+    }
+  }
+  if (mistakes > 0) throw SceneError(report, mistakes);
+  for (const SpringDefinition& spring : scene.springs) add_spring(world, spring);
+  return world;
+}
+
+template <class S>
+std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance) {
+  std::string report;
+  const std::vector<Inconsistency> rows = world.inconsistencies(tolerance);
+  int told = 0;
+  for (int joint = 0; joint < world.joint_count(); ++joint) {
+    const SceneJoint& source = scene.joints[static_cast<std::size_t>(joint)];
+    const std::string list = rows_text(rows, joint, world.joint_type(joint).row_kinds.size());
+    if (list.empty() || ++told > most_told) continue;
+    report += scene.source->paragraph(
+        "warning", source.where,
+        fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name, list),
+        "correct the pose or velocity, or let project = true move the bodies onto their joints");
+  }
+  if (told > most_told)
+    report +=
+        fmt::format("warning: nor does it fit {} more joint{}\n", told - most_told, told == most_told + 1 ? "" : "s");
+  return report;
+}
+
+#define CDOT_INSTANTIATE(S)                               \
+  template BasicWorld<S> build_world_in<S>(const Scene&); \
+  template std::string inconsistency_report(const Scene&, const BasicWorld<S>&, double);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+CDOT_FOR_EACH_EXTENDED_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

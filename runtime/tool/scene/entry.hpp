@@ -1,0 +1,83 @@
+// One table of a scene file, read key by key: types, ranges, `repeat`, and the keys that nobody
+// asked for. The only place that knows toml++; the reader asks for "a positive number called mass"
+// and says what it is for.
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <toml++/toml.h>
+#include <vector>
+
+#include "runtime/tool/scene/scene.hpp"
+#include "runtime/tool/scene/text.hpp"
+
+namespace cdot {
+
+// What a number may be. Any may be written "1/60", angles also "30 deg".
+enum class Sign { any, positive, not_negative };
+struct Quantity {
+  Sign sign = Sign::any;
+  bool angle = false;
+};
+
+Span span_of(const toml::source_region& region);
+std::string type_of(const toml::node& node);  // "a string", "an array", as a message names it
+
+class Entry {
+ public:
+  // `what` names the table in messages: "[[body]]". Copy k of a repeated entry counts from 0.
+  Entry(const toml::table& table, Span header, std::string what, Mistakes& mistakes, int copy = 0);
+
+  // The entries of the array of tables `key`, each repeated as it asks.
+  std::vector<Entry> list(const std::string& key);
+
+  bool has(const std::string& key);
+  bool leaves_table_unread(const std::string& key) const;   // nobody has asked for it
+  Span where(const std::string& key) const;                 // of its value; of the entry's header if it is absent
+  Span element(const std::string& key, std::size_t index);  // of one value of a list
+  Span header() const { return header_; }
+  const std::string& what() const { return what_; }
+  void rename(std::string what) { what_ = std::move(what); }
+
+  std::optional<double> number(const std::string& key, Quantity = {});
+  std::optional<int> whole(const std::string& key, int least);
+  std::optional<bool> flag(const std::string& key);
+  std::optional<std::string> text(const std::string& key);
+  std::string written(const std::string& key);  // the text as it stands, {i} and all; empty if there is none
+  std::optional<std::vector<std::string>> texts(const std::string& key);
+  std::optional<std::vector<double>> numbers(const std::string& key, std::size_t size, Quantity = {});
+  // `count` lists of three numbers, one after the other.
+  std::optional<std::vector<double>> rows(const std::string& key, std::size_t count);
+  // Nothing if it is no table, which is a mistake if there is an example of one.
+  std::optional<Entry> table(const std::string& key, const std::string& example = "");
+  bool is_array(const std::string& key);
+  bool is_array_of_arrays(const std::string& key);
+  std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& allowed);
+  void required(const std::string& key, const std::string& fix);  // complains if it is absent
+
+  void error(Span where, const std::string& cause, const std::string& fix = {}) const;
+  // Complains about every key that was not asked for; call it when all is read.
+  void close(const std::vector<std::string>& also_known = {}) const;
+
+ private:
+  const toml::node* find(const std::string& key);
+  std::optional<double> plain_number(const toml::node& node, const std::string& key, Quantity);
+  std::optional<std::string> plain_text(const toml::node& node);
+  std::optional<double> shifted_number(const toml::node& node, const std::string& key, std::size_t index, Quantity);
+  std::optional<double> shift_of(const std::string& key, std::size_t index);
+  std::optional<std::string> substituted(const std::string& text, Span where) const;
+  void wrong_type(const toml::node& node, const std::string& key, const std::string& wanted) const;
+  void check_repeat(int copies);
+
+  const toml::table* table_;
+  Span header_;
+  std::string what_;
+  Mistakes* mistakes_;
+  int copy_ = 0;
+  bool repeated_ = false;
+  std::set<std::string> asked_;
+};
+
+}  // namespace cdot

@@ -1,0 +1,218 @@
+// The scene reader: from the text of a TOML file to a Scene, or to all that is wrong with it.
+#include "runtime/tool/scene/read.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <sstream>
+
+namespace cdot {
+namespace {
+
+bool fits_a_column(const std::string& name) {
+  const auto fits = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  };
+  return !name.empty() && std::all_of(name.begin(), name.end(), fits);
+}
+
+// What toml++ says, without the name of the rule that it was in.
+std::string syntax_error(std::string_view description) {
+  if (description.starts_with("Error while parsing ")) {
+    description.remove_prefix(std::string_view("Error while parsing ").size());
+  }
+  std::string text(description);
+  if (text.starts_with("Encountered")) text[0] = 'e';
+  return "this is no TOML: " + text;
+}
+
+Vec3 turned(Vec3 v, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  return {c * v[0] - s * v[1], s * v[0] + c * v[1], 0};
+}
+
+spatial::Pose<double> pose_of(const SceneBody& body) {
+  using Space = Spatial<double>;
+  return Space::placed(Space::place_of(body.spatial));
+}
+
+void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
+  Entry top(table, {}, "the scene", mistakes);
+  read_settings(top, scene);
+  read_bodies(top, scene);
+  const BodyNames names(scene);
+  read_joints(top, names, scene);
+  read_springs(top, names, scene);
+  top.close();
+}
+
+}  // namespace
+
+BodyNames::BodyNames(const Scene& scene) : scene_(&scene) {
+  const std::vector<SceneBody>& bodies = scene.bodies;
+  index_["world"] = world_body;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    if (!bodies[k].name.empty()) index_.emplace(bodies[k].name, static_cast<int>(k));
+  }
+  for (const auto& [name, body] : index_) known_.push_back(name);
+}
+
+std::optional<std::vector<int>> BodyNames::find(Entry& entry, const std::string& key) const {
+  const std::optional<std::vector<std::string>> names = entry.texts(key);
+  if (!names) return {};
+  std::vector<int> bodies;
+  bool all_known = true;
+  for (std::size_t k = 0; k < names->size(); ++k) {
+    const auto found = index_.find((*names)[k]);
+    if (found == index_.end()) {
+      entry.error(entry.element(key, k), fmt::format("no body is called \"{}\"", (*names)[k]),
+                  did_you_mean((*names)[k], known_));
+      all_known = false;
+    } else {
+      bodies.push_back(found->second);
+    }
+  }
+  if (!all_known) return {};
+  return bodies;
+}
+
+const std::string& BodyNames::name(int body) const {
+  static const std::string world = "world";
+  return body == world_body ? world : scene_->bodies[static_cast<std::size_t>(body)].name;
+}
+
+Vec3 BodyNames::centre(int body) const {
+  const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
+  if (dimension() == Dimension::planar) return {source.definition.x, source.definition.y, 0};
+  return {source.spatial.x, source.spatial.y, source.spatial.z};
+}
+
+Vec3 BodyNames::to_body(int body, Vec3 position) const {
+  if (body == world_body) return position;
+  const Vec3 c = centre(body);
+  return turned_to_body(body, {position[0] - c[0], position[1] - c[1], position[2] - c[2]});
+}
+
+Vec3 BodyNames::turned_to_body(int body, Vec3 direction) const {
+  if (body == world_body) return direction;
+  const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
+  if (dimension() == Dimension::planar) return turned(direction, -source.definition.angle);
+  const auto v = spatial::to_body(pose_of(source), {direction[0], direction[1], direction[2]});
+  return {v.x, v.y, v.z};
+}
+
+Vec3 BodyNames::to_world(int body, Vec3 position) const {
+  if (body == world_body) return position;
+  const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
+  const Vec3 c = centre(body);
+  if (dimension() == Dimension::planar) {
+    const Vec3 arm = turned(position, source.definition.angle);
+    return {c[0] + arm[0], c[1] + arm[1], 0};
+  }
+  const auto arm = spatial::to_world(pose_of(source), {position[0], position[1], position[2]});
+  return {c[0] + arm.x, c[1] + arm.y, c[2] + arm.z};
+}
+
+std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension dimension) {
+  const std::size_t size = dimension == Dimension::planar ? 2 : 3;
+  const std::optional<std::vector<double>> values = entry.numbers(key, size);
+  if (!values) return {};
+  return Vec3{(*values)[0], (*values)[1], size == 3 ? (*values)[2] : 0};
+}
+
+namespace {
+
+// [x, y] as it stands, or { world = [x, y] } through `from_world`.
+template <class FromWorld>
+std::optional<Vec3> in_body_or_world(Entry& entry, const std::string& key, Dimension dimension, FromWorld from_world) {
+  std::optional<Entry> table = entry.table(key);
+  if (!table) return read_vector(entry, key, dimension);
+  const std::optional<Vec3> world = read_vector(*table, "world", dimension);
+  if (!table->has("world"))
+    table->error(table->header(), fmt::format("`{}` has no `world`", key),
+                 dimension == Dimension::planar ? "{ world = [x, y] }" : "{ world = [x, y, z] }");
+  table->close();
+  if (!world) return {};
+  return from_world(*world);
+}
+
+}  // namespace
+
+std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names) {
+  return in_body_or_world(entry, key, names.dimension(), [&](Vec3 position) { return names.to_body(body, position); });
+}
+
+std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names) {
+  return in_body_or_world(entry, key, names.dimension(),
+                          [&](Vec3 direction) { return names.turned_to_body(body, direction); });
+}
+
+std::optional<Softness> read_softness(Entry& entry) {
+  const bool frequency = entry.has("frequency"), stiffness = entry.has("stiffness");
+  Softness softness;
+  softness.by_frequency = frequency;
+  softness.frequency = entry.number("frequency", {Sign::positive}).value_or(0);
+  softness.damping_ratio = entry.number("damping_ratio", {Sign::not_negative}).value_or(0);
+  softness.stiffness = entry.number("stiffness", {Sign::not_negative}).value_or(0);
+  softness.damping = entry.number("damping", {Sign::not_negative}).value_or(0);
+  const bool mixed = frequency ? stiffness || entry.has("damping") : entry.has("damping_ratio");
+  if (frequency == stiffness || mixed) {
+    entry.error(entry.header(), fmt::format("{} needs either a frequency or a stiffness", entry.what()),
+                "{ frequency = 2, damping_ratio = 0.5 } or { stiffness = 100, damping = 1 }");
+    return {};
+  }
+  return softness;
+}
+
+std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
+                                     const std::optional<std::string>& fallback) {
+  if (!entry.has("name")) {
+    if (!fallback) entry.error(entry.header(), entry.what() + " has no `name`", "name = \"rod\"");
+    return fallback;
+  }
+  const Span where = entry.where("name");
+  const std::optional<std::string> name = entry.text("name");
+  if (!name) return {};
+  entry.rename(fmt::format("{} \"{}\"", entry.what(), entry.written("name")));
+  if (!fits_a_column(*name)) {
+    entry.error(where, fmt::format("\"{}\" is no name", *name), "use letters, digits, _ and -");
+    return {};
+  }
+  const auto [earlier, is_new] = used.emplace(*name, where);
+  if (is_new) return name;
+  const Span first = earlier->second;
+  const bool same_place = first == where;
+  entry.error(where,
+              first.line == 0 ? fmt::format("\"{}\" is the name of what never moves", *name)
+              : same_place    ? fmt::format("all copies are called \"{}\"", *name)
+                              : fmt::format("\"{}\" is the name of line {} already", *name, first.line),
+              same_place && first.line > 0 ? fmt::format("name = \"{}{{i}}\"", *name) : "");
+  return {};
+}
+
+Scene read_scene(std::string_view text, const std::string& name) {
+  auto mistakes = std::make_shared<Mistakes>(name, text);
+  Scene scene;
+  scene.file = name;
+  try {
+    read_all(toml::parse(text, name), *mistakes, scene);
+  } catch (const toml::parse_error& error) {
+    mistakes->add(span_of(error.source()), syntax_error(error.description()));
+  }
+  if (!mistakes->none()) throw SceneError(mistakes->report(), mistakes->count());
+  scene.source = mistakes;
+  return scene;
+}
+
+Scene read_scene(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();  // which fails for an empty file, and that is no mistake here
+  if (!file) {
+    throw SceneError(fmt::format("{}: error: cannot be read\n", path), 1);
+  }
+  return read_scene(text.str(), path);
+}
+
+}  // namespace cdot

@@ -1,0 +1,68 @@
+// What the parts of the scene reader share: the names of the bodies, and points given in one frame
+// or another.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/tool/scene/entry.hpp"
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot {
+
+// The bodies read so far by name. A body with mistakes is known all the same, so that joints to it
+// are no mistakes.
+class BodyNames {
+ public:
+  explicit BodyNames(const Scene& scene);
+  // The index of each name in `key`; nothing, and a complaint, if one is unknown. "world" is
+  // world_body.
+  std::optional<std::vector<int>> find(Entry& entry, const std::string& key) const;
+  const std::string& name(int body) const;
+  // A world position or direction in the frame of a body at its initial pose.
+  Vec3 to_body(int body, Vec3 world_position) const;
+  Vec3 turned_to_body(int body, Vec3 world_direction) const;
+  Vec3 to_world(int body, Vec3 body_position) const;
+  Dimension dimension() const { return scene_->dimension; }
+
+ private:
+  Vec3 centre(int body) const;
+  const Scene* scene_;
+  std::map<std::string, int> index_;
+  std::vector<std::string> known_;
+};
+
+// [x, y], in space [x, y, z].
+std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension dimension);
+
+// A point of a body: [x, y] in its frame, or { world = [x, y] } where it is at the start.
+std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names);
+std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names);
+
+// { frequency, damping_ratio } or { stiffness, damping }; the entry stays open for more keys.
+std::optional<Softness> read_softness(Entry& entry);
+
+// A name that a CSV column can carry, unused so far; `fallback` if the entry has none and that is
+// allowed.
+std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
+                                     const std::optional<std::string>& fallback);
+
+// Refuses a velocity or spin of a body that cannot move or turn.
+template <class Definition>
+void check_motion(Entry& body, const Definition& definition, bool moves, bool turns) {
+  if (definition.is_static && moves)
+    body.error(body.where("velocity"), "a static body cannot move: `velocity` is not 0");
+  if (definition.is_static && turns) body.error(body.where("spin"), "a static body cannot move: `spin` is not 0");
+  if (definition.fixed_rotation && turns)
+    body.error(body.where("spin"), "a body with fixed_rotation cannot turn: `spin` is not 0");
+}
+
+void read_settings(Entry& top, Scene& scene);                         // tool/scene/settings.cpp
+void read_bodies(Entry& top, Scene& scene);                           // tool/scene/bodies.cpp
+void read_spatial_body(Entry& entry, SceneBody& body);                // tool/scene/bodies_spatial.cpp
+void read_joints(Entry& top, const BodyNames& names, Scene& scene);   // tool/scene/joints.cpp
+void read_springs(Entry& top, const BodyNames& names, Scene& scene);  // tool/scene/joints.cpp
+
+}  // namespace cdot

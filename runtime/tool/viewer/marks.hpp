@@ -1,0 +1,65 @@
+// What is drawn of a scene: marks that ride on bodies, links stretched between two points, traces.
+// In picture coordinates: x right, y down, the longer side of the mechanism about a thousand wide.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "runtime/tool/run/frame.hpp"
+#include "runtime/tool/scene/scene.hpp"
+#include "runtime/tool/viewer/text.hpp"
+
+namespace cdot {
+
+using Vec2 = std::array<double, 2>;
+
+// World to picture: X = scale (x - left), Y = scale (top - y); angles turn the other way and are in
+// degrees.
+struct View {
+  double left = 0, top = 0, scale = 1;
+  double width = 0, height = 0;  // of the picture
+};
+
+struct Place {
+  double x, y, degrees;
+};
+
+View view_of(const Scene& scene, const std::vector<Frame>& film);
+Place place_of(const View& view, const BodyState& state);
+std::string transform(const Place& place);
+
+struct Anchor {
+  int body;    // index into Scene::bodies or world_body
+  Vec2 local;  // in the body's frame, in picture units with y down; for the world: in the picture
+};
+
+struct Mark {
+  int body;
+  std::string svg;
+};
+
+// Drawn from (0, 0) to (1, 0) and placed by its ends: scale(length, 1) keeps the strokes' width.
+struct Link {
+  Anchor from, to;
+  std::string svg;
+};
+
+struct Trace {
+  Anchor point;
+  int colour;  // that of its body
+};
+
+struct Drawing {
+  View view;
+  std::vector<Mark> bodies, pins;  // pins lie above bodies
+  std::vector<Link> links;
+  std::vector<Trace> traces;
+};
+
+Drawing draw(const Scene& scene, const std::vector<Frame>& film);
+
+Vec2 position(const Anchor& anchor, const std::vector<Place>& places);  // in the picture
+std::string link_transform(const Link& link, const std::vector<Place>& places);
+std::vector<Place> places_of(const View& view, const Frame& frame);
+
+}  // namespace cdot

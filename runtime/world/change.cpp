@@ -1,0 +1,78 @@
+// Joints that are removed or get other parameters while a World runs. Effects on them are changed where they are made,
+// in effects/effects.cpp.
+#include <algorithm>
+
+#include <cdot/world.hpp>
+
+#include "runtime/rows/parameters.hpp"
+#include "runtime/state/add_rows.hpp"
+#include "runtime/state/probe.hpp"
+#include "runtime/world/islands.hpp"
+
+namespace cdot {
+namespace {
+
+// The changed parameters to all rows of a joint, and no others: where turns are counted among a slot's numbers, the
+// count goes on.
+template <class S>
+void hand_out(WorldState<S>& world, const JointRecord& record, const std::vector<const ParameterInfo*>& changed) {
+  for (const Place& place : record.places) {
+    Batch<S>& batch = *world.batches[place.batch];
+    for (const ParameterInfo* info : changed)
+      for (int k = info->offset; k < info->offset + info->size; ++k)
+        batch.parameters[place.slot * batch.ops->parameter_size + k] = typename S::Scalar(record.parameters[k]);
+  }
+}
+
+// Refuses parameters with which a coordinate that effects act on has no value.
+template <class S>
+void check_effects(const WorldState<S>& world, const JointRecord& record) {
+  const auto& coordinates = joint_entries<S>()[record.type].coordinates;
+  for (size_t k = 0; k < coordinates.size(); ++k)
+    if (std::any_of(record.places.begin(), record.places.end(),
+                    [&](const Place& place) { return coordinates[k].has(world.batches[place.batch]->ops); }))
+      check_value(world, record, static_cast<int>(k));
+}
+
+}  // namespace
+
+template <class S>
+void BasicWorld<S>::remove_joint(int joint) {
+  check_joint(*state_, joint);
+  JointRecord& record = state_->joints[joint];
+  if (record.broken) return;
+  record.broken = true;
+  state_->prepared = false;  // what it held together may be two islands now
+}
+
+template <class S>
+void BasicWorld<S>::set_parameters(int joint, const std::vector<NamedValue>& parameters) {
+  check_joint(*state_, joint);
+  JointRecord& record = state_->joints[joint];
+  const JointType& type = joint_types(S::dimension)[record.type];
+  std::vector<double> numbers = record.parameters;
+  const auto changed = change_parameters(type, parameters, numbers);
+  std::vector<double> moved = numbers;
+  move_world_points(
+      type, record.bodies, [&](int body) { return body == state_->ground; }, state_->origin, -1, moved);
+  JointRecord next = record;
+  for (const ParameterInfo* info : changed)
+    std::copy_n(moved.begin() + info->offset, info->size, next.parameters.begin() + info->offset);
+  check_rows(*state_, next, is_soft(*state_, record));
+  check_effects(*state_, next);
+
+  record.parameters = next.parameters;
+  hand_out(*state_, record, changed);
+  const int body = movable_body(*state_, record);
+  if (!state_->prepared || body < 0) return;
+  wake(*state_, body);
+  measure_size(*state_, state_->islands[state_->island_of[body]]);
+}
+
+#define CDOT_INSTANTIATE(S)                       \
+  template void BasicWorld<S>::remove_joint(int); \
+  template void BasicWorld<S>::set_parameters(int, const std::vector<NamedValue>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,77 @@
+// How large a mechanism is: what may be left of C is told by it, not by the metre.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/world/islands.hpp"
+
+namespace cdot {
+namespace {
+
+template <class S>
+double distance(const typename S::Pose& a, const typename S::Pose& b) {
+  const auto p = S::place_of(a), q = S::place_of(b);
+  if constexpr (S::dimension == Dimension::planar) return std::hypot(p.x - q.x, p.y - q.y);
+  else return std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
+}
+
+// The longest arm of a slot's rows: what a turn of a movable body does to C over what its displacement does. Rows
+// without lengths in them have none.
+template <class S>
+double longest_arm(const Batch<S>& batch, int slot, const Bodies<S>& all) {
+  const int bodies = batch.ops->bodies, width = S::freedom * bodies;
+  using Real = ExactNumber<typename S::Scalar>;
+  std::vector<Real> J(static_cast<size_t>(batch.ops->rows * width)), weighted(J);
+  Real K[most_rows * most_rows];
+  batch.ops->dense(batch, slot, all, J.data(), weighted.data(), K, most_rows);
+  double longest = 0;
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    for (int k = 0; k < bodies; ++k) {
+      if (all.immovable(batch.body[slot * bodies + k])) continue;
+      const Real* row = J.data() + r * width + S::freedom * k;
+      Real straight = 0, turning = 0;
+      for (int c = 0; c < S::freedom; ++c) (c < S::lengths ? straight : turning) += row[c] * row[c];
+      if (straight > 0) longest = std::max(longest, double(std::sqrt(turning / straight)));
+    }
+  }
+  return longest;
+}
+
+// The longest distance between two movable bodies of a slot.
+template <class S>
+double longest_distance(const Batch<S>& batch, int slot, const Bodies<S>& all) {
+  const int bodies = batch.ops->bodies;
+  double longest = 0;
+  for (int k = 0; k < bodies; ++k) {
+    for (int l = 0; l < k; ++l) {
+      const int a = batch.body[slot * bodies + k], b = batch.body[slot * bodies + l];
+      if (!all.immovable(a) && !all.immovable(b)) longest = std::max(longest, distance<S>(all.pose[a], all.pose[b]));
+    }
+  }
+  return longest;
+}
+
+}  // namespace
+
+template <class S>
+void measure_size(WorldState<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  double size = 0;
+  for (const Segment<S>& segment : island.segments) {
+    const Batch<S>& batch = *segment.batch;
+    batch.ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, T(world.time));
+    for (int slot = segment.begin; batch.ops->rows > 0 && slot < segment.end; ++slot)
+      size = std::max({size, longest_arm(batch, slot, world.bodies), longest_distance(batch, slot, world.bodies)});
+  }
+  island.evaluated = false;
+  island.size = size > 0 ? T(size) : T(1);
+  island.scale = std::min(T(10) * island.size, T(1));
+}
+
+#define CDOT_INSTANTIATE(S) template void measure_size(WorldState<S>&, Island<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,193 @@
+// Who is connected with whom: union-find over movable bodies, then the slots of every batch sorted by island, and in
+// each the order of the rows.
+#include "runtime/world/islands.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+#include <cdot/joints.hpp>
+#include <cdot/spaces.hpp>
+
+#include "runtime/solve/sweep_order.hpp"
+#include "runtime/solve/tension.hpp"
+#include "runtime/step/runge_kutta.hpp"
+#include "runtime/world/rollback.hpp"
+
+namespace cdot {
+namespace {
+
+// The representative of a set is its smallest body, so that islands are numbered independently of
+// the joints' order.
+struct Sets {
+  explicit Sets(int n) : parent(static_cast<size_t>(n)) { std::iota(parent.begin(), parent.end(), 0); }
+  int find(int i) {
+    while (parent[i] != i) i = parent[i] = parent[parent[i]];
+    return i;
+  }
+  void unite(int i, int j) {
+    i = find(i);
+    j = find(j);
+    parent[std::max(i, j)] = std::min(i, j);
+  }
+  std::vector<int> parent;
+};
+
+template <class S>
+void unite_bodies(const WorldState<S>& world, Sets& sets) {
+  const auto unite = [&](const std::vector<int>& bodies) {
+    int first = -1;
+    for (int body : bodies) {
+      if (world.bodies.immovable(body)) continue;
+      if (first >= 0) sets.unite(first, body);
+      first = body;
+    }
+  };
+  for (const JointRecord& joint : world.joints)
+    if (!joint.broken) unite(joint.bodies);
+  for (const auto& spring : world.springs) unite({spring.body_a, spring.body_b});
+}
+
+template <class S>
+void number_islands(WorldState<S>& world) {
+  const int n = world.bodies.count();
+  Sets sets(n);
+  unite_bodies(world, sets);
+  world.islands.clear();
+  world.island_of.assign(static_cast<size_t>(n), -1);
+  for (int body = 0; body < n; ++body) {
+    if (world.bodies.immovable(body)) continue;
+    const int root = sets.find(body);
+    if (root == body) {
+      world.island_of[body] = static_cast<int>(world.islands.size());
+      world.islands.emplace_back();
+    }
+    world.island_of[body] = world.island_of[root];
+    world.islands[world.island_of[body]].bodies.push_back(body);
+  }
+}
+
+template <class Item>
+void permute(std::vector<Item>& items, const std::vector<int>& order) {
+  if (items.empty() || order.empty()) return;
+  const size_t width = items.size() / order.size();
+  std::vector<Item> sorted;
+  sorted.reserve(items.size());
+  for (int from : order)
+    for (size_t k = 0; k < width; ++k) sorted.push_back(items[from * width + k]);
+  items = std::move(sorted);
+}
+
+template <class S>
+int island_of_slot(const WorldState<S>& world, const Batch<S>& batch, int slot) {
+  for (int k = 0; k < batch.ops->bodies; ++k) {
+    const int island = world.island_of[batch.body[slot * batch.ops->bodies + k]];
+    if (island >= 0) return island;
+  }
+  return -1;  // cannot be: blocks between immovable bodies are never added
+}
+
+// Slots by island, broken joints last in theirs, the others in the order of `places`, by joint.
+template <class S>
+void sort_slots(WorldState<S>& world, int index, const std::vector<int>& places) {
+  Batch<S>& batch = *world.batches[index];
+  std::vector<std::tuple<int, bool, int>> key;
+  for (int slot = 0; slot < batch.count(); ++slot) {
+    const int joint = batch.joint[slot];
+    key.emplace_back(island_of_slot(world, batch, slot), world.joints[joint].broken, places[joint]);
+  }
+  std::vector<int> order(key.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return key[i] < key[j]; });
+  batch.for_each_array([&](auto& array) { permute(array, order); });
+
+  std::vector<int> now(order.size());
+  for (size_t slot = 0; slot < order.size(); ++slot) now[order[slot]] = static_cast<int>(slot);
+  for (JointRecord& joint : world.joints)
+    for (Place& place : joint.places)
+      if (place.batch == index) place.slot = now[place.slot];
+}
+
+// Runs of slots of one batch that follow each other in the sweep, rows under a law before all others: what is solved
+// last in a sweep holds best, and that should be the joints.
+template <class S>
+void list_segments(WorldState<S>& world, const std::vector<int>& places) {
+  struct Run {
+    bool joint;  // no law
+    int place, batch, slot;
+    bool operator<(const Run& other) const {
+      return std::tie(joint, place, batch, slot) < std::tie(other.joint, other.place, other.batch, other.slot);
+    }
+  };
+  std::vector<Run> runs;
+  for (size_t i = 0; i < world.batches.size(); ++i) {
+    const Batch<S>& batch = *world.batches[i];
+    for (int slot = 0; slot < batch.count(); ++slot)
+      if (!world.joints[batch.joint[slot]].broken)
+        runs.push_back({batch.law == nullptr, places[batch.joint[slot]], static_cast<int>(i), slot});
+  }
+  std::sort(runs.begin(), runs.end());
+  for (const Run& run : runs) {
+    Batch<S>& batch = *world.batches[run.batch];
+    Island<S>& island = world.islands[island_of_slot(world, batch, run.slot)];
+    auto& segments = island.segments;
+    if (!segments.empty() && segments.back().batch == &batch && segments.back().end == run.slot) ++segments.back().end;
+    else segments.push_back({&batch, run.slot, run.slot + 1});
+    island.restless |= batch.ops->explicit_time;
+  }
+}
+
+template <class S>
+void give_out_forces(WorldState<S>& world) {
+  for (const auto& spring : world.springs) {
+    const int island = std::max(world.island_of[spring.body_a], world.island_of[spring.body_b]);
+    if (island >= 0) world.islands[island].springs.push_back(spring);
+  }
+  for (const auto& drag : world.drags) world.islands[world.island_of[drag.body]].drags.push_back(drag);
+  if constexpr (S::has_gyroscopes)
+    for (size_t i = 0; i < world.gyroscopes.size(); ++i)
+      world.islands[world.island_of[world.gyroscopes[i].body]].gyroscopes.push_back(static_cast<int>(i));
+}
+
+template <class S>
+void build_systems(const WorldState<S>& world, Island<S>& island) {
+  const std::vector<int> tensions = tension_rows(world, island);
+  const bool always = world.settings.integrator == Integrator::implicit;
+  island.system.build(island.segments, world.bodies, always ? tensions : std::vector<int>{});
+  if (!always && !tensions.empty()) island.rescue.build(island.segments, world.bodies, tensions);
+}
+
+}  // namespace
+
+template <class S>
+void prepare_topology(WorldState<S>& world) {
+  if (world.prepared) return;
+  number_islands(world);
+  // The direct solver has its own order: each type of joint in one run, in the order in which they were added.
+  const bool sweeps = world.settings.solver == Solver::iterative;
+  const std::vector<int> places = sweeps ? sweep_places(world) : std::vector<int>(world.joints.size(), 0);
+  for (int i = 0; i < static_cast<int>(world.batches.size()); ++i) sort_slots(world, i, places);
+  list_segments(world, places);
+  give_out_forces(world);
+  world.awake.clear();
+  for (int i = 0; i < static_cast<int>(world.islands.size()); ++i) {
+    Island<S>& island = world.islands[i];
+    measure_size(world, island);
+    if (world.settings.solver == Solver::direct || world.on_failure == OnFailure::retry) build_systems(world, island);
+    island.flow.pose.resize(island.bodies.size());
+    island.flow.velocity.resize(island.bodies.size());
+    if (world.settings.integrator == Integrator::rattle)
+      island.flow.search.reserve(static_cast<size_t>(island.system.rows()));
+    if (works_on_accelerations(world.settings.integrator))
+      prepare_flow(island, runge_kutta<S>(world.settings.integrator));
+    prepare_to_keep(world, island);
+    world.awake.push_back(i);
+  }
+  world.prepared = true;
+}
+
+#define CDOT_INSTANTIATE(S) template void prepare_topology(WorldState<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

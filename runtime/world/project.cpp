@@ -1,0 +1,123 @@
+// The initial state brought onto the joints: full Newton on C, then the velocities, each by the
+// least change in the metric of the masses. Apart from solve/drift.cpp, which corrects one step's drift
+// with that step's J.
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/world.hpp>
+
+#include "runtime/motion/motion.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr int newton_rounds = 50;
+
+template <class S>
+void solve_and_apply(WorldState<S>& world, Island<S>& island, std::vector<typename S::Velocity>& to) {
+  using T = typename S::Scalar;
+  island.system.assemble(world.bodies);
+  island.system.factor();
+  island.system.solve();
+  island.system.store([](Batch<S>& batch, int i, auto lambda) { batch.scratch[i] = T(lambda); });
+  for (const Segment<S>& segment : island.segments)
+    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, segment.batch->scratch.data(),
+                              to.data());
+}
+
+template <class S>
+void evaluate(WorldState<S>& world, Island<S>& island) {
+  for (const Segment<S>& segment : island.segments)
+    segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies,
+                                 typename S::Scalar(world.time));
+}
+
+// The law's idea of the error, or C itself; 0 for rows that do not constrain.
+template <class S>
+void errors_into_scratch(Island<S>& island) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    const int rows = batch.ops->rows;
+    for (int slot = segment.begin; slot < segment.end; ++slot) {
+      auto* error = batch.scratch.data() + slot * rows;
+      if (batch.law && batch.law->error) batch.law->error(batch, slot, error);
+      else
+        for (int r = 0; r < rows; ++r) error[r] = batch.law ? 0 : batch.C[slot * rows + r];
+    }
+  }
+}
+
+template <class S>
+void move_poses(WorldState<S>& world, Island<S>& island) {
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies) all.increment[i] = {};
+  solve_and_apply(world, island, all.increment);
+  for (int i : island.bodies) {
+    all.pose[i] = S::moved(all.pose[i], all.increment[i]);
+    all.increment[i] = {};
+  }
+  // The velocities are those of the scene: a start that is moved keeps them.
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
+      S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
+      all.effective_mass[i] = all.inverse_mass[i];
+    });
+}
+
+template <class S>
+void project_poses(WorldState<S>& world, Island<S>& island) {
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < newton_rounds; ++round) {
+    evaluate(world, island);
+    errors_into_scratch(island);
+    double worst = 0;
+    island.system.load([&](const Batch<S>& batch, int i) {
+      worst = std::max(worst, std::abs(double(batch.scratch[i])));
+      return -batch.scratch[i];
+    });
+    // Down to round-off: from there on it does not get smaller.
+    if (worst == 0 || (worst < 1e-6 && worst >= before)) return;
+    before = worst;
+    island.system.choose([](const Batch<S>& batch, int i) { return !batch.law || batch.scratch[i] != 0; });
+    move_poses(world, island);
+  }
+}
+
+template <class S>
+void project_velocities(WorldState<S>& world, Island<S>& island, double tolerance) {
+  Bodies<S>& all = world.bodies;
+  evaluate(world, island);
+  for (const Segment<S>& segment : island.segments)
+    segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, all.velocity.data(),
+                                 segment.batch->scratch.data());
+  const auto rate = [](const Batch<S>& batch, int i) { return batch.scratch[i] + batch.bias[i]; };
+  island.system.load([&](const Batch<S>& batch, int i) { return -rate(batch, i); });
+  island.system.choose([&](const Batch<S>& batch, int i) {
+    if (!batch.law) return true;
+    if (!batch.law->reported) return false;
+    return batch.kinds[i % batch.ops->rows] != RowKind::inequality || (batch.C[i] <= tolerance && rate(batch, i) < 0);
+  });
+  solve_and_apply(world, island, all.velocity);
+}
+
+}  // namespace
+
+template <class S>
+bool BasicWorld<S>::project(double tolerance) {
+  prepare();
+  for (auto& island : state_->islands) {
+    if (island.segments.empty()) continue;
+    if (!island.system.built()) island.system.build(island.segments, state_->bodies);
+    project_poses(*state_, island);
+    project_velocities(*state_, island, tolerance);
+    island.evaluated = island.factored = false;
+    island.flow.forget();
+  }
+  return inconsistencies(tolerance).empty();
+}
+
+#define CDOT_INSTANTIATE(S) template bool BasicWorld<S>::project(double);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,77 @@
+// Islands at rest are taken off the list that step() walks, and put back when something touches
+// them.
+#include <algorithm>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/world/islands.hpp"
+
+namespace cdot {
+namespace {
+
+template <class S>
+void wake_island(WorldState<S>& world, int index) {
+  Island<S>& island = world.islands[index];
+  island.rested = 0;
+  if (!island.asleep) return;
+  island.asleep = false;
+  // There is room: the list once held every island.
+  world.awake.insert(std::lower_bound(world.awake.begin(), world.awake.end(), index), index);
+}
+
+// Wakes it and tells it by `forget` what happened. What touches an immovable body may touch every island: rare enough
+// not to look up which.
+template <class S, class F>
+void for_each_island_of(WorldState<S>& world, int body, F forget) {
+  if (!world.prepared) return;
+  const int island = world.island_of[body];
+  const int first = island < 0 ? 0 : island;
+  const int last = island < 0 ? static_cast<int>(world.islands.size()) - 1 : island;
+  for (int i = first; i <= last; ++i) {
+    wake_island(world, i);
+    forget(world.islands[i]);
+  }
+}
+
+}  // namespace
+
+template <class S>
+void put_to_sleep(WorldState<S>& world, double h) {
+  using T = typename S::Scalar;
+  if (world.settings.sleep_after <= 0) return;
+  Bodies<S>& all = world.bodies;
+  const T speed = T(world.settings.sleep_speed);
+  const auto falls_asleep = [&](int index) {
+    Island<S>& island = world.islands[index];
+    const bool resting = !island.restless && std::all_of(island.bodies.begin(), island.bodies.end(),
+                                                         [&](int i) { return S::slower(all.velocity[i], speed); });
+    island.rested = resting ? island.rested + h : 0.0;
+    if (island.rested < world.settings.sleep_after) return false;
+    for (int i : island.bodies) all.velocity[i] = {};
+    return island.asleep = true;
+  };
+  world.awake.erase(std::remove_if(world.awake.begin(), world.awake.end(), falls_asleep), world.awake.end());
+}
+
+template <class S>
+void wake_pushed(WorldState<S>& world, int body) {
+  for_each_island_of(world, body, [&](Island<S>& island) { island.flow.forget(); });
+}
+
+template <class S>
+void wake(WorldState<S>& world, int body) {
+  for_each_island_of(world, body, [](Island<S>& island) {
+    island.evaluated = island.factored = false;
+    island.flow.forget();
+    island.residual = std::numeric_limits<typename S::Scalar>::infinity();
+  });
+}
+
+#define CDOT_INSTANTIATE(S)                           \
+  template void put_to_sleep(WorldState<S>&, double); \
+  template void wake_pushed(WorldState<S>&, int);     \
+  template void wake(WorldState<S>&, int);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

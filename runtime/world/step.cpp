@@ -1,0 +1,177 @@
+// step(): all islands that are awake, part by part; and what becomes of a step that fails.
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+#include <cdot/world.hpp>
+
+#include "runtime/step/integrators.hpp"
+#include "runtime/world/islands.hpp"
+#include "runtime/world/rollback.hpp"
+
+namespace cdot {
+namespace {
+
+template <class S>
+void advance(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  switch (world.settings.integrator) {
+    case Integrator::euler:
+    case Integrator::implicit: return step_euler(world, island, h);
+    case Integrator::rattle: return step_rattle(world, island, h);
+    case Integrator::rk4:
+    case Integrator::dop853: return step_runge_kutta(world, island, h);
+  }
+}
+
+template <class S>
+bool finite(const WorldState<S>& world, const Island<S>& island) {
+  using T = typename S::Scalar;
+  T sum = 0;
+  for (int i : island.bodies) {
+    T numbers[S::pose_numbers + S::freedom];
+    S::write(world.bodies.pose[i], numbers);
+    S::write(world.bodies.velocity[i], numbers + S::pose_numbers);
+    for (T number : numbers) sum += number;
+  }
+  return std::isfinite(sum);
+}
+
+// Over h in so many parts. Stops at the first island whose step fails.
+template <class S>
+StepResult attempt(WorldState<S>& world, double h, int parts) {
+  StepResult result;
+  const double part = h / parts;
+  const auto dt = typename S::Scalar(part);
+  for (int k = 0; k < parts; ++k) {
+    for (int index : world.awake) {
+      Island<S>& island = world.islands[index];
+      advance(world, island, dt);
+      if (island.trouble == StepProblem::none && !finite(world, island)) island.trouble = StepProblem::not_finite;
+      if (island.trouble == StepProblem::none) continue;
+      result.problem = island.trouble;
+      result.island = index;
+      return result;
+    }
+    for (const auto& hook : world.after_substep) hook.run(world, dt);
+    world.time += part;
+    world.last_step = part;
+  }
+  return result;
+}
+
+// --- the rest is for steps that fail ---
+
+// How much it moved, by itself: the largest of its velocities.
+template <class S>
+double speed_of(const WorldState<S>& world, int body) {
+  typename S::Scalar numbers[S::freedom];
+  S::write(world.bodies.velocity[body], numbers);
+  double speed = 0;
+  for (auto number : numbers) speed = std::max(speed, std::abs(double(number)));
+  return speed;
+}
+
+template <class T>
+bool finite(const std::vector<T>& numbers, int begin, int end) {
+  return std::all_of(numbers.begin() + begin, numbers.begin() + end, [](T number) { return std::isfinite(number); });
+}
+
+// Which joint to look at, where the step began: one whose kernel is not finite, or the one that is off most, or pulls
+// most.
+template <class S>
+void blame_joint(WorldState<S>& world, Island<S>& island, StepResult& result) {
+  double worst = -1;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    batch.ops->evaluate(batch, segment.begin, segment.end, world.bodies, typename S::Scalar(world.time));
+    for (int slot = segment.begin; slot < segment.end; ++slot) {
+      const int rows = batch.ops->rows, width = batch.ops->jacobian_size;
+      const bool sound = finite(batch.jacobian, slot * width, (slot + 1) * width);
+      for (int i = slot * rows; i < (slot + 1) * rows; ++i) {
+        const double off = batch.law ? 0 : std::abs(double(batch.C[i]));
+        const double pull = std::abs(double(batch.lambda[i])) + std::abs(double(batch.correction[i]));
+        const double guilt = !sound || !std::isfinite(off) ? std::numeric_limits<double>::infinity()
+                             : off > 1e-6                  ? 1e100 * (1 + off)
+                                                           : pull;
+        if (guilt <= worst) continue;
+        worst = guilt;
+        result.joint = batch.joint[slot], result.row = i - slot * rows;
+      }
+    }
+  }
+}
+
+template <class S>
+void blame(WorldState<S>& world, StepResult& result) {
+  Island<S>& island = world.islands[result.island];
+  for (int body : island.bodies)
+    if (result.body < 0 || speed_of(world, body) > speed_of(world, result.body)) result.body = body;
+  blame_joint(world, island, result);
+}
+
+// Settings::solver for one attempt.
+template <class S>
+void solve_by(WorldState<S>& world, Solver solver) {
+  world.settings.solver = solver;
+  for (int index : world.awake) {
+    Island<S>& island = world.islands[index];
+    island.evaluated = island.factored = false;
+    island.flow.forget();
+  }
+}
+
+// True if the step succeeds in parts.
+template <class S>
+bool succeeds_in_parts(WorldState<S>& world, double h, int fewest, StepResult& result) {
+  constexpr int most = 16;
+  for (int parts = fewest; parts <= most; parts *= 2) {
+    result = attempt(world, h, parts * world.settings.substeps);
+    if (result) {
+      result.parts = parts;
+      ++world.counts.retried;
+      return true;
+    }
+    put_state_back(world);
+  }
+  return false;
+}
+
+template <class S>
+StepResult try_again(WorldState<S>& world, double h) {
+  StepResult result;
+  if (succeeds_in_parts(world, h, 2, result) || world.settings.solver == Solver::direct) return result;
+  solve_by(world, Solver::direct);
+  result.direct = succeeds_in_parts(world, h, 1, result);
+  if (result.direct) ++world.counts.direct;
+  solve_by(world, Solver::iterative);
+  return result;
+}
+
+}  // namespace
+
+template <class S>
+StepResult BasicWorld<S>::step(double h) {
+  WorldState<S>& world = *state_;
+  if (!(h > 0) || !std::isfinite(h)) return {.problem = StepProblem::bad_step, .time = world.time, .length = h};
+  prepare_topology(world);
+  keep_state(world);
+  const double start = world.time;
+  StepResult result = attempt(world, h, world.settings.substeps);
+  if (!result) {
+    put_state_back(world);
+    if (world.on_failure == OnFailure::retry) result = try_again(world, h);
+    if (!result) {
+      blame(world, result);
+      put_state_back(world);  // whom to blame was found by evaluating
+    }
+  }
+  result.time = start, result.length = h;
+  if (result) put_to_sleep(world, h);
+  return result;
+}
+
+#define CDOT_INSTANTIATE(S) template StepResult BasicWorld<S>::step(double);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

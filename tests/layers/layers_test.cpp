@@ -1,0 +1,139 @@
+// The architecture as a table: a room includes only itself and rooms above it in its list. Every #include in derive/
+// and runtime/ is held to that. derive/ and runtime/ do not know each other; nor does either know the tests.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path source_dir = CDOT_SOURCE_DIR;
+
+// clang-format off
+const std::vector<std::string> rooms = {
+    // The generator: text in, kernels and derivations out.
+    "derive/expression",   // interned expressions over vectors
+    "derive/syntax",       // text to tree, with places and messages
+    "derive/language",     // tree to joint: names, units, operators
+    "derive/language/hand",
+    "derive/numbers",      // expressions at poses: doubles, modulo a prime
+    "derive/derivation",   // C to Cdot, J, K, gamma
+    "derive/program",      // expressions to straight-line code, simplified
+    "derive/explain",      // the derivation as a lecture
+    "derive/proof",        // the laws, by GiNaC
+    "derive/kernel",       // programs to C++
+    "derive/check", "derive/diff",
+    "derive/pipeline",     // read, derive, prove, print
+    "derive/commands",
+    "derive",              // main()
+
+    // The runtime. <cdot/...> is what a program includes; detail/ is what compiling its own joints takes beside.
+    "runtime/include/cdot", "runtime/include/cdot/detail",
+    "runtime/number",
+    "runtime/space",       // plane and space
+    "runtime/rows",        // joints as blocks of rows, and the laws of their impulses
+    "runtime/direct",      // the sparse system of an island
+    "runtime/state",       // all data of a World
+    "runtime/motion",      // forces and poses, apart from joints
+    "runtime/solve",       // what a step asks of the joints
+    "runtime/step",        // integrators
+    "runtime/world",       // step() itself; islands, sleep, queries
+    "runtime/effects",     // motor, limit, spring, friction, breaking
+    "runtime/diagnose",
+    // cdot-run.
+    "runtime/tool/scene", "runtime/tool/run", "runtime/tool/viewer", "runtime/tool/accuracy", "runtime/tool/commands",
+    "runtime/tool",
+};
+// Rooms of one concern in two folders, which may include each other.
+const std::map<std::string, std::string> annexes = {{"derive/language/hand", "derive/language"}};
+// clang-format on
+
+constexpr int most_files = 25;
+
+struct Include {
+  std::string file, room, of_file, of_room;
+};
+
+std::string room_of(const fs::path& file) { return file.parent_path().generic_string(); }
+
+std::size_t rank(std::string room) {
+  if (const auto annex = annexes.find(room); annex != annexes.end()) room = annex->second;
+  return static_cast<std::size_t>(std::find(rooms.begin(), rooms.end(), room) - rooms.begin());
+}
+
+bool is_source(const fs::path& file) { return file.extension() == ".cpp" || file.extension() == ".hpp"; }
+
+std::vector<fs::path> sources() {
+  std::vector<fs::path> found;
+  for (const char* half : {"derive", "runtime"}) {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source_dir / half)) {
+      if (is_source(entry.path())) found.push_back(fs::relative(entry.path(), source_dir));
+    }
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// The file that an #include of ours names, from the root; empty for others. Kernels are nobody's room.
+fs::path included(const std::string& line) {
+  static const std::regex quoted("#include \"((derive|runtime|tests|generated)/[^\"]*)\".*");
+  static const std::regex published("#include <(cdot/[^>]*)>.*");
+  std::smatch match;
+  if (std::regex_match(line, match, quoted)) return match[1].str();
+  if (!std::regex_match(line, match, published)) return {};
+  const std::string path = match[1];
+  const bool kernel = path.starts_with("cdot/planar/") || path.starts_with("cdot/spatial/");
+  return kernel ? fs::path() : fs::path("runtime/include/" + path);
+}
+
+std::vector<Include> includes() {
+  std::vector<Include> found;
+  for (const fs::path& file : sources()) {
+    std::ifstream in(source_dir / file);
+    for (std::string line; std::getline(in, line);) {
+      const fs::path other = included(line);
+      if (!other.empty()) found.push_back({file.string(), room_of(file), other.string(), room_of(other)});
+    }
+  }
+  return found;
+}
+
+TEST(Layers, EveryFolderIsARoomOfTheTable) {
+  for (const fs::path& file : sources())
+    EXPECT_LT(rank(room_of(file)), rooms.size()) << file << ": add its folder to the table in this test";
+}
+
+TEST(Layers, NoRoomIncludesARoomBelowIt) {
+  const std::vector<Include> all = includes();
+  ASSERT_GT(all.size(), 500u);
+  for (const Include& i : all) {
+    EXPECT_TRUE(fs::exists(source_dir / i.of_file)) << i.file << " includes " << i.of_file;
+    EXPECT_EQ(i.room.substr(0, i.room.find('/')), i.of_room.substr(0, i.of_room.find('/')))
+        << i.file << " includes " << i.of_file << ": derive/ and runtime/ do not know each other";
+    EXPECT_LE(rank(i.of_room), rank(i.room)) << i.file << " includes " << i.of_file << ", which comes later in the table";
+  }
+}
+
+TEST(Layers, PublicHeadersIncludePublicHeadersOnly) {
+  for (const Include& i : includes()) {
+    if (!i.room.starts_with("runtime/include/")) continue;
+    EXPECT_TRUE(i.of_room.starts_with("runtime/include/"))
+        << i.file << " is installed, " << i.of_file << " is not";
+  }
+}
+
+TEST(Layers, NoRoomIsFull) {
+  std::map<std::string, int> files;
+  for (const fs::path& file : sources()) ++files[room_of(file)];
+  for (const auto& [room, count] : files) EXPECT_LE(count, most_files) << room << ": is that one concern?";
+}
+
+}  // namespace
