@@ -133,8 +133,10 @@ def own_joint():
         well = status == 0 or (status == 1 and step.startswith("cdot diff"))  # 1: it found mistakes
         claim(well, f"`{step}` goes well" + ("" if well else ": " + said))
     claim(kernel.exists(), f"cdot derive wrote generated/planar/{name}.hpp")
-    (place / "own.cpp").write_text('#include "generated/planar/registry.hpp"\n')
-    status, said = run("c++ -std=c++20 -fsyntax-only -Wall -Wextra -Werror -I . own.cpp")
+    (place / "own.cpp").write_text("#include <cdot/planar/registry.hpp>\n")
+    (place / "include").mkdir()
+    (place / "include/cdot").symlink_to(place / "generated")
+    status, said = run("c++ -std=c++20 -fsyntax-only -Wall -Wextra -Werror -I include -I runtime/include own.cpp")
     claim(status == 0, "the kernels compile " + said)
 
 
