@@ -88,6 +88,17 @@ def front_page():
             claim(any(source.glob(name)), f"{name} exists")
 
 
+def verdicts():
+    """The count of published formulas by verdict."""
+    text = " ".join((source / "README.md").read_text().split())
+    counts = re.search(r"compares (\d+) published formulas .*?: (\d+) agree, (\d+) agree under a stated condition, "
+                       r"(\d+) differ, and (\d+) are listed", text)
+    last = run("cdot diff")[1].strip().split("\n")[-1]
+    now = re.findall(r"\d+", last)
+    claim(counts is not None and list(counts.groups()[1:]) == now and int(counts.group(1)) == sum(map(int, now)),
+          "README.md counts the verdicts: " + last)
+
+
 def pictures():
     """Each is what its scene, the last one linked before it, looks like now."""
     number = re.compile(r"-?\d+(?:\.\d+)?")
@@ -169,6 +180,7 @@ with tempfile.TemporaryDirectory() as folder:
     for page in ("README.md", "specs/README.md", "specs/scenes/README.md"):
         links(page)
     front_page()
+    verdicts()
     pictures()
     teaching_message()
     scenes()
