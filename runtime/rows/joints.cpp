@@ -2,25 +2,16 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include <cdot/detail/describe_joint.hpp>
-#include <cdot/joints.hpp>
-#include <cdot/planar/registry.hpp>
-#include <cdot/spatial/registry.hpp>
 
 namespace cdot {
 namespace {
 
-template <class... Joints>
-std::vector<JointType> describe_all(std::type_identity<std::tuple<Joints...>>) {
-  return {describe_joint<Joints>()...};
-}
-
 std::vector<JointType>& registered(Dimension dimension) {
-  static std::vector<JointType> in_plane = describe_all(std::type_identity<planar::Joints>{});
-  static std::vector<JointType> in_space = describe_all(std::type_identity<spatial::Joints>{});
+  static std::vector<JointType> in_plane = joints_of_program(Dimension::planar);
+  static std::vector<JointType> in_space = joints_of_program(Dimension::spatial);
   return dimension == Dimension::planar ? in_plane : in_space;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <tuple>
 #include <type_traits>
+#include <vector>
 
 #include <cdot/joints.hpp>
 
@@ -27,5 +29,13 @@ JointType describe_joint() {
   type.explicit_time = Joint::explicit_time;
   return type;
 }
+
+template <class... Joints>
+std::vector<JointType> describe_joints(std::type_identity<std::tuple<Joints...>>) {
+  return {describe_joint<Joints>()...};
+}
+
+// The joints that a program knows from its start: the whole catalogue, or those that it chose (cdot_use_joints).
+std::vector<JointType> joints_of_program(Dimension dimension);
 
 }  // namespace cdot

@@ -14,8 +14,9 @@
 
 namespace cdot {
 
-// A row block for general bodies, and those in which one body is immovable: (index of that body,
-// its loops). Extended precision, where nobody counts instructions, does without the latter.
+// A row block for general bodies, and those in which one body is immovable: (index of that body, its loops).
+// Coordinates and extended precision have only the first: the others would be a fifth of the library, and an immovable
+// body's inverse mass is 0, so that the general block gives the same bits.
 template <class S>
 struct BlockVariants {
   const BlockOps<S>* general;
@@ -66,7 +67,7 @@ JointEntry<S> joint_entry() {
   using T = typename S::Scalar;
   JointEntry<S> entry{block_variants<S, Joint, Joint>(), {}, nullptr};
   [&]<class... Coordinates>(std::type_identity<std::tuple<Coordinates...>>) {
-    (entry.coordinates.push_back(block_variants<S, Joint, Coordinates>()), ...);
+    (entry.coordinates.push_back({&block_ops<S, Joint, Coordinates>, {}}), ...);
   }(std::type_identity<typename Joint::Coordinates>{});
   entry.default_value = [](int index, const typename S::Pose* q, T* parameters, T time) {
     using Parameters = typename Joint::template Parameters<T>;
@@ -76,8 +77,8 @@ JointEntry<S> joint_entry() {
   return entry;
 }
 
-// In the order of joint_types(). Defined for a space by one file that includes the generated
-// registry; cdot/detail/add_joints.hpp adds to it.
+// In the order of joint_types(). One file per space and scalar defines it: of the library, for the whole catalogue, or
+// of a program that chose its joints (cdot_use_joints). cdot/detail/add_joints.hpp adds to it.
 template <class S>
 std::vector<JointEntry<S>>& joint_entries();
 
