@@ -40,7 +40,8 @@ TEST(Functions, KnowTheirExactValues) {
     for (const Rational x : {Rational(0), Rational(1), Rational(-3, 2)}) {
       const std::optional<Rational> exact = f.of_number ? f.of_number(x) : std::nullopt;
       const double place = x.value();
-      if (exact) EXPECT_EQ(exact->value(), f.value(&place)) << f.name << " of " << x.text();
+      if (!exact) continue;
+      EXPECT_EQ(exact->value(), f.value(&place)) << f.name << " of " << x.text();
     }
   }
 }
