@@ -2,6 +2,7 @@
 // said in the spec's own names. What is undefined wherever C = 0 is an error.
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <set>
 
 #include "derive/check/parts.hpp"
@@ -67,19 +68,14 @@ class Undefined {
   void function(Expr e) {
     if (!seen_.insert(&*e).second) return;
     const std::string x = words(e->args[0]);
-    switch (e->fn) {
-      case Fn::sqrt: return add(Level::note, name_ + ": where " + x + " < 0 its root is not a number; no guard");
-      case Fn::log: return add(Level::note, name_ + ": where " + x + " <= 0 its log is no finite number; no guard");
-      case Fn::tan: return add(Level::note, name_ + ": tan(" + x + ") has poles at odd multiples of pi/2; no guard");
-      case Fn::abs:
-        return add(Level::note, name_ + ": at the corner " + x + " = 0 of abs the kernel takes the slope 0");
-      case Fn::atan2:
-        if (e->args[0]->kind == Kind::norm)
-          return add(Level::note, name_ + ": the angle " + words(e) + " in [0, pi] has a corner at both ends");
-        return add(Level::note, name_ + ": the angle " + words(e) + " jumps by 2 pi at pi, and where both " +
-                                    "arguments are 0 the kernel takes 0, also for its row of J");
-      default: return;
+    if (e->fn == Fn::atan2) {
+      if (e->args[0]->kind == Kind::norm)
+        return add(Level::note, name_ + ": the angle " + words(e) + " in [0, pi] has a corner at both ends");
+      return add(Level::note, name_ + ": the angle " + words(e) + " jumps by 2 pi at pi, and where both " +
+                                  "arguments are 0 the kernel takes 0, also for its row of J");
     }
+    const std::string_view finding = function_of(e->fn).finding;
+    if (!finding.empty()) add(Level::note, name_ + ": " + fmt::format(fmt::runtime(finding), x));
   }
 
   // At every pose with C = 0 that was found.

@@ -36,7 +36,7 @@ constexpr const char* json_schema =
     "  C, Cdot, C_t, gamma   one expression a row; C_t is dC/dt with the bodies at rest\n"
     "  J, K           one array a row; K is square; \"0\" where nothing is\n"
     "  coordinates    [{name, text, unit, C, Cdot, C_t, J, K, gamma}], with one row each\n"
-    "Expressions are infix text with + - * / ** and sqrt sin cos tan atan2 exp log abs sign, as sympy and\n"
+    "Expressions are infix text with + - * / ** and the functions of the specs, as sympy and\n"
     "Python read them. A spec's name that Python reserves gets an underscore at its end.";
 
 Form form_named(const std::string& name) {

@@ -1,6 +1,7 @@
 // What is derived from a joint: C, Cdot, J, K, gamma and the geometric stiffness, as expressions over vectors.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -73,6 +74,12 @@ struct Moving {
 // d e/dt along the motion: dx/dt = v, ds/dt = w x s for what is fixed in a body, dtheta/dt = w. Velocities themselves
 // count as constant, so that applied twice it gives C's second derivative without the accelerations.
 Expr time_derivative(Expr e, const Joint& joint, const Moving& motion = {});
+
+// e as the angle from one vector to another, atan2(u x v, u . v), in space atan2(|u x v|, u . v), if it is one.
+struct AngleBetween {
+  Expr from, to;
+};
+std::optional<AngleBetween> angle_between(Expr e);
 
 // Terms r x t + s x t as (r + s) x t, and likewise for dot: shorter, and how people write.
 Expr collected(Expr e);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "derive/expression/functions.hpp"
+
 namespace cdot::derive {
 namespace {
 
@@ -162,19 +164,6 @@ std::string world_axis(Expr axis) {
   return "";
 }
 
-std::optional<AngleBetween> angle_between(Expr e) {
-  if (e->kind != Kind::function || e->fn != Fn::atan2) return {};
-  const Expr sine = e->args[0];
-  const bool in_space = sine->kind == Kind::norm && sine->args[0]->kind == Kind::cross;
-  const Term y = in_space ? Term{1, sine->args[0]} : split_coefficient(sine);
-  const Term x = split_coefficient(e->args[1]);
-  const bool fits = y.e->kind == Kind::cross && x.e->kind == Kind::dot && x.coef == Rational(1) &&
-                    abs(y.coef) == Rational(1) && y.e->args == x.e->args;
-  if (!fits) return {};
-  const Expr u = y.e->args[0], v = y.e->args[1];
-  return y.coef == Rational(1) ? AngleBetween{u, v} : AngleBetween{v, u};
-}
-
 Notation::Notation(const Joint& joint) {
   for (const Parameter& p : joint.parameters) {
     if (p.kind != ParameterKind::point || p.body < 0) continue;
@@ -320,9 +309,8 @@ Expr value_of(const Formula& f, Pool& pool) {
     const Expr sine = cross(args[0], args[1]);
     return call(Fn::atan2, std::vector{sine->vector ? norm(sine) : sine, dot(args[0], args[1])});
   }
-  for (const Fn fn : {Fn::sqrt, Fn::sin, Fn::cos, Fn::tan, Fn::exp, Fn::log, Fn::abs, Fn::sign, Fn::atan2}) {
-    if (f.shape == Shape::call && f.name == name_of(fn)) return call(fn, args);
-  }
+  if (const Function* function = function_named(f.name); function && f.shape == Shape::call)
+    return call(function->fn, args);
   throw std::logic_error("a matrix has no scalar or vector value");
 }
 

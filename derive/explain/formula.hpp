@@ -82,12 +82,6 @@ Expr value_of(const Formula& f, Pool& pool);
 // vectors.
 std::string world_axis(Expr axis);
 
-// e as the angle from one vector to another, atan2(u × v, u · v), in space atan2(|u × v|, u · v), if it is one.
-struct AngleBetween {
-  Expr from, to;
-};
-std::optional<AngleBetween> angle_between(Expr e);
-
 // How expressions of a joint are written: with the author's names for lets and points.
 class Notation {
  public:

@@ -6,6 +6,7 @@
 #include "derive/explain/explain.hpp"
 #include "derive/explain/symbols.hpp"
 #include "derive/expression/components.hpp"
+#include "derive/expression/functions.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "derive/explain/lecture.hpp"
+#include "derive/expression/functions.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -42,19 +43,14 @@ class Limits {
   }
 
   void of_function(Expr e) {
-    const std::vector<Formula> args{notation_.of(e->args[0])};
-    switch (e->fn) {
-      case Fn::sqrt: return limits.list("sqrt is defined for {} ≥ 0 only.", args);
-      case Fn::log: return limits.list("log is defined for {} > 0 only.", args);
-      case Fn::tan: return limits.list("tan has poles where {} is an odd multiple of pi/2.", args);
-      case Fn::abs: return limits.list("abs has a corner at {} = 0; its derivative is taken as 0 there.", args);
-      case Fn::atan2:
-        if (e->args[0]->kind == Kind::norm) {
-          return limits.list("{} is an angle in [0, pi]: it has a corner at both ends.", {notation_.of(e)});
-        }
-        return limits.list("{} is an angle in (-pi, pi]: it jumps where the turn is complete.", {notation_.of(e)});
-      default: return;
+    if (e->fn == Fn::atan2) {
+      const bool unsigned_angle = e->args[0]->kind == Kind::norm;
+      return limits.list(unsigned_angle ? "{} is an angle in [0, pi]: it has a corner at both ends."
+                                        : "{} is an angle in (-pi, pi]: it jumps where the turn is complete.",
+                         {notation_.of(e)});
     }
+    const std::string_view limit = function_of(e->fn).limit;
+    if (!limit.empty()) limits.list(std::string(limit), {notation_.of(e->args[0])});
   }
 
   const Notation& notation_;

@@ -1,10 +1,10 @@
-// Time derivatives rule by rule: the forms that derivation/differentiate.cpp's rules have before they are
-// simplified, each with its name. What has a name is differentiated once and then called by it
-// (u_dot).
+// Time derivatives rule by rule: the forms that the rules of derivation/rate_rules.hpp give before they are simplified,
+// each with its name. What has a name is differentiated once and then called by it (u_dot).
 #pragma once
 
 #include <set>
 
+#include "derive/derivation/rate_rules.hpp"
 #include "derive/explain/explain.hpp"
 
 namespace cdot::derive {
@@ -20,26 +20,27 @@ class Rates {
   // d e/dt with all names inserted: a form in which only v and w move.
   Formula inserted(Expr e);
 
- private:
-  std::optional<Formula> rate(Expr e, bool root);
-  std::optional<Formula> rule(Expr e);
-  std::optional<Formula> symbol_rule(Expr e);
-  std::optional<Formula> sum_rule(Expr e);
-  std::optional<Formula> product_rule(Expr e);
-  std::optional<Formula> pair_rule(Expr e);
-  std::optional<Formula> scale_rule(Expr e);
-  std::optional<Formula> unit_rule(Expr e);
-  std::optional<Formula> function_rule(Expr e);
-  Formula function_rate(Expr e, Formula rate);
-  std::optional<Formula> angle_rule(const AngleBetween& angle);
-  std::optional<Formula> turning(Expr u);
+  // The algebra of the rules: a formula as they write it, none where it is zero.
+  struct Written {
+    std::optional<Formula> formula;
+  };
+  using Value = Written;
+  Written operand(Expr e) const { return {notation_.of(e)}; }
+  Written nothing(Expr) const { return {}; }
+  Written rate(Expr e);
+  std::vector<Addend> addends(Expr sum) const;
+  Written total(Expr e, const std::vector<Weighted<Written>>& terms) const;
+  Written monomial(Rational coef, std::span<const Expr> bases, std::span<const int> exponents,
+                   const Written& rate) const;
+  Written times(Expr factor, const Written& rate) const;
+  void rule(const auto&... words) { take_note((std::string() + ... + std::string(words))); }
 
-  Formula by_name(Expr e, const std::string& name);
-  Formula turned(Expr s) const;  // w × s
-  Formula turned_again(Expr w, Expr r);
+ private:
+  Formula by_rules(Expr e);
+  Written by_name(Expr e, const std::string& name);
   Chain chain(Expr e, Formula left);
   std::size_t place_of(std::string name) const;  // among the author's lets
-  void used(const std::string& rule);
+  void take_note(const std::string& rule);
 
   const Joint& joint_;
   const Notation& notation_;
@@ -48,5 +49,16 @@ class Rates {
   std::vector<std::string> rules_;
   std::vector<Chain> chains_;
 };
+
+inline bool is_zero(const Rates::Written& a) { return !a.formula; }
+Rates::Written operator+(const Rates::Written& a, const Rates::Written& b);
+Rates::Written operator-(const Rates::Written& a);
+Rates::Written operator-(const Rates::Written& a, const Rates::Written& b);
+Rates::Written operator*(const Rates::Written& a, const Rates::Written& b);
+Rates::Written operator/(const Rates::Written& a, const Rates::Written& b);
+Rates::Written dot(const Rates::Written& a, const Rates::Written& b);
+Rates::Written cross(const Rates::Written& a, const Rates::Written& b);
+Rates::Written perp(const Rates::Written& a);
+Rates::Written pow(const Rates::Written& a, int exponent);
 
 }  // namespace cdot::derive

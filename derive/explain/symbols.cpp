@@ -5,14 +5,16 @@
 #include <array>
 #include <utility>
 
+#include "derive/expression/functions.hpp"
+
 namespace cdot::derive {
 namespace {
 
-constexpr std::array reserved = {
-    "False", "None",  "True",   "and",  "as",  "assert",   "async", "await", "break",   "class",  "continue",
-    "def",   "del",   "elif",   "else", "for", "except",   "from",  "if",    "finally", "global", "import",
-    "in",    "is",    "lambda", "not",  "or",  "nonlocal", "pass",  "raise", "return",  "try",    "while",
-    "with",  "yield", "sqrt",   "sin",  "cos", "tan",      "atan2", "exp",   "log",     "abs",    "sign"};
+constexpr std::array reserved = {"False",  "None",  "True",   "and",      "as",    "assert",  "async",
+                                 "await",  "break", "class",  "continue", "def",   "del",     "elif",
+                                 "else",   "for",   "except", "from",     "if",    "finally", "global",
+                                 "import", "in",    "is",     "lambda",   "not",   "or",      "nonlocal",
+                                 "pass",   "raise", "return", "try",      "while", "with",    "yield"};
 
 std::string spoken_kind(const Parameter& p) {
   switch (p.kind) {
@@ -30,6 +32,9 @@ std::string spoken_kind(const Parameter& p) {
 ExplainedSymbols::ExplainedSymbols(const Joint& joint)
     : bodies_(joint.bodies), letters_(joint.dimension == 2 ? "xy" : "xyz") {
   for (const char* word : reserved) taken_.insert(word);
+  for (const Function& f : functions) {
+    if (!f.guard) taken_.emplace(f.name);
+  }
   for (const std::string& body : joint.bodies) add_body(body);
   for (const Parameter& p : joint.parameters) add_parameter(joint, p);
   if (joint.uses_time) add("time", "time", {"time", "time", "s", "", "", "", false});

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "derive/expression/expr.hpp"
+#include "derive/expression/functions.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -33,9 +33,6 @@ Scaled split_scale(Expr v) {
 
 bool is_perp(Expr v) { return v->kind == Kind::perp; }
 bool is_unit_of(Expr n, Expr u) { return n->kind == Kind::unit && n->args[0] == u; }
-
-// An axis of the world (in the plane y is perp of x): products with these are components and stay so.
-bool is_component_axis(Expr v) { return is_world_axis(v->kind == Kind::perp ? v->args[0] : v); }
 
 // Levers come before directions in a cross product: cross(ra, t), cross(u, n).
 bool direction_after(Expr u, Expr v) {
@@ -288,15 +285,8 @@ Expr unit(Expr u) {
 Expr call(Fn fn, std::span<const Expr> args) {
   const Expr a = args[0];
   Pool& pool = *a->pool;
-  if (a->kind == Kind::number) {
-    const Rational x = a->value;
-    if (fn == Fn::abs) return pool.number(abs(x));
-    if (fn == Fn::sign) return pool.number(x.sign());
-    if (x.is_zero() && (fn == Fn::sin || fn == Fn::tan || fn == Fn::sqrt)) return pool.number(0);
-    if (x.is_zero() && (fn == Fn::cos || fn == Fn::exp)) return pool.number(1);
-    if (x == Rational(1) && fn == Fn::sqrt) return a;
-    if (x == Rational(1) && fn == Fn::log) return pool.number(0);
-    if (fn == Fn::inverse && !x.is_zero()) return pool.number(Rational(1) / x);
+  if (const auto of_number = function_of(fn).of_number; of_number && a->kind == Kind::number) {
+    if (const std::optional<Rational> known = of_number(a->value)) return pool.number(*known);
   }
   // sqrt(u . u) is the length of u.
   if (fn == Fn::sqrt && a->kind == Kind::dot && a->args[0] == a->args[1]) return norm(a->args[0]);

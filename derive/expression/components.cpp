@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 
+#include "derive/expression/functions.hpp"
 #include "derive/expression/matrix.hpp"
 
 namespace cdot::derive {

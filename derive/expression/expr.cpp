@@ -5,6 +5,8 @@
 #include <cassert>
 #include <set>
 
+#include "derive/expression/functions.hpp"
+
 namespace cdot::derive {
 namespace {
 
@@ -44,23 +46,7 @@ std::strong_ordering compare_symbols(const Node& a, const Node& b) {
 
 }  // namespace
 
-std::string_view name_of(Fn fn) {
-  switch (fn) {
-    case Fn::sqrt: return "sqrt";
-    case Fn::sin: return "sin";
-    case Fn::cos: return "cos";
-    case Fn::tan: return "tan";
-    case Fn::exp: return "exp";
-    case Fn::log: return "log";
-    case Fn::abs: return "abs";
-    case Fn::sign: return "sign";
-    case Fn::atan2: return "atan2";
-    case Fn::inverse: return "inverse";
-    case Fn::select: return "select";
-    case Fn::pivot: return "pivot";
-  }
-  return "";
-}
+std::string_view name_of(Fn fn) { return function_of(fn).name; }
 
 std::strong_ordering compare(Expr a, Expr b) {
   if (a == b) return std::strong_ordering::equal;

@@ -34,10 +34,7 @@ enum class Kind {
   unit       // direction of a vector; the world's x axis for the zero vector
 };
 
-// The last three arise only after differentiation, when things are written out in components
-// (expression/components.hpp): inverse(x) is 1/x, and 0 at x = 0; select(l, x, y) is x where l > 0, else y; pivot(d, k)
-// is 1/d, and 0 where d is negligible beside the diagonal entry k that elimination left it from.
-enum class Fn { sqrt, sin, cos, tan, exp, log, abs, sign, atan2, inverse, select, pivot };
+enum class Fn : int;  // of expression/functions.hpp, a table
 std::string_view name_of(Fn fn);
 
 // What a leaf stands for; decides its time derivative and where a kernel reads it.
@@ -84,7 +81,7 @@ struct Node {
   std::string symbol;        // symbol: its name
   Role role = Role::given;   // symbol
   int body = -1;             // symbol: index of its body, -1 for none or the world
-  Fn fn = Fn::sqrt;          // function
+  Fn fn{};                   // function
   std::vector<Expr> args;
   std::vector<Rational> coefs;  // sum
   std::vector<int> exponents;   // product
@@ -179,6 +176,8 @@ inline Expr call(Fn fn, Expr a) { return call(fn, std::span<const Expr>(&a, 1));
 Expr world_x(Pool& pool);
 std::vector<Expr> world_axes(Pool& pool);
 inline bool is_world_axis(Expr e) { return e->kind == Kind::symbol && e->symbol.starts_with("world."); }
+// An axis of the world (in the plane y is perp of x): products with these are components and stay so.
+inline bool is_component_axis(Expr v) { return is_world_axis(v->kind == Kind::perp ? v->args[0] : v); }
 // A leaf that stands for a tensor: an inverse inertia in space. Its six components are leaves as well.
 bool is_tensor(Expr leaf);
 // Components along the world's axes; a scalar is its only one.

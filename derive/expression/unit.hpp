@@ -21,6 +21,14 @@ struct Unit {
 Unit operator*(const Unit& a, const Unit& b);
 Unit operator/(const Unit& a, const Unit& b);
 Unit pow(const Unit& u, Rational exponent);
+// The unit of what an operator gives, from those of its arguments.
+enum class UnitNeed { any, angle, number, equal };  // equal: all arguments have one unit
+enum class UnitGiven { product, same, root, number, radians, metres, speed, spin, mass, inertia };
+struct UnitRule {
+  UnitNeed needs = UnitNeed::any;
+  UnitGiven gives = UnitGiven::number;
+};
+
 std::string text(const Unit& u);    // "m", "rad/s", "kg*m^2", "1"
 std::string spoken(const Unit& u);  // "metres", "radians", "metres per second", "a pure number", else text
 

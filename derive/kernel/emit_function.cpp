@@ -70,15 +70,8 @@ void append(std::vector<std::string>& lines, std::vector<std::string> more) {
 std::set<std::string> mathematical_functions(const Program& program) {
   std::set<std::string> functions;
   for (const Operation& op : program.ops) {
-    if (op.kind != OpKind::function) continue;
-    switch (op.fn) {
-      case Fn::abs:
-      case Fn::sign:
-      case Fn::inverse:
-      case Fn::select:
-      case Fn::pivot: break;  // of the contract
-      default: functions.insert(std::string(name_of(op.fn)));
-    }
+    if (op.kind != OpKind::function || function_of(op.fn).of_contract) continue;
+    functions.insert(std::string(name_of(op.fn)));
   }
   return functions;
 }
@@ -104,13 +97,12 @@ FunctionWriter::FunctionWriter(const Joint& joint)
   }
   for (const BodyPart& part : parts_) printing_.reserved.insert(part.name);
   for (const auto& [name, declaration] : declarations()) printing_.reserved.insert(name);
-  for (const char* name :
-       {"C",     "D",    "H",      "Jv",      "g",     "C_t",    "T",      "abs",   "sign",  "select", "smallest",
-        "sqrt",  "sin",  "cos",    "tan",     "exp",   "log",    "atan2",  "pivot", "rows",  "bodies", "int",
-        "float", "auto", "double", "inverse", "const", "static", "struct", "name",  "title", "and",    "or",
-        "not",   "new",  "this",   "for",     "if",    "do",     "else",   "long"}) {
+  for (const char* name : {"C",   "D",     "H",    "Jv",     "g",     "C_t",    "T",      "smallest", "rows",  "bodies",
+                           "int", "float", "auto", "double", "const", "static", "struct", "name",     "title", "and",
+                           "or",  "not",   "new",  "this",   "for",   "if",     "do",     "else",     "long"}) {
     printing_.reserved.insert(name);
   }
+  for (const Function& f : functions) printing_.reserved.emplace(f.name);
 }
 
 void FunctionWriter::name_inputs_of_body(const Joint& joint, std::size_t b) {

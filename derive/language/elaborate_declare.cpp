@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 
+#include "derive/expression/functions.hpp"
 #include "derive/expression/symbols.hpp"
 #include "derive/language/elaborate.hpp"
 

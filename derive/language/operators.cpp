@@ -6,6 +6,7 @@
 #include <map>
 
 #include "derive/expression/components.hpp"
+#include "derive/expression/functions.hpp"
 #include "derive/expression/symbols.hpp"
 #include "derive/language/hand/operators.hpp"
 #include "derive/syntax/source.hpp"
@@ -94,22 +95,14 @@ Value build_spin(Pool& pool, Arguments a) {
   return planar ? scalar(w) : vector(w);
 }
 
-template <Fn fn>
-Value build_function(Pool&, Arguments a) {
-  if (a.size() == 1) return scalar(call(fn, a[0].e));
-  const std::array<Expr, 2> both = {a[0].e, a[1].e};
-  return scalar(call(fn, both));
-}
-
 using enum Operator::Where;
 using Space = Operator::Space;
 using Gives = UnitGiven;
 constexpr UnitRule products = {UnitNeed::any, Gives::product}, kept = {UnitNeed::any, Gives::same},
-                   to_number = {UnitNeed::any, Gives::number}, of_angle = {UnitNeed::angle, Gives::number},
-                   of_number = {UnitNeed::number, Gives::number}, to_angle = {UnitNeed::any, Gives::radians};
+                   to_number = {UnitNeed::any, Gives::number}, to_angle = {UnitNeed::any, Gives::radians};
 
 // clang-format off
-const std::vector<Operator> table = {
+const std::vector<Operator> of_vectors = {
     {"dot", "dot(u, v)", {vector_, vector_}, products, build_dot, "u_x v_x + u_y v_y"},
     {"cross", "cross(u, v)", {vector_, vector_}, products, build_cross,
      "u x v, a vector; in the plane the number u_x v_y - u_y v_x"},
@@ -138,15 +131,8 @@ const std::vector<Operator> table = {
      "the velocity of a point or of a body's centre of mass", velocity},
     {"w", "w(a)", {body_ | world_}, {UnitNeed::any, Gives::spin}, build_spin, "the angular velocity of a body",
      velocity},
-    {"sqrt", "sqrt(s)", {number_}, {UnitNeed::any, Gives::root}, build_function<Fn::sqrt>, "square root"},
-    {"sin", "sin(s)", {number_}, of_angle, build_function<Fn::sin>, "sine of an angle"},
-    {"cos", "cos(s)", {number_}, of_angle, build_function<Fn::cos>, "cosine of an angle"},
-    {"tan", "tan(s)", {number_}, of_angle, build_function<Fn::tan>, "tangent of an angle"},
-    {"exp", "exp(s)", {number_}, of_number, build_function<Fn::exp>, "e to the power s"},
-    {"log", "log(s)", {number_}, of_number, build_function<Fn::log>, "natural logarithm"},
-    {"abs", "abs(s)", {number_}, kept, build_function<Fn::abs>, "s without its sign"},
-    {"atan2", "atan2(y, x)", {number_, number_}, {UnitNeed::equal, Gives::radians}, build_function<Fn::atan2>,
-     "the angle of the vector (x, y), in (-pi, pi]"},
+};
+const std::vector<Operator> of_hand_derivations = {
     {"m", "m(a)", {body_}, {UnitNeed::any, Gives::mass}, build_mass, "the mass of a body", hand},
     {"I", "I(a)", {body_}, {UnitNeed::any, Gives::inertia}, build_inertia, "the moment of inertia of a body", hand},
     {"skew", "skew(r)", {vector_}, kept, build_skew, "the matrix with skew(r) w = w x r", hand},
@@ -161,9 +147,31 @@ const std::vector<Operator> table = {
 };
 // clang-format on
 
+Operator operator_of(const Function& f) {
+  const auto arguments = static_cast<std::size_t>(1 + std::ranges::count(f.signature, ','));
+  const auto build = [fn = f.fn](Pool&, Arguments a) {
+    std::vector<Expr> args;
+    for (const Value& v : a) args.push_back(v.e);
+    return scalar(call(fn, args));
+  };
+  return {f.name, f.signature, std::vector<unsigned>(arguments, number_), f.unit, build, f.help};
+}
+
+std::vector<Operator> all_operators() {
+  std::vector<Operator> all = of_vectors;
+  for (const Function& f : functions) {
+    if (!f.signature.empty()) all.push_back(operator_of(f));
+  }
+  all.insert(all.end(), of_hand_derivations.begin(), of_hand_derivations.end());
+  return all;
+}
+
 }  // namespace
 
-const std::vector<Operator>& operators() { return table; }
+const std::vector<Operator>& operators() {
+  static const std::vector<Operator> all = all_operators();
+  return all;
+}
 
 bool is_operator(std::string_view name) { return !operators_named(name).empty(); }
 

@@ -2,11 +2,13 @@
 // the tests.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "derive/expression/unit.hpp"
 #include "derive/language/value.hpp"
 
 namespace cdot::derive {
@@ -22,20 +24,12 @@ enum Takes : unsigned {
   matrix_ = 64
 };
 
-enum class UnitNeed { any, angle, number, equal };  // equal: all arguments have one unit
-enum class UnitGiven { product, same, root, number, radians, metres, speed, spin, mass, inertia };
-
-struct UnitRule {
-  UnitNeed needs;
-  UnitGiven gives;
-};
-
 struct Operator {
   std::string_view name;
   std::string_view signature;  // "dot(u, v)"
   std::vector<unsigned> takes;
   UnitRule unit;
-  Value (*build)(Pool& pool, std::span<const Value> arguments);  // the unit is set by the rule
+  std::function<Value(Pool& pool, std::span<const Value> arguments)> build;  // the unit is set by the rule
   std::string_view help;
   enum class Where { anywhere, velocity, hand } where = Where::anywhere;
   enum class Space { both, planar, spatial } space = Space::both;

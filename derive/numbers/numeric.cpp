@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <stdexcept>
 
@@ -12,9 +11,6 @@ namespace {
 Triple<double> unit_axis(char letter) {
   return {letter == 'x' ? 1. : 0., letter == 'y' ? 1. : 0., letter == 'z' ? 1. : 0.};
 }
-
-// A pivot that is this small beside the diagonal entry it was left from is round-off.
-constexpr double negligible = 16 * std::numeric_limits<double>::epsilon();
 
 class Doubles final : public Arithmetic<double> {
  public:
@@ -33,7 +29,7 @@ class Doubles final : public Arithmetic<double> {
             symbol.pool->dimension() == 2 ? 0 : named(symbol.symbol + "_z")};
   }
 
-  double inverse(const double& x) override { return std::fabs(x) >= std::numeric_limits<double>::min() ? 1 / x : 0; }
+  double inverse(const double& x) override { return function_of(Fn::inverse).value(&x); }
 
   Triple<double> direction(const Triple<double>& u) override {
     const double u_len = length(u);
@@ -41,24 +37,8 @@ class Doubles final : public Arithmetic<double> {
     return {u[0] / u_len, u[1] / u_len, u[2] / u_len};
   }
 
-  double call(Fn fn, std::span<const double> args) override {
-    const double x = args[0];
-    switch (fn) {
-      case Fn::sqrt: return std::sqrt(x);
-      case Fn::sin: return std::sin(x);
-      case Fn::cos: return std::cos(x);
-      case Fn::tan: return std::tan(x);
-      case Fn::exp: return std::exp(x);
-      case Fn::log: return std::log(x);
-      case Fn::abs: return std::fabs(x);
-      case Fn::sign: return x > 0 ? 1 : x < 0 ? -1 : 0;
-      case Fn::atan2: return std::atan2(x, args[1]);
-      case Fn::inverse: return inverse(x);
-      case Fn::select: return x > 0 ? args[1] : args[2];
-      case Fn::pivot: return std::fabs(x) > negligible * std::fabs(args[1]) ? 1 / x : 0;
-    }
-    return 0;
-  }
+  double call(Fn fn, std::span<const double> args) override { return function_of(fn).value(args.data()); }
+  bool has(Fn) const override { return true; }
 
  private:
   double named(const std::string& name) const {

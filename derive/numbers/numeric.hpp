@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "derive/expression/components.hpp"
+#include "derive/expression/functions.hpp"
 #include "derive/expression/matrix.hpp"
 #include "derive/language/joint.hpp"
 
@@ -61,6 +62,8 @@ class Arithmetic {
   virtual Triple<T> vector_leaf(const Node& symbol) = 0;
   virtual T inverse(const T& x) = 0;
   virtual T call(Fn fn, std::span<const T> args) = 0;
+  // Whether call() takes it, also where the table has it by other functions.
+  virtual bool has(Fn fn) const { return function_of(fn).by_others == nullptr; }
   // The component i, j of a symmetric tensor leaf.
   virtual T tensor_leaf(const Node& tensor, std::size_t i, std::size_t j) {
     const Expr component = tensor_component(Expr(&tensor), i, j);
@@ -125,6 +128,7 @@ class Evaluation {
       case Kind::norm: return arithmetic_.length(v(e, 0));
       default: break;
     }
+    if (!arithmetic_.has(e->fn)) return scalar(function_of(e->fn).by_others(e->args[0]));
     std::vector<T> args;
     for (std::size_t i = 0; i < e->args.size(); ++i) args.push_back(s(e, i));
     return arithmetic_.call(e->fn, args);

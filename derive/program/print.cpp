@@ -1,6 +1,7 @@
 // Programs to C++ statements. A quantity gets a line of its own if it has a name or is used twice.
 #include "derive/program/print.hpp"
 
+#include <fmt/args.h>
 #include <fmt/format.h>
 
 namespace cdot::derive {
@@ -200,10 +201,11 @@ class StatementPrinter {
   std::string function_text(const Operation& o) const {
     std::vector<std::string> args;
     for (const int arg : o.args) args.push_back(operand(arg, in_sum));
-    if (o.fn == Fn::select) {
-      return fmt::format("select({} > smallest<T>(), {}, {})", args[0], args[1], args[2]);
-    }
-    return fmt::format("{}({})", name_of(o.fn), fmt::join(args, ", "));
+    const Function& f = function_of(o.fn);
+    if (f.code.empty()) return fmt::format("{}({})", f.name, fmt::join(args, ", "));
+    fmt::dynamic_format_arg_store<fmt::format_context> store;
+    for (const std::string& arg : args) store.push_back(arg);
+    return fmt::vformat(f.code, store);
   }
 
   const Program& program_;

@@ -43,15 +43,12 @@ void add_cost(const Program& program, const Operation& op, Count& count) {
     count.multiply += n - 1;
     for (const int k : op.exponents) count.multiply += k - 1;
   } else if (op.kind == OpKind::function) {
-    switch (op.fn) {
-      case Fn::sqrt: count.root += 1; break;
-      case Fn::inverse: count.divide += 1, count.compare += 1; break;
-      case Fn::pivot: count.divide += 1, count.compare += 1, count.multiply += 1; break;
-      case Fn::select:
-      case Fn::abs:
-      case Fn::sign: count.compare += 1; break;
-      default: count.call += 1;
-    }
+    const Function::Cost& cost = function_of(op.fn).cost;
+    count.multiply += cost.multiply;
+    count.divide += cost.divide;
+    count.root += cost.root;
+    count.compare += cost.compare;
+    count.call += cost.call;
   }
 }
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "derive/expression/expr.hpp"
+#include "derive/expression/functions.hpp"
 
 namespace cdot::derive {
 
@@ -18,7 +18,7 @@ struct Operation {
   Rational value;            // number
   std::string input;         // input: the symbol's name
   bool is_position = false;  // input: a coordinate of a centre of mass (large, so differences come first)
-  Fn fn = Fn::sqrt;          // function
+  Fn fn{};                   // function
   std::vector<int> args;
   std::vector<Rational> coefs;  // sum
   std::vector<int> exponents;   // product, positive

@@ -1,7 +1,7 @@
 // From expressions to GiNaC's, over either set of coordinates, and the chain rule over them.
 #include "derive/proof/ginac.hpp"
 
-#include <stdexcept>
+#include "derive/proof/ginac_functions.hpp"
 
 namespace cdot::derive {
 
@@ -177,21 +177,6 @@ Triple<ex> Algebra::vector_of_body(const Node& symbol) {
   return turned;
 }
 
-ex Algebra::call(Fn fn, std::span<const ex> args) {
-  const ex& x = args[0];
-  switch (fn) {
-    case Fn::sqrt: return GiNaC::sqrt(x);
-    case Fn::sin: return sin(x);
-    case Fn::cos: return cos(x);
-    case Fn::tan: return sin(x) / cos(x);
-    case Fn::exp: return exp(x);
-    case Fn::log: return log(x);
-    case Fn::abs: return GiNaC::sqrt(x * x);
-    case Fn::sign: return GiNaC::sqrt(x * x) / x;
-    case Fn::atan2: return atan2(x, args[1]);
-    default: break;
-  }
-  throw std::logic_error("no such function before the components are written out");
-}
+ex Algebra::call(Fn fn, std::span<const ex> args) { return ginac_function(fn, args); }
 
 }  // namespace cdot::derive

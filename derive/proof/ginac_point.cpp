@@ -3,6 +3,8 @@
 #include <array>
 #include <cstdlib>
 
+#include "derive/proof/ginac_functions.hpp"
+
 namespace cdot::derive {
 
 namespace {
@@ -68,16 +70,11 @@ Modular PointValues::power(Modular base, const numeric& exponent) const {
 }
 
 Modular PointValues::function(const ex& e) {
-  using namespace GiNaC;
+  const std::optional<Fn> fn = function_in(e);
+  if (!fn) throw UndefinedHere{};
   std::vector<Modular> args;
   for (const ex& arg : e) args.push_back(of(arg));
-  if (is_the_function<sin_SERIAL>(e)) return point_.call(Fn::sin, args);
-  if (is_the_function<cos_SERIAL>(e)) return point_.call(Fn::cos, args);
-  if (is_the_function<exp_SERIAL>(e)) return point_.call(Fn::exp, args);
-  if (is_the_function<log_SERIAL>(e)) return point_.call(Fn::log, args);
-  if (is_the_function<abs_SERIAL>(e)) return point_.call(Fn::abs, args);
-  if (is_the_function<atan2_SERIAL>(e)) return point_.call(Fn::atan2, args);
-  throw UndefinedHere{};
+  return point_.call(*fn, args);
 }
 
 }  // namespace cdot::derive

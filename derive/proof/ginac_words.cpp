@@ -4,6 +4,7 @@
 #include <set>
 
 #include "derive/proof/ginac.hpp"
+#include "derive/proof/ginac_functions.hpp"
 
 namespace cdot::derive {
 
@@ -23,11 +24,7 @@ Expr converted(const ex& e, Pool& pool) {
     const bool root = e.op(1).is_equal(numeric(1) / 2);
     return root ? call(Fn::sqrt, args[0]) : pow(args[0], ex_to<numeric>(e.op(1)).to_int());
   }
-  if (GiNaC::is_the_function<GiNaC::sin_SERIAL>(e)) return call(Fn::sin, args);
-  if (GiNaC::is_the_function<GiNaC::cos_SERIAL>(e)) return call(Fn::cos, args);
-  if (GiNaC::is_the_function<GiNaC::exp_SERIAL>(e)) return call(Fn::exp, args);
-  if (GiNaC::is_the_function<GiNaC::log_SERIAL>(e)) return call(Fn::log, args);
-  if (GiNaC::is_the_function<GiNaC::atan2_SERIAL>(e)) return call(Fn::atan2, args);
+  if (const std::optional<Fn> fn = function_in(e)) return call(*fn, args);
   Expr result = pool.number(is_a<GiNaC::mul>(e) ? 1 : 0);
   for (const Expr arg : args) result = is_a<GiNaC::mul>(e) ? result * arg : result + arg;
   return result;

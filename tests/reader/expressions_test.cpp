@@ -92,6 +92,8 @@ TEST(Operators, AreAllCalled) {
                                                     {"sin", "sin(angle(t, d))"},
                                                     {"cos", "cos(k)"},
                                                     {"tan", "tan(k)"},
+                                                    {"sinh", "sinh(k)"},
+                                                    {"cosh", "cosh(k)"},
                                                     {"exp", "exp(k)"},
                                                     {"log", "log(k)"},
                                                     {"abs", "abs(l)"},

@@ -134,30 +134,32 @@ template <class T, int width>
 Pack<T, width> abs(const Pack<T, width>& a) {
   return each_lane(a, [](T x) { return std::fabs(x); });
 }
-template <class T, int width>
-Pack<T, width> sqrt(const Pack<T, width>& a) {
-  return each_lane(a, [](T x) { return std::sqrt(x); });
-}
-template <class T, int width>
-Pack<T, width> sin(const Pack<T, width>& a) {
-  return each_lane(a, [](T x) { return std::sin(x); });
-}
-template <class T, int width>
-Pack<T, width> cos(const Pack<T, width>& a) {
-  return each_lane(a, [](T x) { return std::cos(x); });
-}
-template <class T, int width>
-Pack<T, width> tan(const Pack<T, width>& a) {
-  return each_lane(a, [](T x) { return std::tan(x); });
-}
-template <class T, int width>
-Pack<T, width> exp(const Pack<T, width>& a) {
-  return each_lane(a, [](T x) { return std::exp(x); });
-}
-template <class T, int width>
-Pack<T, width> log(const Pack<T, width>& a) {
-  return each_lane(a, [](T x) { return std::log(x); });
-}
+
+// The functions of one argument in <cmath> that a kernel may call.
+#define CDOT_LANE_BY_LANE(function)                            \
+  template <class T, int width>                                \
+  Pack<T, width> function(const Pack<T, width>& a) {           \
+    return each_lane(a, [](T x) { return std::function(x); }); \
+  }
+CDOT_LANE_BY_LANE(sqrt)
+CDOT_LANE_BY_LANE(cbrt)
+CDOT_LANE_BY_LANE(sin)
+CDOT_LANE_BY_LANE(cos)
+CDOT_LANE_BY_LANE(tan)
+CDOT_LANE_BY_LANE(asin)
+CDOT_LANE_BY_LANE(acos)
+CDOT_LANE_BY_LANE(atan)
+CDOT_LANE_BY_LANE(sinh)
+CDOT_LANE_BY_LANE(cosh)
+CDOT_LANE_BY_LANE(tanh)
+CDOT_LANE_BY_LANE(asinh)
+CDOT_LANE_BY_LANE(acosh)
+CDOT_LANE_BY_LANE(atanh)
+CDOT_LANE_BY_LANE(exp)
+CDOT_LANE_BY_LANE(log)
+CDOT_LANE_BY_LANE(erf)
+#undef CDOT_LANE_BY_LANE
+
 template <class T, int width>
 Pack<T, width> atan2(const Pack<T, width>& y, const Pack<T, width>& x) {
   Pack<T, width> result;
