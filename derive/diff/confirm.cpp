@@ -4,8 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "derive/numbers/newton.hpp"
-
 namespace cdot::derive {
 namespace {
 

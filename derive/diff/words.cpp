@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <regex>
 
 #include "derive/diff/terms.hpp"
 #include "derive/expression/matrix.hpp"
@@ -205,6 +206,20 @@ std::string name_of(const Place& place) {
   if (!place.row.empty()) s += ", row " + place.row;
   if (!place.column.empty()) s += (is_digit(place.column) ? ", column " : ", ") + place.column;
   return s;
+}
+
+std::string in_names_of_spec(std::string text, const Joint& joint) {
+  if (joint.dimension == 2) return text;
+  std::vector<std::string> frames;
+  for (const Parameter& p : joint.parameters) {
+    if (p.kind == ParameterKind::frame) frames.push_back(p.name);
+  }
+  for (const std::string& body : joint.bodies) frames.push_back("axis_" + body);
+  for (const std::string& frame : frames) {
+    const std::string name = frame.starts_with("axis_") ? frame.substr(5) : frame;
+    text = std::regex_replace(text, std::regex("\\b" + frame + "_([xyz])\\b"), name + ".$1");
+  }
+  return text;
 }
 
 Difference describe_difference(const Place& place, Expr hand, Expr generated, const Poses& poses) {
