@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "derive/diff/entry.hpp"
-#include "derive/diff/merge.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -173,64 +172,6 @@ std::vector<Group> groups_of_velocities(const Joint& joint, Form form, int colum
   return grouped(
       columns, [&](int c) { return joint.dimension == 3 && velocity(c) == velocity(c - 1); },
       [&](const Group& g) { return g.count == 1 ? name(g.first) : velocity(g.first); });
-}
-
-Difference finished(Entry& entry, const HandItem& item, Difference difference, Expr published, Expr generated) {
-  if (difference.kind != "sign" && difference.kind != "wrong body") {
-    const std::string hidden =
-        hidden_assumption(entry.joint, entry.poses_on_constraint(), published, generated, entry.poses());
-    if (!hidden.empty()) difference.sentence += fmt::format("; equal only where {}", hidden);
-    const bool unsaid = item.kind == HandItem::Kind::claim || hidden == "C = 0";
-    if (!hidden.empty() && unsaid) difference.kind = "undeclared assumption";
-  }
-  difference.what = item.kind == HandItem::Kind::update ? "update" : item.what;
-  difference.where = item.where;
-  return difference;
-}
-
-void add_plain(Entry& entry, const HandItem& item, const Place& place, std::string kind, const std::string& sentence,
-               std::string confirmed) {
-  Difference d;
-  d.what = item.kind == HandItem::Kind::claim ? item.what : place.what;
-  d.row = place.row;
-  d.column = place.column;
-  d.kind = std::move(kind);
-  d.hand = item.text;
-  d.sentence = fmt::format("{}: {}", name_of(place), sentence);
-  d.confirmed = std::move(confirmed);
-  d.where = item.where;
-  entry.verdict.differences.push_back(std::move(d));
-}
-
-// One difference where the entries of a block have one in common; in the spec's own names.
-void compare(Entry& entry, const Sides& sides, const std::function<Difference(int, int)>& difference) {
-  for (const Group& rows : sides.rows) {
-    for (const Group& columns : sides.columns) {
-      std::vector<Difference> found;
-      for (int r = rows.first; r < rows.first + rows.count; ++r) {
-        for (int c = columns.first; c < columns.first + columns.count; ++c) {
-          if (!entry.equal(sides.published.at(r, c), sides.generated.at(r, c))) found.push_back(difference(r, c));
-        }
-      }
-      BlockPlace place{rows.name, columns.name, "", "", ""};
-      if (found.size() > 1) {
-        const auto block = [&](const Matrix& m) {
-          return part_of(m, rows.first, rows.count, columns.first, columns.count);
-        };
-        const Matrix published = block(sides.published), generated = block(sides.generated);
-        place.generated = text_of(generated, entry.joint);
-        place.hand = text_of(published, entry.joint);
-        place.difference = text_of(difference_of(published, generated, entry.joint), entry.joint);
-      }
-      for (Difference& d : merged(std::move(found), place)) {
-        for (std::string Difference::*text :
-             {&Difference::generated, &Difference::hand, &Difference::difference, &Difference::sentence}) {
-          d.*text = in_names_of_spec(d.*text, entry.joint);
-        }
-        entry.verdict.differences.push_back(std::move(d));
-      }
-    }
-  }
 }
 
 void judge_C(Entry& entry, const Part& part, const HandItem& item) {

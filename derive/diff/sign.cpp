@@ -6,12 +6,12 @@
 #include "derive/diff/terms.hpp"
 
 namespace cdot::derive {
-
 namespace {
 
 struct Misfit {
   int blocks = 0;         // that differ
   std::size_t terms = 0;  // that differ in them
+  friend auto operator<=>(const Misfit&, const Misfit&) = default;
 };
 
 // v or w of a body.
@@ -20,12 +20,11 @@ int block_of(const Entry& entry, int column) {
 }
 
 // How badly one row of an item fits if the row is counted with this sign.
-Misfit misfit_of(const Entry& entry, const Part& part, const HandItem& item, std::size_t row, int sign) {
-  Misfit misfit;
-  if (item.kind != HandItem::Kind::quantity || !item.value || item.what == "K") return misfit;
+void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row, int sign) {
+  if (!item.value) return;
   const Generated& g = part.generated;
   const Matrix& mine = item.what == "C" ? g.C : item.what == "J" ? g.J : g.Cdot;
-  if (item.value->rows != mine.rows || item.value->columns != mine.columns) return misfit;
+  if (item.value->rows != mine.rows || item.value->columns != mine.columns) return;
   const Rational factor(item.what == "b" ? -sign : sign);
   int block = -1;  // columns of v, or of w, of one body count as one
   for (int c = 0; c < mine.columns; ++c) {
@@ -37,7 +36,6 @@ Misfit misfit_of(const Entry& entry, const Part& part, const HandItem& item, std
     block = block_of(entry, c);
     misfit.terms += left.hand.size() + left.generated.size();
   }
-  return misfit;
 }
 
 // From K alone: D K D with the D = diag(+-1) that fits best; the first row's sign is free.
@@ -72,17 +70,14 @@ void find_signs(const Entry& entry, std::vector<Part>& parts) {
     bool any = false;
   };
   std::map<std::string, Evidence> evidence;  // by row: a row may occur in several parts
-  const auto add = [](Misfit& total, const Misfit& more) {
-    total.blocks += more.blocks;
-    total.terms += more.terms;
-  };
   for (const Part& part : parts) {
     for (std::size_t row = 0; row < part.rows.size(); ++row) {
       Evidence& e = evidence[part.rows[row].name];
       for (const HandItem& item : part.hand->items) {
-        add(e.plus, misfit_of(entry, part, item, row, 1));
-        add(e.minus, misfit_of(entry, part, item, row, -1));
-        e.any = e.any || (item.kind == HandItem::Kind::quantity && item.what != "K");
+        if (item.kind != HandItem::Kind::quantity || item.what == "K") continue;
+        add_misfit(e.plus, entry, part, item, row, 1);
+        add_misfit(e.minus, entry, part, item, row, -1);
+        e.any = true;
       }
     }
   }
@@ -90,8 +85,7 @@ void find_signs(const Entry& entry, std::vector<Part>& parts) {
     bool any = false;
     for (std::size_t row = 0; row < part.rows.size(); ++row) {
       const Evidence& e = evidence.at(part.rows[row].name);
-      const bool turned = std::pair(e.minus.blocks, e.minus.terms) < std::pair(e.plus.blocks, e.plus.terms);
-      part.sign.push_back(turned ? -1 : 1);
+      part.sign.push_back(e.minus < e.plus ? -1 : 1);
       any = any || e.any;
     }
     if (!any) part.sign = signs_of_mass(entry, part);

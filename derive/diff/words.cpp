@@ -190,12 +190,12 @@ Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& p
 Explained explained(const Place& place, Expr hand, Expr generated, Expr difference, const Poses& poses) {
   if (const auto whole = whole_entry(place, hand, generated, poses)) return *whole;
   if (const auto source = single_source(place, difference, poses)) return *source;
-  Explained best = by_terms(place, hand, generated, poses, Opened::top);
+  std::optional<Explained> best;
   for (const Opened opened : all_openings) {
     Explained next = by_terms(place, hand, generated, poses, opened);
-    if (next.effort < best.effort) best = std::move(next);
+    if (!best || next.effort < best->effort) best = std::move(next);
   }
-  return best;
+  return *best;
 }
 
 }  // namespace
