@@ -2,13 +2,13 @@
 // J)^2 times the inverse masses of the columns: no term is negative, so K is singular exactly where
 // the terms of every product of inverse masses vanish, and never where one of them is a sum of
 // squares that cannot vanish.
+#include "derive/check/mass.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <set>
 
-#include "derive/check/mass_words.hpp"
-#include "derive/check/minors.hpp"
 #include "derive/check/parts.hpp"
 #include "derive/proof/words.hpp"
 
@@ -53,8 +53,10 @@ class MassCheck {
     for (Coefficient& c : coefficients_) describe(c);
     if (coefficients_.empty()) return;  // said by the law of the rank
     report_all();
-    for (std::size_t b = 0; joint_.bodies.size() > 1 && b < joint_.bodies.size(); ++b) report_alone(b);
-    report_without_turning();
+    for (std::size_t b = 0; joint_.bodies.size() > 1 && b < joint_.bodies.size(); ++b) {
+      report_while("nothing but " + joint_.bodies[b] + " can move", [&](std::size_t i) { return i / 2 == b; });
+    }
+    report_while("nothing can turn", [](std::size_t i) { return i % 2 == 0; });
   }
 
  private:
@@ -64,14 +66,10 @@ class MassCheck {
     for (const ScalarRow& row : subject_.block.rows) {
       names_.shorten(row.kind == RowKind::velocity ? row.Cdot : row.C);
       J.emplace_back();
-      for (const Expr entry : columns_of(row.J)) {
-        J.back().push_back(by_algebra_ ? names_.of(entry) : ex(0));
-      }
+      for (const Expr entry : columns_of(row.J)) J.back().push_back(by_algebra_ ? names_.of(entry) : ex(0));
     }
     std::vector<std::vector<std::vector<double>>> seen;
-    for (const Sample& sample : subject_.anywhere) {
-      seen.push_back(jacobian_at(joint_, subject_.block, sample));
-    }
+    for (const Sample& sample : subject_.anywhere) seen.push_back(jacobian_at(joint_, subject_.block, sample));
     std::map<Monomial, Coefficient> by_monomial;
     std::vector<std::size_t> columns;
     const auto choose = [&](auto&& self, std::size_t from) -> void {
@@ -179,32 +177,33 @@ class MassCheck {
     return numeric(static_cast<long>(twelfths)) / 12;
   }
 
+  // As the square of one candidate, or of two.
   bool recognise(Coefficient& c) {
     for (const Candidate& s : candidates_) {
-      const std::optional<ex> factor = factor_of(c, s.seen);
-      if (!factor) continue;
-      const ex root = names_.of(s.e);
-      if (!equal(c.value, *factor * root * root)) continue;
+      if (!is_square_of(c, s.seen, [&] { return names_.of(s.e); })) continue;
       c.factors = factors_of(s.e);
       return true;
     }
-    return recognise_product(c);
-  }
-
-  bool recognise_product(Coefficient& c) {
     for (std::size_t i = 0; i < candidates_.size(); ++i) {
       for (std::size_t k = 0; k < i; ++k) {
-        std::vector<double> product = candidates_[i].seen;
-        for (std::size_t p = 0; p < product.size(); ++p) product[p] *= candidates_[k].seen[p];
-        const std::optional<ex> factor = factor_of(c, product);
-        if (!factor) continue;
-        const ex root = names_.of(candidates_[i].e) * names_.of(candidates_[k].e);
-        if (!equal(c.value, *factor * root * root)) continue;
-        c.factors = {said(candidates_[k].e, joint_), said(candidates_[i].e, joint_)};
+        const Candidate &s = candidates_[k], &t = candidates_[i];
+        std::vector<double> product = t.seen;
+        for (std::size_t p = 0; p < product.size(); ++p) product[p] *= s.seen[p];
+        if (!is_square_of(c, product, [&] { return names_.of(t.e) * names_.of(s.e); })) continue;
+        c.factors = {said(s.e, joint_), said(t.e, joint_)};
         return true;
       }
     }
     return false;
+  }
+
+  // Where numbers decide, they have done so already.
+  template <class Root>
+  bool is_square_of(const Coefficient& c, const std::vector<double>& seen, Root root_of) {
+    const std::optional<ex> factor = factor_of(c, seen);
+    if (!factor || !by_algebra_) return factor.has_value();
+    const ex root = root_of();
+    return names_.vanishes(c.value - *factor * root * root);
   }
 
   std::vector<std::string> factors_of(Expr e) const {
@@ -216,9 +215,6 @@ class MassCheck {
     }
     return names;
   }
-
-  // Where numbers decide, they have done so already.
-  bool equal(const ex& a, const ex& b) { return !by_algebra_ || names_.vanishes(a - b); }
 
   static bool is_constant(const std::vector<double>& seen) {
     return std::all_of(seen.begin(), seen.end(), [&](double x) { return std::fabs(x - seen[0]) <= 1e-9 * seen[0]; });
@@ -241,11 +237,14 @@ class MassCheck {
 
   using Choice = std::vector<const Coefficient*>;
 
-  template <class Condition>
-  Choice chosen(Condition condition) const {
+  // Those that are not zero while these inverse masses alone are not.
+  template <class Allowed>
+  Choice chosen(Allowed allowed) const {
     Choice out;
     for (const Coefficient& c : coefficients_) {
-      if (condition(c.monomial)) out.push_back(&c);
+      bool all = true;
+      for (std::size_t i = 0; i < c.monomial.size(); ++i) all = all && (c.monomial[i] == 0 || allowed(i));
+      if (all) out.push_back(&c);
     }
     return out;
   }
@@ -269,49 +268,30 @@ class MassCheck {
     return way;
   }
 
-  static bool needs_no_more(const Monomial& a, const Monomial& b) {
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      if (a[i] > 0 && b[i] == 0) return false;
-    }
-    return true;
+  static bool includes(const std::set<std::string>& all, const std::set<std::string>& some) {
+    return std::includes(all.begin(), all.end(), some.begin(), some.end());
   }
 
   void report_all() {
-    const Choice all = chosen([](const Monomial&) { return true; });
+    const Choice all = chosen([](std::size_t) { return true; });
     if (!any_never_zero(all)) return add("K is singular " + all_zero(all));
     std::vector<Way> ways;
     for (const Coefficient* c : all) {
-      const bool least = std::none_of(all.begin(), all.end(), [&](const Coefficient* other) {
-        return other->never_zero && needs_no_more(other->monomial, c->monomial) &&
-               !needs_no_more(c->monomial, other->monomial);
-      });
       const Way way = way_of(c->monomial);
+      const bool least = std::none_of(all.begin(), all.end(), [&](const Coefficient* other) {
+        const Way less = way_of(other->monomial);
+        return other->never_zero && less != way && includes(way.move, less.move) && includes(way.turn, less.turn);
+      });
       const bool known = std::find(ways.begin(), ways.end(), way) != ways.end();
       if (c->never_zero && least && !known) ways.push_back(way);
     }
     add("K is regular at every pose while " + in_words(ways));
   }
 
-  void report_alone(std::size_t body) {
-    const Choice choice = chosen([&](const Monomial& m) {
-      for (std::size_t i = 0; i < m.size(); ++i) {
-        if (i / 2 != body && m[i] > 0) return false;
-      }
-      return true;
-    });
-    if (any_never_zero(choice)) return;
-    add("while nothing but " + joint_.bodies[body] + " can move, K is singular " + all_zero(choice));
-  }
-
-  void report_without_turning() {
-    const Choice choice = chosen([](const Monomial& m) {
-      for (std::size_t i = 1; i < m.size(); i += 2) {
-        if (m[i] > 0) return false;
-      }
-      return true;
-    });
-    if (any_never_zero(choice)) return;
-    add("while nothing can turn, K is singular " + all_zero(choice));
+  template <class Allowed>
+  void report_while(const std::string& condition, Allowed allowed) {
+    const Choice choice = chosen(allowed);
+    if (!any_never_zero(choice)) add("while " + condition + ", K is singular " + all_zero(choice));
   }
 
   void add(std::string message) {

@@ -1,7 +1,6 @@
-#include "derive/check/mass_words.hpp"
-
 #include <algorithm>
 
+#include "derive/check/mass.hpp"
 #include "derive/syntax/source.hpp"
 
 namespace cdot::derive {

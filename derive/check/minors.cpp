@@ -1,6 +1,6 @@
-#include "derive/check/minors.hpp"
-
 #include <cmath>
+
+#include "derive/check/mass.hpp"
 
 namespace cdot::derive {
 

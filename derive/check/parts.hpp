@@ -16,8 +16,6 @@ struct Subject {
 };
 Subject subject_of(const Joint& joint);
 
-// Moves the bodies of a sample to C = 0 (Gauss-Newton); false if that does not get there.
-bool project(const Joint& joint, const Block& block, Sample& sample);
 // The rows of J at a sample.
 std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block, const Sample& sample);
 

@@ -20,8 +20,8 @@ std::array<std::array<Expr, 3>, 4> rates_of_parameters(const std::array<Expr, 4>
 // x = n y with a small whole number n.
 bool is_small_multiple(Expr x, Expr y) {
   for (int n = 1; n <= 8; ++n) {
-    if (vanishes_modulo_prime(x - Rational(n) * y).value_or(false)) return true;
-    if (vanishes_modulo_prime(x + Rational(n) * y).value_or(false)) return true;
+    if (difference_modulo_prime(x, Rational(n) * y) == Nullity::zero) return true;
+    if (difference_modulo_prime(x, Rational(-n) * y) == Nullity::zero) return true;
   }
   return false;
 }
@@ -72,7 +72,7 @@ std::vector<Expr> columns_in(Form form, const std::vector<Expr>& global, const J
 
 EulerColumns euler_columns(const ScalarRow& row, const Joint& joint, int body) {
   const Expr along = time_derivative(row.C, joint, {.stretched = body});
-  if (vanishes_modulo_prime(along).value_or(false)) return EulerColumns::partial_derivative;
+  if (difference_modulo_prime(along, along->pool->number(0)) == Nullity::zero) return EulerColumns::partial_derivative;
   if (is_small_multiple(along, row.C)) return EulerColumns::where_C_is_zero;
   return EulerColumns::tangent;
 }

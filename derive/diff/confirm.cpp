@@ -4,8 +4,6 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "derive/numbers/newton.hpp"
-
 namespace cdot::derive {
 namespace {
 
@@ -239,49 +237,45 @@ std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const M
       small(off), poses.samples().size());
 }
 
-std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows, const Change& change) const {
-  const auto left = [&](const std::vector<Expr>& columns) {
-    return [&](const Sample& sample) {
-      const Motion after = sum_of(velocity(sample), values_at(joint_, columns, sample));
-      double most = 0;
-      for (const ScalarRow& row : rows) most = std::max(most, std::abs(rate_along(joint_, row, sample, after, 1)));
-      return most;
-    };
+std::string Confirm::after(const std::string& how, const Change& change, const Remaining& left) const {
+  const auto remaining = [&](const std::vector<Expr>& columns) {
+    return [&](const Sample& sample) { return left(values_at(joint_, columns, sample), sample); };
   };
-  return worst("Cdot after the update, by central differences of C,", poses_, left(change.generated),
-               left(change.published));
+  return worst(how, poses_, remaining(change.generated), remaining(change.published));
+}
+
+std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows, const Change& change) const {
+  return after("Cdot after the update, by central differences of C,", change,
+               [&](const Motion& added, const Sample& sample) {
+                 const Motion velocities = sum_of(velocity(sample), added);
+                 double most = 0;
+                 for (const ScalarRow& row : rows)
+                   most = std::max(most, std::abs(rate_along(joint_, row, sample, velocities, 1)));
+                 return most;
+               });
 }
 
 std::string Confirm::positions_after(const std::vector<ScalarRow>& rows, const Change& change) const {
-  const auto left = [&](const std::vector<Expr>& columns) {
-    return [&](const Sample& sample) {
-      const Motion step = values_at(joint_, columns, sample);
-      double most = 0;
-      for (const ScalarRow& row : rows) {
-        most = std::max(most, std::abs(value(row.C, sample) + rate_along(joint_, row, sample, step, 0)));
-      }
-      return most;
-    };
-  };
-  return worst("C after the update, by central differences along it,", poses_, left(change.generated),
-               left(change.published));
+  return after("C after the update, by central differences along it,", change,
+               [&](const Motion& step, const Sample& sample) {
+                 double most = 0;
+                 for (const ScalarRow& row : rows)
+                   most = std::max(most, std::abs(value(row.C, sample) + rate_along(joint_, row, sample, step, 0)));
+                 return most;
+               });
 }
 
 std::string Confirm::work(const std::vector<ScalarRow>& rows, const Change& change) const {
-  const auto done = [&](const std::vector<Expr>& columns) {
-    return [&](const Sample& sample) {
-      Gradients J;
-      Motion rates;
-      for (const ScalarRow& row : rows) {
-        J.push_back(gradient(row, sample));
-        rates.push_back(inner(J.back(), velocity(sample)));
-      }
-      const Motion allowed = sum_of(velocity(sample), shortest_step(J, rates));
-      return inner(times_mass(sample, values_at(joint_, columns, sample)), allowed);
-    };
-  };
-  return worst("work of the impulse along motions that C allows, which has to be 0,", poses_, done(change.generated),
-               done(change.published));
+  return after("work of the impulse along motions that C allows, which has to be 0,", change,
+               [&](const Motion& added, const Sample& sample) {
+                 Gradients J;
+                 Motion rates;
+                 for (const ScalarRow& row : rows) {
+                   J.push_back(gradient(row, sample));
+                   rates.push_back(inner(J.back(), velocity(sample)));
+                 }
+                 return inner(times_mass(sample, added), sum_of(velocity(sample), shortest_step(J, rates)));
+               });
 }
 
 std::string Confirm::bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const {

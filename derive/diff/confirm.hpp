@@ -56,6 +56,9 @@ class Confirm {
   // How far two values are off at worst from what is measured, relative to its size.
   std::string worst(const std::string& how, const Poses& poses, const Measure& generated_error,
                     const Measure& published_error) const;
+  // How far off the rows are after a change, by what is left of them then.
+  using Remaining = std::function<double(const Motion& change, const Sample&)>;
+  std::string after(const std::string& how, const Change& change, const Remaining& left) const;
   std::string against(const Measure& measured, Expr generated, Expr published) const;
   double value(Expr e, const Sample& sample) const { return values_at(joint_, {e}, sample)[0]; }
   Motion in_form(const Motion& gradient, const Sample& sample) const;

@@ -44,8 +44,8 @@ DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path&
       continue;
     }
     const std::size_t before = report.diagnostics.list.size();
-    EntryJudge judge(ast, file, read, changed(ast.anchors, *plain.joint), report.diagnostics);
-    if (report.diagnostics.list.size() == before) report.judgements.push_back(judge.judge());
+    Entry entry = read_entry(ast, file, read, changed(ast.anchors, *plain.joint), report.diagnostics);
+    if (report.diagnostics.list.size() == before) report.judgements.push_back(judge(std::move(entry)));
   }
   return report;
 }

@@ -1,5 +1,5 @@
 // The verdict on published derivations: what each claims against what is derived, entry by entry.
-// Every verdict is computed: equality is decided at random poses and proved by GiNaC, and what
+// Every verdict is computed: exact arithmetic modulo a prime decides equality, doubles where it cannot, and what
 // differs is confirmed by finite differences.
 #pragma once
 

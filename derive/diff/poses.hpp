@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "derive/derivation/derivation.hpp"
-#include "derive/numbers/numeric.hpp"
+#include "derive/numbers/newton.hpp"
 
 namespace cdot::derive {
 
@@ -22,20 +22,15 @@ class Poses {
   bool empty() const { return samples_.empty(); }
   const std::vector<Sample>& samples() const { return samples_; }
 
-  // |a - b| is round-off at every pose.
+  // By exact arithmetic, or |a - b| is round-off at every pose.
   bool equal(Expr a, Expr b) const;
   // The constant k with a = k b at every pose, if there is one.
   std::optional<double> constant_ratio(Expr a, Expr b) const;
 
  private:
-  bool satisfy(Sample& sample) const;
-
   const Joint* joint_;
   std::vector<Sample> samples_;
   std::vector<Expr> equations_;  // that hold at the samples
 };
-
-// Values of scalars at a pose.
-std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample);
 
 }  // namespace cdot::derive

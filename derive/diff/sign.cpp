@@ -6,66 +6,40 @@
 #include "derive/diff/terms.hpp"
 
 namespace cdot::derive {
+namespace {
 
-int EntryJudge::block_of(int column, int width) const {
-  return 2 * (column / width) + (column % width < joint_.dimension ? 0 : 1);
+struct Misfit {
+  int blocks = 0;         // that differ
+  std::size_t terms = 0;  // that differ in them
+  friend auto operator<=>(const Misfit&, const Misfit&) = default;
+};
+
+// v or w of a body.
+int block_of(const Entry& entry, int column) {
+  return 2 * (column / entry.width()) + (column % entry.width() < entry.joint.dimension ? 0 : 1);
 }
 
 // How badly one row of an item fits if the row is counted with this sign.
-EntryJudge::Misfit EntryJudge::misfit(const Part& part, const HandItem& item, std::size_t row, int sign) const {
-  Misfit misfit;
-  if (item.kind != HandItem::Kind::quantity || !item.value || item.what == "K") return misfit;
+void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row, int sign) {
+  if (!item.value) return;
   const Generated& g = part.generated;
   const Matrix& mine = item.what == "C" ? g.C : item.what == "J" ? g.J : g.Cdot;
-  if (item.value->rows != mine.rows || item.value->columns != mine.columns) return misfit;
+  if (item.value->rows != mine.rows || item.value->columns != mine.columns) return;
   const Rational factor(item.what == "b" ? -sign : sign);
   int block = -1;  // columns of v, or of w, of one body count as one
   for (int c = 0; c < mine.columns; ++c) {
     const Expr hand = item.value->at(static_cast<int>(row), c);
     const Expr generated = factor * mine.at(static_cast<int>(row), c);
-    if (poses().equal(hand, generated)) continue;
-    const Leftover left = leftover_terms(hand, generated, joint_, Opened::everything);
-    misfit.blocks += block_of(c, width()) == block ? 0 : 1;
-    block = block_of(c, width());
+    if (entry.poses().equal(hand, generated)) continue;
+    const Leftover left = leftover_terms(hand, generated, entry.joint, Opened::everything);
+    misfit.blocks += block_of(entry, c) == block ? 0 : 1;
+    block = block_of(entry, c);
     misfit.terms += left.hand.size() + left.generated.size();
-  }
-  return misfit;
-}
-
-void EntryJudge::find_signs(std::vector<Part>& parts) {
-  struct Evidence {
-    Misfit plus, minus;
-    bool any = false;
-  };
-  std::map<std::string, Evidence> evidence;  // by row: a row may occur in several parts
-  const auto add = [](Misfit& total, const Misfit& more) {
-    total.blocks += more.blocks;
-    total.terms += more.terms;
-  };
-  for (const Part& part : parts) {
-    for (std::size_t row = 0; row < part.rows.size(); ++row) {
-      Evidence& e = evidence[part.rows[row].name];
-      for (const HandItem& item : part.hand->items) {
-        add(e.plus, misfit(part, item, row, 1));
-        add(e.minus, misfit(part, item, row, -1));
-        e.any = e.any || (item.kind == HandItem::Kind::quantity && item.what != "K");
-      }
-    }
-  }
-  for (Part& part : parts) {
-    bool any = false;
-    for (std::size_t row = 0; row < part.rows.size(); ++row) {
-      const Evidence& e = evidence.at(part.rows[row].name);
-      const bool turned = std::pair(e.minus.blocks, e.minus.terms) < std::pair(e.plus.blocks, e.plus.terms);
-      part.sign.push_back(turned ? -1 : 1);
-      any = any || e.any;
-    }
-    if (!any) part.sign = signs_of_mass(part);
   }
 }
 
 // From K alone: D K D with the D = diag(+-1) that fits best; the first row's sign is free.
-std::vector<int> EntryJudge::signs_of_mass(const Part& part) const {
+std::vector<int> signs_of_mass(const Entry& entry, const Part& part) {
   const Matrix& K = part.generated.K;
   int best = -1;
   std::vector<int> kept = part.sign;
@@ -79,13 +53,43 @@ std::vector<int> EntryJudge::signs_of_mass(const Part& part) const {
       for (int i = 0; i < K.rows; ++i) {
         for (int j = 0; j < K.columns; ++j) {
           const Rational s(sign[static_cast<std::size_t>(i)] * sign[static_cast<std::size_t>(j)]);
-          agreed += poses().equal(item.value->at(i, j), s * K.at(i, j)) ? 1 : 0;
+          agreed += entry.poses().equal(item.value->at(i, j), s * K.at(i, j)) ? 1 : 0;
         }
       }
     }
     if (agreed > best) best = agreed, kept = sign;
   }
   return kept;
+}
+
+}  // namespace
+
+void find_signs(const Entry& entry, std::vector<Part>& parts) {
+  struct Evidence {
+    Misfit plus, minus;
+    bool any = false;
+  };
+  std::map<std::string, Evidence> evidence;  // by row: a row may occur in several parts
+  for (const Part& part : parts) {
+    for (std::size_t row = 0; row < part.rows.size(); ++row) {
+      Evidence& e = evidence[part.rows[row].name];
+      for (const HandItem& item : part.hand->items) {
+        if (item.kind != HandItem::Kind::quantity || item.what == "K") continue;
+        add_misfit(e.plus, entry, part, item, row, 1);
+        add_misfit(e.minus, entry, part, item, row, -1);
+        e.any = true;
+      }
+    }
+  }
+  for (Part& part : parts) {
+    bool any = false;
+    for (std::size_t row = 0; row < part.rows.size(); ++row) {
+      const Evidence& e = evidence.at(part.rows[row].name);
+      part.sign.push_back(e.minus < e.plus ? -1 : 1);
+      any = any || e.any;
+    }
+    if (!any) part.sign = signs_of_mass(entry, part);
+  }
 }
 
 }  // namespace cdot::derive

@@ -10,6 +10,10 @@ namespace {
 
 using Target = HandItem::Target;
 
+// An update of velocities or positions with the impulse spelled out, or with an impulse of any size, of which only the
+// direction M^-1 J^T can be judged.
+enum class UpdateLevel { velocities, positions, any_impulse };
+
 bool is_linear(Target t) { return t == Target::velocity || t == Target::position; }
 bool is_position_level(Target t) { return t == Target::position || t == Target::angle; }
 
@@ -55,15 +59,6 @@ std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& r
   return columns;
 }
 
-std::string column_name(const Joint& joint, std::size_t column, bool positions) {
-  const std::size_t width = columns_per_body(joint.dimension), linear = static_cast<std::size_t>(joint.dimension);
-  const std::size_t k = column % width;
-  const std::string& body = joint.bodies[column / width];
-  if (k < linear) return fmt::format("{}_{}.{}", positions ? "x" : "v", body, "xyz"[k]);
-  const std::string turning = fmt::format("{}_{}", positions ? "angle" : "w", body);
-  return linear == 2 ? turning : fmt::format("{}.{}", turning, "xyz"[k - linear]);
-}
-
 // All columns are the same multiple of what is generated.
 bool same_direction(const Confirm::Change& change, const Poses& poses) {
   for (std::size_t i = 0; i < change.generated.size(); ++i) {
@@ -76,38 +71,64 @@ bool same_direction(const Confirm::Change& change, const Poses& poses) {
   return true;
 }
 
-}  // namespace
-
 // The impulse that the changes are compared with: a symbol where the source's is, or else what
 // makes Cdot vanish (positions: C).
-std::vector<Expr> EntryJudge::impulse(const Part& part, UpdateLevel level) const {
+std::vector<Expr> impulse(Pool& pool, const Part& part, UpdateLevel level) {
   const std::size_t n = part.rows.size();
   std::vector<Expr> lambda;
   for (std::size_t i = 0; i < n; ++i) {
     const std::string name = n == 1 ? "lambda" : "lambda_" + std::to_string(i + 1);
-    lambda.push_back(level == UpdateLevel::any_impulse ? pool_.symbol(name, Role::multiplier)
+    lambda.push_back(level == UpdateLevel::any_impulse ? pool.symbol(name, Role::multiplier)
                      : level == UpdateLevel::positions ? -part.generated.C.entries[i]
                                                        : -part.generated.Cdot.entries[i]);
   }
   return level == UpdateLevel::any_impulse ? lambda : solved(part.generated.K, std::move(lambda));
 }
 
-void EntryJudge::judge_updates(const Part& part) {
+UpdateLevel level_of(const std::vector<const HandItem*>& updates) {
+  if (std::any_of(updates.begin(), updates.end(), [](const HandItem* item) { return contains_multiplier(*item); }))
+    return UpdateLevel::any_impulse;
+  return is_position_level(updates[0]->target) ? UpdateLevel::positions : UpdateLevel::velocities;
+}
+
+// Turned where the published one then fits better: an impulse of any size counts C either way round.
+std::vector<Expr> turned_to_fit(std::vector<Expr> generated, const std::vector<Expr>& published, const Poses& poses) {
+  const auto wrong = [&](Rational sign) {
+    int count = 0;
+    for (std::size_t c = 0; c < published.size(); ++c) {
+      count += poses.equal(published[c], sign * generated[c]) ? 0 : 1;
+    }
+    return count;
+  };
+  if (wrong(Rational(-1)) < wrong(Rational(1))) {
+    for (Expr& e : generated) e = -e;
+  }
+  return generated;
+}
+
+std::string confirmation(const Confirm& confirm, const Part& part, UpdateLevel level, const Confirm::Change& change) {
+  switch (level) {
+    case UpdateLevel::any_impulse: return confirm.work(part.rows, change);
+    case UpdateLevel::positions: return confirm.positions_after(part.rows, change);
+    case UpdateLevel::velocities: return confirm.velocities_after(part.rows, change);
+  }
+  return "";
+}
+
+}  // namespace
+
+void judge_updates(Entry& entry, const Part& part) {
   std::vector<const HandItem*> updates;
   for (const HandItem& item : part.hand->items) {
     if (item.kind == HandItem::Kind::update && item.value) updates.push_back(&item);
   }
   if (updates.empty()) return;
-  const bool positions = is_position_level(updates[0]->target);
-  const bool any_impulse =
-      std::any_of(updates.begin(), updates.end(), [](const HandItem* item) { return contains_multiplier(*item); });
-  const UpdateLevel level = any_impulse ? UpdateLevel::any_impulse
-                            : positions ? UpdateLevel::positions
-                                        : UpdateLevel::velocities;
-  Confirm::Change change{changes_by(joint_, part.rows, impulse(part, level)), {}};
-  change.published.assign(change.generated.size(), pool_.number(0));
+  const UpdateLevel level = level_of(updates);
+  Confirm::Change change{changes_by(entry.joint, part.rows, impulse(entry.pool(), part, level)), {}};
+  change.published.assign(change.generated.size(), entry.pool().number(0));
   std::vector<const HandItem*> said_by(change.generated.size(), updates[0]);
-  const std::size_t width = columns_per_body(joint_.dimension), linear = static_cast<std::size_t>(joint_.dimension);
+  const int dimension = entry.joint.dimension;
+  const std::size_t width = columns_per_body(dimension), linear = static_cast<std::size_t>(dimension);
   for (const HandItem* item : updates) {
     const std::size_t first = static_cast<std::size_t>(item->body) * width + (is_linear(item->target) ? 0 : linear);
     for (std::size_t k = 0; k < item->value->entries.size(); ++k) {
@@ -115,82 +136,41 @@ void EntryJudge::judge_updates(const Part& part) {
       said_by[first + k] = item;
     }
   }
-  compare_change(part, level, std::move(change), said_by);
-}
-
-// An impulse of any size counts C either way round.
-void EntryJudge::compare_change(const Part& part, UpdateLevel level, Confirm::Change change,
-                                const std::vector<const HandItem*>& said_by) {
-  const auto wrong = [&](Rational sign) {
-    int count = 0;
-    for (std::size_t c = 0; c < said_by.size(); ++c) {
-      count += poses().equal(change.published[c], sign * change.generated[c]) ? 0 : 1;
-    }
-    return count;
-  };
-  if (level == UpdateLevel::any_impulse && wrong(Rational(-1)) < wrong(Rational(1))) {
-    for (Expr& e : change.generated) e = -e;
-  }
-  const bool only_size = level != UpdateLevel::any_impulse && same_direction(change, poses());
+  const bool any = level == UpdateLevel::any_impulse;
+  if (any) change.generated = turned_to_fit(change.generated, change.published, entry.poses());
+  const bool only_size = !any && same_direction(change, entry.poses());
+  const int columns = static_cast<int>(change.generated.size());
+  const Matrix published{1, columns, change.published}, generated{1, columns, change.generated};
+  const std::vector<Group> groups =
+      groups_of_velocities(entry.joint, Form::global, columns, level == UpdateLevel::positions);
   std::string confirmed;
-  const auto difference_at = [&](std::size_t c) {
-    if (confirmed.empty()) {
-      confirmed = level == UpdateLevel::any_impulse ? confirm().work(part.rows, change)
-                  : level == UpdateLevel::positions ? confirm().positions_after(part.rows, change)
-                                                    : confirm().velocities_after(part.rows, change);
-    }
-    const std::string column = column_name(joint_, c, level == UpdateLevel::positions);
-    const Place place{"update", "", column, {}, {}, &joint_};
-    Difference d = describe_difference(place, change.published[c], change.generated[c], poses());
+  compare(entry, {published, generated, {Group{}}, groups}, [&](int, int c) {
+    if (confirmed.empty()) confirmed = confirmation(entry.confirm(), part, level, change);
+    const std::string column = column_name(entry.joint, Form::global, c, level == UpdateLevel::positions);
+    const Place place{"update", "", column, {}, {}, &entry.joint};
+    Difference d = describe_difference(place, published.at(0, c), generated.at(0, c), entry.poses());
     d.confirmed = confirmed;
     if (only_size && d.kind == "factor") d.sentence += "; the direction of the impulse is right, its size is not";
-    return finished(*said_by[c], std::move(d), change.published[c], change.generated[c]);
-  };
-  for (const Group& group : groups_of_changes(level, said_by.size())) {
-    std::vector<Difference> found;
-    Matrix generated{1, group.count, {}}, hand{1, group.count, {}};
-    for (int k = 0; k < group.count; ++k) {
-      const std::size_t c = static_cast<std::size_t>(group.first + k);
-      generated.entries.push_back(change.generated[c]);
-      hand.entries.push_back(change.published[c]);
-      if (!equal(change.published[c], change.generated[c])) found.push_back(difference_at(c));
-    }
-    report(std::move(found), "", group.name, hand, generated);
-  }
+    return finished(entry, *said_by[static_cast<std::size_t>(c)], std::move(d), published.at(0, c), generated.at(0, c));
+  });
 }
 
-// In space the components of one change go together.
-std::vector<EntryJudge::Group> EntryJudge::groups_of_changes(UpdateLevel level, std::size_t columns) const {
-  std::vector<Group> groups;
-  const int width = static_cast<int>(columns_per_body(joint_.dimension));
-  for (int c = 0; c < static_cast<int>(columns); ++c) {
-    const std::string name = column_name(joint_, static_cast<std::size_t>(c), level == UpdateLevel::positions);
-    if (joint_.dimension == 3 && c > 0 && block_of(c, width) == block_of(c - 1, width)) {
-      ++groups.back().count;
-      groups.back().name = name.substr(0, name.find('.'));
-    } else {
-      groups.push_back({c, 1, name});
-    }
-  }
-  return groups;
-}
-
-void EntryJudge::judge_bound(const Part& part, const HandItem& item) {
+void judge_bound(Entry& entry, const Part& part, const HandItem& item) {
   const bool inequality = std::all_of(part.rows.begin(), part.rows.end(),
                                       [](const ScalarRow& row) { return row.kind == RowKind::inequality; });
   if (inequality == item.pushes_only) return;
   std::vector<Expr> b;
   for (const Expr e : part.generated.Cdot.entries) b.push_back(-e);
-  const std::string confirmed = confirm().bound(part.rows, solved(part.generated.K, b), inequality);
-  const Place place{"update", "", "", {}, {}, &joint_};
+  const std::string confirmed = entry.confirm().bound(part.rows, solved(part.generated.K, b), inequality);
+  const Place place{"update", "", "", {}, {}, &entry.joint};
   if (inequality) {
-    add_plain(item, place, "missing term",
+    add_plain(entry, item, place, "missing term",
               "the impulse has to stay >= 0: an inequality may push C up, never pull it back; "
               "without that the row "
               "also stops bodies that are already on their way back",
               confirmed);
   } else {
-    add_plain(item, place, "extra term", "the row is an equation, its impulse may have either sign", confirmed);
+    add_plain(entry, item, place, "extra term", "the row is an equation, its impulse may have either sign", confirmed);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <regex>
 
 #include "derive/diff/terms.hpp"
 #include "derive/expression/matrix.hpp"
@@ -189,12 +190,12 @@ Explained by_terms(const Place& place, Expr hand, Expr generated, const Poses& p
 Explained explained(const Place& place, Expr hand, Expr generated, Expr difference, const Poses& poses) {
   if (const auto whole = whole_entry(place, hand, generated, poses)) return *whole;
   if (const auto source = single_source(place, difference, poses)) return *source;
-  Explained best = by_terms(place, hand, generated, poses, Opened::top);
+  std::optional<Explained> best;
   for (const Opened opened : all_openings) {
     Explained next = by_terms(place, hand, generated, poses, opened);
-    if (next.effort < best.effort) best = std::move(next);
+    if (!best || next.effort < best->effort) best = std::move(next);
   }
-  return best;
+  return *best;
 }
 
 }  // namespace
@@ -205,6 +206,20 @@ std::string name_of(const Place& place) {
   if (!place.row.empty()) s += ", row " + place.row;
   if (!place.column.empty()) s += (is_digit(place.column) ? ", column " : ", ") + place.column;
   return s;
+}
+
+std::string in_names_of_spec(std::string text, const Joint& joint) {
+  if (joint.dimension == 2) return text;
+  std::vector<std::string> frames;
+  for (const Parameter& p : joint.parameters) {
+    if (p.kind == ParameterKind::frame) frames.push_back(p.name);
+  }
+  for (const std::string& body : joint.bodies) frames.push_back("axis_" + body);
+  for (const std::string& frame : frames) {
+    const std::string name = frame.starts_with("axis_") ? frame.substr(5) : frame;
+    text = std::regex_replace(text, std::regex("\\b" + frame + "_([xyz])\\b"), name + ".$1");
+  }
+  return text;
 }
 
 Difference describe_difference(const Place& place, Expr hand, Expr generated, const Poses& poses) {

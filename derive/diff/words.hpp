@@ -28,6 +28,9 @@ std::string name_of(const Place& place);
 // Fills kind, texts and sentence. `poses` decide what equals what.
 Difference describe_difference(const Place& place, Expr hand, Expr generated, const Poses& poses);
 
+// The axis that the spec calls f.x is a leaf f_x.
+std::string in_names_of_spec(std::string text, const Joint& joint);
+
 // A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty
 // if none is found. `constraints`: the rows of C.
 std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand, Expr generated,

@@ -42,6 +42,7 @@ class Pose final : public Arithmetic<Modular> {
 
   Modular inverse(const Modular& x) override { return point_.inverse(x); }
   Modular call(Fn fn, std::span<const Modular> args) override { return point_.call(fn, args); }
+  bool holds_for_reals() const { return point_.holds_for_reals(); }
 
  private:
   std::int64_t angle_of(int body) { return angles_.try_emplace(body, point_.small()).first->second; }
@@ -75,7 +76,7 @@ class Pose final : public Arithmetic<Modular> {
       e = {point_.any(), point_.any(), point_.any(), point_.any()};
       square = e[0] * e[0] + e[1] * e[1] + e[2] * e[2] + e[3] * e[3];
     } while (square.is_zero() || !square.is_square());
-    const Modular scale = inverse(call(Fn::sqrt, std::span<const Modular>(&square, 1)));
+    const Modular scale = inverse(point_.root(square));
     for (Modular& component : e) component = component * scale;
     return orientations_.emplace(body, e).first->second;
   }
@@ -211,20 +212,13 @@ Modular pow(Modular base, std::uint64_t exponent) {
 
 Modular inverse(Modular x) { return pow(x, Modular::prime - 2); }
 
-std::optional<bool> vanishes_modulo_prime(Expr scalar) {
-  constexpr std::uint64_t most_attempts = 400;
-  int poses = 0;
-  for (std::uint64_t seed = 1; seed <= most_attempts && poses < exact_points; ++seed) {
-    try {
-      Pose pose(seed);
-      if (!Evaluation<Modular>(pose).scalar(scalar).is_zero()) return false;
-      ++poses;
-    } catch (const UndefinedHere&) {
-      // Some root has no value at this pose.
-    }
-  }
-  if (poses == 0) return std::nullopt;
-  return true;
+Nullity difference_modulo_prime(Expr a, Expr b) {
+  return nullity([&](std::uint64_t seed) {
+    Pose pose(seed);
+    Evaluation<Modular> values(pose);
+    const Modular difference = values.scalar(a) - values.scalar(b);
+    return std::pair(difference, pose.holds_for_reals());
+  });
 }
 
 GenericRank generic_rank(std::span<const std::vector<Expr>> rows) {

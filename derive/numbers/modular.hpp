@@ -42,10 +42,14 @@ Modular inverse(Modular x);  // x must not be zero
 // At so many random points a formula has to vanish that counts as zero without a proof.
 inline constexpr int exact_points = 8;
 
-// Whether an expression vanishes at every one of several random poses modulo the prime: exact arithmetic, so that a
-// nonzero formula passes with a probability of about its degree over 2^61 at each. Empty if no pose was found at which
-// everything is defined.
-std::optional<bool> vanishes_modulo_prime(Expr scalar);
+// The answer to every question whether a formula is zero, by exact arithmetic at random points modulo the prime. A
+// nonzero formula of degree d passes for zero with a probability of about d/2^61 at each point.
+enum class Nullity {
+  zero,     // at all of exact_points
+  differs,  // a quotient of polynomials that is not zero at a point, so that it is not zero among the reals either
+  unknown   // not zero at a point, but there a root or a logarithm has a value of its own; or it is defined nowhere
+};
+Nullity difference_modulo_prime(Expr a, Expr b);
 
 // How many of the rows are independent at generic poses.
 struct GenericRank {

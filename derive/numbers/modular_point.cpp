@@ -38,20 +38,28 @@ Modular ModularPoint::inverse(Modular x) const {
   return derive::inverse(x);
 }
 
-Modular ModularPoint::call(Fn fn, std::span<const Modular> args) const {
+Modular ModularPoint::call(Fn fn, std::span<const Modular> args) {
   const Modular x = args[0];
   switch (fn) {
-    case Fn::sqrt: return root(x);
-    case Fn::abs: return root(x * x);
     case Fn::sin: return turn(x).s;
     case Fn::cos: return turn(x).c;
     case Fn::exp: return exponential(x);
     case Fn::inverse:
     case Fn::pivot: return inverse(x);
-    case Fn::select: return sign(x) == Modular(1) ? args[1] : args[2];
+    case Fn::sqrt:
+    case Fn::abs:
+    case Fn::select: break;
     // Of log and atan2 no law is known here.
-    default: return any_for(6 + static_cast<int>(fn), x, args.back());
+    default: return arbitrary(6 + static_cast<int>(fn), x, args.back());
   }
+  holds_for_reals_ = false;  // they ask for signs
+  if (fn == Fn::select) return sign(x) == Modular(1) ? args[1] : args[2];
+  return root(fn == Fn::abs ? x * x : x);
+}
+
+Modular ModularPoint::arbitrary(int kind, Modular x, Modular y) {
+  holds_for_reals_ = false;
+  return any_for(kind, x, y);
 }
 
 Modular ModularPoint::sign(Modular x) const {
@@ -69,19 +77,19 @@ Modular ModularPoint::any_for(int kind, Modular x, Modular y) const {
   return Modular::of_bits(random.bits());
 }
 
-Rotation ModularPoint::turn(Modular x) const {
+Rotation ModularPoint::turn(Modular x) {
   for (int eighths = -16; eighths <= 16; ++eighths) {
     const Modular rest = x - Modular(eighths) * pi_ * derive::inverse(Modular(4));
     if (std::abs(rest.centred()) < small_bound) {
       return turn_by(rest.centred()) * pow(eighth_turn_, eighths);
     }
   }
-  return rotation_of(any_for(3, x, x));
+  return rotation_of(arbitrary(3, x, x));
 }
 
-Modular ModularPoint::exponential(Modular x) const {
+Modular ModularPoint::exponential(Modular x) {
   const std::int64_t whole = x.centred();
-  if (std::abs(whole) >= small_bound) return any_for(4, x, x);
+  if (std::abs(whole) >= small_bound) return arbitrary(4, x, x);
   const Modular power = pow(base_, static_cast<std::uint64_t>(std::abs(whole)));
   return whole < 0 ? inverse(power) : power;
 }

@@ -32,7 +32,10 @@ class ModularPoint {
 
   Modular inverse(Modular x) const;
   Modular root(Modular x) const;
-  Modular call(Fn fn, std::span<const Modular> args) const;
+  Modular call(Fn fn, std::span<const Modular> args);
+  // So far every value was a quotient of polynomials in what the point is made of. Else a value other than zero says
+  // nothing of the reals: there a sum of squares is positive, log(x y) = log x + log y, and so on.
+  bool holds_for_reals() const { return holds_for_reals_; }
   Modular any_for(int kind, Modular x, Modular y) const;  // the same for the same arguments
 
  private:
@@ -40,13 +43,32 @@ class ModularPoint {
   static constexpr std::int64_t small_bound = std::int64_t{1} << 56;
 
   Modular sign(Modular x) const;
-  Rotation turn(Modular x) const;
-  Modular exponential(Modular x) const;
+  Rotation turn(Modular x);
+  Modular exponential(Modular x);
+  Modular arbitrary(int kind, Modular x, Modular y);
 
   Random random_;
   std::uint64_t salt_;
   Rotation unit_turn_, eighth_turn_;
   Modular base_, pi_;
+  bool holds_for_reals_ = true;
 };
+
+// Of a formula by its value at the point of a seed, and by whether that holds for the reals. With n roots, one point in
+// 2^n serves.
+template <class ValueAt>
+Nullity nullity(ValueAt value_at) {
+  constexpr std::uint64_t attempts = 16384;
+  int points = 0;
+  for (std::uint64_t seed = 1; seed <= attempts && points < exact_points; ++seed) {
+    try {
+      const auto [value, holds_for_reals] = value_at(seed);
+      if (!value.is_zero()) return holds_for_reals ? Nullity::differs : Nullity::unknown;
+      ++points;
+    } catch (const UndefinedHere&) {
+    }
+  }
+  return points == exact_points ? Nullity::zero : Nullity::unknown;
+}
 
 }  // namespace cdot::derive

@@ -1,6 +1,9 @@
 #include "derive/numbers/newton.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
 
 namespace cdot::derive {
 namespace {
@@ -23,6 +26,82 @@ std::vector<double> solve(Gradients A, std::vector<double> b) {
   return b;
 }
 
+// All that an equation may move: bodies, or also scalars, vectors and triads that are fixed somewhere.
+// Directions and orientations are turned, so that they keep their length.
+class Variables {
+ public:
+  Variables(const Joint& joint, const Sample& sample, bool only_bodies) : dimension_(joint.dimension) {
+    const std::size_t linear = static_cast<std::size_t>(dimension_), turns = dimension_ == 2 ? 1 : 3;
+    for (std::size_t b = 0; b < sample.bodies.size(); ++b) {
+      for (std::size_t k = 0; k < linear + turns; ++k) {
+        add([=, this](Sample& s, double by) { s.bodies[b].move(dimension_, k, by); });
+      }
+    }
+    if (only_bodies) return;
+    std::set<std::string> directions;
+    for (const Expr leaf : sample.leaves) {
+      if (leaf->unit_length) directions.insert(leaf->symbol);
+    }
+    // `name = name`: Clang 14 cannot capture a structured binding otherwise.
+    for (const auto& [name, value] : sample.scalars) {
+      add([name = name](Sample& s, double by) { s.scalars.at(name) += by; });
+    }
+    for (const auto& [name, value] : sample.local) {
+      if (name.starts_with("world.") || name.starts_with("axis_")) continue;
+      const bool direction = directions.contains(name);
+      for (std::size_t k = 0; k < (direction ? turns : linear); ++k) {
+        add([=, this, name = name](Sample& s, double by) {
+          Triple<double>& u = s.local.at(name);
+          direction ? turn(u, k, by) : void(u[k] += by);
+        });
+      }
+    }
+    for (const Triad* triad : triads_of(joint, sample)) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        add([=](Sample& s, double by) { s.triads.at(triad) = turned_about(k, by, s.triads.at(triad)); });
+      }
+    }
+  }
+
+  std::size_t size() const { return moves_.size(); }
+  void move(Sample& sample, std::size_t i, double by) const { moves_[i](sample, by); }
+
+ private:
+  void add(std::function<void(Sample&, double)> move) { moves_.push_back(std::move(move)); }
+
+  void turn(Triple<double>& u, std::size_t axis, double by) const {
+    const std::size_t i = dimension_ == 2 ? 0 : (axis + 1) % 3, j = dimension_ == 2 ? 1 : (axis + 2) % 3;
+    const double x = u[i], y = u[j], c = std::cos(by), s = std::sin(by);
+    u[i] = c * x - s * y;
+    u[j] = s * x + c * y;
+  }
+
+  int dimension_;
+  std::vector<std::function<void(Sample&, double)>> moves_;
+};
+
+double largest(const std::vector<double>& numbers) {
+  double most = 0;
+  for (const double x : numbers) most = std::max(most, std::isfinite(x) ? std::abs(x) : HUGE_VAL);
+  return most;
+}
+
+Gradients central_differences(const Joint& joint, const std::vector<Expr>& equations, const Variables& variables,
+                              const Sample& sample) {
+  constexpr double step = 1e-6;
+  Gradients G(equations.size());
+  for (std::size_t v = 0; v < variables.size(); ++v) {
+    Sample moved = sample;
+    variables.move(moved, v, step);
+    const std::vector<double> above = values_at(joint, equations, moved);
+    moved = sample;
+    variables.move(moved, v, -step);
+    const std::vector<double> below = values_at(joint, equations, moved);
+    for (std::size_t i = 0; i < G.size(); ++i) G[i].push_back((above[i] - below[i]) / (2 * step));
+  }
+  return G;
+}
+
 }  // namespace
 
 std::vector<double> shortest_step(const Gradients& G, const std::vector<double>& values) {
@@ -43,6 +122,52 @@ std::vector<double> shortest_step(const Gradients& G, const std::vector<double>&
     for (std::size_t k = 0; k < step.size(); ++k) step[k] -= G[i][k] * lambda[i];
   }
   return step;
+}
+
+std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample) {
+  Numbers numbers(world_values(joint, sample));
+  std::vector<double> values;
+  for (const Expr e : scalars) values.push_back(numbers.scalar(e));
+  return values;
+}
+
+std::vector<const Triad*> triads_of(const Joint& joint, const Sample& sample) {
+  std::vector<const Triad*> triads;
+  for (const Expr leaf : sample.leaves) {
+    const Triad* triad = joint.pool->axis_of(leaf).triad;
+    const bool known = std::find(triads.begin(), triads.end(), triad) != triads.end();
+    if (sample.triads.contains(triad) && !known) triads.push_back(triad);
+  }
+  return triads;
+}
+
+// Gauss-Newton with the shortest step, halved while it does not help.
+bool move_to_zero(const Joint& joint, const std::vector<Expr>& equations, Sample& sample,
+                  const std::vector<std::vector<Expr>>& J) {
+  constexpr double reached = 1e-12, round_off_of_sums = 1e-11;  // of equations that depend on each other
+  const Variables variables(joint, sample, !J.empty());
+  const auto gradients = [&] {
+    if (J.empty()) return central_differences(joint, equations, variables, sample);
+    Gradients G;
+    for (const std::vector<Expr>& row : J) G.push_back(values_at(joint, row, sample));
+    return G;
+  };
+  double error = largest(values_at(joint, equations, sample));
+  for (int iteration = 0; iteration < 60 && error > reached; ++iteration) {
+    const std::vector<double> step = shortest_step(gradients(), values_at(joint, equations, sample));
+    double fraction = 1;
+    for (; fraction > 1e-3; fraction /= 2) {
+      Sample moved = sample;
+      for (std::size_t i = 0; i < step.size(); ++i) variables.move(moved, i, fraction * step[i]);
+      const double moved_error = largest(values_at(joint, equations, moved));
+      if (!(moved_error < error)) continue;
+      sample = std::move(moved);
+      error = moved_error;
+      break;
+    }
+    if (fraction <= 1e-3) break;
+  }
+  return error <= round_off_of_sums;
 }
 
 }  // namespace cdot::derive

@@ -35,8 +35,8 @@ class Algebra final : public Arithmetic<ex> {
   ex slope(const ex& e, int body, std::size_t k);
   // d e/dt along the motion; the velocities count as constant.
   ex rate(const ex& e);
-  // Decides whether e vanishes wherever it is defined, given that unit vectors have length 1 and so
-  // on.
+  // Decides whether e vanishes wherever it is defined, given that unit vectors have length 1 and so on. Arithmetic
+  // modulo the prime decides; on top of it GiNaC proves what it can reduce to 0 as a polynomial within its budget.
   enum class Zero {
     yes,    // by algebra
     shown,  // too much for algebra, but zero at `exact_points` random points modulo a prime
@@ -45,8 +45,8 @@ class Algebra final : public Arithmetic<ex> {
   };
   Zero is_zero(const ex& e);
   bool vanishes(const ex& e) { return is_zero(e) <= Zero::shown; }
-  // After Zero::no: a pose at which it shows, in the joint's names, and how much it is there.
-  const std::string& witness() const { return witness_; }
+  // A pose at which it is not zero, in the joint's names, and how much it is there; empty if none was found.
+  std::string witness(const ex& e);
   // Reduced by the same relations: a numerator as a polynomial, zero where e is; the second one
   // without what cancels.
   std::optional<ex> numerator(const ex& e);
@@ -91,8 +91,8 @@ class Algebra final : public Arithmetic<ex> {
   ex root_of(const ex& base);
   ex turned(bool cosine, const ex& angle);
   ex symbol_for(const ex& compound);
-  bool differs_at_random(const ex& e, std::uint64_t seed);
-  bool vanishes_at_points(const ex& e) const;
+  std::string difference_at(const ex& e, std::uint64_t seed);
+  Nullity nullity_of(const ex& e) const;
 
   // What one test, and all tests together, may take, in factors of terms that are multiplied. Every
   // test that is given up halves what the next may take: it is likely to be as long.
@@ -129,7 +129,6 @@ class Algebra final : public Arithmetic<ex> {
   std::vector<std::pair<ex, ex>> meanings_;              // of symbols without a name, as they came up
   std::int64_t allowance_ = most_work, left_for_test_ = most_work, left_in_all_ = most_work_in_all;
   PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
-  std::string witness_;
   Evaluation<ex> evaluation_;
 };
 

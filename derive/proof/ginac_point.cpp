@@ -60,11 +60,12 @@ Modular PointValues::compound(const ex& e) {
   return function(e);
 }
 
-Modular PointValues::power(Modular base, const numeric& exponent) const {
+Modular PointValues::power(Modular base, const numeric& exponent) {
   const bool whole = exponent.is_integer();
   const numeric times = whole ? exponent : 2 * exponent;
   if (!times.is_integer() || abs(times) > 1000000) throw UndefinedHere{};
-  if (!whole) base = roots_ == Roots::of_all ? point_.any_for(5, base, base) : point_.root(base);
+  if (!whole)
+    base = roots_ == Roots::of_all ? point_.any_for(5, base, base) : point_.call(Fn::sqrt, std::span(&base, 1));
   if (times.is_negative()) base = point_.inverse(base);
   return pow(base, static_cast<std::uint64_t>(std::abs(times.to_int())));
 }

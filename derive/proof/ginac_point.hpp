@@ -21,10 +21,11 @@ class PointValues {
   void put_direction(const std::vector<ex>& unit_vector);
 
   Modular of(const ex& e);
+  bool holds_for_reals() const { return point_.holds_for_reals(); }
 
  private:
   Modular compound(const ex& e);
-  Modular power(Modular base, const numeric& exponent) const;
+  Modular power(Modular base, const numeric& exponent);
   Modular function(const ex& e);
 
   ModularPoint point_;

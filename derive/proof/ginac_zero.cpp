@@ -231,8 +231,10 @@ std::optional<ex> Algebra::numerator(const ex& e) try {
   return std::nullopt;
 }
 
-// Whether e differs from zero at a random rational pose; leaves the pose behind as the witness.
-bool Algebra::differs_at_random(const ex& e, std::uint64_t seed) try {
+// Signs, logarithms and angles have their values among the reals only, which are ordered: long decimals, at a random
+// rational pose, decide where arithmetic modulo the prime does not; and a reader can follow them. Empty if e is zero or
+// undefined there.
+std::string Algebra::difference_at(const ex& e, std::uint64_t seed) try {
   Random random(seed);
   GiNaC::exmap pose;
   for (const auto& [name, leaf] : leaves_) pose[leaf.symbol] = random_fraction(random);
@@ -241,48 +243,45 @@ bool Algebra::differs_at_random(const ex& e, std::uint64_t seed) try {
     for (std::size_t k = 0; k < u.size(); ++k) pose[u[k]] = direction[k];
   }
   const ex value = e.subs(pose, GiNaC::subs_options::no_pattern).evalf();
-  if (!is_a<numeric>(value) || abs(ex_to<numeric>(value)) < pow(numeric(10), -60)) return false;
+  if (!is_a<numeric>(value) || abs(ex_to<numeric>(value)) < pow(numeric(10), -60)) return "";
   const auto shown = [](const ex& x) { return fmt::format("{:.4g}", real(ex_to<numeric>(x)).to_double()); };
-  witness_ = "by " + shown(value) + " at";
+  std::string witness = "by " + shown(value) + " at";
   for (const auto& [name, leaf] : leaves_) {
-    if (e.has(leaf.symbol)) witness_ += " " + name + " = " + shown(pose[leaf.symbol]) + ",";
+    if (e.has(leaf.symbol)) witness += " " + name + " = " + shown(pose[leaf.symbol]) + ",";
   }
-  witness_.pop_back();
-  return true;
+  witness.pop_back();
+  return witness;
 } catch (const std::exception&) {  // undefined at this pose
-  return false;
+  return "";
 }
 
-// With n roots, one point in 2^n serves.
-bool Algebra::vanishes_at_points(const ex& e) const {
-  constexpr std::uint64_t attempts = 16384;
-  int points = 0;
-  for (std::uint64_t seed = 1; seed <= attempts && points < exact_points; ++seed) {
-    try {
-      PointValues values(seed, PointValues::Roots::of_squares);
-      for (const auto& [name, leaf] : leaves_) values.put(leaf.symbol);
-      for (const std::vector<ex>& u : units_) values.put_direction(u);
-      if (!values.of(e).is_zero()) return false;
-      ++points;
-    } catch (const UndefinedHere&) {
-    }
-  }
-  return points == exact_points;
+std::string Algebra::witness(const ex& e) {
+  const long before = GiNaC::Digits;
+  GiNaC::Digits = digits;
+  std::string witness;
+  for (std::uint64_t seed = 1; seed <= random_poses && witness.empty(); ++seed) witness = difference_at(e, seed);
+  GiNaC::Digits = before;
+  return witness;
+}
+
+Nullity Algebra::nullity_of(const ex& e) const {
+  return nullity([&](std::uint64_t seed) {
+    PointValues values(seed, PointValues::Roots::of_squares);
+    for (const auto& [name, leaf] : leaves_) values.put(leaf.symbol);
+    for (const std::vector<ex>& u : units_) values.put_direction(u);
+    const Modular value = values.of(e);
+    return std::pair(value, values.holds_for_reals());
+  });
 }
 
 Algebra::Zero Algebra::is_zero(const ex& e) {
   if (e.is_zero()) return Zero::yes;
+  const Nullity nullity = nullity_of(e);
+  if (nullity == Nullity::differs) return Zero::no;
   const std::optional<ex> p = numerator(e);
   if (p && p->is_zero()) return Zero::yes;
-  if (vanishes_at_points(e)) return Zero::shown;
-  const long before = GiNaC::Digits;
-  GiNaC::Digits = digits;
-  bool differs = false;
-  for (std::uint64_t seed = 1; seed <= random_poses && !differs; ++seed) {
-    differs = differs_at_random(e, seed);
-  }
-  GiNaC::Digits = before;
-  return differs ? Zero::no : Zero::undecided;
+  if (nullity == Nullity::zero) return Zero::shown;
+  return witness(e).empty() ? Zero::undecided : Zero::no;
 }
 
 }  // namespace cdot::derive

@@ -76,9 +76,9 @@ class Prover {
     law_.row = row.row;
     const bool differs = zero == Algebra::Zero::no;
     law_.verdict = differs ? Verdict::fails : Verdict::undecided;
-    law_.text =
-        row.name + where +
-        (differs ? ", for instance " + algebra.witness() : ": equal to 60 digits at random poses, but not proved");
+    law_.text = row.name + where +
+                (differs ? ", for instance " + algebra.witness(difference)
+                         : ": equal to 60 digits at random poses, but not proved");
   }
 
   bool movable(std::size_t body) const { return static_cast<int>(body) != block_.immovable; }

@@ -1,0 +1,142 @@
+// The differences of two matrices. In space what is one mistake in vectors differs in many numbers: they are told as
+// one.
+#include <algorithm>
+#include <fmt/format.h>
+#include <regex>
+
+#include "derive/diff/entry.hpp"
+#include "derive/diff/terms.hpp"
+
+namespace cdot::derive {
+namespace {
+
+using Differences = std::vector<Difference>;
+
+// A sentence is "place: reason".
+std::string reason_of(const Difference& d) { return d.sentence.substr(d.sentence.find(": ") + 2); }
+
+template <class Text>
+bool all_same(const Differences& entries, Text text) {
+  for (std::size_t i = 1; i < entries.size(); ++i) {
+    if (text(entries[i], i) != text(entries[0], 0)) return false;
+  }
+  return true;
+}
+
+// Component i of a vector formula, as the formula: "-cross(ra, n).x" as "-cross(ra, n)".
+std::string without_component(const std::string& text, std::size_t i) {
+  return std::regex_replace(text, std::regex(std::string("\\.") + "xyz"[i] + "\\b"), "");
+}
+
+std::string condition_of(const Difference& d) {
+  const std::size_t at = d.sentence.find("equal only where ");
+  return at == std::string::npos ? "" : d.sentence.substr(at);
+}
+
+void set_reason(Difference& d, const std::string& reason) {
+  std::string place = d.sentence.substr(0, d.sentence.find(","));  // "J", "claim on C"
+  if (!d.row.empty()) place += (d.row.find_first_of("-,") == d.row.npos ? ", row " : ", rows ") + d.row;
+  const bool numbers = d.column.find_first_not_of("0123456789-") == d.column.npos;
+  if (!d.column.empty()) place += (numbers ? ", columns " : ", ") + d.column;
+  d.sentence = place + ": " + reason;
+}
+
+// "[a, b ; c, d]" of what `entry` gives for each place in a block.
+template <class Entry>
+std::string text_of(const Group& rows, const Group& columns, const Joint& joint, Entry entry) {
+  std::string s;
+  for (int r = 0; r < rows.count; ++r) {
+    s += r == 0 ? "[" : " ; ";
+    for (int c = 0; c < columns.count; ++c) {
+      s += (c == 0 ? "" : ", ") + brief_text(entry(rows.first + r, columns.first + c), joint);
+    }
+  }
+  return s + "]";
+}
+
+// The differences within a block as one, where one reason fits them all; else as they are. Each is of one entry, and
+// component of a vector by its order.
+Differences merged(Differences entries, const Sides& sides, const Group& rows, const Group& columns,
+                   const Joint& joint) {
+  if (entries.size() < 2) return entries;
+  Difference one = entries[0];
+  one.row = rows.name;
+  one.column = columns.name;
+  std::string Difference::*const formulas[] = {&Difference::hand, &Difference::generated, &Difference::difference};
+  const bool kinds = all_same(entries, [](const Difference& d, std::size_t) { return d.kind; });
+  const auto vector_formulas = [&](const Difference& d, std::size_t i) {
+    std::string all = without_component(reason_of(d), i);
+    for (std::string Difference::*formula : formulas) all += "\n" + without_component(d.*formula, i);
+    return all;
+  };
+  if (kinds && entries.size() == 3 && all_same(entries, vector_formulas)) {
+    set_reason(one, without_component(reason_of(entries[0]), 0));
+    for (std::string Difference::*formula : formulas) one.*formula = without_component(one.*formula, 0);
+    return {one};
+  }
+  if (kinds && all_same(entries, [](const Difference& d, std::size_t) { return reason_of(d); })) {
+    const Matrix &published = sides.published, &generated = sides.generated;
+    set_reason(one, reason_of(entries[0]));
+    one.generated = text_of(rows, columns, joint, [&](int r, int c) { return generated.at(r, c); });
+    one.hand = text_of(rows, columns, joint, [&](int r, int c) { return published.at(r, c); });
+    one.difference = text_of(rows, columns, joint, [&](int r, int c) {
+      return difference_of(published.at(r, c), generated.at(r, c), joint);
+    });
+    return {one};
+  }
+  const std::string condition = condition_of(entries[0]);
+  const bool same_condition = all_same(entries, [](const Difference& d, std::size_t) { return condition_of(d); });
+  if (!kinds || condition.empty() || !same_condition) return entries;
+  set_reason(one, fmt::format("{} entries of it are {} (the first is shown)", entries.size(), condition));
+  return {one};
+}
+
+}  // namespace
+
+Difference finished(Entry& entry, const HandItem& item, Difference difference, Expr published, Expr generated) {
+  if (difference.kind != "sign" && difference.kind != "wrong body") {
+    const std::string hidden =
+        hidden_assumption(entry.joint, entry.poses_on_constraint(), published, generated, entry.poses());
+    if (!hidden.empty()) difference.sentence += fmt::format("; equal only where {}", hidden);
+    const bool unsaid = item.kind == HandItem::Kind::claim || hidden == "C = 0";
+    if (!hidden.empty() && unsaid) difference.kind = "undeclared assumption";
+  }
+  difference.what = item.kind == HandItem::Kind::update ? "update" : item.what;
+  difference.where = item.where;
+  return difference;
+}
+
+void add_plain(Entry& entry, const HandItem& item, const Place& place, std::string kind, const std::string& sentence,
+               std::string confirmed) {
+  Difference d;
+  d.what = item.kind == HandItem::Kind::claim ? item.what : place.what;
+  d.row = place.row;
+  d.column = place.column;
+  d.kind = std::move(kind);
+  d.hand = item.text;
+  d.sentence = fmt::format("{}: {}", name_of(place), sentence);
+  d.confirmed = std::move(confirmed);
+  d.where = item.where;
+  entry.verdict.differences.push_back(std::move(d));
+}
+
+void compare(Entry& entry, const Sides& sides, const std::function<Difference(int, int)>& difference) {
+  for (const Group& rows : sides.rows) {
+    for (const Group& columns : sides.columns) {
+      Differences found;
+      for (int r = rows.first; r < rows.first + rows.count; ++r) {
+        for (int c = columns.first; c < columns.first + columns.count; ++c) {
+          if (!entry.equal(sides.published.at(r, c), sides.generated.at(r, c))) found.push_back(difference(r, c));
+        }
+      }
+      for (Difference& d : merged(std::move(found), sides, rows, columns, entry.joint)) {
+        for (std::string* text : {&d.generated, &d.hand, &d.difference, &d.sentence}) {
+          *text = in_names_of_spec(*text, entry.joint);
+        }
+        entry.verdict.differences.push_back(std::move(d));
+      }
+    }
+  }
+}
+
+}  // namespace cdot::derive
