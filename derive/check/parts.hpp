@@ -10,11 +10,11 @@ namespace cdot::derive {
 // = 0.
 struct Subject {
   const Joint& joint;
-  Block block;
-  std::vector<Block> coordinates;
+  const Block& block;
+  const std::vector<Block>& coordinates;
   std::vector<Sample> anywhere, on_constraint;
 };
-Subject subject_of(const Joint& joint);
+Subject subject_of(const Derivation& derivation);
 
 // Moves the bodies of a sample to C = 0 (Gauss-Newton); false if that does not get there.
 bool project(const Joint& joint, const Block& block, Sample& sample);

@@ -14,7 +14,8 @@ class TimeDerivative {
   Expr of(Expr e) {
     if (const auto found = done_.find(&*e); found != done_.end()) return found->second;
     const Expr result = e->vector ? vector_rule(e) : scalar_rule(e);
-    if (!e->name.empty() && !motion_.only && !stretches()) {
+    // Only where everything moves is it the whole u_dot: a part of it must not take the name.
+    if (!e->name.empty() && !motion_.only && !stretches() && motion_.immovable < 0) {
       e->pool->name(result, e->name + "_dot", false);
     }
     done_.emplace(&*e, result);
