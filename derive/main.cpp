@@ -1,15 +1,29 @@
-// `cdot`: from the position constraint of a joint to its Jacobian, effective mass, proof and
-// kernel.
+// `cdot`: from the position constraint of a joint to its Jacobian, effective mass, proof and kernel.
 #include <CLI/CLI.hpp>
 #include <exception>
 #include <fmt/format.h>
 
 #include "derive/commands/commands.hpp"
 
+using namespace cdot::derive;
+
+// clang-format off
+const struct {
+  const char *name, *summary;
+  Run (*with_options)(CLI::App&);
+} commands[] = {
+    {"derive",  "Prove every spec and write its kernel, the registry, the ledger of operation counts and the record of "
+                "proofs", derive_command},
+    {"explain", "The derivation of a spec, step by step: C, Cdot, J, K, gamma, and what was assumed", explain_command},
+    {"diff",    "Compare hand derivations with the generated one: every entry, and what is missing, flipped, doubled or\n"
+                "on the wrong body", diff_command},
+    {"check",   "Everything known to be wrong or risky about a spec, before any code exists", check_command},
+};
+// clang-format on
+
 int main(int argc, char** argv) {
   CLI::App app{
-      "Write a joint's position constraint C(q) = 0; get its Jacobian J, its effective mass K = J "
-      "M^-1 J^T,\n"
+      "Write a joint's position constraint C(q) = 0; get its Jacobian J, its effective mass K = J M^-1 J^T,\n"
       "the proof, and a C++ kernel.\n\n"
       "  cdot check   specs/planar/line.joint    what is wrong or risky about a spec\n"
       "  cdot explain specs/planar/line.joint    the derivation, step by step\n"
@@ -18,11 +32,11 @@ int main(int argc, char** argv) {
       "The language is described in specs/README.md."};
   app.require_subcommand(1);
   app.footer("Exit status: 0 all well; 1 the answer is no (differs, not current); 2 bad usage or input.");
-  cdot::derive::Command selected;
-  cdot::derive::add_derive_command(app, selected);
-  cdot::derive::add_explain_command(app, selected);
-  cdot::derive::add_diff_command(app, selected);
-  cdot::derive::add_check_command(app, selected);
+  Run selected;
+  for (const auto& [name, summary, with_options] : commands) {
+    CLI::App* command = app.add_subcommand(name, summary);
+    command->callback([&selected, run = with_options(*command)] { selected = run; });
+  }
   try {
     app.parse(argc, argv);
     return selected();

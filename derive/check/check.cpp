@@ -26,13 +26,13 @@ std::string kind_of(LawId id) {
 
 // What a broken law says; a law about the derivation itself is named, for it is no fault of the
 // spec.
-void take_over(const Proof& proof, Span where, Findings& findings) {
-  for (const Law& law : proof.laws) {
-    if (law.verdict != Verdict::fails && law.verdict != Verdict::undecided) continue;
+void take_over(const Proved& proved, Findings& findings) {
+  for (const Law& law : proved.proof.laws) {
+    if (!is_broken(law)) continue;
     const std::string kind = kind_of(law.id);
     Finding finding{Level::error,
                     kind,
-                    law.row != nullptr ? law.row->where : where,
+                    law.row != nullptr ? law.row->where : proved.where,
                     law.parts,
                     kind == "law" ? fmt::format("{}: {}", name_of(law.id), law.text) : law.text,
                     law.fix};
@@ -64,13 +64,10 @@ CheckReport check(const ReadResult& read) {
   if (!report.readable) return report;
   const Joint& joint = *read.joint;
   try {
-    const Subject subject = subject_of(joint);
-    report.proofs.push_back({"", prove(joint, subject.block)});
-    take_over(report.proofs.back().proof, {}, report.findings);
-    for (const Block& coordinate : subject.coordinates) {
-      report.proofs.push_back({coordinate.name, prove(joint, coordinate)});
-      take_over(report.proofs.back().proof, place_of(coordinate, joint), report.findings);
-    }
+    const Derivation derivation = derive(joint);
+    const Subject subject = subject_of(derivation);
+    report.proofs = prove_blocks(derivation);
+    for (const Proved& proved : report.proofs) take_over(proved, report.findings);
     check_rows(subject, report.findings);
     check_undefined(subject, report.findings);
     check_mass(subject, report.findings);

@@ -26,12 +26,7 @@ struct Finding {
 struct CheckReport {
   bool readable = true;
   std::vector<Finding> findings;  // in the order of the text; errors first where they stand at one place
-  // The laws of the joint (name "") and of each coordinate.
-  struct Proved {
-    std::string name;
-    Proof proof;
-  };
-  std::vector<Proved> proofs;
+  std::vector<Proved> proofs;     // of the rows and of each coordinate
 
   bool clean() const;  // nothing but notes
 };

@@ -10,11 +10,11 @@ namespace cdot::derive {
 // = 0.
 struct Subject {
   const Joint& joint;
-  Block block;
-  std::vector<Block> coordinates;
+  const Block& block;
+  const std::vector<Block>& coordinates;
   std::vector<Sample> anywhere, on_constraint;
 };
-Subject subject_of(const Joint& joint);
+Subject subject_of(const Derivation& derivation);
 
 // The rows of J at a sample.
 std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block, const Sample& sample);

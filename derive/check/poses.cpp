@@ -25,15 +25,15 @@ std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& bl
   return J;
 }
 
-Subject subject_of(const Joint& joint) {
-  Subject subject{joint, derive_rows(joint), {}, {}, {}};
+Subject subject_of(const Derivation& derivation) {
+  const Joint& joint = derivation.joint;
+  Subject subject{joint, derivation.rows, derivation.coordinates, {}, {}};
   std::vector<Expr> expressions = expressions_of(subject.block);
   for (const Parameter& p : joint.parameters) {  // a frame as a whole
     expressions.insert(expressions.end(), p.axes.begin(), p.axes.end());
   }
-  for (const Coordinate& c : joint.coordinates) {
-    subject.coordinates.push_back(derive_coordinate(joint, c));
-    const std::vector<Expr> more = expressions_of(subject.coordinates.back());
+  for (const Block& coordinate : subject.coordinates) {
+    const std::vector<Expr> more = expressions_of(coordinate);
     expressions.insert(expressions.end(), more.begin(), more.end());
   }
   std::vector<Expr> C;

@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 
 #include "derive/commands/commands.hpp"
-#include "derive/derivation/specs_folder.hpp"
 #include "derive/language/operators.hpp"
+#include "derive/language/specs_folder.hpp"
+#include "derive/pipeline/packing.hpp"
 #include "derive/pipeline/process_pool.hpp"
-#include "derive/pipeline/serialise.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -38,7 +38,7 @@ Json as_json(const SourceFile& file, const Finding& f) {
           {"also", std::move(also)},   {"message", f.message}, {"fix", f.fix}};
 }
 
-Json as_json(const CheckReport::Proved& proved) {
+Json as_json(const Proved& proved) {
   Json laws = Json::array();
   for (const Law& law : proved.proof.laws) {
     laws.push_back({{"law", name_of(law.id)}, {"verdict", name_of(law.verdict)}, {"text", law.text}});
@@ -53,7 +53,7 @@ std::string status(const CheckReport& report) {
 Json as_json(const SourceFile& file, const CheckReport& report) {
   Json findings = Json::array(), proofs = Json::array();
   for (const Finding& f : report.findings) findings.push_back(as_json(file, f));
-  for (const CheckReport::Proved& p : report.proofs) proofs.push_back(as_json(p));
+  for (const Proved& p : report.proofs) proofs.push_back(as_json(p));
   return {{"spec", file.path},
           {"status", status(report)},
           {"findings", std::move(findings)},
@@ -70,7 +70,7 @@ std::string as_text(const SourceFile& file, const CheckReport& report) {
   std::string text;
   for (const Finding& f : report.findings) text += render(file, f);
   std::size_t proved = 0, shown = 0, laws = 0;
-  for (const CheckReport::Proved& p : report.proofs) {
+  for (const Proved& p : report.proofs) {
     for (const Law& law : p.proof.laws) {
       if (law.verdict == Verdict::does_not_apply) continue;
       ++laws;
@@ -95,20 +95,18 @@ int run(const Options& options) {
   tasks.run = [&](std::size_t i) {
     const ReadResult read = folder.read(paths[i]);
     const CheckReport report = check(read);
-    Parcel parcel;
-    parcel.put(!report.readable ? 2 : report.clean() ? 0 : 1);
-    parcel.put(options.json ? as_json(*read.file, report).dump(-1, ' ', false, Json::error_handler_t::replace)
-                            : as_text(*read.file, report));
-    return parcel.content();
+    const int status = !report.readable ? 2 : report.clean() ? 0 : 1;
+    return packed(std::pair{
+        status, options.json ? as_json(*read.file, report).dump(-1, ' ', false, Json::error_handler_t::replace)
+                             : as_text(*read.file, report)});
   };
   tasks.take = [&](std::size_t i, const Answer& answer) {
     if (!answer.failure.empty()) {
       exit_status = 2;
       return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
     }
-    Unpacking parcel(answer.result);
-    exit_status = std::max(exit_status, parcel.number());
-    const std::string text = parcel.text();
+    const auto [status, text] = unpacked<std::pair<int, std::string>>(answer.result);
+    exit_status = std::max(exit_status, status);
     if (options.json) {
       all.push_back(Json::parse(text));
     } else {
@@ -122,24 +120,22 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_check_command(CLI::App& app, Command& selected) {
+Run check_command(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  CLI::App* command =
-      app.add_subcommand("check", "Everything known to be wrong or risky about a spec, before any code exists");
-  command->add_option("SPEC", options->specs, "Specs, by path or by name")->required();
-  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
-  command->add_flag("--json", options->json,
-                    "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
-                    "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
-  add_processes_option(*command, options->processes);
-  command->footer(
+  command.add_option("SPEC", options->specs, "Specs, by path or by name")->required();
+  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command.add_flag("--json", options->json,
+                   "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
+                   "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
+  add_processes_option(command, options->processes);
+  command.footer(
       "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where "
       "the joint\n"
       "is singular or undefined and what the kernel does there.\n"
       "Exit status: 0 nothing but notes; 1 problems; 2 a spec cannot be read.\n\n"
       "Operators\n" +
       operators_help());
-  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+  return [options] { return run(*options); };
 }
 
 }  // namespace cdot::derive

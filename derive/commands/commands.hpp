@@ -1,6 +1,5 @@
-// The commands of `cdot`, one file each: derive (commands/derive.cpp), explain, diff, check. Each
-// adds itself to the command line and returns what to run; the exit status is 0 all well, 1 the
-// answer is no, 2 bad usage or input.
+// The commands of `cdot`, one file each. A command adds its options and its help to the command line and returns the
+// function that runs it. The exit status is 0 all well, 1 the answer is no, 2 bad usage or input.
 #pragma once
 
 #include <functional>
@@ -11,15 +10,14 @@ class App;
 
 namespace cdot::derive {
 
-using Command = std::function<int()>;
+using Run = std::function<int()>;
 
-// Each adds its subcommand to `app`; `selected` is set to what to run when the user has chosen it.
-void add_derive_command(CLI::App& app, Command& selected);
-void add_explain_command(CLI::App& app, Command& selected);
-void add_diff_command(CLI::App& app, Command& selected);
-void add_check_command(CLI::App& app, Command& selected);
+Run derive_command(CLI::App& command);
+Run explain_command(CLI::App& command);
+Run diff_command(CLI::App& command);
+Run check_command(CLI::App& command);
 
-// -j, which commands have that work on several specs.
+// -j, of commands that work on several specs.
 void add_processes_option(CLI::App& command, int& processes);
 
 }  // namespace cdot::derive

@@ -7,13 +7,23 @@
 #include <sstream>
 
 #include "derive/commands/commands.hpp"
+#include "derive/pipeline/packing.hpp"
 #include "derive/pipeline/pipeline.hpp"
 #include "derive/pipeline/process_pool.hpp"
 
 namespace cdot::derive {
+
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Count, add, multiply, divide, root, compare, call)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(LedgerRow, space, joint, block, quantity, source, count)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(GeneratedJoint, space, name, kernel, ledger)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ProofRow, space, joint, block, statement, proved, shown)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Outcome, proved, on_record, said, complaints, proofs, joint, hand_costs)
+
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr const char* proofs_file = "proofs.csv";
 
 struct Options {
   std::vector<std::string> specs;
@@ -54,39 +64,44 @@ std::vector<std::size_t> dearest_first(const std::vector<fs::path>& paths, const
 
 // The files of all specs, or none if there is anything wrong with any of them, which is said here.
 std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsFolder& folder, const Options& options) {
-  const Memory memory(usual_memory());
-  const std::string program = identity_of_program();
+  const fs::path record_file = fs::path(options.output) / proofs_file;
+  const ProofRecord record = options.fresh ? ProofRecord() : ProofRecord(content_of(record_file));
   std::vector<GeneratedJoint> joints;
   std::vector<LedgerRow> hand_costs;
-  std::size_t remembered = 0;
+  std::vector<ProofRow> proofs;
+  std::size_t on_record = 0;
   Tasks tasks;
   for (const fs::path& path : paths) tasks.names.push_back(path.string());
   tasks.order = dearest_first(paths, options.output);
-  tasks.run = [&](std::size_t i) { return packed(derive_spec(paths[i], folder, memory, program, options.fresh)); };
+  tasks.run = [&](std::size_t i) { return packed(derive_spec(paths[i], folder, record)); };
   tasks.take = [&](std::size_t i, const Answer& answer) {
     if (!answer.failure.empty()) return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
-    const Outcome outcome = unpacked_outcome(answer.result);
+    const auto outcome = unpacked<Outcome>(answer.result);
     fmt::print(stderr, "{}", outcome.complaints);
     fmt::print("{}", outcome.said);
     if (!outcome.proved) return;
-    remembered += outcome.remembered ? 1 : 0;
+    on_record += outcome.on_record ? 1 : 0;
     joints.push_back(outcome.joint);
     hand_costs.insert(hand_costs.end(), outcome.hand_costs.begin(), outcome.hand_costs.end());
+    proofs.insert(proofs.end(), outcome.proofs.begin(), outcome.proofs.end());
   };
   in_processes(tasks, options.processes);
-  memory.trim();
-  if (remembered > 0) {
-    fmt::print(stderr, "{} of {} specs are as they were when they were proved before (--fresh: prove all again)\n",
-               remembered, paths.size());
+  if (on_record > 0) {
+    fmt::print(stderr, "{} of {} specs are proved by the record {} (--fresh: prove all again)\n", on_record,
+               paths.size(), record_file.string());
   }
   if (joints.size() < paths.size()) return std::nullopt;
-  return collect(joints, without_repetition(hand_costs));
+  Files files = collect(joints, without_repetition(hand_costs));
+  files[proofs_file] = csv_of(std::move(proofs));
+  return files;
 }
 
 // What stands below `root` and is ours: everything that `cdot derive` could have written.
 Files present(const fs::path& root) {
   Files files;
-  if (fs::exists(root / "ledger.csv")) files["ledger.csv"] = content_of(root / "ledger.csv");
+  for (const char* table : {"ledger.csv", proofs_file}) {
+    if (fs::exists(root / table)) files[table] = content_of(root / table);
+  }
   for (const char* space : {"planar", "spatial"}) {
     std::error_code none;
     for (const fs::directory_entry& entry : fs::directory_iterator(root / space, none)) {
@@ -161,13 +176,14 @@ void write(const Files& wanted, const fs::path& root) {
   fmt::print("{}: {} files, {} written, {} removed\n", root.string(), wanted.size(), written, removed);
 }
 
-// What writes what `options` ask to check.
+// It writes what `options` ask to check.
 std::string command_line(const Options& options) {
   const Options usual;
   std::string command = "cdot derive";
   for (const std::string& spec : options.specs) command += " " + spec;
   if (options.specs_folder != usual.specs_folder) command += " --specs " + options.specs_folder;
   if (options.output != usual.output) command += " -o " + options.output;
+  if (options.fresh) command += " --fresh";
   return command;
 }
 
@@ -188,24 +204,21 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_derive_command(CLI::App& app, Command& selected) {
+Run derive_command(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "derive", "Prove every spec and write its kernel, the registry and the ledger of operation counts");
-  command->add_option("SPEC", options->specs,
-                      "Specs, by path or by name; all of the specs folder if none is given. With some given, DIR "
-                      "holds\njust these afterwards, so it should not be the folder of all");
-  command->add_option("-o,--output", options->output, "Folder to write to")->type_name("DIR")->capture_default_str();
-  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
-  command->add_flag("--check", options->check,
-                    "Write nothing; exit 1 unless DIR has exactly the files that would be written");
-  command->add_flag("--fresh", options->fresh, "Prove everything anew, remembered or not");
-  add_processes_option(*command, options->processes);
-  command->footer(
-      "A spec that was proved is remembered until it, what it includes, the .hand beside it, or this program "
-      "changes,\nin $CDOT_CACHE, else $XDG_CACHE_HOME/cdot, else ~/.cache/cdot, a folder that may be deleted at "
-      "any time.");
-  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+  command.add_option("SPEC", options->specs,
+                     "Specs, by path or by name; all of the specs folder if none is given. With some given, DIR "
+                     "holds\njust these afterwards, so it should not be the folder of all");
+  command.add_option("-o,--output", options->output, "Folder to write to")->type_name("DIR")->capture_default_str();
+  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command.add_flag("--check", options->check,
+                   "Write nothing; exit 1 unless DIR has exactly the files that would be written");
+  command.add_flag("--fresh", options->fresh, "Prove everything anew, on record or not");
+  add_processes_option(command, options->processes);
+  command.footer(
+      "DIR/proofs.csv records what is proved, by content: a proof is done again where the derivation differs from the "
+      "record.");
+  return [options] { return run(*options); };
 }
 
 void add_processes_option(CLI::App& command, int& processes) {

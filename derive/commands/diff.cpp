@@ -7,8 +7,8 @@
 #include <iostream>
 
 #include "derive/commands/commands.hpp"
+#include "derive/pipeline/packing.hpp"
 #include "derive/pipeline/process_pool.hpp"
-#include "derive/pipeline/serialise.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -92,37 +92,29 @@ std::vector<Pairing> pairs_of(const std::vector<std::string>& words, const Specs
   return pairs;
 }
 
-// What one .hand file comes to.
-struct Verdict {
+}  // namespace
+
+// Of one .hand file.
+struct FileVerdict {
   std::string complaints, text;  // for stderr and stdout
   bool unreadable = false;
-  int counts[4] = {};  // by Agreement
-
-  std::string packed() const {
-    Parcel parcel;
-    parcel.put(complaints);
-    parcel.put(text);
-    parcel.put(unreadable ? 1 : 0);
-    for (const int count : counts) parcel.put(count);
-    return parcel.content();
-  }
-  static Verdict unpacked(const std::string& content) {
-    Unpacking parcel(content);
-    Verdict verdict{parcel.text(), parcel.text(), parcel.number() == 1};
-    for (int& count : verdict.counts) count = parcel.number();
-    return verdict;
-  }
+  std::array<int, 4> counts = {};  // by Agreement
 };
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FileVerdict, complaints, text, unreadable, counts)
 
-Verdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Options& options) {
+namespace {
+
+FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Options& options) {
   DiffReport report = judge(pair.hand, pair.spec, folder);
   if (!pair.entry.empty()) {
     std::erase_if(report.judgements, [&](const Judgement& j) { return j.id != pair.entry; });
   }
   const bool everything = options.all || !options.what.empty();
-  Verdict verdict{render(*report.file, report.diagnostics),
-                  options.json ? to_json(report) : to_text(report, everything), report.diagnostics.has_errors()};
-  for (const Judgement& j : report.judgements) ++verdict.counts[static_cast<int>(j.agreement)];
+  FileVerdict verdict{render(*report.file, report.diagnostics),
+                      options.json ? to_json(report) : to_text(report, everything),
+                      report.diagnostics.has_errors(),
+                      {}};
+  for (const Judgement& j : report.judgements) ++verdict.counts[static_cast<std::size_t>(j.agreement)];
   return verdict;
 }
 
@@ -134,13 +126,13 @@ int run(const Options& options) {
   int counts[4] = {};
   Tasks tasks;
   for (const Pairing& pair : pairs) tasks.names.push_back(pair.hand.string());
-  tasks.run = [&](std::size_t i) { return verdict_on(pairs[i], folder, options).packed(); };
+  tasks.run = [&](std::size_t i) { return packed(verdict_on(pairs[i], folder, options)); };
   tasks.take = [&](std::size_t i, const Answer& answer) {
     if (!answer.failure.empty()) {
       unreadable = true;
       return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
     }
-    const Verdict verdict = Verdict::unpacked(answer.result);
+    const auto verdict = unpacked<FileVerdict>(answer.result);
     unreadable = unreadable || verdict.unreadable;
     for (std::size_t k = 0; k < 4; ++k) counts[k] += verdict.counts[k];
     std::cerr << verdict.complaints;
@@ -162,27 +154,23 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_diff_command(CLI::App& app, Command& selected) {
+Run diff_command(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("diff",
-                                         "Compare hand derivations with the generated one: every "
-                                         "entry, and what is missing, flipped, doubled or\n"
-                                         "on the wrong body");
-  command->add_option("SPEC", options->what,
-                      "Specs by name or path (their .hand beside them), .hand files, or ids of "
-                      "entries (LIN-4); all if none\n"
-                      "is given");
-  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
-  command->add_flag("--all", options->all, "Also entries that agree (always shown for named specs)");
-  command->add_flag("--json", options->json,
-                    "An array with, per entry: id, joint, title, source, verdict (agrees, "
-                    "agrees-if, differs, listed),\n"
-                    "condition (of agrees-if; the reason of listed), remarks, and items: what, "
-                    "row, column, kind,\n"
-                    "generated, hand, difference, sentence, confirmed (by which numbers)");
-  add_processes_option(*command, options->processes);
-  command->footer("Exit status: 0 nothing differs; 1 something does; 2 bad usage or input.");
-  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+  command.add_option("SPEC", options->what,
+                     "Specs by name or path (their .hand beside them), .hand files, or ids of "
+                     "entries (LIN-4); all if none\n"
+                     "is given");
+  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command.add_flag("--all", options->all, "Also entries that agree (always shown for named specs)");
+  command.add_flag("--json", options->json,
+                   "An array with, per entry: id, joint, title, source, verdict (agrees, "
+                   "agrees-if, differs, listed),\n"
+                   "condition (of agrees-if; the reason of listed), remarks, and items: what, "
+                   "row, column, kind,\n"
+                   "generated, hand, difference, sentence, confirmed (by which numbers)");
+  add_processes_option(command, options->processes);
+  command.footer("Exit status: 0 nothing differs; 1 something does; 2 bad usage or input.");
+  return [options] { return run(*options); };
 }
 
 }  // namespace cdot::derive

@@ -9,7 +9,8 @@
 #include <memory>
 
 #include "derive/commands/commands.hpp"
-#include "derive/derivation/specs_folder.hpp"
+#include "derive/derivation/derivation.hpp"
+#include "derive/language/specs_folder.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -62,7 +63,7 @@ int run(const Options& options) {
                "form\n");
     return 2;
   }
-  const std::string text = explanation(*read.joint, options);
+  const std::string text = explanation(derive(*read.joint).joint, options);
   if (options.output.empty()) {
     std::cout << text;
     return std::cout.flush() ? 0 : 2;
@@ -76,29 +77,26 @@ int run(const Options& options) {
 
 }  // namespace
 
-void add_explain_command(CLI::App& app, Command& selected) {
+Run explain_command(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand(
-      "explain", "The derivation of a spec, step by step: C, Cdot, J, K, gamma, and what was assumed");
-  command->add_option("SPEC", options->spec, "A spec, by path or by name")->required();
+  command.add_option("SPEC", options->spec, "A spec, by path or by name")->required();
   CLI::Option* format =
-      command->add_option("--format", options->format, "text; html: a page of its own; latex: an article")
+      command.add_option("--format", options->format, "text; html: a page of its own; latex: an article")
           ->check(CLI::IsMember({"text", "html", "latex"}))
           ->capture_default_str();
-  CLI::Option* form =
-      command
-          ->add_option("--form", options->form,
-                       "Of velocity, in space: global: w in world axes; local: w' in the bodies' axes;\n"
-                       "euler: the rates of the Euler parameters. J is shown in that form too")
-          ->check(CLI::IsMember({"global", "local", "euler"}))
-          ->capture_default_str();
-  command->add_flag("--json", options->json, "Every entry as an expression for other programs (see below)")
+  CLI::Option* form = command
+                          .add_option("--form", options->form,
+                                      "Of velocity, in space: global: w in world axes; local: w' in the bodies' axes;\n"
+                                      "euler: the rates of the Euler parameters. J is shown in that form too")
+                          ->check(CLI::IsMember({"global", "local", "euler"}))
+                          ->capture_default_str();
+  command.add_flag("--json", options->json, "Every entry as an expression for other programs (see below)")
       ->excludes(format)
       ->excludes(form);
-  command->add_option("-o,--output", options->output, "File to write instead of the terminal")->type_name("FILE");
-  command->add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
-  command->footer(json_schema);
-  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+  command.add_option("-o,--output", options->output, "File to write instead of the terminal")->type_name("FILE");
+  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command.footer(json_schema);
+  return [options] { return run(*options); };
 }
 
 }  // namespace cdot::derive

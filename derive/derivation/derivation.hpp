@@ -39,7 +39,7 @@ struct ScalarRow {
   Expr C;                        // zero for a velocity row
   Expr Cdot;                     // J v + dC/dt, before the velocities are isolated
   Expr C_t;                      // dC/dt at fixed q
-  Expr gamma;                    // -Jdot v - d/dt(dC/dt)
+  Expr gamma;                    // -Jdot v - d/dt(dC/dt); empty where a body is immovable
   Expr gamma_by_entries;         // the same, entry of J by entry
   std::vector<JacobianEntry> J;  // one per body
 };
@@ -51,10 +51,23 @@ struct Block {
   std::string name;    // of the coordinate; empty for the joint itself
   int immovable = -1;  // this body has neither velocity nor inverse mass
   std::vector<ScalarRow> rows;
-  std::vector<std::vector<Expr>> K;  // lower triangle: K[i][j], j <= i
-  std::vector<Expr> lambda;          // the multipliers that `stiffness` contains
+  std::vector<std::vector<Expr>> K;            // lower triangle: K[i][j], j <= i
+  std::vector<std::vector<Expr>> K_isotropic;  // in space: K of bodies whose inverse inertia is a number
+  std::vector<Expr> lambda;                    // the multipliers that `stiffness` contains
   // d(J^T lambda)/dq: square, a row and a column per column of J; not of a block with an immovable body.
   std::vector<std::vector<Expr>> stiffness;
+  // In a Derivation: this block with one body immovable, for each body without which no row of J vanishes.
+  std::vector<Block> variants;
+};
+
+// A joint and all that kernels are made of, derived once: the same object is proved and emitted.
+struct Derivation {
+  Joint joint;                     // without the coordinates that an include brought and rows hold
+  Block rows;                      // refers to rows of `joint`: a Derivation moves, but has no copies
+  std::vector<Block> coordinates;  // in the order of those of `joint`
+
+  explicit Derivation(Joint of) : joint(std::move(of)) {}
+  Derivation(Derivation&&) = default;
 };
 
 // A velocity row that is not linear in the velocities.
@@ -84,13 +97,14 @@ std::optional<AngleBetween> angle_between(Expr e);
 // Terms r x t + s x t as (r + s) x t, and likewise for dot: shorter, and how people write.
 Expr collected(Expr e);
 
-// K = J M^-1 J^T of these rows, lower triangle; `isotropic`: inertias are numbers also in space.
+// K = J M^-1 J^T of these rows, lower triangle; `isotropic`: inverse inertias are numbers also in space.
 std::vector<std::vector<Expr>> effective_mass(const Joint& joint, const std::vector<ScalarRow>& rows,
                                               int immovable = -1, bool isotropic = false);
 
 // The coefficients of the velocities in an expression that is linear in them: transposition, node by node.
 std::vector<JacobianEntry> isolate_velocities(Expr Cdot, const Joint& joint);
 
+Derivation derive(Joint joint);
 Block derive_rows(const Joint& joint, int immovable = -1);
 Block derive_coordinate(const Joint& joint, const Coordinate& coordinate, int immovable = -1);
 

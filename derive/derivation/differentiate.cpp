@@ -3,6 +3,7 @@
 #include <map>
 
 #include "derive/derivation/derivation.hpp"
+#include "derive/derivation/free_coordinates.hpp"
 #include "derive/expression/symbols.hpp"
 
 namespace cdot::derive {
@@ -32,7 +33,7 @@ std::vector<std::vector<Expr>> geometric_stiffness(const Joint& joint, Block& bl
 
 // -Jdot v - d(C_t)/dt, where what one entry of J multiplies is collected first: J (w_a - w_b), whose difference loses
 // nothing when the bodies turn nearly alike.
-Expr gamma_by_entries(const Joint& joint, const ScalarRow& row, int immovable) {
+Expr gamma_by_entries(const Joint& joint, const ScalarRow& row) {
   std::vector<std::pair<Expr, Expr>> entries;  // of J without numeric factor; the velocities times theirs
   const auto collect = [&](Expr entry, Expr velocity) {
     if (is_zero(entry)) return;
@@ -50,9 +51,9 @@ Expr gamma_by_entries(const Joint& joint, const ScalarRow& row, int immovable) {
     collect(row.J[b].v, body.v);
     collect(row.J[b].w, body.w);
   }
-  Expr gamma = -time_derivative(row.C_t, joint, {immovable});
+  Expr gamma = -time_derivative(row.C_t, joint);
   for (const auto& [entry, velocity] : entries) {
-    const Expr rate = time_derivative(entry, joint, {immovable});
+    const Expr rate = time_derivative(entry, joint);
     gamma = gamma - (entry->vector ? dot(rate, velocity) : rate * velocity);
   }
   return gamma;
@@ -75,18 +76,50 @@ ScalarRow derive_row(const Joint& joint, ScalarRow row, Expr expression, int imm
   }
   row.C_t = substitute(row.Cdot, at_rest, KeepNames::no);
   row.J = isolate_velocities(row.Cdot, joint);
-  row.gamma = -time_derivative(row.Cdot, joint, {immovable});
-  row.gamma_by_entries = gamma_by_entries(joint, row, immovable);
+  if (immovable < 0) {
+    row.gamma = -time_derivative(row.Cdot, joint);
+    row.gamma_by_entries = gamma_by_entries(joint, row);
+  }
   return row;
 }
 
 Block finished(const Joint& joint, Block block) {
   block.K = effective_mass(joint, block.rows, block.immovable);
+  if (joint.dimension == 3) block.K_isotropic = effective_mass(joint, block.rows, block.immovable, true);
   if (block.immovable < 0) block.stiffness = geometric_stiffness(joint, block);
   return block;
 }
 
+bool some_row_vanishes(const Block& block) {
+  return std::any_of(block.rows.begin(), block.rows.end(), [](const ScalarRow& row) {
+    return std::all_of(row.J.begin(), row.J.end(), [](const JacobianEntry& e) { return is_zero(e.v) && is_zero(e.w); });
+  });
+}
+
+template <class Derive>
+std::vector<Block> variants(const Joint& joint, Derive derive) {
+  std::vector<Block> variants;
+  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
+    Block variant = derive(static_cast<int>(b));
+    if (!variant.rows.empty() && !some_row_vanishes(variant)) variants.push_back(std::move(variant));
+  }
+  return variants;
+}
+
 }  // namespace
+
+Derivation derive(Joint joint) {
+  Derivation d(std::move(joint));
+  d.rows = derive_rows(d.joint);
+  for (const Coordinate& c : d.joint.coordinates) d.coordinates.push_back(derive_coordinate(d.joint, c));
+  drop_held_coordinates(d);
+  d.rows.variants = variants(d.joint, [&](int immovable) { return derive_rows(d.joint, immovable); });
+  for (std::size_t i = 0; i < d.coordinates.size(); ++i) {
+    d.coordinates[i].variants =
+        variants(d.joint, [&](int immovable) { return derive_coordinate(d.joint, d.joint.coordinates[i], immovable); });
+  }
+  return d;
+}
 
 BodySymbols body_symbols(const Joint& joint, int body) {
   Pool& pool = *joint.pool;

@@ -2,15 +2,14 @@
 
 #include <algorithm>
 
-#include "derive/derivation/derivation.hpp"
 #include "derive/numbers/modular.hpp"
 
 namespace cdot::derive {
 namespace {
 
-std::vector<ScalarRow> rows_that_hold(const Joint& joint) {
+std::vector<ScalarRow> rows_that_hold(const Block& block) {
   std::vector<ScalarRow> rows;
-  for (const ScalarRow& row : derive_rows(joint).rows) {
+  for (const ScalarRow& row : block.rows) {
     if (row.kind != RowKind::inequality) rows.push_back(row);
   }
   return rows;
@@ -32,35 +31,37 @@ std::vector<std::string> last_depends_on(const std::vector<ScalarRow>& rows) {
 
 }  // namespace
 
-std::vector<Coordinate> held_coordinates(const Joint& joint) {
-  std::vector<Coordinate> held;
-  if (joint.coordinates.empty()) return held;
-  std::vector<ScalarRow> rows = rows_that_hold(joint);
-  for (Coordinate c : joint.coordinates) {
-    rows.push_back(derive_coordinate(joint, c).rows.front());
+void drop_held_coordinates(Derivation& derivation) {
+  std::vector<ScalarRow> rows = rows_that_hold(derivation.rows);
+  std::vector<Coordinate> coordinates = std::move(derivation.joint.coordinates);
+  std::vector<Block> blocks = std::move(derivation.coordinates);
+  derivation.joint.coordinates.clear();
+  derivation.coordinates.clear();
+  for (std::size_t i = 0; i < coordinates.size(); ++i) {
+    Coordinate& c = coordinates[i];
+    rows.push_back(blocks[i].rows.front());
     c.held_by = last_depends_on(rows);
     rows.pop_back();
-    if (!c.held_by.empty()) held.push_back(std::move(c));
+    if (!c.held_by.empty() && !c.from.empty()) {
+      derivation.joint.dropped.push_back(std::move(c));
+      continue;
+    }
+    derivation.joint.coordinates.push_back(std::move(c));
+    derivation.coordinates.push_back(std::move(blocks[i]));
   }
-  return held;
 }
 
-void drop_held_coordinates(Joint& joint) try {
-  for (Coordinate& held : held_coordinates(joint)) {
-    if (held.from.empty()) continue;
-    std::erase_if(joint.coordinates, [&](const Coordinate& c) { return c.name == held.name; });
-    joint.dropped.push_back(std::move(held));
+std::vector<Diagnostic> held_errors(const Joint& joint) {
+  std::vector<Diagnostic> errors;
+  for (const Coordinate& c : joint.coordinates) {
+    if (c.held_by.empty()) continue;
+    errors.push_back({Severity::error,
+                      c.where,
+                      {},
+                      "the coordinate " + c.name + " is not free: " + held_text(c),
+                      "drop the coordinate, or the row that holds it"});
   }
-} catch (const std::runtime_error&) {
-  // Rows that cannot be differentiated hold nothing; whoever derives them says what is wrong.
-}
-
-Diagnostic held_error(const Coordinate& held) {
-  return {Severity::error,
-          held.where,
-          {},
-          "the coordinate " + held.name + " is not free: " + held_text(held),
-          "drop the coordinate, or the row that holds it"};
+  return errors;
 }
 
 std::string held_text(const Coordinate& held) {

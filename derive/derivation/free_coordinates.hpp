@@ -1,25 +1,17 @@
-// Coordinates that a joint does not leave free, because its own rows hold them: a revolute's angle
-// in a weld.
-//
-// Only what has been differentiated tells, so this comes after the reader; rows that an include
-// brings do not know of those that stand beside it.
+// Coordinates that a joint does not leave free, because its own rows hold them: a revolute's angle in a weld. Only what
+// has been differentiated tells; rows that an include brings do not know of those that stand beside it.
 #pragma once
 
-#include <vector>
-
-#include "derive/language/joint.hpp"
+#include "derive/derivation/derivation.hpp"
 
 namespace cdot::derive {
 
-// Those whose row of J is a combination of the equality and velocity rows, with `held_by` filled
-// in. An inequality holds nothing: a limit may stand beside a coordinate.
-std::vector<Coordinate> held_coordinates(const Joint& joint);
+// Fills in `held_by` of the coordinates whose row of J is a combination of the equality and velocity rows, and moves
+// those that came with an include to `dropped`. An inequality holds nothing: a limit may stand beside a coordinate.
+void drop_held_coordinates(Derivation& derivation);
 
-// Moves those that came with an include to `dropped`.
-void drop_held_coordinates(Joint& joint);
-
-// What is wrong with a held coordinate that the spec itself declares.
-Diagnostic held_error(const Coordinate& held);
+// The coordinates that the spec itself declares and its rows hold, as errors.
+std::vector<Diagnostic> held_errors(const Joint& joint);
 
 // "the row angle holds it"
 std::string held_text(const Coordinate& held);

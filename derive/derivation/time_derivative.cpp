@@ -15,7 +15,9 @@ class Simplifying {
   Expr rate(Expr e) {
     if (const auto found = done_.find(&*e); found != done_.end()) return found->second;
     const Expr result = RateRules(*this, joint_, motion_).of(e);
-    if (!e->name.empty() && !motion_.only && motion_.stretched < 0) e->pool->name(result, e->name + "_dot", false);
+    // Only where everything moves is it the whole u_dot: a part of it must not take the name.
+    const bool whole = !motion_.only && motion_.stretched < 0 && motion_.immovable < 0;
+    if (!e->name.empty() && whole) e->pool->name(result, e->name + "_dot", false);
     done_.emplace(&*e, result);
     return result;
   }

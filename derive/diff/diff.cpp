@@ -37,12 +37,13 @@ DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path&
   if (!plain.joint) throw NoSuchSpec(render(*plain.file, plain.diagnostics));
   for (const HandEntryAst& ast : file.entries) {
     // Every entry has a pool of its own, so that the names one gives never show in another.
-    const ReadResult read = folder.read(spec, {.anchors = ast.anchors});
+    ReadResult read = folder.read(spec, {.anchors = ast.anchors});
     if (!read.joint) {
       report.diagnostics.error(
           ast.where, "with what this entry assumes, the spec cannot be read: " + render(*read.file, read.diagnostics));
       continue;
     }
+    read.joint = derive(*read.joint).joint;  // without the coordinates that its rows hold
     const std::size_t before = report.diagnostics.list.size();
     Entry entry = read_entry(ast, file, read, changed(ast.anchors, *plain.joint), report.diagnostics);
     if (report.diagnostics.list.size() == before) report.judgements.push_back(judge(std::move(entry)));

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "derive/derivation/specs_folder.hpp"
 #include "derive/kernel/ledger.hpp"
 #include "derive/language/hand/hand.hpp"
+#include "derive/language/specs_folder.hpp"
 
 namespace cdot::derive {
 

@@ -158,12 +158,12 @@ class KernelWriter {
   // Members that every row block has. A variant inherits from the block `base` what is the same
   // there.
   void block(const KernelBlock& b, const KernelBlock* base, int depth) {
-    const std::size_t rows = b.block.rows.size();
+    const std::size_t rows = b.block->rows.size();
     if (base == nullptr) {
       line("");
-      row_metadata(b.block, rows, depth);
+      row_metadata(*b.block, rows, depth);
     } else {
-      line(fmt::format("static constexpr int immovable_body = {};", b.block.immovable), depth);
+      line(fmt::format("static constexpr int immovable_body = {};", b.block->immovable), depth);
     }
     if (rows == 0) return;
     const bool same_jacobian = base != nullptr && jacobian_struct(b, depth) == jacobian_struct(*base, depth);
@@ -200,7 +200,7 @@ class KernelWriter {
 
   std::string function(const KernelBlock& b, const KernelFunction& f, int depth) const {
     std::string s = fmt::format("\n{}// {}: {}\n", indent(depth), f.summary, derive::text(count(f.program)));
-    for (const std::string& part : functions_.function(f, b.block.rows.size(), depth)) {
+    for (const std::string& part : functions_.function(f, b.block->rows.size(), depth)) {
       s += part + "\n";
     }
     return s;
@@ -234,7 +234,7 @@ class KernelWriter {
   // `struct line::a_immovable : line`, with what is different.
   void variants(const KernelBlock& base, const std::string& name) {
     for (const KernelBlock& variant : base.variants) {
-      const std::string& body = joint_.bodies[static_cast<std::size_t>(variant.block.immovable)];
+      const std::string& body = joint_.bodies[static_cast<std::size_t>(variant.block->immovable)];
       line("");
       comment(0, fmt::format("{} with {} immovable: its velocity and inverse mass are zero and gone.", name, body));
       line(fmt::format("struct {}::{} : {} {{", name, variant.name, name));
@@ -248,7 +248,7 @@ class KernelWriter {
     std::string list;
     for (const KernelBlock& b : blocks) {
       list += (list.empty() ? "" : ", ") + b.name;
-      if (b.block.immovable >= 0) line("struct " + b.name + ";", depth);
+      if (b.block->immovable >= 0) line("struct " + b.name + ";", depth);
     }
     line("using " + name + " = std::tuple<" + list + ">;", depth);
   }

@@ -1,4 +1,3 @@
-// Joints to the texts of all generated files.
 #include "derive/kernel/generate.hpp"
 
 #include <algorithm>
@@ -7,8 +6,8 @@
 
 namespace cdot::derive {
 
-GeneratedJoint generate(const Joint& joint) {
-  const Kernel kernel = plan_kernel(joint);
+GeneratedJoint print(const Kernel& kernel) {
+  const Joint& joint = *kernel.joint;
   return {name_of_space(joint.dimension), joint.name, emit_kernel(kernel), ledger_of(kernel)};
 }
 

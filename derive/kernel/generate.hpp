@@ -1,5 +1,4 @@
-// All generated files of a set of joints, in memory: what `cdot derive` writes and `cdot derive
-// --check` compares.
+// Simplified kernels to the texts of generated files: what `cdot derive` writes and `cdot derive --check` compares.
 #pragma once
 
 #include <map>
@@ -18,7 +17,7 @@ struct GeneratedJoint {
   std::string space, name, kernel;
   std::vector<LedgerRow> ledger;
 };
-GeneratedJoint generate(const Joint& joint);
+GeneratedJoint print(const Kernel& kernel);
 
 // Kernels, registries and ledger; the order of `joints` does not matter.
 Files collect(const std::vector<GeneratedJoint>& joints, const std::vector<LedgerRow>& hand_counts);

@@ -51,10 +51,10 @@ Count cost_from_poses(const Joint& joint, std::string_view quantity, const std::
 std::vector<LedgerRow> ledger_of(const Kernel& kernel) {
   std::vector<LedgerRow> rows;
   const Joint& joint = *kernel.joint;
-  add_quantities(joint, kernel.rows.block, "rows", rows);
+  add_quantities(joint, *kernel.rows.block, "rows", rows);
   add_functions(joint, kernel.rows, "rows", rows);
   for (const KernelBlock& coordinate : kernel.coordinates) {
-    add_quantities(joint, coordinate.block, coordinate.name, rows);
+    add_quantities(joint, *coordinate.block, coordinate.name, rows);
     add_functions(joint, coordinate, coordinate.name, rows);
   }
   return rows;

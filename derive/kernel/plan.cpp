@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "derive/derivation/forms.hpp"
 #include "derive/expression/components.hpp"
@@ -21,10 +22,10 @@ struct StoredEntry {
 
 class BlockPlanner {
  public:
-  BlockPlanner(const Joint& joint, Block block, std::string name)
-      : joint_(joint), pool_(*joint.pool), width_(columns_per_body(joint.dimension)), pose_(joint) {
+  BlockPlanner(const Joint& joint, const Block& block, std::string name)
+      : joint_(joint), pool_(*joint.pool), block_(block), width_(columns_per_body(joint.dimension)), pose_(joint) {
     out_.name = std::move(name);
-    out_.block = std::move(block);
+    out_.block = &block;
   }
 
   KernelBlock plan() {
@@ -32,8 +33,8 @@ class BlockPlanner {
     store_jacobian();
     add_position_and_jacobian();
     add_effective_mass();
-    add("factor", "K = L D L^T; F holds L and, on the diagonal, D^-1", factor_outputs(out_.block));
-    add("solve", "lambda = K^-1 rhs", solve_outputs(out_.block));
+    add("factor", "K = L D L^T; F holds L and, on the diagonal, D^-1", factor_outputs(block_));
+    add("solve", "lambda = K^-1 rhs", solve_outputs(block_));
     add_velocity();
     add_apply();
     add_dense();
@@ -45,16 +46,16 @@ class BlockPlanner {
       add_inverse_mass_jacobian();
       isotropic_ = false;
     }
-    if (out_.block.immovable < 0) add_what_variants_inherit();
+    if (block_.immovable < 0) add_what_variants_inherit();
     return std::move(out_);
   }
 
  private:
-  std::size_t rows() const { return out_.block.rows.size(); }
+  std::size_t rows() const { return block_.rows.size(); }
   std::size_t bodies() const { return joint_.bodies.size(); }
   void add(std::string name, std::string summary, const std::vector<NamedExpr>& outputs) {
     if (isotropic_) summary += ", for sphere-like bodies";
-    out_.functions.push_back({std::move(name), std::move(summary), simplify(assemble(outputs)), isotropic_});
+    out_.functions.push_back({std::move(name), std::move(summary), assemble(outputs), isotropic_, {}});
   }
 
   // Which numbers Jacobian<T> holds: the factors of J's entries that are neither zero nor one.
@@ -64,7 +65,7 @@ class BlockPlanner {
       std::vector<StoredEntry> row;
       for (std::size_t b = 0; b < bodies(); ++b) {
         const std::string suffix = joint_.bodies[b] + (rows() > 1 ? "_" + std::to_string(i + 1) : "");
-        const std::vector<Expr> entries = columns_of(out_.block.rows[i].J[b]);
+        const std::vector<Expr> entries = columns_of(block_.rows[i].J[b]);
         for (std::size_t k = 0; k < width_; ++k) {
           row.push_back(store(components.of(entries[k]), column_name(k, suffix)));
         }
@@ -120,7 +121,7 @@ class BlockPlanner {
   void add_position_and_jacobian() {
     std::vector<NamedExpr> outputs;
     for (std::size_t i = 0; i < rows(); ++i) {
-      outputs.push_back({element("C", i), pose_.of(out_.block.rows[i].C)});
+      outputs.push_back({element("C", i), pose_.of(block_.rows[i].C)});
     }
     add("position", "C", outputs);
     for (const Field& f : out_.fields) outputs.push_back({"J." + f.name, pose_.of(f.value)});
@@ -136,7 +137,7 @@ class BlockPlanner {
       held.emplace(&*f.value, f.symbol);
       held.emplace(&*(-f.value), -f.symbol);
     }
-    const auto K_of_rows = effective_mass(joint_, out_.block.rows, out_.block.immovable, isotropic_);
+    const auto& K_of_rows = isotropic_ ? block_.K_isotropic : block_.K;
     std::vector<NamedExpr> simplified, plain;
     bool complete = true;
     for (std::size_t i = 0; i < rows(); ++i) {
@@ -152,13 +153,13 @@ class BlockPlanner {
     }
     const std::string summary = "K = J M^-1 J^T, lower triangle, from J";
     add("effective_mass", summary, plain);
-    if (complete) keep_if_no_dearer(simplified);
+    if (complete) add_other_way(simplified);
   }
 
   Expr plain_effective_mass(std::size_t i, std::size_t j) const {
     Expr K = pool_.number(0);
     for (std::size_t b = 0; b < bodies(); ++b) {
-      if (static_cast<int>(b) == out_.block.immovable) continue;
+      if (static_cast<int>(b) == block_.immovable) continue;
       for (std::size_t k = 0; k < width_; ++k) {
         K = K + stored(i, width_ * b + k) * weighted(j, width_ * b + k);
       }
@@ -228,7 +229,7 @@ class BlockPlanner {
     std::vector<NamedExpr> outputs;
     for (std::size_t c = 0; c < width_ * bodies(); ++c) {
       const Expr change = inverse_mass_times(c, [&](std::size_t column) { return force(column); });
-      if (static_cast<int>(c / width_) == out_.block.immovable || is_zero(change)) continue;
+      if (static_cast<int>(c / width_) == block_.immovable || is_zero(change)) continue;
       outputs.push_back({element("v", c / width_) + "." + velocity_member(c % width_, width_),
                          velocity_components(c / width_)[c % width_] + change});
     }
@@ -282,11 +283,11 @@ class BlockPlanner {
   void add_from_pose() {
     std::vector<NamedExpr> C_t, H;
     for (std::size_t i = 0; i < rows(); ++i) {
-      C_t.push_back({element("C_t", i), pose_.of(out_.block.rows[i].C_t)});
+      C_t.push_back({element("C_t", i), pose_.of(block_.rows[i].C_t)});
     }
-    for (std::size_t r = 0; r < out_.block.stiffness.size(); ++r) {
-      for (std::size_t c = 0; c < out_.block.stiffness[r].size(); ++c) {
-        H.push_back({element(element("H", r), c), pose_.of(out_.block.stiffness[r][c])});
+    for (std::size_t r = 0; r < block_.stiffness.size(); ++r) {
+      for (std::size_t c = 0; c < block_.stiffness[r].size(); ++c) {
+        H.push_back({element(element("H", r), c), pose_.of(block_.stiffness[r][c])});
       }
     }
     add_gamma();
@@ -300,22 +301,19 @@ class BlockPlanner {
   void add_gamma() {
     std::vector<NamedExpr> whole, by_entries;
     for (std::size_t i = 0; i < rows(); ++i) {
-      whole.push_back({element("g", i), pose_.of(out_.block.rows[i].gamma)});
-      by_entries.push_back({element("g", i), pose_.of(out_.block.rows[i].gamma_by_entries)});
+      whole.push_back({element("g", i), pose_.of(block_.rows[i].gamma)});
+      by_entries.push_back({element("g", i), pose_.of(block_.rows[i].gamma_by_entries)});
     }
     add("gamma", "-Jdot v - d/dt(dC/dt)", whole);
-    keep_if_no_dearer(by_entries);
+    add_other_way(by_entries);
   }
 
-  // In place of the function added last.
-  void keep_if_no_dearer(const std::vector<NamedExpr>& outputs) {
-    Program other = simplify(assemble(outputs));
-    Program& kept = out_.functions.back().program;
-    if (count(other).total() <= count(kept).total()) kept = std::move(other);
-  }
+  // To the function added last; taken if it is no dearer.
+  void add_other_way(const std::vector<NamedExpr>& outputs) { out_.functions.back().other = {assemble(outputs)}; }
 
   const Joint& joint_;
   Pool& pool_;
+  const Block& block_;
   std::size_t width_;       // columns of J per body
   bool isotropic_ = false;  // inverse inertias are numbers, not tensors
   PoseInputs pose_;
@@ -323,39 +321,48 @@ class BlockPlanner {
   std::vector<std::vector<StoredEntry>> J_;
 };
 
-bool some_row_vanishes(const Block& block) {
-  return std::any_of(block.rows.begin(), block.rows.end(), [](const ScalarRow& row) {
-    return std::all_of(row.J.begin(), row.J.end(), [](const JacobianEntry& e) { return is_zero(e.v) && is_zero(e.w); });
-  });
-}
-
-template <class Derive>
-KernelBlock plan_block(const Joint& joint, std::string name, Derive derive) {
-  KernelBlock out = BlockPlanner(joint, derive(-1), std::move(name)).plan();
-  if (out.block.rows.empty()) return out;  // a joint of coordinates only
-  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-    Block variant = derive(static_cast<int>(b));
-    if (some_row_vanishes(variant)) continue;
-    out.variants.push_back(BlockPlanner(joint, std::move(variant), joint.bodies[b] + "_immovable").plan());
+KernelBlock plan_block(const Joint& joint, const Block& block, const std::string& name) {
+  KernelBlock out = BlockPlanner(joint, block, name).plan();
+  for (const Block& variant : block.variants) {
+    const std::string& body = joint.bodies[static_cast<std::size_t>(variant.immovable)];
+    out.variants.push_back(BlockPlanner(joint, variant, body + "_immovable").plan());
   }
   return out;
 }
 
+void simplify_functions(KernelBlock& block) {
+  for (KernelFunction& f : block.functions) {
+    f.program = simplify(f.program);
+    for (const Program& way : std::exchange(f.other, {})) {
+      Program other = simplify(way);
+      if (count(other).total() <= count(f.program).total()) f.program = std::move(other);
+    }
+  }
+  for (KernelBlock& variant : block.variants) simplify_functions(variant);
+}
+
 }  // namespace
 
-Kernel plan_kernel(const Joint& joint) {
+Kernel plan(const Derivation& derivation) {
+  const Joint& joint = derivation.joint;
   Kernel kernel;
   kernel.joint = &joint;
-  kernel.rows = plan_block(joint, joint.name, [&](int immovable) { return derive_rows(joint, immovable); });
-  for (const Coordinate& coordinate : joint.coordinates) {
-    kernel.coordinates.push_back(plan_block(
-        joint, coordinate.name, [&](int immovable) { return derive_coordinate(joint, coordinate, immovable); }));
+  kernel.rows = plan_block(joint, derivation.rows, joint.name);
+  for (const Block& coordinate : derivation.coordinates) {
+    kernel.coordinates.push_back(plan_block(joint, coordinate, coordinate.name));
   }
   for (std::size_t i = 0; i < joint.parameters.size(); ++i) {
     if (joint.parameters[i].default_value) {
       kernel.defaults.push_back(plan_default(joint, static_cast<int>(i)));
     }
   }
+  return kernel;
+}
+
+Kernel simplified(Kernel kernel) {
+  simplify_functions(kernel.rows);
+  for (KernelBlock& coordinate : kernel.coordinates) simplify_functions(coordinate);
+  for (DefaultValue& value : kernel.defaults) value.program = simplify(value.program);
   return kernel;
 }
 

@@ -19,16 +19,17 @@ struct Field {
 
 // A function of the contract. Inputs are found by the names of the program's input operations.
 struct KernelFunction {
-  std::string name;        // "jacobian"
-  std::string summary;     // "C and J"
-  Program program;         // outputs carry the text of what is assigned: "C[0]", "J.t_x"
-  bool isotropic = false;  // the overload for bodies whose inertia is a number, in space
+  std::string name;            // "jacobian"
+  std::string summary;         // "C and J"
+  Program program;             // outputs carry the text of what is assigned: "C[0]", "J.t_x"
+  bool isotropic = false;      // the overload for bodies whose inertia is a number, in space
+  std::vector<Program> other;  // another way to the same outputs, if there is one: the cheaper is kept
 };
 
 // One row block: the joint, a coordinate, or one of these with a body immovable.
 struct KernelBlock {
   std::string name;  // of the struct: "line", "slide", "a_immovable"
-  Block block;
+  const Block* block = nullptr;
   std::vector<Field> fields;
   std::vector<KernelFunction> functions;
   std::vector<KernelBlock> variants;  // with one body immovable
@@ -40,13 +41,15 @@ struct DefaultValue {
 };
 
 struct Kernel {
-  const Joint* joint = nullptr;
+  const Joint* joint = nullptr;  // it and every block: of the derivation
   KernelBlock rows;
   std::vector<KernelBlock> coordinates;
   std::vector<DefaultValue> defaults;
 };
 
-Kernel plan_kernel(const Joint& joint);
+Kernel plan(const Derivation& derivation);
+// Common terms and factors shared in every function; of two ways, the cheaper one.
+Kernel simplified(Kernel kernel);
 
 // Everything written out in components and read from poses and parameters: arms become c l_x - s
 // l_y, in space xx l_x + xy l_y + xz l_z. Shared by the kernel, the ledger and the hand

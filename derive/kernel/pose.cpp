@@ -78,7 +78,7 @@ DefaultValue plan_default(const Joint& joint, int index) {
   const auto output = [&](Expr e) { outputs.push_back({"p." + fields[outputs.size()], pose.of(e)}); };
   if (parameter.kind == ParameterKind::scalar) {
     output(parameter.default_value);
-    return {index, simplify(assemble(outputs))};
+    return {index, assemble(outputs)};
   }
   std::vector<Expr> values = {parameter.default_value};
   if (!parameter.default_axes.empty()) values = parameter.default_axes;
@@ -88,7 +88,7 @@ DefaultValue plan_default(const Joint& joint, int index) {
   for (const Expr value : values) {
     for (const Expr axis : body_axes(pool, parameter.body)) output(dot(axis, value));
   }
-  return {index, simplify(assemble(outputs))};
+  return {index, assemble(outputs)};
 }
 
 }  // namespace cdot::derive

@@ -2,11 +2,13 @@
 // nothing.
 #include "derive/proof/prove.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "derive/proof/ginac.hpp"
 #include "derive/proof/momentum.hpp"
 #include "derive/proof/rank.hpp"
+#include "derive/proof/specialised.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -61,6 +63,7 @@ class Prover {
       case LawId::forms: return forms();
       case LawId::momentum: law_ = conserves_momentum(joint_, block_, names_); return;
       case LawId::rank: law_ = rows_are_independent(block_); return;
+      default: return;
     }
   }
 
@@ -171,9 +174,11 @@ class Prover {
   }
 
   void gamma() {
+    if (block_.immovable >= 0) law_.verdict = Verdict::does_not_apply;
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const ScalarRow& row = block_.rows[i];
       for (const Expr gamma : {row.gamma, row.gamma_by_entries}) {
+        if (!gamma) continue;
         require_zero(names_, names_.of(gamma) + names_.rate(Cdot_[i]), row,
                      ": gamma is not minus the second time derivative of C without accelerations");
       }
@@ -284,22 +289,32 @@ class Prover {
   Law law_;
 };
 
+// clang-format off
+const struct { std::string_view word, name; } law_texts[] = {  // in the order of LawId
+    {"rate",      "Cdot is the time derivative of C"},
+    {"linear",    "Cdot is linear in v"},
+    {"jacobian",  "J v + dC/dt = Cdot"},
+    {"raw",       "J agrees with C in raw coordinates"},
+    {"mass",      "K is symmetric and J M^-1 J^T"},
+    {"gamma",     "gamma = -Jdot v - d/dt dC/dt"},
+    {"stiffness", "the geometric stiffness is the Hessian of lambda . C"},
+    {"forms",     "J_b = J diag(E, A) and J_c = J diag(E, 2 G) are derivatives of C"},
+    {"momentum",  "momentum is conserved"},
+    {"rank",      "the rows are independent"},
+    {"immovable", "a body made immovable only loses its own terms"},
+    {"isotropic", "K of isotropic bodies is K"},
+};
+// clang-format on
+
 }  // namespace
 
-std::string_view name_of(LawId id) {
-  switch (id) {
-    case LawId::rate: return "Cdot is the time derivative of C";
-    case LawId::linear: return "Cdot is linear in v";
-    case LawId::jacobian: return "J v + dC/dt = Cdot";
-    case LawId::raw: return "J agrees with C in raw coordinates";
-    case LawId::mass: return "K is symmetric and J M^-1 J^T";
-    case LawId::gamma: return "gamma = -Jdot v - d/dt dC/dt";
-    case LawId::stiffness: return "the geometric stiffness is the Hessian of lambda . C";
-    case LawId::forms: return "J_b = J diag(E, A) and J_c = J diag(E, 2 G) are derivatives of C";
-    case LawId::momentum: return "momentum is conserved";
-    case LawId::rank: return "the rows are independent";
-  }
-  return "";
+std::string_view word_of(LawId id) { return law_texts[static_cast<std::size_t>(id)].word; }
+std::string_view name_of(LawId id) { return law_texts[static_cast<std::size_t>(id)].name; }
+
+std::optional<LawId> law_of(std::string_view word) {
+  const auto found = std::find_if(std::begin(law_texts), std::end(law_texts), [&](auto& t) { return t.word == word; });
+  if (found == std::end(law_texts)) return std::nullopt;
+  return static_cast<LawId>(found - std::begin(law_texts));
 }
 
 std::string_view name_of(Verdict v) {
@@ -313,13 +328,30 @@ std::string_view name_of(Verdict v) {
   return "";
 }
 
-bool Proof::holds() const {
-  for (const Law& law : laws) {
-    if (law.verdict == Verdict::fails || law.verdict == Verdict::undecided) return false;
-  }
-  return true;
-}
+bool is_broken(const Law& law) { return law.verdict == Verdict::fails || law.verdict == Verdict::undecided; }
+
+bool Proof::holds() const { return std::none_of(laws.begin(), laws.end(), is_broken); }
 
 Proof prove(const Joint& joint, const Block& block) { return Prover(joint, block).run(); }
+
+std::vector<Proved> prove_blocks(const Derivation& derivation) {
+  const Joint& joint = derivation.joint;
+  std::vector<Proved> all = {{"", {}, prove(joint, derivation.rows)}};
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+    const Coordinate& coordinate = joint.coordinates[i];
+    all.push_back({coordinate.name, coordinate.where, prove(joint, derivation.coordinates[i])});
+  }
+  return all;
+}
+
+std::vector<Proved> prove(const Derivation& derivation) {
+  std::vector<Proved> all = prove_blocks(derivation);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Block& block = i == 0 ? derivation.rows : derivation.coordinates[i - 1];
+    all[i].proof.laws.push_back(variants_are_the_block(derivation.joint, block));
+    all[i].proof.laws.push_back(isotropic_is_the_block(derivation.joint, block));
+  }
+  return all;
+}
 
 }  // namespace cdot::derive

@@ -2,6 +2,7 @@
 // derivative.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,9 +29,12 @@ enum class LawId {
   stiffness,  // the geometric stiffness is the Hessian of lambda . C in raw coordinates
   forms,      // in space: J by body-local spins and by Euler parameters is the derivative of C along them
   momentum,   // a joint without the world is not felt by a common motion of all bodies
-  rank        // as many independent rows as are written
+  rank,       // as many independent rows as are written
+  // Of what is specialised from a block that obeys these:
+  immovable,  // each variant is the block with that body's velocity and inverse mass zero
+  isotropic   // in space: K for numbers as inertias is K for tensors that are such a number times E
 };
-inline constexpr int number_of_laws = 10;
+inline constexpr int number_of_laws = 10;  // of a block by itself
 
 struct Law {
   LawId id = LawId::rate;
@@ -41,17 +45,31 @@ struct Law {
   std::vector<Span> parts;   // the terms of the row that break it
 };
 
+bool is_broken(const Law& law);  // it fails, or is undecided
+
 // One entry per law, in the order of LawId.
 struct Proof {
   std::vector<Law> laws;
-  bool holds() const;  // no law fails or is undecided
+  bool holds() const;  // no law is broken
   const Law& of(LawId id) const { return laws[static_cast<std::size_t>(id)]; }
 };
 
+std::string_view word_of(LawId id);  // "jacobian"
+std::optional<LawId> law_of(std::string_view word);
 std::string_view name_of(LawId id);   // "J v + dC/dt = Cdot"
 std::string_view name_of(Verdict v);  // "holds"
 
-// `block` is what derive_rows or derive_coordinate made of the joint.
+// `block` is what derive_rows or derive_coordinate made of the joint; by the laws of a block by itself.
 Proof prove(const Joint& joint, const Block& block);
+
+struct Proved {
+  std::string name;  // of a coordinate; empty for the rows of the joint
+  Span where;        // the coordinate stands
+  Proof proof;
+};
+// The rows and the coordinates, each by itself.
+std::vector<Proved> prove_blocks(const Derivation& derivation);
+// All that kernels are made of: those, and by the last laws their variants and what isotropic bodies have.
+std::vector<Proved> prove(const Derivation& derivation);
 
 }  // namespace cdot::derive

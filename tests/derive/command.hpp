@@ -31,7 +31,6 @@ class Derive : public testing::Test {
     const testing::TestInfo& test = *testing::UnitTest::GetInstance()->current_test_info();
     place_ = fs::temp_directory_path() / ("cdot_" + std::to_string(getpid()) + test.name());
     for (const char* joint : {"line", "angle"}) take("planar/" + std::string(joint) + ".joint");
-    setenv("CDOT_CACHE", (place_ / "remembered").c_str(), 1);
   }
   void TearDown() override { fs::remove_all(place_); }
 

@@ -36,7 +36,7 @@ TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
   std::string names;
   for (const auto& [name, content] : files("generated")) names += name + "\n";
   EXPECT_EQ(names,
-            "ledger.csv\nplanar/angle.hpp\nplanar/line.hpp\nplanar/registry.hpp\n"
+            "ledger.csv\nplanar/angle.hpp\nplanar/line.hpp\nplanar/registry.hpp\nproofs.csv\n"
             "spatial/registry.hpp\n");
   EXPECT_EQ(read("generated/planar/line.hpp"), content_of(fs::path(CDOT_GENERATED) / "planar/line.hpp"))
       << "what is generated for a joint does not depend on the others";
@@ -45,7 +45,7 @@ TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
 TEST_F(Derive, WritesElsewhereIfAsked) {
   EXPECT_EQ(cdot("derive -o build/own").status, 0);
   EXPECT_TRUE(files("generated").empty());
-  EXPECT_EQ(files("build/own").size(), 5u);
+  EXPECT_EQ(files("build/own").size(), 6u);
 }
 
 TEST_F(Derive, TouchesNothingThatIsRight) {

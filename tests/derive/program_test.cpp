@@ -4,10 +4,10 @@
 #include <cmath>
 #include <gtest/gtest.h>
 
-#include "derive/derivation/specs_folder.hpp"
 #include "derive/expression/components.hpp"
 #include "derive/kernel/ledger.hpp"
 #include "derive/kernel/plan.hpp"
+#include "derive/language/specs_folder.hpp"
 #include "tests/derive/random_expressions.hpp"
 
 using namespace cdot::derive;
@@ -32,13 +32,11 @@ Program assembled(const std::vector<KnownScalar>& scalars, std::size_t from, std
   return assemble(outputs);
 }
 
-Kernel kernel_of(const Joint& joint) { return plan_kernel(joint); }
-
-Joint joint_of(const std::string& name) {
+Derivation derivation_of(const std::string& name) {
   const SpecsFolder folder(CDOT_SPECS);
   const ReadResult read = folder.read(folder.find(name));
   if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
-  return *read.joint;
+  return derive(*read.joint);
 }
 
 Count cost(const KernelBlock& block, const std::string& function) {
@@ -126,8 +124,8 @@ TEST(Simplify, takes_minus_signs_out_where_that_costs_nothing) {
 
 TEST(Simplify, subtracts_positions_first) {
   // (x_a + ra) - (x_b + rb): far from the origin x_a + ra would round ra away.
-  const Joint joint = joint_of("revolute");
-  const Kernel kernel = kernel_of(joint);
+  const Derivation derivation = derivation_of("revolute");
+  const Kernel kernel = simplified(plan(derivation));
   const Program& C = kernel.rows.functions.front().program;
   for (const Operation& op : C.ops) {
     if (op.kind != OpKind::sum) continue;
@@ -140,8 +138,8 @@ TEST(Simplify, subtracts_positions_first) {
 TEST(Simplify, has_positions_first_in_every_sum) {
   // ra + x_a - x_b, taken from the left, would round ra away.
   for (const char* const name : {"line", "prismatic", "rolling", "pulley"}) {
-    const Joint joint = joint_of(name);
-    const Kernel kernel = kernel_of(joint);
+    const Derivation derivation = derivation_of(name);
+    const Kernel kernel = simplified(plan(derivation));
     for (const KernelFunction& f : kernel.rows.functions) {
       for (const Operation& op : f.program.ops) {
         if (op.kind != OpKind::sum) continue;
@@ -163,13 +161,13 @@ TEST(Simplify, cancels_what_is_taken_away_and_added_again) {
 
 TEST(Cost, of_gamma_is_that_of_the_rates_of_J) {
   // (w_a - w_b) . d(na x nb)/dt, not na and nb differentiated twice (84 operations).
-  const Joint joint = joint_of("n1");
-  EXPECT_LE(cost(kernel_of(joint).rows, "gamma").total(), 78);
+  const Derivation derivation = derivation_of("n1");
+  EXPECT_LE(cost(simplified(plan(derivation)).rows, "gamma").total(), 78);
 }
 
 TEST(Cost, of_the_point_joint_is_that_of_a_careful_person) {
-  const Joint joint = joint_of("revolute");
-  const Kernel kernel = kernel_of(joint);
+  const Derivation derivation = derivation_of("revolute");
+  const Kernel kernel = simplified(plan(derivation));
   // Per body: I ra_y ra_y, I ra_x ra_x, and one product shared by K21 = -I ra_x ra_y.
   EXPECT_EQ(cost(kernel.rows, "effective_mass").multiply, 2 * 5);
   EXPECT_EQ(cost(kernel.rows, "velocity").multiply, 2 * 2);
@@ -180,9 +178,11 @@ TEST(Cost, of_the_point_joint_is_that_of_a_careful_person) {
 }
 
 TEST(Cost, of_a_negative_in_J_is_left_to_whoever_uses_it) {
-  const Joint joint = joint_of("revolute");
-  const Expr ra = joint.parameters.front().symbol, square = dot(ra, ra);
-  const auto cost_of = [&](const char* quantity, Expr e) { return cost_from_poses(joint, quantity, {e}).add; };
+  const Derivation derivation = derivation_of("revolute");
+  const Expr ra = derivation.joint.parameters.front().symbol, square = dot(ra, ra);
+  const auto cost_of = [&](const char* quantity, Expr e) {
+    return cost_from_poses(derivation.joint, quantity, {e}).add;
+  };
   EXPECT_EQ(cost_of("J", -square), cost_of("J", square));
   EXPECT_EQ(cost_of("C", -square), cost_of("C", square) + 1);
   EXPECT_EQ(cost_of("K", -square), cost_of("K", square) + 1);

@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "derive/derivation/specs_folder.hpp"
 #include "derive/kernel/generate.hpp"
+#include "derive/language/specs_folder.hpp"
 
 int main(int argc, char** argv) {
   using namespace cdot::derive;
@@ -14,7 +14,8 @@ int main(int argc, char** argv) {
   for (int i = 3; i < argc; ++i) {
     const ReadResult read = folder.read(argv[i]);
     if (!read.joint) return 2;
-    joints.push_back(generate(*read.joint));
+    const Derivation derivation = derive(*read.joint);
+    joints.push_back(print(simplified(plan(derivation))));
   }
   for (const auto& [name, content] : collect(joints, {})) {
     const std::filesystem::path path = std::filesystem::path(argv[2]) / name;

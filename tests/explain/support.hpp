@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "derive/derivation/specs_folder.hpp"
+#include "derive/derivation/derivation.hpp"
 #include "derive/explain/explain.hpp"
+#include "derive/language/specs_folder.hpp"
 
 // "planar/line", ...
 inline std::vector<std::string> spec_names() {
@@ -29,7 +30,7 @@ inline cdot::derive::Joint read_spec(const std::string& name) {
   const cdot::derive::SpecsFolder folder(CDOT_SPECS);
   const cdot::derive::ReadResult read = folder.read(folder.find(name));
   if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
-  return *read.joint;
+  return cdot::derive::derive(*read.joint).joint;
 }
 
 // Further joints that use what the catalogue does not: angles between directions, functions,

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "derive/check/check.hpp"
-#include "derive/derivation/specs_folder.hpp"
+#include "derive/language/specs_folder.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -16,8 +16,8 @@ TEST_P(CatalogueSpec, ObeysTheLawsAndIsClean) {
   const ReadResult read = specs().read(GetParam());
   ASSERT_TRUE(read.joint) << render(*read.file, read.diagnostics);
   const CheckReport report = check(read);
-  EXPECT_EQ(report.proofs.size(), 1 + read.joint->coordinates.size());
-  for (const CheckReport::Proved& proved : report.proofs) {
+  EXPECT_EQ(report.proofs.size(), 1 + derive(*read.joint).joint.coordinates.size());
+  for (const Proved& proved : report.proofs) {
     EXPECT_EQ(proved.proof.laws.size(), static_cast<std::size_t>(number_of_laws));
     EXPECT_TRUE(proved.proof.holds()) << proved.name;
   }

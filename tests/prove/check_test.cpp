@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <gtest/gtest.h>
 
-#include "derive/derivation/specs_folder.hpp"
+#include "derive/language/specs_folder.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -75,17 +75,20 @@ TEST(Check, WhatAnIncludeLeavesFreeAndARowHoldsIsDropped) {
   for (const auto& [name, row] : {std::pair{"weld", "angular"}, {"driven_crank", "crank"}}) {
     const ReadResult read = folder.read(folder.find(name));
     ASSERT_TRUE(read.joint);
-    EXPECT_TRUE(read.joint->coordinates.empty());
-    ASSERT_EQ(read.joint->dropped.size(), 1u);
-    const Coordinate& dropped = read.joint->dropped.front();
+    const Derivation derivation = derive(*read.joint);
+    EXPECT_TRUE(derivation.joint.coordinates.empty());
+    EXPECT_TRUE(derivation.coordinates.empty());
+    ASSERT_EQ(derivation.joint.dropped.size(), 1u);
+    const Coordinate& dropped = derivation.joint.dropped.front();
     EXPECT_EQ(dropped.name, "angle");
     EXPECT_EQ(dropped.from, "revolute");
     EXPECT_EQ(dropped.held_by, std::vector<std::string>{row});
     EXPECT_TRUE(check(read).clean());
   }
-  const ReadResult free = folder.read(folder.find("prismatic"));
-  EXPECT_EQ(free.joint->coordinates.size(), 1u);
-  EXPECT_TRUE(free.joint->dropped.empty());
+  const Derivation free = derive(*folder.read(folder.find("prismatic")).joint);
+  EXPECT_EQ(free.joint.coordinates.size(), 1u);
+  EXPECT_EQ(free.coordinates.size(), 1u);
+  EXPECT_TRUE(free.joint.dropped.empty());
 }
 
 TEST(Check, TellsWhereTheEffectiveMassIsSingular) {

@@ -5,7 +5,7 @@
 #include <functional>
 #include <gtest/gtest.h>
 
-#include "derive/derivation/specs_folder.hpp"
+#include "derive/language/specs_folder.hpp"
 #include "derive/numbers/numeric.hpp"
 #include "derive/proof/prove.hpp"
 
@@ -50,6 +50,71 @@ TEST(Laws, EachFailsForADerivationThatBreaksIt) {
     EXPECT_EQ(law.verdict, Verdict::fails) << broken.what;
     EXPECT_FALSE(law.text.empty());
     EXPECT_FALSE(proof.holds());
+  }
+}
+
+struct BrokenEmission {
+  const char* what;
+  const char* joint;
+  LawId law;
+  std::function<void(Derivation&)> damage;
+};
+
+// All that kernels are made of is proved: variants, coordinates and the K of isotropic bodies, each by itself.
+TEST(Laws, EachFailsForADerivationThatWouldEmitSomethingElse) {
+  const BrokenEmission table[] = {
+      {"a variant with a flipped sign in J", "line", LawId::immovable,
+       [](Derivation& d) { d.rows.variants[0].rows[0].J[1].w = -d.rows.variants[0].rows[0].J[1].w; }},
+      {"a variant that lets the immovable body move", "line", LawId::immovable,
+       [](Derivation& d) { d.rows.variants[0].rows[0].J[0] = d.rows.rows[0].J[0]; }},
+      {"a variant with the K of the block", "line", LawId::immovable,
+       [](Derivation& d) { d.rows.variants[1].K = d.rows.K; }},
+      {"a variant of another C", "line", LawId::immovable,
+       [](Derivation& d) { d.rows.variants[0].rows[0].C = -d.rows.variants[0].rows[0].C; }},
+      {"variants in each other's place", "line", LawId::immovable,
+       [](Derivation& d) { std::swap(d.rows.variants[0].immovable, d.rows.variants[1].immovable); }},
+      {"a coordinate's J of the wrong sign", "line", LawId::raw,
+       [](Derivation& d) { d.coordinates[0].rows[0].J[0].v = -d.coordinates[0].rows[0].J[0].v; }},
+      {"a coordinate's gamma doubled", "line", LawId::gamma,
+       [](Derivation& d) { d.coordinates[0].rows[0].gamma = Rational(2) * d.coordinates[0].rows[0].gamma; }},
+      {"a coordinate's variant without its mass", "line", LawId::immovable,
+       [](Derivation& d) { d.coordinates[0].variants[0].K[0][0] = d.joint.pool->number(0); }},
+      {"K of isotropic bodies without an inertia", "spherical", LawId::isotropic,
+       [](Derivation& d) {
+         d.rows.K_isotropic[0][0] = substitute(
+             d.rows.K_isotropic[0][0], {{&*body_symbols(d.joint, 0).inv_I, d.joint.pool->number(0)}}, KeepNames::no);
+       }},
+      {"K of isotropic bodies of a variant doubled", "spherical", LawId::isotropic,
+       [](Derivation& d) {
+         Expr& K = d.rows.variants[1].K_isotropic[1][1];
+         K = Rational(2) * K;
+       }},
+  };
+  for (const BrokenEmission& broken : table) {
+    Derivation derivation = derive(joint_of(broken.joint));
+    broken.damage(derivation);
+    bool found = false;
+    for (const Proved& proved : prove(derivation)) {
+      const Law& law = proved.proof.of(broken.law);
+      found = found || (law.verdict == Verdict::fails && !law.text.empty() && !proved.proof.holds());
+      if (law.verdict == Verdict::fails) std::printf("%s: %s\n", broken.what, law.text.c_str());
+    }
+    EXPECT_TRUE(found) << broken.what;
+  }
+}
+
+TEST(Laws, AllHoldOfWhatIsEmitted) {
+  for (const char* name : {"line", "wheel", "spherical"}) {
+    const Derivation derivation = derive(joint_of(name));
+    const std::vector<Proved> proofs = prove(derivation);
+    EXPECT_EQ(proofs.size(), 1 + derivation.coordinates.size());
+    EXPECT_EQ(derivation.rows.variants.size(), 2u);
+    for (const Proved& proved : proofs) {
+      EXPECT_TRUE(proved.proof.holds()) << name;
+      EXPECT_EQ(proved.proof.of(LawId::immovable).verdict, Verdict::holds) << name;
+      const bool spatial = derivation.joint.dimension == 3;
+      EXPECT_EQ(proved.proof.of(LawId::isotropic).verdict, spatial ? Verdict::holds : Verdict::does_not_apply) << name;
+    }
   }
 }
 

@@ -25,7 +25,6 @@ class SpecsFolder {
   std::vector<std::filesystem::path> all() const;
 
   // Reads one spec; the specs beside it are what `include` finds. Diagnostics are in the result.
-  // What an include leaves free and another row holds is no coordinate of the joint.
   ReadResult read(const std::filesystem::path& spec, const ReadOptions& options = {}) const;
 
  private:

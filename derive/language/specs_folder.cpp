@@ -1,9 +1,7 @@
-#include "derive/derivation/specs_folder.hpp"
+#include "derive/language/specs_folder.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-
-#include "derive/derivation/free_coordinates.hpp"
 
 namespace cdot::derive {
 
@@ -54,9 +52,7 @@ ReadResult SpecsFolder::read(const fs::path& spec, const ReadOptions& options) c
   Library library;
   if (fs::is_directory(space)) library = load_library(space);
   library.merge(load_library(spec.has_parent_path() ? spec.parent_path() : fs::path(".")));
-  ReadResult result = read_joint(file, library, options);
-  if (result.joint) drop_held_coordinates(*result.joint);
-  return result;
+  return read_joint(file, library, options);
 }
 
 }  // namespace cdot::derive

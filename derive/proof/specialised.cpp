@@ -1,0 +1,118 @@
+#include "derive/proof/specialised.hpp"
+
+#include <fmt/format.h>
+
+#include "derive/proof/ginac.hpp"
+
+namespace cdot::derive {
+namespace {
+
+class Specialised {
+ public:
+  Specialised(const Joint& joint, LawId id) : joint_(joint), names_(joint, Algebra::Route::names) { law_.id = id; }
+
+  // Every entry of a variant against that of the block.
+  void compare(const Block& variant, const Block& block) {
+    const auto body = static_cast<std::size_t>(variant.immovable);
+    const std::string where = ", " + joint_.bodies[body] + " immovable: ";
+    GiNaC::exmap without_mass;
+    const BodySymbols symbols = body_symbols(joint_, variant.immovable);
+    without_mass[names_.of(symbols.inv_m)] = 0;
+    for (const ex& entry : tensor(symbols.inv_I)) without_mass[entry] = 0;
+    const Expr zero = joint_.pool->number(0);
+    for (std::size_t i = 0; i < block.rows.size(); ++i) {
+      require_equal(variant.rows[i].C, block.rows[i].C, block.rows[i], where + "C is another one");
+      for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+        const std::vector<Expr> J = columns_of(variant.rows[i].J[b]), all = columns_of(block.rows[i].J[b]);
+        for (std::size_t k = 0; k < J.size(); ++k) {
+          require_equal(J[k], b == body ? zero : all[k], block.rows[i],
+                        where + "J is another one in the columns of " + joint_.bodies[b]);
+        }
+      }
+      for (std::size_t j = 0; j <= i; ++j) {
+        const ex K = names_.of(block.K[i][j]).subs(without_mass, GiNaC::subs_options::no_pattern);
+        require_zero(names_.of(variant.K[i][j]) - K, block.rows[i], where + "K does not merely lose its terms");
+      }
+    }
+  }
+
+  // Each inertia a number, which the first entry of its tensor stands for.
+  void compare_isotropic(const Block& block) {
+    GiNaC::exmap isotropic;
+    std::map<const Node*, Expr> numbers;
+    for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
+      const Expr inv_I = body_symbols(joint_, static_cast<int>(b)).inv_I;
+      numbers.emplace(&*inv_I, tensor_component(inv_I, 0, 0));
+      for (std::size_t k = 1; k < 3; ++k) {
+        isotropic[names_.of(tensor_component(inv_I, k, k))] = names_.of(tensor_component(inv_I, 0, 0));
+        for (std::size_t l = 0; l < k; ++l) isotropic[names_.of(tensor_component(inv_I, k, l))] = 0;
+      }
+    }
+    for (std::size_t i = 0; i < block.rows.size(); ++i) {
+      for (std::size_t j = 0; j <= i; ++j) {
+        const ex K = names_.of(block.K[i][j]).subs(isotropic, GiNaC::subs_options::no_pattern);
+        require_zero(names_.of(substitute(block.K_isotropic[i][j], numbers)) - K, block.rows[i],
+                     fmt::format(": K({},{}) of isotropic bodies is another one", i + 1, j + 1));
+      }
+    }
+  }
+
+  Law law() && { return std::move(law_); }
+
+ private:
+  std::vector<ex> tensor(Expr inv_I) {
+    if (joint_.dimension == 2) return {names_.of(inv_I)};
+    std::vector<ex> entries;
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t l = 0; l <= k; ++l) entries.push_back(names_.of(tensor_component(inv_I, k, l)));
+    }
+    return entries;
+  }
+
+  // Equal expressions are one node.
+  void require_equal(Expr a, Expr b, const ScalarRow& row, const std::string& failure) {
+    if (a != b) require_zero(names_.of(a) - names_.of(b), row, failure);
+  }
+
+  void require_zero(const ex& difference, const ScalarRow& row, const std::string& failure) {
+    if (is_broken(law_)) return;
+    const Algebra::Zero zero = names_.is_zero(difference);
+    if (zero == Algebra::Zero::shown) law_.verdict = Verdict::shown;
+    if (zero <= Algebra::Zero::shown) return;
+    law_.verdict = zero == Algebra::Zero::no ? Verdict::fails : Verdict::undecided;
+    law_.row = row.row;
+    law_.text = row.name + failure;
+    if (law_.verdict == Verdict::fails) law_.text += ", for instance " + names_.witness();
+  }
+
+  const Joint& joint_;
+  Algebra names_;
+  Law law_;
+};
+
+template <class Compare>
+Law judged(const Joint& joint, LawId id, bool applies, Compare compare) try {
+  Specialised specialised(joint, id);
+  if (!applies) return {id, Verdict::does_not_apply, {}, {}, nullptr, {}};
+  compare(specialised);
+  return std::move(specialised).law();
+} catch (const std::exception&) {  // GiNaC's text is not for the user
+  return {id, Verdict::undecided, "the formulas are undefined somewhere on the way", {}, nullptr, {}};
+}
+
+}  // namespace
+
+Law variants_are_the_block(const Joint& joint, const Block& block) {
+  return judged(joint, LawId::immovable, !block.variants.empty(), [&](Specialised& specialised) {
+    for (const Block& variant : block.variants) specialised.compare(variant, block);
+  });
+}
+
+Law isotropic_is_the_block(const Joint& joint, const Block& block) {
+  return judged(joint, LawId::isotropic, joint.dimension == 3, [&](Specialised& specialised) {
+    specialised.compare_isotropic(block);
+    for (const Block& variant : block.variants) specialised.compare_isotropic(variant);
+  });
+}
+
+}  // namespace cdot::derive
