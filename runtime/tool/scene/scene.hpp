@@ -15,7 +15,7 @@
 #include <cdot/settings.hpp>
 #include <cdot/world.hpp>
 
-#include "runtime/tool/scene/text.hpp"
+#include "runtime/tool/scene/mistakes.hpp"
 
 namespace cdot {
 
