@@ -1,4 +1,4 @@
-// What a kind of effect on a coordinate is made of: its law, whose constants change while the World runs.
+// Changes the constants of an effect's law while the World runs; and the instances of a kind of effect.
 #pragma once
 
 #include <span>

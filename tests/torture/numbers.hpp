@@ -64,6 +64,7 @@ void each_number(CoordinateEffects& effects, F f) {
     if (spring.rest) f(*spring.rest);
   }
   if (effects.friction) f(effects.friction->max_force);
+  if (effects.load) f(effects.load->force);
 }
 
 template <class F>

@@ -133,6 +133,7 @@ void write_effects(const CoordinateEffects& effects, Lines lines) {
                                            spring.rest ? fmt::format(", rest = {}", *spring.rest) : ""));
   }
   if (effects.friction) lines.number(key("friction"), effects.friction->max_force);
+  if (effects.load) lines.number(key("load"), effects.load->force);
 }
 
 void write_joint(const Scene& scene, const SceneJoint& joint, Lines lines) {

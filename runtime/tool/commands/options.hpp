@@ -10,7 +10,7 @@
 
 namespace cdot {
 
-// What takes the place of the scene's own.
+// They take the place of the scene's own settings.
 struct SceneOptions {
   std::string file;
   double until = 0, step = 0, local_error = 0;

@@ -9,7 +9,7 @@
 namespace cdot {
 namespace {
 
-// What an entry says, before its parts are put together.
+// The numbers of an entry, before they become a definition.
 struct Reading {
   Dimension dimension;
   std::map<std::string, Span>& names;

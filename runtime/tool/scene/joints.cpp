@@ -227,7 +227,7 @@ constexpr Key<JointReading> named[] = {
     {"name", "of messages and summaries", "joint1, joint2, …", read_joint_name},
     {"type", "a spec of specs/planar/ or specs/spatial/", "required", read_type},
 };
-// What a joint may say beside depends on its type.
+// These depend on the type.
 constexpr Key<JointReading> keys[] = {
     {"bodies", "the spec's a, b, … in this order; \"world\" never moves", "required", read_bodies_of_joint},
     {"at", "the points that are not given by their own names, in the world at the start [m]", "", read_parameters},
