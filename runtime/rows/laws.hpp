@@ -1,5 +1,5 @@
 // The laws of a joint's own rows that are not plain equalities: inequalities, and rows as springs.
-// The laws of effects on coordinates are in effects/effects.cpp.
+// The laws of effects on coordinates are in effects/.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
 // Joints that are removed or get other parameters while a World runs. Effects on them are changed where they are made,
-// in effects/effects.cpp.
+// in effects/.
 #include <algorithm>
 
 #include <cdot/world.hpp>

@@ -1,11 +1,11 @@
 // The architecture as a table: a room includes only itself and rooms above it in its list. Every #include in derive/
-// and runtime/ is held to that. derive/ and runtime/ do not know each other; nor does either know the tests.
-#include <fmt/format.h>
-#include <gtest/gtest.h>
-
+// and runtime/ is held to that. derive/ and runtime/ do not know each other, but for one room that both use; nor does
+// either know the tests.
 #include <algorithm>
 #include <filesystem>
+#include <fmt/format.h>
 #include <fstream>
+#include <gtest/gtest.h>
 #include <map>
 #include <regex>
 #include <string>
@@ -18,7 +18,11 @@ namespace fs = std::filesystem;
 const fs::path source_dir = CDOT_SOURCE_DIR;
 
 // clang-format off
+const std::string shared_room = "runtime/text";  // derive/ may include it; it includes no other room
+
 const std::vector<std::string> rooms = {
+    shared_room,           // messages: a line with carets, the nearest word
+
     // The generator: text in, kernels and derivations out.
     "derive/expression",   // interned expressions over vectors
     "derive/syntax",       // text to tree, with places and messages
@@ -69,6 +73,8 @@ std::size_t rank(std::string room) {
   return static_cast<std::size_t>(std::find(rooms.begin(), rooms.end(), room) - rooms.begin());
 }
 
+std::string half_of(const std::string& room) { return room.substr(0, room.find('/')); }
+
 bool is_source(const fs::path& file) { return file.extension() == ".cpp" || file.extension() == ".hpp"; }
 
 std::vector<fs::path> sources() {
@@ -116,17 +122,17 @@ TEST(Layers, NoRoomIncludesARoomBelowIt) {
   ASSERT_GT(all.size(), 500u);
   for (const Include& i : all) {
     EXPECT_TRUE(fs::exists(source_dir / i.of_file)) << i.file << " includes " << i.of_file;
-    EXPECT_EQ(i.room.substr(0, i.room.find('/')), i.of_room.substr(0, i.of_room.find('/')))
+    EXPECT_TRUE(i.of_room == shared_room || half_of(i.room) == half_of(i.of_room))
         << i.file << " includes " << i.of_file << ": derive/ and runtime/ do not know each other";
-    EXPECT_LE(rank(i.of_room), rank(i.room)) << i.file << " includes " << i.of_file << ", which comes later in the table";
+    EXPECT_LE(rank(i.of_room), rank(i.room))
+        << i.file << " includes " << i.of_file << ", which comes later in the table";
   }
 }
 
 TEST(Layers, PublicHeadersIncludePublicHeadersOnly) {
   for (const Include& i : includes()) {
     if (!i.room.starts_with("runtime/include/")) continue;
-    EXPECT_TRUE(i.of_room.starts_with("runtime/include/"))
-        << i.file << " is installed, " << i.of_file << " is not";
+    EXPECT_TRUE(i.of_room.starts_with("runtime/include/")) << i.file << " is installed, " << i.of_file << " is not";
   }
 }
 

@@ -161,6 +161,15 @@ def scenes():
         claim(status == 0, f"scene {k + 1} of specs/scenes/README.md runs" + ("" if status == 0 else ": " + said))
 
 
+def scene_keys():
+    """Every key that a scene may have is explained in specs/scenes/README.md."""
+    page = (source / "specs/scenes/README.md").read_text()
+    keys = re.findall(r"^    (\S+)", run("cdot-run list --keys")[1], re.M)
+    claim(len(keys) > 50, f"cdot-run list --keys shows {len(keys)} keys")
+    for key in keys:
+        claim(re.search(rf"`(angle\.)?{key}\b", page), f"specs/scenes/README.md explains `{key}`")
+
+
 def scene_commands():
     """Every command of specs/scenes/README.md goes well."""
     for _, language, lines in blocks("specs/scenes/README.md"):
@@ -184,6 +193,7 @@ with tempfile.TemporaryDirectory() as folder:
     pictures()
     teaching_message()
     scenes()
+    scene_keys()
     scene_commands()
     own_joint()
 print(f"{len(failures)} claims fail")

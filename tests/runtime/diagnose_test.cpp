@@ -137,7 +137,7 @@ TEST(Diagnose, KnowsWhatTheImplicitStepTakesOff) {
   EXPECT_GT(swept, 10);
 }
 
-// Of the K of `cdot-run jacobian`, dense, rows scaled to 1.
+// Of the K of `cdot-run diagnose --matrix`, dense, rows scaled to 1.
 template <class S>
 double dense_condition(BasicWorld<S>& world) {
   const SystemMatrix system = system_matrix(world);

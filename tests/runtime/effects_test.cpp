@@ -1,4 +1,6 @@
 // Effects on coordinates against what a person computes by hand.
+#include <cdot/methods.hpp>
+
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
@@ -219,6 +221,7 @@ TEST(Effects, MistakesAreRefused) {
   EXPECT_THROW(add_motor(world, joint, "angle", {.speed = 1, .max_force = -1}), Error);
   EXPECT_THROW(add_friction(world, joint, "angle", {.max_force = -1}), Error);
   EXPECT_THROW(add_spring(world, joint, "angle", {}), Error);
+  EXPECT_THROW(add_effect(world, joint, "angle", Load{INFINITY}), Error);
   EXPECT_THROW(set_breaking_load(world, joint, 0), Error);
   try {
     add_motor(world, joint, "slide", {.speed = 1});
@@ -226,6 +229,36 @@ TEST(Effects, MistakesAreRefused) {
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(), "joint `revolute` has no free coordinate `slide`; it has `angle`");
   }
+}
+
+// dw/dt = F / I by every method; and F C is energy, which second order and more keep.
+TEST(Load, TurnsAWheelByAllMethodsAndKeepsTheEnergy) {
+  for (Solver solver : both)
+    for (const auto& [name, integrator] : integrators) {
+      Settings s = settings(solver, Drift::projection);
+      s.integrator = integrator;
+      World<double> world(s);
+      int wheel;
+      const int joint = add_wheel(world, 2, &wheel);
+      const int load = add_effect(world, joint, "angle", Load{0.5});
+      run(world, 4, 0.01);
+      EXPECT_NEAR(world.velocity(wheel).w, 0.5 * 4 / 2, 1e-9) << name;
+      const bool first_order = integrator == Integrator::euler || integrator == Integrator::implicit;
+      EXPECT_NEAR(world.energy(), 0, first_order ? 0.01 : 1e-9) << name;
+      set_effect(world, joint, load, Load{-0.25});
+      run(world, 4, 0.01);
+      EXPECT_NEAR(world.velocity(wheel).w, 0.5, 1e-9) << name;
+    }
+}
+
+TEST(Load, HangsAMassOnASpring) {
+  World<double> world(settings(Solver::direct));
+  int wheel;
+  const int joint = add_wheel(world, 2, &wheel);
+  add_effect(world, joint, "angle", Load{3});
+  add_spring(world, joint, "angle", {.softness = {.by_frequency = false, .stiffness = 10, .damping = 4}});
+  run(world, 40, 0.01);
+  EXPECT_NEAR(world.coordinate(joint, "angle"), 0.3, 1e-9);
 }
 
 // A damped spring on an angle: every way of second order or more comes to the same motion.

@@ -222,7 +222,7 @@ TEST(ComposedRattle, NeedsAMotionThatGoesBack) {
     change(scene);
     return reversible(scene);
   };
-  SceneEffects effects{"angle", {}, {}, {}, {}};
+  CoordinateEffects effects{"angle", {}, {}, {}, {}};
   EXPECT_TRUE(changed([&](Scene& scene) { scene.joints[0].effects = {effects}; }));
   effects.springs.push_back({{false, 0, 0, 3, 0}, {}});
   EXPECT_TRUE(changed([&](Scene& scene) { scene.joints[0].effects = {effects}; }));

@@ -50,6 +50,20 @@ TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
   EXPECT_EQ((*revolute)["coordinates"][0]["name"], "angle");
 }
 
+TEST(Command, ListShowsTheKeysOfAScene) {
+  const CommandResult text = cdot_run("list --keys");
+  EXPECT_EQ(text.status, 0);
+  for (const char* part : {"[[body]]", "orientation      in space:", "local_error", "friction         greatest force",
+                           "load             constant force", "[[spring]]"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << part << text.out;
+}
+
+TEST(Command, JacobianSaysWhereItWent) {
+  const CommandResult result = cdot_run("jacobian " + scene("four_bar") + " --json");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("use diagnose --matrix"), std::string::npos) << result.err;
+}
+
 TEST(Command, BadUsageAndBadScenesAreTwo) {
   EXPECT_EQ(cdot_run("").status, 2);
   EXPECT_EQ(cdot_run("simulate").status, 2);

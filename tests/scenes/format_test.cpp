@@ -142,14 +142,15 @@ TEST(Format, CopiesAreNumberedShiftedAndGivenValuesOfTheirOwn) {
 }
 
 TEST(Format, EffectsOnCoordinates) {
-  const Scene scene = scene_of(body("inertia = 1") +
-                               "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\n"
-                               "angle.limit = { upper = \"90 deg\" }\nangle.motor = { speed = 2, max = 5 }\n"
-                               "angle.spring = { stiffness = 10, damping = 1, rest = 0.5 }\nangle.damper = 0.25\n"
-                               "angle.friction = 3\nbreaking = 500\nsoft = { frequency = 4, damping_ratio = 0.7 }\n");
+  const Scene scene =
+      scene_of(body("inertia = 1") +
+               "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\n"
+               "angle.limit = { upper = \"90 deg\" }\nangle.motor = { speed = 2, max = 5 }\n"
+               "angle.spring = { stiffness = 10, damping = 1, rest = 0.5 }\nangle.damper = 0.25\n"
+               "angle.friction = 3\nangle.load = -2\nbreaking = 500\nsoft = { frequency = 4, damping_ratio = 0.7 }\n");
   const SceneJoint& joint = scene.joints[0];
   ASSERT_EQ(joint.effects.size(), 1u);
-  const SceneEffects& effects = joint.effects[0];
+  const CoordinateEffects& effects = joint.effects[0];
   EXPECT_EQ(effects.coordinate, "angle");
   EXPECT_FALSE(effects.limit->lower);
   EXPECT_DOUBLE_EQ(*effects.limit->upper, std::numbers::pi / 2);
@@ -160,6 +161,7 @@ TEST(Format, EffectsOnCoordinates) {
   EXPECT_EQ(effects.springs[0].rest, 0.5);
   EXPECT_EQ(effects.springs[1].softness.damping, 0.25);
   EXPECT_EQ(effects.friction->max_force, 3);
+  EXPECT_EQ(effects.load->force, -2);
   EXPECT_EQ(joint.breaking, 500);
   EXPECT_TRUE(joint.definition.soft->by_frequency);
   EXPECT_EQ(joint.definition.soft->frequency, 4);

@@ -1,5 +1,5 @@
-// cdot-run jacobian: the system's D against what is known of it by other routes.
-#include "runtime/tool/commands/jacobian.hpp"
+// cdot-run diagnose --matrix: the system's D against what is known of it by other routes.
+#include "runtime/tool/commands/matrix.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -129,12 +129,12 @@ TEST(Jacobian, TheCommandPrintsAndDraws) {
   TemporaryFolder folder;
   const std::string four_bar = (scenes_dir() / "four_bar.toml").string();
   const std::string svg = (folder / "k.svg").string();
-  const CommandResult text = cdot_run("jacobian '" + four_bar + "' --svg '" + svg + "'");
+  const CommandResult text = cdot_run("diagnose --matrix '" + four_bar + "' --svg '" + svg + "'");
   EXPECT_EQ(text.status, 0);
   for (const char* part : {"D v = 0: 8 x 9", "rank 8: 1 degree of freedom", "B0.pin_x"})
     EXPECT_NE(text.out.find(part), std::string::npos) << text.out;
   EXPECT_EQ(folder.contents(), std::vector<std::string>{"k.svg"});
-  const auto json = nlohmann::json::parse(cdot_run("jacobian '" + four_bar + "' --json").out);
+  const auto json = nlohmann::json::parse(cdot_run("diagnose --matrix '" + four_bar + "' --json").out);
   EXPECT_EQ(json["D"].size(), 8u);
   EXPECT_EQ(json["D"][0].size(), 9u);
   EXPECT_EQ(json["conflicts"].size(), 3u);
@@ -144,8 +144,8 @@ TEST(Jacobian, TheCommandPrintsAndDraws) {
 // In space, turned out of the axes: round-off must neither fill the table nor glue its columns.
 TEST(Jacobian, TheTableHasTheNumbersOfTheJson) {
   const std::string four_bar = (scenes_dir() / "spatial/four_bar.toml").string();
-  const CommandResult table = cdot_run("jacobian '" + four_bar + "'");
-  const auto D = nlohmann::json::parse(cdot_run("jacobian '" + four_bar + "' --json").out)["D"];
+  const CommandResult table = cdot_run("diagnose --matrix '" + four_bar + "'");
+  const auto D = nlohmann::json::parse(cdot_run("diagnose --matrix '" + four_bar + "' --json").out)["D"];
   std::istringstream lines(table.out.substr(table.out.find("\nD, columns of ")));
   std::map<std::string, std::vector<double>> rows;  // without the blocks that are empty
   for (std::string line; std::getline(lines, line);) {

@@ -6,7 +6,7 @@
 
 #include <cdot/rotation.hpp>
 
-#include "runtime/tool/commands/jacobian.hpp"
+#include "runtime/tool/commands/matrix.hpp"
 #include "tests/scenes/support.hpp"
 
 namespace cdot::test {

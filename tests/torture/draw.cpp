@@ -199,8 +199,8 @@ Softness random_softness(Random& random, const Scales& scales, bool turns) {
 }
 
 // One effect, or two, on a coordinate that stands at `now`.
-SceneEffects random_effects(Random& random, const Scales& scales, const CoordinateInfo& info, double now) {
-  SceneEffects effects;
+CoordinateEffects random_effects(Random& random, const Scales& scales, const CoordinateInfo& info, double now) {
+  CoordinateEffects effects;
   effects.coordinate = info.name;
   const bool turns = info.unit == "rad";
   const double unit = turns ? 1 : scales.length;

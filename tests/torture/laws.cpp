@@ -88,10 +88,10 @@ struct Exchange {
   void spring(const Softness& s) { gives |= s.by_frequency, takes |= has_damping(s); }
 };
 
-void add_effects(const SceneEffects& effects, Exchange& exchange) {
+void add_effects(const CoordinateEffects& effects, Exchange& exchange) {
   exchange.gives |= effects.motor && effects.motor->speed != 0;
   exchange.takes |= effects.motor || effects.limit || effects.friction;
-  for (const SceneSpring& spring : effects.springs) exchange.spring(spring.softness);
+  for (const CoordinateSpring& spring : effects.springs) exchange.spring(spring.softness);
 }
 
 Exchange exchange_of(const Scene& scene) {
@@ -110,7 +110,7 @@ Exchange exchange_of(const Scene& scene) {
       exchange.spring(*joint.definition.soft);
       exchange.takes |= std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::velocity) > 0;
     }
-    for (const SceneEffects& effects : joint.effects) add_effects(effects, exchange);
+    for (const CoordinateEffects& effects : joint.effects) add_effects(effects, exchange);
   }
   for (const SpringDefinition& spring : scene.springs) exchange.takes |= spring.damping != 0;
   exchange.takes |= scene.settings.sleep_after > 0;
@@ -134,7 +134,7 @@ bool is_smooth(const Scene& scene) {
   return std::none_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
     if (one_sided(type_of(scene, joint)) || joint.breaking) return true;
     return std::any_of(joint.effects.begin(), joint.effects.end(),
-                       [](const SceneEffects& effects) { return effects.limit || effects.motor || effects.friction; });
+                       [](const CoordinateEffects& effects) { return effects.limit || effects.motor || effects.friction; });
   });
 }
 
@@ -144,7 +144,7 @@ bool prescribes_motion(const Scene& scene) {
     const JointType& type = type_of(scene, joint);
     if (type.explicit_time) return true;
     if (std::count(type.row_kinds.begin(), type.row_kinds.end(), RowKind::velocity) > 0) return true;
-    return std::any_of(joint.effects.begin(), joint.effects.end(), [](const SceneEffects& effects) {
+    return std::any_of(joint.effects.begin(), joint.effects.end(), [](const CoordinateEffects& effects) {
       return effects.motor && effects.motor->max_force == unlimited;
     });
   });
@@ -159,7 +159,7 @@ bool may_stop_a_motion(const Scene& scene) {
   const auto node = [&](int body) { return immovable(scene, body) ? std::size_t(0) : std::size_t(body + 1); };
   for (const SceneJoint& joint : scene.joints) {
     if (one_sided(type_of(scene, joint))) return true;
-    for (const SceneEffects& effects : joint.effects)
+    for (const CoordinateEffects& effects : joint.effects)
       if (effects.limit) return true;
     const std::vector<int>& bodies = joint.definition.bodies;
     for (std::size_t k = 1; k < bodies.size(); ++k) {
@@ -210,8 +210,8 @@ bool stiff(const Scene& scene, double step, double length) {
     const Lightness light = lightness_of(scene, joint.definition.bodies, length);
     const double any = std::max(light.pull, light.turn);
     if (joint.definition.soft && stiff(*joint.definition.soft, any, step)) return true;
-    for (const SceneEffects& effects : joint.effects)
-      for (const SceneSpring& spring : effects.springs)
+    for (const CoordinateEffects& effects : joint.effects)
+      for (const CoordinateSpring& spring : effects.springs)
         if (stiff(spring.softness, any, step)) return true;
   }
   for (const SpringDefinition& spring : scene.springs) {

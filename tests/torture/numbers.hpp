@@ -51,7 +51,7 @@ void each_number(Softness& s, F f) {
 }
 
 template <class F>
-void each_number(SceneEffects& effects, F f) {
+void each_number(CoordinateEffects& effects, F f) {
   if (effects.limit)
     for (auto* end : {&effects.limit->lower, &effects.limit->upper})
       if (*end) f(**end);
@@ -59,18 +59,19 @@ void each_number(SceneEffects& effects, F f) {
     f(effects.motor->speed);
     if (effects.motor->max_force != unlimited) f(effects.motor->max_force);
   }
-  for (SceneSpring& spring : effects.springs) {
+  for (CoordinateSpring& spring : effects.springs) {
     each_number(spring.softness, f);
     if (spring.rest) f(*spring.rest);
   }
   if (effects.friction) f(effects.friction->max_force);
+  if (effects.load) f(effects.load->force);
 }
 
 template <class F>
 void each_number(SceneJoint& joint, F f) {
   for (NamedValue& value : joint.definition.parameters)
     for (double& x : value.numbers) f(x);
-  for (SceneEffects& effects : joint.effects) each_number(effects, f);
+  for (CoordinateEffects& effects : joint.effects) each_number(effects, f);
   if (joint.definition.soft) each_number(*joint.definition.soft, f);
 }
 

@@ -110,11 +110,11 @@ std::string softness(const Softness& s) {
 }
 
 // A damper is a spring without stiffness that has no say about its rest.
-bool is_damper(const SceneSpring& spring) {
+bool is_damper(const CoordinateSpring& spring) {
   return !spring.softness.by_frequency && spring.softness.stiffness == 0 && spring.rest == 0.0;
 }
 
-void write_effects(const SceneEffects& effects, Lines lines) {
+void write_effects(const CoordinateEffects& effects, Lines lines) {
   const auto key = [&](std::string_view effect) { return fmt::format("{}.{}", effects.coordinate, effect); };
   if (const auto& limit = effects.limit) {
     std::string ends;
@@ -126,13 +126,14 @@ void write_effects(const SceneEffects& effects, Lines lines) {
     lines.raw(key("motor"), motor->max_force == unlimited
                                 ? fmt::format("{{ speed = {} }}", motor->speed)
                                 : fmt::format("{{ speed = {}, max = {} }}", motor->speed, motor->max_force));
-  for (const SceneSpring& spring : effects.springs) {
+  for (const CoordinateSpring& spring : effects.springs) {
     if (is_damper(spring)) lines.number(key("damper"), spring.softness.damping);
     else
       lines.raw(key("spring"), fmt::format("{{ {}{} }}", softness(spring.softness),
                                            spring.rest ? fmt::format(", rest = {}", *spring.rest) : ""));
   }
   if (effects.friction) lines.number(key("friction"), effects.friction->max_force);
+  if (effects.load) lines.number(key("load"), effects.load->force);
 }
 
 void write_joint(const Scene& scene, const SceneJoint& joint, Lines lines) {
@@ -145,7 +146,7 @@ void write_joint(const Scene& scene, const SceneJoint& joint, Lines lines) {
                           : n.size() == 6 ? fmt::format("[{}, {}]", list({n[0], n[1], n[2]}), list({n[3], n[4], n[5]}))
                                           : list(n));
   }
-  for (const SceneEffects& effects : joint.effects) write_effects(effects, lines);
+  for (const CoordinateEffects& effects : joint.effects) write_effects(effects, lines);
   if (joint.definition.soft) lines.raw("soft", fmt::format("{{ {} }}", softness(*joint.definition.soft)));
   if (joint.breaking) lines.number("breaking", *joint.breaking);
 }

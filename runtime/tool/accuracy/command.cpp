@@ -6,8 +6,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
-#include <fstream>
-#include <iterator>
 
 #include "runtime/tool/accuracy/state.hpp"
 #include "runtime/tool/run/output.hpp"
@@ -19,14 +17,9 @@ namespace {
 
 constexpr double reference_share = 1.0 / 9;  // of the budget, at most, for each of three methods of a reference
 
-std::string text_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 Fingerprint fingerprint_of(const Scene& scene, const AccuracyOptions& options) {
-  std::string decisive = text_of(scene.file) + fmt::format("\nuntil {}\n", scene.duration);
-  if (!options.reference.empty()) decisive += text_of(options.reference);
+  std::string decisive = read_file(scene.file) + fmt::format("\nuntil {}\n", scene.duration);
+  if (!options.reference.empty()) decisive += read_file(options.reference);
   return {hash_of_program(), hash_of(decisive)};
 }
 

@@ -72,10 +72,10 @@ Trajectory composed_in(const Scene& scene, int steps, const std::vector<double>&
 
 bool damps(const Softness& softness) { return softness.damping > 0 || softness.damping_ratio > 0; }
 
-bool acts_one_way(const SceneEffects& effects) {
-  return effects.limit || effects.motor || effects.friction ||
-         std::any_of(effects.springs.begin(), effects.springs.end(),
-                     [](const SceneSpring& spring) { return damps(spring.softness); });
+bool acts_one_way(const CoordinateEffects& effects) {
+  bool any = false;
+  effects.each([&](const auto& effect) { any |= effect.acts_one_way(); });
+  return any;
 }
 
 bool acts_one_way(Dimension dimension, const SceneJoint& joint) {
@@ -84,7 +84,7 @@ bool acts_one_way(Dimension dimension, const SceneJoint& joint) {
          std::any_of(type.row_kinds.begin(), type.row_kinds.end(),
                      [](RowKind kind) { return kind == RowKind::inequality; }) ||
          std::any_of(joint.effects.begin(), joint.effects.end(),
-                     [](const SceneEffects& effects) { return acts_one_way(effects); });
+                     [](const CoordinateEffects& effects) { return acts_one_way(effects); });
 }
 
 bool damped(const SceneBody& body) {

@@ -1,5 +1,4 @@
-#include "runtime/tool/commands/diagnose.hpp"
-
+// `cdot-run diagnose`: the equations of a run, or with --matrix those of its start in numbers.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -7,10 +6,16 @@
 
 #include <cdot/methods.hpp>
 
+#include "runtime/tool/commands/matrix.hpp"
+#include "runtime/tool/commands/options.hpp"
+#include "runtime/tool/run/output.hpp"
+#include "runtime/tool/run/simulate.hpp"
+
 namespace cdot {
 namespace {
 
 constexpr std::size_t most_islands = 12, most_rows_listed = 12;
+constexpr int poses_diagnosed = 64;
 
 std::string method_text(const Scene& scene) {
   const Settings& s = scene.settings;
@@ -108,8 +113,6 @@ nlohmann::ordered_json island_json(const Scene& scene, const WorstOfIsland& wors
           {"spinning", named(island.spinning)}};
 }
 
-}  // namespace
-
 std::string diagnosis_text(const Scene& scene, const RunResult& result) {
   std::string text =
       fmt::format("{}\nmethod: {}\n", scene.title.empty() ? scene.file : scene.title, method_text(scene));
@@ -145,6 +148,68 @@ std::string diagnosis_json(const Scene& scene, const RunResult& result) {
   json["concerns"] = concerns_json(concerns_about(scene, result.diagnosis, false));
   json["failure"] = failure(scene, result);
   return json.dump(2) + "\n";
+}
+
+struct Options {
+  SceneOptions scene;
+  std::optional<double> time;
+  bool matrix = false, json = false;
+  std::string svg;
+};
+
+void add_options(CLI::App& line, Options& options) {
+  add_scene(line, options.scene);
+  CLI::Option* const until = add_until(line, options.scene);
+  add_method(line, options.scene);
+  CLI::Option* const at =
+      line.add_option("--at", options.time, "look at this time [s] only; else at many from start to end")
+          ->check(CLI::NonNegativeNumber)
+          ->excludes(until);
+  CLI::Option* const matrix =
+      line.add_flag("--matrix", options.matrix,
+                    "show the whole system's D with D v = 0 at the scene's start, without a run")
+          ->excludes(until)
+          ->excludes(at);
+  line.add_option("--svg", options.svg, "write a picture: the sparsity of K, and which joints share a body")
+      ->needs(matrix);
+  line.add_flag("--json", options.json, "as JSON, with all islands; of the matrix, with all numbers of D and K");
+  add_progress(line, options.scene);
+}
+
+int show_matrix(const Options& options, const Scene& scene) {
+  const SystemMatrix system = system_matrix(scene);
+  if (!options.svg.empty()) write_file(options.svg, matrix_svg(scene, system));
+  fmt::print("{}", options.json ? matrix_json(scene, system) : matrix_text(scene, system));
+  return well;
+}
+
+int run(const Options& options) {
+  Scene scene = scene_of(options.scene);
+  if (options.matrix) return show_matrix(options, scene);
+  RunOptions run;
+  run.progress = progress_shown(options.scene);
+  run.diagnose_times = diagnose_times(scene.duration, poses_diagnosed);
+  if (options.time) {
+    check_within(*options.time, scene.duration);
+    run.diagnose_times = {*options.time};
+    scene.duration = std::max(*options.time, 1e-9 * scene.step);
+  }
+  std::string warnings;
+  const RunResult result = simulate(scene, run, warnings);
+  fmt::print(stderr, "{}", warnings);
+  if (result.interrupted) return stopped;
+  fmt::print("{}", options.json ? diagnosis_json(scene, result) : diagnosis_text(scene, result));
+  const bool nothing_wrong = concerns_about(scene, result.diagnosis, true).empty() && failure(scene, result).empty();
+  return nothing_wrong ? well : answer_is_no;
+}
+
+}  // namespace
+
+Run diagnose_command(CLI::App& line) { return with_options<Options>(line, add_options, run); }
+
+Run moved_to_diagnose(CLI::App& line) {
+  line.group("")->allow_extras()->set_help_flag();
+  return []() -> int { throw Error("`jacobian` is a part of `diagnose` now: use diagnose --matrix"); };
 }
 
 }  // namespace cdot

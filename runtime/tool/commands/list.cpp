@@ -1,9 +1,12 @@
-#include "runtime/tool/commands/list.hpp"
-
+// `cdot-run list`: the joints that a scene may name, with their parameters and coordinates, and the keys of a scene.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <cdot/effects.hpp>
 #include <cdot/joints.hpp>
+
+#include "runtime/tool/commands/options.hpp"
+#include "runtime/tool/scene/keys.hpp"
 
 namespace cdot {
 namespace {
@@ -33,11 +36,9 @@ std::string body_name(const ParameterInfo& parameter) {
   return parameter.body < 0 ? "world" : std::string(1, static_cast<char>('a' + parameter.body));
 }
 
-}  // namespace
-
-namespace {
-
 std::string list_text(Dimension dimension) {
+  std::vector<const char*> effects;
+  for (const EffectKind* kind : effect_kinds) effects.push_back(kind->key);
   std::string text;
   for (const JointType& type : joint_types(dimension)) {
     text += fmt::format("{}  ({} {}, {} row{})\n", type.name, type.bodies, type.bodies == 1 ? "body" : "bodies",
@@ -48,8 +49,8 @@ std::string list_text(Dimension dimension) {
                           body.empty() ? "" : " on " + body, parameter.has_default ? ", optional" : "");
     }
     for (const CoordinateInfo& coordinate : type.coordinates) {
-      text += fmt::format("    {:<12} coordinate [{}]: limit, motor, spring, damper, friction\n", coordinate.name,
-                          coordinate.unit);
+      text +=
+          fmt::format("    {:<12} coordinate [{}]: {}\n", coordinate.name, coordinate.unit, fmt::join(effects, ", "));
     }
   }
   return text;
@@ -76,8 +77,6 @@ void add_to(nlohmann::ordered_json& list, Dimension dimension) {
   }
 }
 
-}  // namespace
-
 std::string list_text() {
   return "In the plane (dimension = 2)\n\n" + list_text(Dimension::planar) + "\nIn space (dimension = 3)\n\n" +
          list_text(Dimension::spatial);
@@ -89,5 +88,34 @@ std::string list_json() {
   add_to(list, Dimension::spatial);
   return list.dump(2) + "\n";
 }
+
+std::string keys_text() {
+  std::string text;
+  for (const KeyTable& table :
+       {keys_of_the_top(), keys_of_a_body(), keys_of_a_joint(), keys_of_effects(), keys_of_a_spring()}) {
+    text += fmt::format("{}{}\n\n", text.empty() ? "" : "\n", table.title);
+    for (const auto& [name, meaning, otherwise] : table.rows)
+      text += fmt::format("    {:<16} {}{}\n", name, meaning, otherwise.empty() ? "" : "; if not given: " + otherwise);
+  }
+  return text;
+}
+
+struct Options {
+  bool json = false, keys = false;
+};
+
+void add_options(CLI::App& line, Options& options) {
+  CLI::Option* const json = line.add_flag("--json", options.json, "as JSON");
+  line.add_flag("--keys", options.keys, "the keys of a scene file in place of the joints")->excludes(json);
+}
+
+int run(const Options& options) {
+  fmt::print("{}", options.keys ? keys_text() : options.json ? list_json() : list_text());
+  return well;
+}
+
+}  // namespace
+
+Run list_command(CLI::App& line) { return with_options<Options>(line, add_options, run); }
 
 }  // namespace cdot

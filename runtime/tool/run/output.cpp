@@ -3,7 +3,9 @@
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
+#include <fstream>
 #include <iterator>
+#include <sstream>
 #include <unistd.h>
 
 namespace cdot {
@@ -38,6 +40,14 @@ void write_file(const std::string& path, std::string_view text) {
   OutputFile file(path);
   file.write(text);
   file.commit();
+}
+
+std::string read_file(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::stringstream text;
+  text << file.rdbuf();
+  if (!file) throw Error(path + ": cannot be read");
+  return text.str();
 }
 
 namespace {

@@ -29,6 +29,7 @@ class OutputFile {
 };
 
 void write_file(const std::string& path, std::string_view text);
+std::string read_file(const std::string& path);
 
 // time, then of every body by name x, y, angle, vx, vy, omega: "rod.x"; in space x, y, z, e0 to e3,
 // vx, vy, vz, wx, wy, wz. Numbers read back to the same bits.

@@ -1,20 +1,15 @@
 #include "runtime/tool/run/state.hpp"
 
 #include <fmt/format.h>
-#include <fstream>
-#include <sstream>
 
 #include "runtime/tool/run/output.hpp"
 
 namespace cdot {
 
 Snapshot read_state(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::stringstream text;
-  text << file.rdbuf();
-  if (!file) throw Error(fmt::format("{}: cannot be read", path));
+  const std::string text = read_file(path);
   try {
-    return Snapshot::read(text.str());
+    return Snapshot::read(text);
   } catch (const Error& error) {
     throw Error(fmt::format("{}: {}", path, error.what()));
   }

@@ -11,25 +11,13 @@ namespace cdot {
 namespace {
 
 template <class S>
-void add_effects(BasicWorld<S>& world, int joint, const SceneJoint& source) {
-  for (const SceneEffects& effects : source.effects) {
-    const std::string& coordinate = effects.coordinate;
-    if (effects.limit) add_limit(world, joint, coordinate, *effects.limit);
-    if (effects.motor) add_motor(world, joint, coordinate, *effects.motor);
-    for (const SceneSpring& spring : effects.springs) {
-      const double rest = spring.rest ? *spring.rest : world.coordinate(joint, coordinate);
-      add_spring(world, joint, coordinate, {spring.softness, rest});
-    }
-    if (effects.friction) add_friction(world, joint, coordinate, *effects.friction);
-  }
-  if (source.breaking) set_breaking_load(world, joint, *source.breaking);
-}
-
-template <class S>
 void add_joint(BasicWorld<S>& world, const SceneJoint& source) {
   JointDefinition definition = source.definition;
   for (int& body : definition.bodies) body = body == world_body ? world.ground() : body;
-  add_effects(world, world.add_joint(definition), source);
+  const int joint = world.add_joint(definition);
+  for (const CoordinateEffects& effects : source.effects)
+    effects.each([&](const auto& effect) { add_effect(world, joint, effects.coordinate, effect); });
+  if (source.breaking) set_breaking_load(world, joint, *source.breaking);
 }
 
 template <class S>

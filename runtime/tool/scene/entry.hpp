@@ -10,8 +10,8 @@
 #include <toml++/toml.h>
 #include <vector>
 
+#include "runtime/tool/scene/mistakes.hpp"
 #include "runtime/tool/scene/scene.hpp"
-#include "runtime/tool/scene/text.hpp"
 
 namespace cdot {
 

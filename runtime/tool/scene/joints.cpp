@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 #include <map>
 
+#include "runtime/tool/scene/keys.hpp"
 #include "runtime/tool/scene/read.hpp"
 
 namespace cdot {
 namespace {
-
-constexpr const char* soft_example = "{ frequency = 2, damping_ratio = 0.5 }";
 
 // "the point pa on body a", "the direction t on the world", "the scalar l [m]"
 std::string described(const ParameterInfo& parameter) {
@@ -21,7 +20,19 @@ std::string described(const ParameterInfo& parameter) {
 
 std::string number_named(std::size_t count) { return fmt::format("{} {}", count, count == 1 ? "is" : "are"); }
 
-const JointType* read_type(Entry& joint, Dimension dimension) {
+struct JointReading {
+  const BodyNames& names;
+  std::map<std::string, Span>& used;
+  std::string unnamed;
+  SceneJoint joint{};
+  const JointType* type = nullptr;
+};
+
+void read_joint_name(Entry& joint, const char*, JointReading& to) {
+  to.joint.name = read_name(joint, to.used, to.unnamed).value_or("");
+}
+
+const JointType* type_named(Entry& joint, Dimension dimension) {
   joint.required("type", "type = \"revolute\"");
   const std::optional<std::string> name = joint.text("type");
   if (!name) return nullptr;
@@ -96,8 +107,12 @@ std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterI
   return std::vector<double>(vector->begin(), vector->begin() + (in_space ? 3 : 2));
 }
 
-void read_parameters(Entry& joint, const JointType& type, const BodyNames& names, JointDefinition& definition) {
-  const std::optional<Vec3> at = read_vector(joint, "at", names.dimension());
+// `at`, and the parameters that the spec of the type has: points that are not given are where it says.
+void read_parameters(Entry& joint, const char* key, JointReading& to) {
+  const BodyNames& names = to.names;
+  const JointType& type = *to.type;
+  JointDefinition& definition = to.joint.definition;
+  const std::optional<Vec3> at = read_vector(joint, key, names.dimension());
   const bool in_space = names.dimension() == Dimension::spatial;
   bool has_point = false;
   for (const ParameterInfo& parameter : type.parameters) {
@@ -123,78 +138,6 @@ void read_parameters(Entry& joint, const JointType& type, const BodyNames& names
   }
 }
 
-// [lower, upper] or { lower = …, upper = … }
-std::optional<Limit> read_limit(Entry& effects, Quantity quantity) {
-  Limit limit;
-  if (std::optional<Entry> table = effects.table("limit")) {
-    limit.lower = table->number("lower", quantity);
-    limit.upper = table->number("upper", quantity);
-    if (!table->has("lower") && !table->has("upper"))
-      table->error(table->header(), "a limit without `lower` or `upper`");
-    table->close();
-  } else if (effects.has("limit") && !effects.is_array("limit")) {
-    effects.error(effects.where("limit"), "`limit` needs two ends", "[lower, upper], { lower = 0 } or { upper = 1 }");
-  } else if (const auto both = effects.numbers("limit", 2, quantity)) {
-    limit = {(*both)[0], (*both)[1]};
-  }
-  if (limit.lower && limit.upper && *limit.lower > *limit.upper) {
-    effects.error(effects.where("limit"),
-                  fmt::format("the lower limit {:.6g} is above the upper limit {:.6g}", *limit.lower, *limit.upper));
-  }
-  if (!limit.lower && !limit.upper) return {};
-  return limit;
-}
-
-std::optional<Motor> read_motor(Entry& effects, Quantity quantity) {
-  std::optional<Entry> table = effects.table("motor", "{ speed = 2, max = 10 }");
-  if (!table) return {};
-  Motor motor;
-  table->required("speed", "speed = 2.0");
-  motor.speed = table->number("speed", quantity).value_or(0);
-  motor.max_force = table->number("max", {Sign::not_negative}).value_or(unlimited);
-  table->close();
-  return motor;
-}
-
-std::vector<SceneSpring> read_coordinate_springs(Entry& effects, Quantity quantity) {
-  std::vector<SceneSpring> springs;
-  if (std::optional<Entry> table = effects.table("spring", soft_example)) {
-    const std::optional<double> rest = table->number("rest", quantity);
-    if (const auto softness = read_softness(*table)) springs.push_back({*softness, rest});
-    table->close();
-  }
-  if (const auto damping = effects.number("damper", {Sign::not_negative})) {
-    Softness softness;
-    softness.by_frequency = false;
-    softness.damping = *damping;
-    springs.push_back({softness, 0});
-  }
-  return springs;
-}
-
-void read_effects(Entry& joint, const JointType& type, std::vector<SceneEffects>& all) {
-  for (const CoordinateInfo& coordinate : type.coordinates) {
-    const std::string key(coordinate.name);
-    std::optional<Entry> entry = joint.table(key);
-    if (!entry) {
-      if (joint.has(key)) {
-        joint.error(joint.where(key), fmt::format("`{}` is a coordinate: it takes effects", key),
-                    fmt::format("{}.limit = [0, 1], {}.motor = {{ speed = 2 }}, …", key, key));
-      }
-      continue;
-    }
-    const Quantity quantity{Sign::any, coordinate.unit == "rad"};
-    SceneEffects effects;
-    effects.coordinate = key;
-    effects.limit = read_limit(*entry, quantity);
-    effects.motor = read_motor(*entry, quantity);
-    effects.springs = read_coordinate_springs(*entry, quantity);
-    if (const auto force = entry->number("friction", {Sign::not_negative})) effects.friction = DryFriction{*force};
-    entry->close();
-    all.push_back(std::move(effects));
-  }
-}
-
 // An effect on a coordinate that other joints have, but not this one: revolute, where hinge was
 // meant.
 void refuse_other_coordinates(Entry& joint, const JointType& type, Dimension dimension) {
@@ -217,66 +160,124 @@ void refuse_other_coordinates(Entry& joint, const JointType& type, Dimension dim
   }
 }
 
-std::optional<Softness> read_soft(Entry& joint) {
-  std::optional<Entry> table = joint.table("soft", soft_example);
-  if (!table) return {};
-  const std::optional<Softness> softness = read_softness(*table);
-  table->close();
-  return softness;
+void read_type(Entry& joint, const char*, JointReading& to) {
+  to.type = type_named(joint, to.names.dimension());
+  if (to.type) to.joint.definition.type = to.type->name;
 }
+
+void read_bodies_of_joint(Entry& joint, const char*, JointReading& to) {
+  const std::vector<int> unknown(static_cast<std::size_t>(to.type->bodies), world_body);
+  to.joint.definition.bodies = read_joint_bodies(joint, *to.type, to.names).value_or(unknown);
+}
+
+void read_soft(Entry& joint, const char* key, JointReading& to) {
+  to.joint.definition.soft = read_softness(joint, key);
+}
+
+void read_breaking(Entry& joint, const char* key, JointReading& to) {
+  to.joint.breaking = joint.number(key, {Sign::positive});
+}
+
+struct SpringReading {
+  const BodyNames& names;
+  std::map<std::string, Span>& used;
+  SpringDefinition spring{};
+  Vec3 from{}, to{};  // its points, in the world
+};
+
+void read_spring_name(Entry& spring, const char*, SpringReading& to) { read_name(spring, to.used, ""); }
+
+void read_bodies_of_spring(Entry& spring, const char* key, SpringReading& to) {
+  spring.required(key, "bodies = [\"world\", \"mass\"]");
+  const std::optional<std::vector<int>> bodies = to.names.find(spring, key);
+  const bool two = bodies && bodies->size() == 2;
+  if (bodies && !two)
+    spring.error(spring.where(key), fmt::format("a spring has 2 bodies, but {} named", number_named(bodies->size())));
+  to.spring.body_a = two ? (*bodies)[0] : world_body;
+  to.spring.body_b = two ? (*bodies)[1] : world_body;
+}
+
+void read_pa(Entry& spring, const char* key, SpringReading& to) {
+  const Vec3 p = read_point(spring, key, to.spring.body_a, to.names).value_or(Vec3{});
+  to.spring.ax = p[0], to.spring.ay = p[1], to.spring.az = p[2];
+  to.from = to.names.to_world(to.spring.body_a, p);
+}
+
+void read_pb(Entry& spring, const char* key, SpringReading& to) {
+  const Vec3 p = read_point(spring, key, to.spring.body_b, to.names).value_or(Vec3{});
+  to.spring.bx = p[0], to.spring.by = p[1], to.spring.bz = p[2];
+  to.to = to.names.to_world(to.spring.body_b, p);
+}
+
+void read_rest(Entry& spring, const char* key, SpringReading& to) {
+  const double x = to.to[0] - to.from[0], y = to.to[1] - to.from[1], z = to.to[2] - to.from[2];
+  const double length = to.names.dimension() == Dimension::spatial ? std::hypot(x, y, z) : std::hypot(x, y);
+  to.spring.rest_length = spring.number(key, {Sign::not_negative}).value_or(length);
+}
+
+void read_stiffness(Entry& spring, const char* key, SpringReading& to) {
+  spring.required(key, "stiffness = 100");
+  to.spring.stiffness = spring.number(key, {Sign::not_negative}).value_or(0);
+}
+
+constexpr auto spring = &SpringReading::spring;
+
+// clang-format off
+constexpr Key<JointReading> named[] = {
+    {"name", "of messages and summaries", "joint1, joint2, …", read_joint_name},
+    {"type", "a spec of specs/planar/ or specs/spatial/", "required", read_type},
+};
+// These depend on the type.
+constexpr Key<JointReading> keys[] = {
+    {"bodies", "the spec's a, b, … in this order; \"world\" never moves", "required", read_bodies_of_joint},
+    {"at", "the points that are not given by their own names, in the world at the start [m]", "", read_parameters},
+    {"soft", "{ frequency, damping_ratio } or { stiffness, damping }: the joint is a spring", "exact", read_soft},
+    {"breaking", "the joint goes after a step in which it carried more [N, N m]", "never", read_breaking},
+};
+constexpr Key<SpringReading> spring_keys[] = {
+    {"name", "of messages", "", read_spring_name},
+    {"bodies", "two", "required", read_bodies_of_spring},
+    {"pa", "its point of the first body [m]", "the centre", read_pa},
+    {"pb", "its point of the second body [m]", "the centre", read_pb},
+    {"rest", "[m]", "the length at the start", read_rest},
+    {"stiffness", "[N/m]", "required", read_stiffness},
+    {"damping", "[N s/m]", "0", read_number<Sign::not_negative, spring, &SpringDefinition::damping>},
+};
+// clang-format on
 
 }  // namespace
 
 void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
   std::map<std::string, Span> used;
   for (Entry& entry : top.list("joint")) {
-    SceneJoint joint;
-    joint.where = entry.header();
-    const std::string unnamed = fmt::format("joint{}", scene.joints.size() + 1);
-    joint.name = read_name(entry, used, unnamed).value_or("");
-    const JointType* type = read_type(entry, scene.dimension);
-    if (!type) continue;  // what else it may say depends on the type
-    joint.definition.type = type->name;
-    const std::optional<std::vector<int>> bodies = read_joint_bodies(entry, *type, names);
-    joint.definition.bodies = bodies.value_or(std::vector<int>(static_cast<std::size_t>(type->bodies), world_body));
-    read_parameters(entry, *type, names, joint.definition);
-    read_effects(entry, *type, joint.effects);
-    joint.definition.soft = read_soft(entry);
-    joint.breaking = entry.number("breaking", {Sign::positive});
-    refuse_other_coordinates(entry, *type, scene.dimension);
+    JointReading read{names, used, fmt::format("joint{}", scene.joints.size() + 1)};
+    read.joint.where = entry.header();
+    read_keys(entry, named, scene.dimension, read);
+    if (!read.type) continue;
+    read_keys(entry, keys, scene.dimension, read);
+    read_effects(entry, *read.type, read.joint.effects);
+    refuse_other_coordinates(entry, *read.type, scene.dimension);
     entry.close();
-    scene.joints.push_back(std::move(joint));
+    scene.joints.push_back(std::move(read.joint));
   }
 }
 
 void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
-  const bool in_space = scene.dimension == Dimension::spatial;
   std::map<std::string, Span> used;
   for (Entry& entry : top.list("spring")) {
-    read_name(entry, used, "");
-    entry.required("bodies", "bodies = [\"world\", \"mass\"]");
-    entry.required("stiffness", "stiffness = 100");
-    const std::optional<std::vector<int>> bodies = names.find(entry, "bodies");
-    const bool two = bodies && bodies->size() == 2;
-    if (bodies && !two)
-      entry.error(entry.where("bodies"),
-                  fmt::format("a spring has 2 bodies, but {} named", number_named(bodies->size())));
-    SpringDefinition spring;
-    spring.body_a = two ? (*bodies)[0] : world_body;
-    spring.body_b = two ? (*bodies)[1] : world_body;
-    const Vec3 pa = read_point(entry, "pa", spring.body_a, names).value_or(Vec3{});
-    const Vec3 pb = read_point(entry, "pb", spring.body_b, names).value_or(Vec3{});
-    spring.ax = pa[0], spring.ay = pa[1], spring.az = pa[2];
-    spring.bx = pb[0], spring.by = pb[1], spring.bz = pb[2];
-    const Vec3 from = names.to_world(spring.body_a, pa), to = names.to_world(spring.body_b, pb);
-    const double length = in_space ? std::hypot(to[0] - from[0], to[1] - from[1], to[2] - from[2])
-                                   : std::hypot(to[0] - from[0], to[1] - from[1]);
-    spring.rest_length = entry.number("rest", {Sign::not_negative}).value_or(length);
-    spring.stiffness = entry.number("stiffness", {Sign::not_negative}).value_or(0);
-    spring.damping = entry.number("damping", {Sign::not_negative}).value_or(0);
+    SpringReading read{names, used};
+    read_keys(entry, spring_keys, scene.dimension, read);
     entry.close();
-    scene.springs.push_back(spring);
+    scene.springs.push_back(read.spring);
   }
 }
+
+KeyTable keys_of_a_joint() {
+  KeyTable table = table_of("[[joint]], beside the parameters and coordinates of its type", named);
+  for (const KeyTable::Row& row : table_of("", keys).rows) table.rows.push_back(row);
+  return table;
+}
+
+KeyTable keys_of_a_spring() { return table_of("[[spring]]", spring_keys); }
 
 }  // namespace cdot

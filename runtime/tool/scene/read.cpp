@@ -148,23 +148,6 @@ std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int bod
                           [&](Vec3 direction) { return names.turned_to_body(body, direction); });
 }
 
-std::optional<Softness> read_softness(Entry& entry) {
-  const bool frequency = entry.has("frequency"), stiffness = entry.has("stiffness");
-  Softness softness;
-  softness.by_frequency = frequency;
-  softness.frequency = entry.number("frequency", {Sign::positive}).value_or(0);
-  softness.damping_ratio = entry.number("damping_ratio", {Sign::not_negative}).value_or(0);
-  softness.stiffness = entry.number("stiffness", {Sign::not_negative}).value_or(0);
-  softness.damping = entry.number("damping", {Sign::not_negative}).value_or(0);
-  const bool mixed = frequency ? stiffness || entry.has("damping") : entry.has("damping_ratio");
-  if (frequency == stiffness || mixed) {
-    entry.error(entry.header(), fmt::format("{} needs either a frequency or a stiffness", entry.what()),
-                "{ frequency = 2, damping_ratio = 0.5 } or { stiffness = 100, damping = 1 }");
-    return {};
-  }
-  return softness;
-}
-
 std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
                                      const std::optional<std::string>& fallback) {
   if (!entry.has("name")) {

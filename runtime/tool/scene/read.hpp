@@ -41,23 +41,14 @@ std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension 
 std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names);
 std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names);
 
-// { frequency, damping_ratio } or { stiffness, damping }; the entry stays open for more keys.
-std::optional<Softness> read_softness(Entry& entry);
-
 // A name that a CSV column can carry, unused so far; `fallback` if the entry has none and that is
 // allowed.
 std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
                                      const std::optional<std::string>& fallback);
 
-// Refuses a velocity or spin of a body that cannot move or turn.
-template <class Definition>
-void check_motion(Entry& body, const Definition& definition, bool moves, bool turns) {
-  if (definition.is_static && moves)
-    body.error(body.where("velocity"), "a static body cannot move: `velocity` is not 0");
-  if (definition.is_static && turns) body.error(body.where("spin"), "a static body cannot move: `spin` is not 0");
-  if (definition.fixed_rotation && turns)
-    body.error(body.where("spin"), "a body with fixed_rotation cannot turn: `spin` is not 0");
-}
+// The effects on the coordinates of a joint; and `soft`, which makes it a spring itself.
+void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEffects>& to);  // tool/scene/effects.cpp
+std::optional<Softness> read_softness(Entry& joint, const char* key);
 
 void read_settings(Entry& top, Scene& scene);                         // tool/scene/settings.cpp
 void read_bodies(Entry& top, Scene& scene);                           // tool/scene/bodies.cpp

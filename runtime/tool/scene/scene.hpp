@@ -15,7 +15,7 @@
 #include <cdot/settings.hpp>
 #include <cdot/world.hpp>
 
-#include "runtime/tool/scene/text.hpp"
+#include "runtime/tool/scene/mistakes.hpp"
 
 namespace cdot {
 
@@ -40,24 +40,10 @@ struct SceneBody {
   std::vector<Vec3> traces;  // points of the body whose paths are drawn
 };
 
-struct SceneSpring {
-  Softness softness;
-  std::optional<double> rest;  // where the coordinate is at the start, if not given
-};
-
-// Effects on one coordinate of a joint.
-struct SceneEffects {
-  std::string coordinate;
-  std::optional<Limit> limit;
-  std::optional<Motor> motor;
-  std::vector<SceneSpring> springs;  // a damper is a spring without stiffness
-  std::optional<DryFriction> friction;
-};
-
 struct SceneJoint {
   std::string name;
   JointDefinition definition;  // its bodies are indices into Scene::bodies, or world_body
-  std::vector<SceneEffects> effects;
+  std::vector<CoordinateEffects> effects;
   std::optional<double> breaking;
   Span where;  // its header in the file
 };

@@ -3,44 +3,75 @@
 
 #include <cdot/methods.hpp>
 
+#include "runtime/tool/scene/keys.hpp"
 #include "runtime/tool/scene/read.hpp"
 
 namespace cdot {
 namespace {
 
-// With a local error the step is only how often the run is looked at.
-void read_time(Entry& top, Scene& scene) {
-  scene.duration = top.number("duration", {Sign::positive}).value_or(scene.duration);
-  const double step = top.has("local_error") ? scene.duration / 64 : scene.step;
-  scene.step = top.number("step", {Sign::positive}).value_or(step);
-  if (scene.step > scene.duration) {
-    top.error(top.where("step"),
-              fmt::format("the step of {} s is longer than the duration of {} s", scene.step, scene.duration));
-  }
+void read_title(Entry& top, const char* key, Scene& scene) { scene.title = top.text(key).value_or(""); }
+
+void read_dimension(Entry& top, const char* key, Scene& scene) {
+  const int dimension = top.whole(key, 2).value_or(2);
+  if (dimension > 3) top.error(top.where(key), "a scene is planar or in space", "dimension = 2 or 3");
+  scene.dimension = dimension == 3 ? Dimension::spatial : Dimension::planar;
 }
 
-void read_method(Entry& top, Settings& settings) {
-  if (const auto solver = top.choice("solver", names_of(solvers))) settings.solver = method_called(solvers, *solver);
-  if (const auto integrator = top.choice("integrator", names_of(integrators)))
-    settings.integrator = method_called(integrators, *integrator);
-  if (const auto drift = top.choice("drift", names_of(drifts))) settings.drift = method_called(drifts, *drift);
-  settings.local_error = top.number("local_error", {Sign::positive}).value_or(settings.local_error);
-  if (const auto kernels = top.choice("kernels", names_of(kernel_forms)))
-    settings.kernels = method_called(kernel_forms, *kernels);
-  settings.iterations = top.whole("iterations", 1).value_or(settings.iterations);
-  settings.substeps = top.whole("substeps", 1).value_or(settings.substeps);
-  settings.baumgarte = top.number("baumgarte", {Sign::positive}).value_or(settings.baumgarte);
-  settings.warm_start = top.flag("warm_start").value_or(settings.warm_start);
-  if (const char* wrong = wrong_with_methods(settings))
+void read_gravity(Entry& top, const char* key, Scene& scene) {
+  const bool in_space = scene.dimension == Dimension::spatial;
+  const Vec3 down = in_space ? Vec3{0, 0, -9.81} : Vec3{0, -9.81, 0};
+  const Vec3 gravity = read_vector(top, key, scene.dimension).value_or(down);
+  scene.settings.gravity_x = gravity[0];
+  scene.settings.gravity_y = gravity[1];
+  scene.settings.gravity_z = gravity[2];
+}
+
+// With a local error the step is only how often the run is looked at.
+void read_step(Entry& top, const char* key, Scene& scene) {
+  const double step = top.has("local_error") ? scene.duration / 64 : scene.step;
+  scene.step = top.number(key, {Sign::positive}).value_or(step);
+  if (scene.step > scene.duration)
+    top.error(top.where(key),
+              fmt::format("the step of {} s is longer than the duration of {} s", scene.step, scene.duration));
+}
+
+constexpr auto settings = &Scene::settings;
+
+// clang-format off
+constexpr Key<Scene> keys[] = {
+    {"title", "shown in pages and summaries", "", read_title},
+    {"dimension", "2, or 3: in space", "2", read_dimension},
+    {"gravity", "[m/s^2]", "[0, -9.81], in space [0, 0, -9.81]", read_gravity},
+    {"duration", "[s]", "10", read_number<Sign::positive, &Scene::duration>},
+    {"step", "[s]; the run ends with the first step at or after duration", "0.001", read_step},
+    {"solver", "direct (exact) or iterative (sequential impulses)", "direct", read_choice<solvers, settings, &Settings::solver>},
+    {"integrator", "euler, implicit, rattle, rk4 or dop853", "euler", read_choice<integrators, settings, &Settings::integrator>},
+    {"local_error", "rk4 and dop853 choose their steps: the estimated error of one [m, rad, m/s, rad/s]", "fixed steps", read_number<Sign::positive, settings, &Settings::local_error>},
+    {"drift", "what keeps joints together: projection, baumgarte or none", "projection", read_choice<drifts, settings, &Settings::drift>},
+    {"baumgarte", "share of the error removed per step", "0.2", read_number<Sign::positive, settings, &Settings::baumgarte>},
+    {"iterations", "of the iterative solver", "10", read_count<settings, &Settings::iterations>},
+    {"warm_start", "of the iterative solver", "true", read_flag<settings, &Settings::warm_start>},
+    {"kernels", "rows of one joint together in the iterative solver: fast, balanced or robust", "balanced", read_choice<kernel_forms, settings, &Settings::kernels>},
+    {"substeps", "every step is taken as so many shorter ones", "1", read_count<settings, &Settings::substeps>},
+    {"precision", "double or float", "double", read_choice<precisions, &Scene::single>},
+    {"accuracy", "of the trajectory, by a method that the run chooses [m, rad]", "the method as given", read_number<Sign::positive, &Scene::accuracy>},
+    {"sleep_after", "bodies at rest for so long sleep [s]; 0: never", "0", read_number<Sign::not_negative, settings, &Settings::sleep_after>},
+    {"sleep_speed", "the speed that counts as rest [m/s, rad/s]", "0.001", read_number<Sign::positive, settings, &Settings::sleep_speed>},
+    {"tolerance", "joint error from which the run has failed [m, rad]", "0.01", read_number<Sign::positive, &Scene::tolerance>},
+    {"project", "move a start that does not fit onto its joints", "false", read_flag<&Scene::project>},
+    {"on_failure", "of a step: stop or retry", "stop", read_choice<failure_answers, &Scene::on_failure>},
+};
+// clang-format on
+
+void check_method(Entry& top, const Settings& chosen) {
+  if (const char* wrong = wrong_with_methods(chosen))
     top.error(top.where(top.has("drift") ? "drift" : "local_error"), wrong);
-  if (settings.baumgarte > 1) {
+  if (chosen.baumgarte > 1)
     top.error(top.where("baumgarte"), "`baumgarte` is the share of the error removed per step: at most 1");
-  }
 }
 
 // An accuracy stands in the place of a method.
-void read_accuracy(Entry& top, Scene& scene) {
-  scene.accuracy = top.number("accuracy", {Sign::positive}).value_or(0);
+void check_accuracy(Entry& top) {
   if (!top.has("accuracy")) return;
   for (const char* key :
        {"step", "solver", "integrator", "local_error", "drift", "substeps", "iterations", "kernels", "precision"})
@@ -52,27 +83,11 @@ void read_accuracy(Entry& top, Scene& scene) {
 }  // namespace
 
 void read_settings(Entry& top, Scene& scene) {
-  scene.title = top.text("title").value_or("");
-  const int dimension = top.whole("dimension", 2).value_or(2);
-  if (dimension > 3) top.error(top.where("dimension"), "a scene is planar or in space", "dimension = 2 or 3");
-  scene.dimension = dimension == 3 ? Dimension::spatial : Dimension::planar;
-  const bool in_space = scene.dimension == Dimension::spatial;
-  const Vec3 gravity =
-      read_vector(top, "gravity", scene.dimension).value_or(in_space ? Vec3{0, 0, -9.81} : Vec3{0, -9.81, 0});
-  scene.settings.gravity_x = gravity[0];
-  scene.settings.gravity_y = gravity[1];
-  scene.settings.gravity_z = gravity[2];
-  read_time(top, scene);
-  read_method(top, scene.settings);
-  if (const auto precision = top.choice("precision", names_of(precisions)))
-    scene.single = method_called(precisions, *precision);
-  read_accuracy(top, scene);
-  scene.settings.sleep_after = top.number("sleep_after", {Sign::not_negative}).value_or(0);
-  scene.settings.sleep_speed = top.number("sleep_speed", {Sign::positive}).value_or(scene.settings.sleep_speed);
-  scene.tolerance = top.number("tolerance", {Sign::positive}).value_or(scene.tolerance);
-  scene.project = top.flag("project").value_or(false);
-  if (const auto answer = top.choice("on_failure", names_of(failure_answers)))
-    scene.on_failure = method_called(failure_answers, *answer);
+  read_keys(top, keys, scene.dimension, scene);
+  check_method(top, scene.settings);
+  check_accuracy(top);
 }
+
+KeyTable keys_of_the_top() { return table_of("The top of the file", keys); }
 
 }  // namespace cdot

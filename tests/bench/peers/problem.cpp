@@ -114,7 +114,7 @@ double given_length(const SceneJoint& source) {
   return 1;
 }
 
-bool locks(const SceneEffects& effects) {
+bool locks(const CoordinateEffects& effects) {
   return effects.limit && effects.limit->lower.value_or(-1) == 0 && effects.limit->upper.value_or(1) == 0;
 }
 
@@ -124,7 +124,7 @@ void take_turns(const SceneJoint& source, Joint& joint) {
       {"bend_a", 0}, {"bend_b", 1}, {"twist_x", 0}, {"twist_y", 1}, {"twist_z", 2}};
   int held_slides = 0;
   std::ptrdiff_t held_turns = 0;
-  for (const SceneEffects& effects : source.effects) {
+  for (const CoordinateEffects& effects : source.effects) {
     const bool slides = effects.coordinate.starts_with("slide"), drives = joint.kind == JointKind::universal;
     if (effects.friction || !effects.springs.empty() || (effects.motor && !drives) ||
         (effects.limit && !locks(effects)))
@@ -145,13 +145,13 @@ void take_given(const SceneJoint& source, Joint& joint) {
   joint.axis = given_length(source) * joint.axis;
   if (source.definition.soft) joint.soft = spring_of(source, *source.definition.soft);
   if (!joint.turns.empty()) return take_turns(source, joint);
-  for (const SceneEffects& effects : source.effects) {
+  for (const CoordinateEffects& effects : source.effects) {
     const bool turns = joint.kind == JointKind::revolute;
     if (effects.friction || (!turns && (effects.motor || effects.limit)) || effects.springs.size() > 1)
       throw CannotSay(source.name + ": no adapter knows friction, two springs at once, motors or stops of a slider");
     if (effects.motor) joint.motor = {effects.motor->speed, effects.motor->max_force};
     if (effects.limit) joint.stops = {effects.limit->lower.value(), effects.limit->upper.value()};
-    for (const SceneSpring& spring : effects.springs) joint.spring = spring_of(source, spring.softness);
+    for (const CoordinateSpring& spring : effects.springs) joint.spring = spring_of(source, spring.softness);
   }
 }
 

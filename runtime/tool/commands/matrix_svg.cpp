@@ -1,11 +1,11 @@
-// The picture of `cdot-run jacobian --svg`: the sparsity of K, and the conflict graph of the joints
-// on a circle, each joint in the colour in which it could be solved.
+// The picture of `cdot-run diagnose --matrix --svg`: the sparsity of K, and the conflict graph of the joints on a
+// circle, each joint in the colour in which it could be solved.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
 
-#include "runtime/tool/commands/jacobian.hpp"
+#include "runtime/tool/commands/matrix.hpp"
 #include "runtime/tool/viewer/text.hpp"
 
 namespace cdot {
@@ -79,7 +79,7 @@ std::string graph_svg(const Scene& scene, const SystemMatrix& system, const Conf
 
 }  // namespace
 
-std::string jacobian_svg(const Scene& scene, const SystemMatrix& system) {
+std::string matrix_svg(const Scene& scene, const SystemMatrix& system) {
   const ConflictGraph graph = conflicts(system);
   const double width = 2 * picture + gap + 3 * margin, height = picture + 2 * margin;
   std::string svg = fmt::format(

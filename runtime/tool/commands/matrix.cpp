@@ -1,4 +1,4 @@
-#include "runtime/tool/commands/jacobian.hpp"
+#include "runtime/tool/commands/matrix.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -107,7 +107,7 @@ SystemMatrix system_matrix(const Scene& scene) {
   return system_matrix(world);
 }
 
-std::string jacobian_text(const Scene& scene, const SystemMatrix& system) {
+std::string matrix_text(const Scene& scene, const SystemMatrix& system) {
   const int frozen = static_cast<int>(std::count(system.frozen.begin(), system.frozen.end(), char{1}));
   std::string text =
       fmt::format("D v = 0: {} x {}, {} of {}, columns of {}\nrank {}: {} left, {}\n", system.rows, system.columns,
@@ -131,7 +131,7 @@ std::string jacobian_text(const Scene& scene, const SystemMatrix& system) {
   return text + numbers_text(scene, system);
 }
 
-std::string jacobian_json(const Scene& scene, const SystemMatrix& system) {
+std::string matrix_json(const Scene& scene, const SystemMatrix& system) {
   using Json = nlohmann::ordered_json;
   Json json = {{"rows", system.rows},
                {"columns", system.columns},

@@ -1,28 +1,21 @@
-#include "runtime/tool/scene/text.hpp"
+#include "runtime/tool/scene/mistakes.hpp"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <numeric>
+
+#include "runtime/text/excerpt.hpp"
+#include "runtime/text/spelling.hpp"
 
 namespace cdot {
 namespace {
 
-constexpr std::size_t longest_shown = 100;  // characters of a line that a message shows
 constexpr int most_reported = 50;
-constexpr std::size_t longest_word = 60;  // longer words are no misspelling of a name
 
-bool starts_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0) != 0x80; }
-
-// Characters (code points) of a line; bytes that are no UTF-8 count one each by their first byte.
-std::vector<std::string> characters(std::string_view line) {
-  std::vector<std::string> result;
-  for (char byte : line) {
-    if (starts_character(byte) || result.empty()) result.emplace_back();
-    const bool printable = static_cast<unsigned char>(byte) >= 0x20 || byte == '\t';
-    result.back() += printable ? byte : ' ';
-  }
-  return result;
-}
+// A long line is cut to a window that starts a little before the mistake.
+constexpr text::Look look{
+    100, "…",   "",
+    '^', false, [](int, int begin, int end) {
+                            return end <= look.columns ? 0 : std::max(0, begin - 20); }};
 
 std::vector<std::string> split_lines(std::string_view text) {
   std::vector<std::string> lines;
@@ -34,27 +27,12 @@ std::vector<std::string> split_lines(std::string_view text) {
   return lines;
 }
 
-// The number of single-letter edits (insert, delete, replace, swap of neighbours) from `from` to
-// `to`.
-std::size_t edits(std::string_view from, std::string_view to) {
-  std::vector<std::vector<std::size_t>> d(from.size() + 1, std::vector<std::size_t>(to.size() + 1));
-  for (std::size_t i = 0; i <= from.size(); ++i) d[i][0] = i;
-  std::iota(d[0].begin(), d[0].end(), std::size_t{0});
-  for (std::size_t i = 1; i <= from.size(); ++i) {
-    for (std::size_t j = 1; j <= to.size(); ++j) {
-      const std::size_t replaced = d[i - 1][j - 1] + (from[i - 1] != to[j - 1]);
-      d[i][j] = std::min({d[i - 1][j] + 1, d[i][j - 1] + 1, replaced});
-      const bool swapped = i > 1 && j > 1 && from[i - 1] == to[j - 2] && from[i - 2] == to[j - 1];
-      if (swapped) d[i][j] = std::min(d[i][j], d[i - 2][j - 2] + 1);
-    }
-  }
-  return d[from.size()][to.size()];
-}
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  return result;
+// The byte at which a character begins, counted from 1; beyond the last one the end of the line.
+std::size_t byte_of(std::string_view line, int character) {
+  std::size_t at = 0;
+  for (int k = 1; k < character && at < line.size(); ++k)
+    at += static_cast<std::size_t>(text::character_at(line, at).length);
+  return at;
 }
 
 bool same_start(std::string_view word, std::string_view candidate) {
@@ -123,37 +101,22 @@ std::string Mistakes::paragraph(std::string_view kind, Span where, std::string_v
   const std::string head = fmt::format("{}:{}:{}: {}: {}\n", file_, where.line, where.begin, kind, cause);
   if (where.line > static_cast<int>(lines_.size())) return head + last;
 
-  const std::vector<std::string> line = characters(lines_[static_cast<std::size_t>(where.line - 1)]);
-  const std::size_t begin = std::min(static_cast<std::size_t>(std::max(where.begin, 1) - 1), line.size());
-  const std::size_t end =
-      std::clamp(static_cast<std::size_t>(std::max(where.end, 1) - 1), begin + 1, std::max(line.size(), begin + 1));
-  // A long line is cut to a window that starts a little before the mistake.
-  const std::size_t first = end <= longest_shown ? 0 : begin - std::min<std::size_t>(begin, 20);
-  const std::size_t stop = std::min(line.size(), first + longest_shown);
-
-  std::string shown = first > 0 ? "…" : "", carets = first > 0 ? " " : "";
-  for (std::size_t k = first; k < stop; ++k) shown += line[k];
-  if (stop < line.size()) shown += "…";
-  for (std::size_t k = first; k < begin; ++k) carets += line[k] == "\t" ? '\t' : ' ';
-  carets += std::string(std::min(end, first + longest_shown) - begin, '^');
-  return head + fmt::format("{:5} | {}\n      | {}\n", where.line, shown, carets) + last;
+  std::string line = lines_[static_cast<std::size_t>(where.line - 1)];
+  std::replace_if(
+      line.begin(), line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\t'; }, ' ');
+  const int begin = static_cast<int>(byte_of(line, where.begin)), end = static_cast<int>(byte_of(line, where.end));
+  return head + text::numbered(where.line, text::excerpt(line, {{begin, std::max(end, begin + 1)}}, look)) + last;
 }
 
 std::string did_you_mean(std::string_view word, std::span<const std::string> known) {
-  const std::string* best = nullptr;
-  // Words of one or two letters resemble everything.
-  std::size_t best_edits = word.size() < 2 ? 1 : word.size() < 3 ? 2 : 2 + word.size() / 4;
   const std::string_view elsewhere = called_here(word);
-  for (const std::string& candidate : known) {
-    if (candidate == elsewhere) return fmt::format("here that is `{}`", candidate);
-    if (word.size() > longest_word) continue;
-    const std::size_t distance = edits(lower(word), lower(candidate));
-    if (distance < best_edits || (!best && same_start(word, candidate))) {
-      best = &candidate;
-      best_edits = std::min(distance, best_edits);
-    }
-  }
-  if (best) return fmt::format("did you mean `{}`?", *best);
+  if (std::find(known.begin(), known.end(), elsewhere) != known.end())
+    return fmt::format("here that is `{}`", elsewhere);
+  // Words of one or two letters resemble everything.
+  std::string best = text::nearest(word, known, word.size() < 2 ? 0 : word.size() < 3 ? 1 : 1 + word.size() / 4);
+  for (auto k = known.begin(); best.empty() && k != known.end(); ++k)
+    if (same_start(word, *k)) best = *k;
+  if (!best.empty()) return fmt::format("did you mean `{}`?", best);
   if (known.empty()) return {};
   std::vector<std::string> names(known.begin(), known.end());
   std::sort(names.begin(), names.end());

@@ -1,0 +1,34 @@
+#include "runtime/effects/set_constants.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/world/islands.hpp"
+
+namespace cdot {
+
+template <class S>
+void set_constants(BasicWorld<S>& world, int joint, int effect, const Law<S>& law, const char* name,
+                   std::span<const double> constants) {
+  WorldState<S>& state = world.state();
+  check_joint(state, joint);
+  const JointRecord& record = state.joints[joint];
+  if (record.places.empty()) return;
+  const auto place = static_cast<size_t>(effect);
+  if (effect < 1 || place >= record.places.size())
+    throw Error(fmt::format("joint number {} has no effect number {}", joint, effect));
+  Batch<S>& batch = *state.batches[record.places[place].batch];
+  if (batch.law != &law) throw Error(fmt::format("effect number {} of joint number {} is no {}", effect, joint, name));
+  for (size_t k = 0; k < constants.size(); ++k)
+    batch.constants[record.places[place].slot * constants.size() + k] = typename S::Scalar(constants[k]);
+  const int body = movable_body(state, record);
+  if (law.error)  // of where the bodies shall be
+    wake(state, body);
+  else wake_pushed(state, body);
+}
+
+#define CDOT_INSTANTIATE(S) \
+  template void set_constants(BasicWorld<S>&, int, int, const Law<S>&, const char*, std::span<const double>);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

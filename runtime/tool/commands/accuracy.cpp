@@ -1,0 +1,50 @@
+// `cdot-run accuracy`: the options of tool/accuracy.
+#include <fmt/format.h>
+
+#include "runtime/tool/accuracy/command.hpp"
+#include "runtime/tool/commands/options.hpp"
+
+namespace cdot {
+namespace {
+
+struct Options {
+  SceneOptions scene;
+  AccuracyOptions accuracy;
+};
+
+void add_options(CLI::App& line, Options& options) {
+  AccuracyOptions& accuracy = options.accuracy;
+  add_scene(line, options.scene);
+  add_until(line, options.scene);
+  line.add_option("--budget", accuracy.sweep.budget, "CPU time to spend [s]; more of it: finer steps")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  line.add_option("--rounds", accuracy.sweep.rounds, "how often each run is timed, in turns")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  line.add_option("--levels", accuracy.sweep.levels, "steps or local errors to try per way, at most")
+      ->check(CLI::PositiveNumber);
+  line.add_option("--only", accuracy.only, "only ways with this in their name: direct, rk4, float");
+  line.add_option("--reference", accuracy.reference,
+                  "a trajectory to measure against, as `simulate -o` writes it; else one is made by two methods");
+  line.add_option("-o,--output", accuracy.output,
+                  "write PREFIX.csv, PREFIX.json and PREFIX.svg; else the scene's name with .accuracy");
+  line.add_flag("--resume", accuracy.resume, "go on where this command was interrupted");
+  line.add_flag("--json", accuracy.json, "print JSON");
+  add_progress(line, options.scene);
+}
+
+int run(const Options& options) {
+  AccuracyOptions accuracy = options.accuracy;
+  accuracy.progress = progress_shown(options.scene);
+  const AccuracyOutcome outcome = measure_accuracy(scene_of(options.scene), accuracy);
+  if (!outcome.finished) return stopped;
+  fmt::print("{}", outcome.out);
+  return outcome.answered ? well : answer_is_no;
+}
+
+}  // namespace
+
+Run accuracy_command(CLI::App& line) { return with_options<Options>(line, add_options, run); }
+
+}  // namespace cdot

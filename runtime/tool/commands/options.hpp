@@ -1,0 +1,41 @@
+// Options that several commands have.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <string>
+
+#include "runtime/tool/commands/command.hpp"
+#include "runtime/tool/scene/scene.hpp"
+
+namespace cdot {
+
+// They take the place of the scene's own settings.
+struct SceneOptions {
+  std::string file;
+  double until = 0, step = 0, local_error = 0;
+  std::string solver, integrator, drift, kernels, precision;
+  int iterations = 0, substeps = 0;
+  bool progress = false;
+};
+
+void add_scene(CLI::App& line, SceneOptions& options);
+CLI::Option* add_until(CLI::App& line, SceneOptions& options);
+void add_method(CLI::App& line, SceneOptions& options);
+void add_progress(CLI::App& line, SceneOptions& options);
+
+Scene scene_of(const SceneOptions& options);
+bool progress_shown(const SceneOptions& options);
+
+// Throws Error where a run that ends at `end` has no state at `--at`.
+void check_within(double at, double end);
+
+// Adds the options of a command, which run() gets when they have been read.
+template <class Options>
+Run with_options(CLI::App& line, void (*add)(CLI::App&, Options&), int (*run)(const Options&)) {
+  auto options = std::make_shared<Options>();
+  add(line, *options);
+  return [options, run] { return run(*options); };
+}
+
+}  // namespace cdot

@@ -1,0 +1,106 @@
+// `cdot-run simulate`: runs a scene and writes what was asked for.
+#include "runtime/tool/run/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include "runtime/tool/commands/options.hpp"
+#include "runtime/tool/run/output.hpp"
+#include "runtime/tool/run/state.hpp"
+#include "runtime/tool/viewer/viewer.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr int poses_diagnosed = 8;
+
+struct Options {
+  SceneOptions scene;
+  double accuracy = 0, tolerance = 0, every = 0;
+  bool project = false, json = false;
+  std::string csv, html, svg, save_state, from_state;
+  std::vector<double> times;
+  std::optional<double> state_time;
+};
+
+void add_options(CLI::App& line, Options& options) {
+  add_scene(line, options.scene);
+  add_until(line, options.scene);
+  add_method(line, options.scene);
+  line.add_option("--accuracy", options.accuracy,
+                  "choose the method such that the trajectory is as exact as that [m, rad]")
+      ->check(CLI::PositiveNumber)
+      ->excludes("--integrator")
+      ->excludes("--local-error")
+      ->excludes("--solver")
+      ->excludes("--kernels")
+      ->excludes("--precision");
+  line.add_option("--tolerance", options.tolerance, "joint error from which the run has failed [m, rad]")
+      ->check(CLI::PositiveNumber);
+  line.add_flag("--project", options.project, "move a start that does not fit onto its joints");
+  line.add_option("-o,--output", options.csv,
+                  "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name; in space x, y, "
+                  "z, e0..e3, vx, vy, vz, wx, wy, wz");
+  auto* every = line.add_option("--every", options.every, "a CSV row each so many seconds; else one per step")
+                    ->check(CLI::PositiveNumber);
+  line.add_option("--times", options.times, "CSV rows at these times: 0,0.5,2")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber)
+      ->excludes(every);
+  line.add_option("--html", options.html, "write a page that plays the mechanism, all in one file");
+  line.add_option("--svg", options.svg, "write a picture of the mechanism at several times, with its traces");
+  auto* save = line.add_option("--save-state", options.save_state,
+                               "write the state at the end to a file, for --from-state to go on from");
+  line.add_option("--at", options.state_time, "save the state at this time [s] instead")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(save);
+  line.add_option("--from-state", options.from_state,
+                  "go on from a saved state of this scene, with the bits of a run that was never interrupted");
+  line.add_flag("--json", options.json, "the summary as JSON");
+  add_progress(line, options.scene);
+}
+
+RunOptions run_options(const Options& options, const Scene& scene, OutputFile* csv) {
+  RunOptions run;
+  if (csv) {
+    csv->write(csv_head(scene));
+    run.row = [csv, &scene](const Frame& frame) { csv->write(csv_row(scene, frame)); };
+  }
+  run.row_times = options.times;
+  std::sort(run.row_times.begin(), run.row_times.end());
+  if (options.every > 0) run.row_times = every(options.every, scene.duration);
+  if (!options.html.empty() || !options.svg.empty()) run.film_times = film_times(scene);
+  run.diagnose_times = diagnose_times(scene.duration, poses_diagnosed);
+  run.progress = progress_shown(options.scene);
+  if (!options.from_state.empty()) run.from = read_state(options.from_state);
+  if (options.save_state.empty()) return run;
+  run.keep_state = options.state_time.value_or(scene.duration);
+  check_within(*run.keep_state, scene.duration);
+  return run;
+}
+
+int run(const Options& options) {
+  Scene scene = scene_of(options.scene);
+  if (options.tolerance > 0) scene.tolerance = options.tolerance;
+  if (options.project) scene.project = true;
+  if (options.accuracy > 0) scene.accuracy = options.accuracy;
+  std::optional<OutputFile> csv;
+  if (!options.csv.empty()) csv.emplace(options.csv);
+
+  std::string warnings;
+  const RunResult result = simulate(scene, run_options(options, scene, csv ? &*csv : nullptr), warnings);
+  fmt::print(stderr, "{}", warnings);
+  if (result.interrupted) return stopped;
+
+  if (csv) csv->commit();
+  if (!result.state.empty()) write_state(options.save_state, result.state);
+  if (!options.html.empty()) write_file(options.html, html_page(scene, result.film));
+  if (!options.svg.empty()) write_file(options.svg, svg_still(scene, result.film));
+  fmt::print("{}", options.json ? summary_json(scene, result) : summary_text(scene, result));
+  return failure(scene, result).empty() ? well : answer_is_no;
+}
+
+}  // namespace
+
+Run simulate_command(CLI::App& line) { return with_options<Options>(line, add_options, run); }
+
+}  // namespace cdot

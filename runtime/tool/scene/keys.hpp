@@ -1,0 +1,78 @@
+// The keys of a scene's tables, a row each: reading, "did you mean" and `cdot-run list --keys` go by the same rows.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/tool/scene/entry.hpp"
+
+namespace cdot {
+
+enum class Where : char { everywhere, in_space };
+
+// One key of a table that is read into a To.
+template <class To>
+struct Key {
+  const char *name, *meaning;  // with its unit, as specs/scenes/README.md has it
+  const char* otherwise;       // if the key is not given
+  void (*read)(Entry& entry, const char* key, To& to);
+  Where where = Where::everywhere;
+};
+
+// A key that is not asked for stays unknown to the entry, which then complains about it.
+template <class To, std::size_t count>
+void read_keys(Entry& entry, const Key<To> (&keys)[count], Dimension dimension, To& to) {
+  for (const Key<To>& key : keys)
+    if (key.where == Where::everywhere || dimension == Dimension::spatial) key.read(entry, key.name, to);
+}
+
+// --- Readers of a member, or of a member of a member: what is not given stays as it is.
+
+template <Sign sign, auto... path, class To>
+void read_number(Entry& entry, const char* key, To& to) {
+  if (const auto number = entry.number(key, {sign})) (to.*....*path) = *number;
+}
+template <auto... path, class To>
+void read_count(Entry& entry, const char* key, To& to) {
+  if (const auto number = entry.whole(key, 1)) (to.*....*path) = *number;
+}
+template <auto... path, class To>
+void read_flag(Entry& entry, const char* key, To& to) {
+  if (const auto flag = entry.flag(key)) (to.*....*path) = *flag;
+}
+// The method of that name in a table of <cdot/methods.hpp>.
+template <const auto& table, auto... path, class To>
+void read_choice(Entry& entry, const char* key, To& to) {
+  if (const auto name = entry.choice(key, names_of(table))) (to.*....*path) = method_called(table, *name);
+}
+
+// --- The same rows for people.
+
+struct KeyTable {
+  struct Row {
+    std::string name, meaning, otherwise;
+  };
+  std::string title;
+  std::vector<Row> rows;
+};
+
+template <class To, std::size_t count>
+KeyTable table_of(std::string title, const Key<To> (&keys)[count]) {
+  KeyTable table{std::move(title), {}};
+  for (const Key<To>& key : keys)
+    table.rows.push_back({key.name,
+                          key.where == Where::in_space ? std::string("in space: ") + key.meaning : key.meaning,
+                          key.otherwise});
+  return table;
+}
+
+KeyTable keys_of_the_top();   // tool/scene/settings.cpp
+KeyTable keys_of_a_body();    // tool/scene/bodies.cpp
+KeyTable keys_of_a_joint();   // tool/scene/joints.cpp
+KeyTable keys_of_a_spring();  // tool/scene/joints.cpp
+KeyTable keys_of_effects();   // tool/scene/effects.cpp
+
+}  // namespace cdot
