@@ -8,16 +8,7 @@
 
 namespace cdot::test {
 
-constexpr double order_of(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::euler:
-    case Integrator::implicit: return 1;
-    case Integrator::rattle: return 2;
-    case Integrator::rk4: return 4;
-    case Integrator::dop853: break;
-  }
-  return 8;
-}
+constexpr double order_of(Integrator integrator) { return row_of(integrator).order; }
 
 // f(settings, name) for every solver, drift correction and integrator, with fixed steps and with steps of their own,
 // that go together (setup_test.cpp says which are refused, and how); the rest as in `base`. Returns how many these are.

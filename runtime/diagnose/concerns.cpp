@@ -9,19 +9,6 @@
 namespace cdot {
 namespace {
 
-// Of an oscillation, radians per step up to which a method is stable: Euler's symplectic and RATTLE 2, exactly; the
-// Runge-Kutta methods where their stability regions cut the imaginary axis. Half of that is far from exact already.
-double stable_radians(Integrator integrator) {
-  switch (integrator) {
-    case Integrator::euler:
-    case Integrator::implicit:
-    case Integrator::rattle: return 2;
-    case Integrator::rk4: return 2.828;
-    case Integrator::dop853: return 5;
-  }
-  return 2;
-}
-
 constexpr double sharp_turn = 0.5;                       // [rad] per step: a chord is 1 % shorter than its arc
 constexpr double slow_turn = 0.02, needs_no_help = 0.5;  // [rad] per step
 constexpr double sweeps_per_condition = 4;               // that leave little of an error
@@ -60,14 +47,14 @@ void on_stiffness(const Diagnosis::Island& island, const Settings& settings, dou
                   std::vector<Concern>& concerns) {
   if (settings.local_error > 0 || !(island.stiffest.square > 0)) return;
   const double omega = std::sqrt(island.stiffest.square), radians = h * omega;
-  const double stable = stable_radians(settings.integrator);
+  const double stable = row_of(settings.integrator).stable_radians;  // half of that is far from exact already
   if (!(radians > stable / 2)) return;
   const bool tension = island.stiffest.tension > 0.5 * island.stiffest.square;
   std::string fix = fmt::format("substeps = {:.0f} or more", std::ceil(radians / 0.5) * settings.substeps);
-  if (tension && settings.integrator != Integrator::implicit) fix += ", integrator = \"implicit\"";
+  const bool stiffens = row_of(settings.integrator).stiffens;
+  if (tension && !stiffens) fix += ", integrator = \"implicit\"";
   // Between bodies it is rows of the direct solver.
-  if (tension && settings.integrator == Integrator::implicit && settings.solver == Solver::iterative)
-    fix += ", solver = \"direct\"";
+  if (tension && stiffens && sweeps(settings.solver)) fix += ", solver = \"direct\"";
   fix += ", or integrator = \"dop853\" with local_error = 1e-6";
   concerns.push_back(
       {true,
@@ -94,21 +81,20 @@ void on_spin(const Diagnosis::Island& island, const Settings& settings, double h
 // slows down what turns.
 void on_damping(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
                 std::vector<Concern>& concerns) {
-  if (settings.integrator != Integrator::implicit) return;
+  if (!row_of(settings.integrator).stiffens) return;
   const double radians = h * std::sqrt(std::max(0.0, island.stiffest.square)), turn = h * island.fastest_spin;
   if (radians > needs_no_help || turn < slow_turn) return;
   concerns.push_back(
       {true,
-       fmt::format("implicit slows down what turns, as {} does by {:.2g} rad per substep, and no tension "
+       fmt::format("{} slows down what turns, as {} does by {:.2g} rad per substep, and no tension "
                    "here needs it: the stiffest motion swings by {:.2g} rad per substep",
-                   names.body(island.spinning), turn, radians),
+                   name_of(integrators, settings.integrator), names.body(island.spinning), turn, radians),
        "integrator = \"rattle\""});
 }
 
 void on_condition(const Diagnosis::Island& island, const Settings& settings, bool single, const Names& names,
                   std::vector<Concern>& concerns) {
-  const double sweeps = settings.iterations;
-  if (settings.solver == Solver::iterative && island.condition > sweeps_per_condition * sweeps)
+  if (sweeps(settings.solver) && island.condition > sweeps_per_condition * settings.iterations)
     concerns.push_back(
         {true,
          fmt::format("K's condition is {:.2g}, of masses from {:.3g} to {:.3g} kg: {} sweeps of the iterative "

@@ -91,7 +91,7 @@ class Equations {
   int rows_ = 0, dependent_ = 0;
 };
 
-// The stiffest motion of the island; the step's length decides what Integrator::implicit takes off it.
+// The stiffest motion of the island; the step's length decides what a linearly implicit step takes off it.
 template <class S>
 Diagnosis::Stiffest stiffest_motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations,
                                     typename S::Scalar h);

@@ -13,6 +13,7 @@
 
 #include "runtime/diagnose/equations.hpp"
 #include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 
 namespace cdot {
 namespace {
@@ -29,8 +30,7 @@ class Motion {
   Motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations)
       : world_(world), island_(island), equations_(equations), pose_(world.bodies.pose) {
     // Euler's methods solve for the forces of springs on coordinates; the others take them as they are.
-    const Integrator integrator = world.settings.integrator;
-    if (integrator == Integrator::euler || integrator == Integrator::implicit) return;
+    if (!row_of(world.settings.integrator).forces_springs) return;
     for (const Segment<S>& segment : island.segments)
       if (segment.batch->law && segment.batch->law->force) coordinate_springs_.push_back(segment);
   }
@@ -41,19 +41,18 @@ class Motion {
     Velocities rate = world_.bodies.velocity_rate;
     for (const Segment<S>& segment : equations_.segments()) {
       Batch<S>& batch = *segment.batch;
-      batch.ops->velocity(batch, segment.begin, segment.end, rate.data(), batch.scratch.data());
+      batch.ops->velocity(batch, segment.begin, segment.end, rate.data(), batch.rate.data());
       batch.ops->gamma(batch, segment.begin, segment.end, world_.bodies, T(world_.time), batch.bias.data());
     }
     std::vector<double> b(equations_.size());
     equations_.each_row(
-        [&](int row, Batch<S>& batch, int i) { b[row] = double(batch.bias[i]) - double(batch.scratch[i]); });
+        [&](int row, Batch<S>& batch, int i) { b[row] = double(batch.bias[i]) - double(batch.rate[i]); });
     const std::vector<double> force = equations_.solve(b);
     // stiffen_bodies() wants the impulses of a step.
     equations_.each_row(
         [&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]) * h, batch.correction[i] = 0; });
-    world_.last_step = double(h);
-    solves_as_step_ = world_.settings.integrator == Integrator::implicit && world_.settings.solver == Solver::direct;
-    if (world_.settings.integrator == Integrator::implicit) stiffen_bodies(world_, island_, h);
+    solves_as_step_ = island_.stiffened && island_.solver->exact;
+    if (island_.stiffened) stiffen_bodies(world_, island_, h, double(h));
     equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]); });
     if (!solves_as_step_) return;
     island_.system.choose(Equations<S>::takes_part);
@@ -76,7 +75,7 @@ class Motion {
   Velocities within_joints(Velocities change) {
     for (const Segment<S>& segment : equations_.segments()) {
       Batch<S>& batch = *segment.batch;
-      batch.ops->velocity(batch, segment.begin, segment.end, change.data(), batch.scratch.data());
+      batch.ops->velocity(batch, segment.begin, segment.end, change.data(), batch.rate.data());
     }
     find_corrections(change);
     for (const Segment<S>& segment : equations_.segments())
@@ -108,17 +107,17 @@ class Motion {
     return std::sqrt(square);
   }
 
-  // -K^-1 J change, J change being in the scratch.
+  // -K^-1 J change, J change being the rates.
   void find_corrections(const Velocities& change) {
     if (solves_as_step_) {
-      island_.system.load([](const Batch<S>& batch, int i) { return -double(batch.scratch[i]); });
+      island_.system.load([](const Batch<S>& batch, int i) { return -double(batch.rate[i]); });
       island_.system.load_tensions(change.data());
       island_.system.solve();
       island_.system.store([](Batch<S>& batch, int i, double lambda) { batch.correction[i] = T(lambda); });
       return;
     }
     std::vector<double> b(equations_.size());
-    equations_.each_row([&](int row, Batch<S>& batch, int i) { b[row] = -double(batch.scratch[i]); });
+    equations_.each_row([&](int row, Batch<S>& batch, int i) { b[row] = -double(batch.rate[i]); });
     const std::vector<double> impulse = equations_.solve(b);
     equations_.each_row([&](int row, Batch<S>& batch, int i) { batch.correction[i] = T(impulse[row]); });
   }
@@ -144,8 +143,8 @@ class Motion {
   void push_by(const Segment<S>& segment) {
     Batch<S>& batch = *segment.batch;
     batch.ops->evaluate(batch, segment.begin, segment.end, world_.bodies, T(world_.time));
-    find_known_forces(world_, batch, segment.begin, segment.end);
-    batch.ops->apply(batch, segment.begin, segment.end, world_.bodies, batch.lower.data(),
+    find_known_forces(world_, batch, segment.begin, segment.end, batch.impulse.data());
+    batch.ops->apply(batch, segment.begin, segment.end, world_.bodies, batch.impulse.data(),
                      world_.bodies.velocity_rate.data());
   }
 

@@ -59,11 +59,11 @@ void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h)
         S::damped(all.velocity[drag.body], T(1) / (T(1) + h * drag.linear), T(1) / (T(1) + h * drag.angular));
   for (const auto& spring : island.springs) pull(all, spring, h, all.velocity);
   // What tension stiffens, a torque turns less.
-  const bool stiffened = world.settings.integrator == Integrator::implicit;
   for (int i : island.bodies) {
     const auto& rate = all.acceleration[i];
-    all.velocity[i] = S::sum(
-        all.velocity[i], stiffened ? S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], rate)) : rate, h);
+    all.velocity[i] =
+        S::sum(all.velocity[i],
+               island.stiffened ? S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], rate)) : rate, h);
   }
 }
 

@@ -14,7 +14,7 @@ void turn_inertias(WorldState<S>& world, Island<S>& island) {
     S::turn(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
     S::turn_acceleration(gyroscope, all.inverse_mass[i], all.acceleration[i]);
     // Under geometric stiffness the effective mass is that of the step's start until the next.
-    if (world.settings.integrator != Integrator::implicit) all.effective_mass[i] = all.inverse_mass[i];
+    if (!island.stiffened) all.effective_mass[i] = all.inverse_mass[i];
   });
 }
 

@@ -1,24 +1,60 @@
-// The island's whole K at once: J v = -bias to round-off, whatever the mass ratios and however long
-// the chain.
+// The island's whole K at once: exact to round-off, whatever the mass ratios and however long the chain.
+#include "runtime/solve/direct.hpp"
+
+#include <limits>
+
 #include <cdot/spaces.hpp>
 
-#include "runtime/solve/solve.hpp"
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solver.hpp"
 
 namespace cdot {
+namespace {
+
+constexpr int newton_rounds = 20;
+// What a round may leave of the error: less, and any is down to round-off when the rounds end, 0.2^19 being 5e-14. In
+// continuous time a step that needs new directions is rather too long: its error control is to find that.
+constexpr double enough = 0.2, enough_in_continuous_time = 0.5;
 
 template <class S>
-void solve_direct(WorldState<S>& world, Island<S>& island) {
-  using T = typename S::Scalar;
-  System<S>& system = island.system;
+bool is_held(const Batch<S>& batch, int i) {
+  return !batch.law || batch.mode[i] == Mode::held;
+}
+
+// A row that has something to correct.
+template <class S>
+bool has_error(const Batch<S>& batch, int i) {
+  return is_held(batch, i) || (batch.mode[i] == Mode::bounded && batch.error[i] != 0);
+}
+
+template <class S>
+[[gnu::always_inline]] inline void exert_solution(const WorldState<S>& world, const Island<S>& island,
+                                                  System<S>& system, typename S::Velocity* to) {
+  system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });
+  exert(world, island, system, &Batch<S>::lambda, to);
+}
+
+template <class S>
+void forget_factor(WorldState<S>&, Island<S>& island) {
+  island.factored = false;
+}
+
+template <class S>
+void factor(WorldState<S>& world, Island<S>& island) {
+  System<S>& system = island.at_work();
+  system.choose([](const Batch<S>&, int) { return true; });
+  system.assemble(world.bodies);
+  system.factor();
+}
+
+// K lambda = -(J v + bias), lambda within its bounds.
+template <class S>
+void solve_velocities(WorldState<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar) {
+  System<S>& system = island.at_work();
   if (system.rows() == 0) return;
-  Bodies<S>& all = world.bodies;
-  for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, all.velocity.data(),
-                                 segment.batch->scratch.data());
-  // K lambda = -(J v + bias)
-  system.load([](const Batch<S>& batch, int i) { return -(batch.scratch[i] + batch.bias[i]); });
-  system.load_tensions(all.velocity.data());
-  if (!island.factored) system.assemble(all);
+  load_rates(island, system, v);
+  system.load_tensions(v);
+  if (!island.factored) system.assemble(world.bodies);
   if (system.lawful()) {
     system.load_laws();
     island.redundant_rows = system.solve_bounded();
@@ -26,14 +62,123 @@ void solve_direct(WorldState<S>& world, Island<S>& island) {
     if (!island.factored) island.redundant_rows = system.factor();
     system.solve();
   }
-  system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = T(lambda); });
-  for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all, segment.batch->lambda.data(),
-                              all.velocity.data());
-  system.pull(all, all.velocity.data());
+  exert_solution(world, island, system, v);
 }
 
-#define CDOT_INSTANTIATE(S) template void solve_direct(WorldState<S>&, Island<S>&);
+// K lambda = gamma - J dv/dt without joints, known forces being given.
+template <class S>
+void solve_accelerations(WorldState<S>& world, Island<S>& island) {
+  using T = typename S::Scalar;
+  System<S>& system = island.at_work();
+  if (system.rows() == 0) return;
+  auto* rate = world.bodies.velocity_rate.data();
+  load_rates(island, system, rate);
+  if (!island.factored) system.assemble(world.bodies);
+  if (system.lawful()) {
+    system.choose(is_held<S>);
+    system.give([](const Batch<S>& batch, int i) { return batch.law ? batch.lower[i] : T(0); });
+  }
+  if (!island.factored) island.redundant_rows = system.factor();
+  island.factored = true;
+  system.solve();
+  exert_solution(world, island, system, rate);
+}
+
+// K lambda = -C, q += M^-1 J^T lambda.
+template <class S>
+void move_by_newton(WorldState<S>& world, Island<S>& island, System<S>& system) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  load_errors(system, T(-1));
+  system.solve();
+  exert_correction(world, island, system, all.increment.data());
+  for (int i : island.bodies) {
+    all.pose[i] = S::moved(all.pose[i], all.increment[i]);
+    all.displacement[i] = S::sum(all.displacement[i], all.increment[i], T(1));
+    all.increment[i] = {};
+  }
+}
+
+// `fresh`: J and K are not yet those of the step. Where they leave more than `enough` of the error they are renewed,
+// and where new ones do not halve it the joints contradict each other, round-off is reached, or the step went too far.
+template <class S>
+void solve_positions(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
+  using T = typename S::Scalar;
+  System<S>& system = island.at_work();
+  T before = std::numeric_limits<T>::infinity();
+  bool renewed = false;
+  // Forces that are known move nothing here.
+  system.give([](const Batch<S>&, int) { return 0.0; });
+  // Without laws, and in continuous time, the solve before has left just this factor.
+  const bool other_rows = system.lawful() && !island.continuous;
+  for (int round = 0;; ++round) {
+    const T worst = find_errors(world, island, time);
+    island.residual = worst;
+    if (!(worst > converged<T> * island.scale) || round == newton_rounds) return;
+    // Bounds that were within reach when the rows were chosen, and are passed now. What has come in stays.
+    const bool more = round > 0 && other_rows && system.choose_more(has_error<S>);
+    const bool slow = !more && worst > T(island.continuous ? enough_in_continuous_time : enough) * before;
+    if (slow && renewed && worst > T(0.5) * before) return;
+    if (slow || (fresh && round == 0)) {
+      evaluate_anew(world, island, time);
+      system.assemble(world.bodies);
+      renewed |= slow;
+    }
+    if (round == 0 && (fresh || other_rows)) factor_rows_with_errors(system);
+    else if (more || slow) system.factor();
+    before = worst;
+    move_by_newton(world, island, system);
+  }
+}
+
+template <class S>
+void project(WorldState<S>& world, Island<S>& island) {
+  System<S>& system = island.at_work();
+  load_rates(island, system, world.bodies.velocity.data());
+  system.choose(is_held<S>);
+  system.assemble(world.bodies);
+  island.redundant_rows = system.factor();
+  system.solve();
+  exert_correction(world, island, system, world.bodies.velocity.data());
+  island.factored = true;
+}
+
+}  // namespace
+
+template <class S>
+void factor_rows_with_errors(System<S>& system) {
+  system.choose(has_error<S>);
+  system.factor();
+}
+
+// What brings a state of continuous time back onto its joints is the method's error, not an impulse of theirs.
+template <class S>
+void exert_correction(const WorldState<S>& world, const Island<S>& island, System<S>& system,
+                      typename S::Velocity* to) {
+  using T = typename S::Scalar;
+  system.store([&](Batch<S>& batch, int i, auto lambda) {
+    batch.impulse[i] = T(lambda);
+    if (!island.continuous) batch.correction[i] += T(lambda);
+  });
+  exert(world, island, system, &Batch<S>::impulse, to);
+}
+
+template <class S>
+const RowSolver<S>& direct_solver() {
+  static constexpr RowSolver<S> solver{.exact = true,
+                                       .renew = forget_factor<S>,
+                                       .factor = factor<S>,
+                                       .velocities = solve_velocities<S>,
+                                       .accelerations = solve_accelerations<S>,
+                                       .positions = solve_positions<S>,
+                                       .projection = project<S>};
+  return solver;
+}
+
+#define CDOT_INSTANTIATE(S)                                                                         \
+  template void factor_rows_with_errors(System<S>&);                                                \
+  template void exert_correction(const WorldState<S>&, const Island<S>&, System<S>&, S::Velocity*); \
+  template const RowSolver<S>& direct_solver();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

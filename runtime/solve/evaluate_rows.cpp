@@ -4,15 +4,15 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/solve/tension.hpp"
 
 namespace cdot {
 
 template <class S>
-void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
   using T = typename S::Scalar;
-  // The impulses at hand are those of the forces over the step before.
-  const T share = world.last_step > 0 ? h * (h / T(world.last_step)) : h;
+  const T share = last_step > 0 ? h * (h / T(last_step)) : h;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.stiffness[i] = {};
   for (const Segment<S>& segment : island.segments)
@@ -33,7 +33,7 @@ void factorize_rows(WorldState<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     // The direct solver builds its own K; a law looks at K's diagonal whatever the solver.
-    if (!batch.law && world.settings.solver == Solver::direct) continue;
+    if (!batch.law && island.solver->exact) continue;
     const auto fill = batch.law ? batch.ops->effective_mass : batch.ops->factorize;
     fill(batch, segment.begin, segment.end, world.bodies);
   }
@@ -61,9 +61,9 @@ void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                            \
-  template void stiffen_bodies(WorldState<S>&, Island<S>&, S::Scalar); \
-  template void factorize_rows(WorldState<S>&, Island<S>&);            \
+#define CDOT_INSTANTIATE(S)                                                    \
+  template void stiffen_bodies(WorldState<S>&, Island<S>&, S::Scalar, double); \
+  template void factorize_rows(WorldState<S>&, Island<S>&);                    \
   template void evaluate_rows(WorldState<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -1,4 +1,4 @@
-// What a step asks of the joints of an island: their rows, the solvers, and the way back onto C = 0.
+// What a step asks of the rows of an island before a solver (runtime/solve/solver.hpp) sees them, and their forces.
 #pragma once
 
 #include "runtime/state/world_state.hpp"
@@ -13,19 +13,12 @@ void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h
 template <class S>
 void factorize_rows(WorldState<S>& world, Island<S>& island);
 
-// Impulses such that J v = -bias, by the solver of the settings. The iterative one starts from `share` of the impulses
-// at hand, unless warm starting is off.
+// Forces of springs on coordinates, from C and its rate: of the slots [begin, end) of a batch under such a law, laid
+// out as lambda is.
 template <class S>
-void solve_iterative(WorldState<S>& world, Island<S>& island, typename S::Scalar share);
-template <class S>
-void solve_direct(WorldState<S>& world, Island<S>& island);
+void find_known_forces(WorldState<S>& world, Batch<S>& batch, int begin, int end, typename S::Scalar* force);
 
-// Forces of springs on coordinates, from C and its rate, become both bounds of their rows: slots [begin, end) of a
-// batch under such a law.
-template <class S>
-void find_known_forces(WorldState<S>& world, Batch<S>& batch, int begin, int end);
-
-// The same, and -gamma for the bias of every row; forces of springs become both bounds of their rows.
+// dv/dt without joints, and -gamma for the bias of every row; forces of springs become both bounds of their rows.
 template <class S>
 void ask_for_gamma(WorldState<S>& world, Island<S>& island, typename S::Scalar time);
 
@@ -34,15 +27,9 @@ void ask_for_gamma(WorldState<S>& world, Island<S>& island, typename S::Scalar t
 template <class S>
 void accelerate(WorldState<S>& world, Island<S>& island, typename S::Scalar time);
 
-// Adds to the inertias, and to the rows of the direct solver, what the tension of the last step's impulses stiffens:
-// for Integrator::implicit.
+// Adds to the inertias, and to the rows of the direct solver, what the tension of the impulses at hand stiffens; these
+// are those of a step of `last_step` [s]; 0: of h.
 template <class S>
-void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
-
-// Brings the poses back to C = 0, and the velocities with them. Only for Drift::projection.
-template <class S>
-void settle_poses(WorldState<S>& world, Island<S>& island);
-template <class S>
-void correct_drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
 
 }  // namespace cdot

@@ -7,6 +7,7 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/number/arbitrary.hpp"
+#include "runtime/solve/solver.hpp"
 
 namespace cdot {
 namespace {
@@ -123,8 +124,8 @@ void leave_to_row(typename S::Stiffness& own, const double* w, double pivot) {
 
 template <class S>
 std::vector<int> tension_rows(const WorldState<S>& world, const Island<S>& island) {
-  const Integrator integrator = world.settings.integrator;
-  if (integrator != Integrator::implicit && !works_on_accelerations(integrator)) return {};
+  const IntegratorRow& method = row_of(world.settings.integrator);
+  if (!method.stiffens && method.level != Level::acceleration) return {};
   const Bodies<S> at = elsewhere(world.bodies, island.size);
   std::vector<int> rows;
   for (const Segment<S>& segment : island.segments)
@@ -136,9 +137,9 @@ std::vector<int> tension_rows(const WorldState<S>& world, const Island<S>& islan
 template <class S>
 void tighten_tensions(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  System<S>& system = island.system;
+  System<S>& system = island.at_work();
   system.slacken();
-  if (world.settings.solver != Solver::direct) return;
+  if (!island.solver->exact) return;
   for (const auto& tension : system.tensions) {
     const Batch<S>& batch = *tension.batch;
     if (world.joints[batch.joint[tension.slot]].broken) continue;

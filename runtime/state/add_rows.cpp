@@ -46,7 +46,9 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
   for (int k = 0; k < ops->parameter_size; ++k) batch.parameters.push_back(T(record.parameters[k]));
   grow(batch.jacobian, ops->jacobian_size);
   grow(batch.factor, batch.triangle());
-  for (auto* array : {&batch.C, &batch.bias, &batch.lambda, &batch.correction, &batch.scratch}) grow(*array, ops->rows);
+  for (auto* array :
+       {&batch.C, &batch.bias, &batch.lambda, &batch.correction, &batch.rate, &batch.error, &batch.impulse})
+    grow(*array, ops->rows);
   if (law) {
     grow(batch.softness, ops->rows);
     grow(batch.lower, ops->rows, -std::numeric_limits<T>::infinity());

@@ -27,7 +27,7 @@ class Probe {
     batch_.ops = ops_;
     batch_.parameters.assign(joint.parameters.begin(), joint.parameters.end());
     batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
-    for (auto* array : {&batch_.C, &batch_.bias, &batch_.scratch}) array->assign(static_cast<size_t>(ops_->rows), T(0));
+    for (auto* array : {&batch_.C, &batch_.bias, &batch_.rate}) array->assign(static_cast<size_t>(ops_->rows), T(0));
     batch_.body.resize(joint.bodies.size());
     for (auto* array : {&bodies_.velocity, &bodies_.displacement}) array->resize(joint.bodies.size());
     bodies_.pose.resize(joint.bodies.size());
@@ -48,9 +48,9 @@ class Probe {
 
   // J v + dC/dt of every row.
   const std::vector<T>& Cdot() {
-    ops_->velocity(batch_, 0, 1, bodies_.velocity.data(), batch_.scratch.data());
-    for (int r = 0; r < ops_->rows; ++r) batch_.scratch[r] += batch_.bias[r];
-    return batch_.scratch;
+    ops_->velocity(batch_, 0, 1, bodies_.velocity.data(), batch_.rate.data());
+    for (int r = 0; r < ops_->rows; ++r) batch_.rate[r] += batch_.bias[r];
+    return batch_.rate;
   }
 
   // True if C, where it holds, has no direction: a step along the row's own M^-1 J^T changes C as
@@ -63,8 +63,8 @@ class Probe {
     auto& step = bodies_.displacement;
     std::fill(step.begin(), step.end(), typename S::Velocity{});
     ops_->apply(batch_, 0, 1, bodies_, lambda.data(), step.data());
-    ops_->velocity(batch_, 0, 1, step.data(), batch_.scratch.data());
-    const T promised = batch_.scratch[row];
+    ops_->velocity(batch_, 0, 1, step.data(), batch_.rate.data());
+    const T promised = batch_.rate[row];
     if (!(promised > T(0))) return false;
     // A joint that is small itself has its kink near, and one that is large does not see small steps: it is a kink only
     // if it is one at every scale.

@@ -25,8 +25,7 @@ struct StateList {
       for (size_t k = 0; k < gyroscopes.size(); ++k) each_gyroscope(gyroscopes[k], static_cast<int>(k), visit);
     for (size_t k = 0; k < batches.size(); ++k) each_slot(*batches[k], static_cast<int>(k), visit);
     for (size_t k = 0; k < islands.size(); ++k)
-      each_of_island(islands[k], static_cast<int>(k),
-                     settings.solver == Solver::direct || on_failure == OnFailure::retry, visit);
+      each_of_island(islands[k], static_cast<int>(k), world.needs_systems(), visit);
   }
 
   template <class S>
@@ -79,8 +78,8 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_slot(Batch<S>& batch, int index, Visitor& visit) {
-    auto& [ops, law, kinds, joint, body, parameters, jacobian, factor, C, bias, lambda, correction, scratch, counters,
-           softness, lower, upper, mode, constants] = batch;
+    auto& [ops, law, kinds, joint, body, parameters, jacobian, factor, C, bias, lambda, correction, rate, error,
+           impulse, counters, softness, lower, upper, mode, constants] = batch;
     visit.item("rows.joint", index), visit(joint);
     visit.item("rows.body", index), visit(body);
     visit.item("rows.parameters", index), visit(parameters);
@@ -100,8 +99,8 @@ struct StateList {
 
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool direct, Visitor& visit) {
-    auto& [bodies, segments, springs, drags, gyroscopes, system, rescue, redundant_rows, size, scale, restless,
-           residual, evaluated, factored, continuous, flow, asleep, rested, kept, trouble] = island;
+    auto& [bodies, segments, springs, drags, gyroscopes, system, rescue, solver, stiffened, redundant_rows, size, scale,
+           restless, residual, evaluated, factored, continuous, flow, asleep, rested, kept, trouble] = island;
     visit.item("island.flags", index);
     visit(evaluated), visit(factored), visit(continuous), visit(asleep);
     visit.item("island.rows", index);

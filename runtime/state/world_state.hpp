@@ -45,13 +45,18 @@ struct Drag {
   T linear, angular;  // [1/s]
 };
 
+// How an island's rows are solved (runtime/solve/solver.hpp).
+template <class S>
+struct RowSolver;
+
 // What an integrator keeps of an island from one stage of a step to the next.
 template <class S>
 struct Flow {
   using T = typename S::Scalar;
-  std::vector<typename S::Pose> pose;  // RATTLE: at the start of the step, [body]
+  // Euler's methods and RATTLE: at the start of the step, [body]
+  std::vector<typename S::Pose> pose;
   std::vector<typename S::Velocity> velocity;
-  Broyden<ExactNumber<T>> search;  // for the impulses of its first half
+  Broyden<ExactNumber<T>> search;  // RATTLE: for the impulses of its first half
   // Runge-Kutta:
   std::vector<T> start, now;  // poses and velocities as numbers, [body][S::pose_numbers + S::freedom]
   std::vector<T> rates;       // of them, [stage][...]
@@ -116,10 +121,14 @@ struct Island {
   // The same with rows of tension, for steps that a method at acceleration level leaves to the linearly implicit one;
   // built where there are such rows.
   System<S> rescue;
-  int redundant_rows = 0;  // of the last factorisation
-  T size = 1;              // its longest arm or distance between joined bodies [m]
-  T scale = 1;             // ten times that, but at most 1: by how much less than for others C must be to be small
-  bool restless = false;   // driven by time: never sleeps
+  System<S>& at_work() { return stiffened && rescue.built() ? rescue : system; }
+  const System<S>& at_work() const { return stiffened && rescue.built() ? rescue : system; }
+  const RowSolver<S>* solver = nullptr;  // that of the settings, but where a step that failed is tried again
+  bool stiffened = false;                // effective masses are more than masses: those of a linearly implicit step
+  int redundant_rows = 0;                // of the last factorisation
+  T size = 1;                            // its longest arm or distance between joined bodies [m]
+  T scale = 1;            // ten times that, but at most 1: by how much less than for others C must be to be small
+  bool restless = false;  // driven by time: never sleeps
   T residual = std::numeric_limits<T>::infinity();  // largest C left by the last correction
   bool evaluated = false;                           // C and J belong to the present poses
   bool factored = false;                            // and system to that J, all rows free
@@ -166,6 +175,9 @@ struct WorldState {
   std::vector<Island<S>> islands;
   std::vector<int> island_of;  // by body; -1: immovable
   std::vector<int> awake;      // islands, in order
+
+  // The direct solver works on islands, or may have to.
+  bool needs_systems() const { return !sweeps(settings.solver) || on_failure == OnFailure::retry; }
 };
 
 // One of a joint's bodies that can move, in whose island it is; -1: none can.

@@ -72,7 +72,7 @@ void go_between(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
   if (!flow.end_kept) keep_end(world, island, method, time);
   interpolate(flow, method);
   set_numbers(world, island, flow.now.data());
-  settle(world, island, time - flow.ahead, true);
+  project(world, island, time - flow.ahead, true);
 }
 
 template <class S>

@@ -3,19 +3,21 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
 
 namespace cdot {
 namespace {
 
 template <class S>
-void move_velocities(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void move_velocities(WorldState<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+  using T = typename S::Scalar;
   evaluate_rows(world, island, h);
   apply_forces(world, island, h);
-  if (world.settings.solver == Solver::direct) solve_direct(world, island);
-  else  // the same forces over another time
-    solve_iterative(world, island, world.last_step > 0 ? h / typename S::Scalar(world.last_step) : 0);
+  // The same forces over another time.
+  island.solver->velocities(world, island, world.bodies.velocity.data(), last_step > 0 ? h / T(last_step) : T(0));
 }
 
 // The linearly implicit step wants the impulses of the one before. The first one takes those that it would have
@@ -23,28 +25,36 @@ void move_velocities(WorldState<S>& world, Island<S>& island, typename S::Scalar
 template <class S>
 void rehearse(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
-  for (int i : island.bodies) all.velocity_rate[i] = all.velocity[i];
-  move_velocities(world, island, h);
-  for (int i : island.bodies) all.velocity[i] = all.velocity_rate[i];
+  std::vector<typename S::Velocity>& start = island.flow.velocity;
+  for (size_t k = 0; k < start.size(); ++k) start[k] = all.velocity[island.bodies[k]];
+  move_velocities(world, island, h, 0);
+  for (size_t k = 0; k < start.size(); ++k) all.velocity[island.bodies[k]] = start[k];
   island.evaluated = island.factored = false;
 }
 
 }  // namespace
 
 template <class S>
-void step_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
-  settle_poses(world, island);
-  if (world.settings.integrator == Integrator::implicit) {
-    if (world.last_step == 0) rehearse(world, island, h);
-    stiffen_bodies(world, island, h);
+void step_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+  project_start(world, island);
+  if (island.stiffened) {
+    if (last_step == 0) rehearse(world, island, h);
+    stiffen_bodies(world, island, h, last_step);
   }
-  move_velocities(world, island, h);
+  move_velocities(world, island, h, last_step);
   integrate(world, island, h);
-  correct_drift(world, island, h);
-  island.system.slacken();  // what follows between steps is no motion of this one
+  project_step(world, island, h);
+  island.at_work().slacken();  // what follows between steps is no motion of this one
 }
 
-#define CDOT_INSTANTIATE(S) template void step_euler(WorldState<S>&, Island<S>&, S::Scalar);
+template <class S>
+void prepare_euler(Island<S>& island) {
+  if (island.stiffened) island.flow.velocity.resize(island.bodies.size());
+}
+
+#define CDOT_INSTANTIATE(S)                                                \
+  template void step_euler(WorldState<S>&, Island<S>&, S::Scalar, double); \
+  template void prepare_euler(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

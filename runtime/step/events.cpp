@@ -9,6 +9,7 @@
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 
 namespace cdot {
 namespace {
@@ -93,13 +94,13 @@ void tell_apart(const WorldState<S>& world, Island<S>& island, typename S::Scala
   });
 }
 
-// J v of every row under a law, into the batches' scratch.
+// J v of every row under a law, into Batch::rate.
 template <class S>
 void find_rates(WorldState<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     if (!segment.batch->law) continue;
     const auto* velocity = world.bodies.velocity.data();
-    segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, velocity, segment.batch->scratch.data());
+    segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, velocity, segment.batch->rate.data());
   }
 }
 
@@ -113,12 +114,11 @@ void clear_laws(Island<S>& island) {
   }
 }
 
+// v, be it velocities or accelerations, such that J v = -bias within the bounds.
 template <class S>
-void solve(WorldState<S>& world, Island<S>& island) {
-  island.factored = false;
-  if (world.settings.solver == Solver::direct) return solve_direct(world, island);
-  factorize_rows(world, island);
-  solve_iterative(world, island, typename S::Scalar(0));
+void solve(WorldState<S>& world, Island<S>& island, std::vector<typename S::Velocity>& v) {
+  island.solver->renew(world, island);
+  island.solver->velocities(world, island, v.data(), typename S::Scalar(0));
 }
 
 // Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. What has stopped is `held`:
@@ -129,7 +129,7 @@ void stop_what_hits(WorldState<S>& world, Island<S>& island) {
   bool hits = false;
   find_rates(world, island);
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
-    const T rate = batch.scratch[i] + batch.bias[i];
+    const T rate = batch.rate[i] + batch.bias[i];
     hits |= guard.one_sided() && guard.gap() <= told.C && (guard.lower == T(0) ? rate : -rate) < -told.rate;
   });
   if (!hits) return;
@@ -140,7 +140,7 @@ void stop_what_hits(WorldState<S>& world, Island<S>& island) {
     batch.upper[i] = guard.upper;
     batch.bias[i] -= guard.rate;
   });
-  solve(world, island);
+  solve(world, island, world.bodies.velocity);
   for (const Segment<S>& segment : island.segments)
     for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
       segment.batch->correction[i] += segment.batch->lambda[i];
@@ -159,7 +159,7 @@ bool offer_bounds(WorldState<S>& world, Island<S>& island) {
   find_rates(world, island);
   clear_laws(island);
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
-    const T missing = guard.rate - (batch.scratch[i] + batch.bias[i]);
+    const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
     const bool slow = std::abs(missing) <= T(4) * told.rate || batch.mode[i] == Mode::held;
     batch.mode[i] = Mode::held;
     batch.lower[i] = guard.lower;
@@ -183,9 +183,7 @@ template <class S>
 void decide_by_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
   ask_for_gamma(world, island, time);
-  std::swap(world.bodies.velocity, world.bodies.velocity_rate);
-  solve(world, island);
-  std::swap(world.bodies.velocity, world.bodies.velocity_rate);
+  solve(world, island, world.bodies.velocity_rate);
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>&) {
     if (batch.mode[i] != Mode::held) return;
     const T force = batch.lambda[i];
@@ -244,8 +242,7 @@ void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar ti
       evaluate_anew(world, island, time);
     }
   }
-  hold_velocities(world, island);
-  island.factored = world.settings.solver == Solver::direct;
+  project_velocities(world, island);
   note_rates(world, island);
   accelerate(world, island, time);
   tell_apart(world, island, h);
@@ -260,7 +257,7 @@ void note_rates(WorldState<S>& world, Island<S>& island) {
   find_rates(world, island);
   size_t k = 0;
   each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>&, const Told<S>&) {
-    island.flow.row_rates[k++] = batch.scratch[i] + batch.bias[i];
+    island.flow.row_rates[k++] = batch.rate[i] + batch.bias[i];
   });
 }
 

@@ -1,16 +1,27 @@
-// The integrators, one file each.
+// How the integrators of <cdot/integrators.hpp> take their steps.
 #pragma once
 
 #include "runtime/state/world_state.hpp"
 
 namespace cdot {
 
-// One step of h of the integrator of the settings, for one island.
 template <class S>
-void step_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+struct Stepper {
+  Integrator integrator;
+  // One step of h of one island, from the impulses of one of WorldState::last_step.
+  void (*step)(WorldState<S>&, Island<S>&, typename S::Scalar h);
+  // Makes room in Island::flow; allocates.
+  void (*prepare)(Island<S>&);
+  // A step begins with the factor of all rows that the one before left.
+  bool starts_from_factor;
+};
+
 template <class S>
-void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+const Stepper<S>& stepper_of(Integrator integrator);
+
+// Euler's step of h, where the impulses at hand are those of a step of `last_step`; 0: there are none. Linearly
+// implicit if the island is `stiffened`: then it is what others fall back on.
 template <class S>
-void step_runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+void step_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
 
 }  // namespace cdot

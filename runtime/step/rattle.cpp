@@ -8,9 +8,10 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/direct.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
-#include "runtime/step/integrators.hpp"
+#include "runtime/solve/solver.hpp"
 
 namespace cdot {
 namespace {
@@ -55,13 +56,12 @@ template <class S>
 typename S::Scalar begin(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (island.evaluated) return world.last_step > 0 ? h / T(world.last_step) : T(0);
-  settle_poses(world, island);
+  project_start(world, island);
   evaluate_anew(world, island, typename S::Scalar(world.time));
   clear_correction(world, island);
-  hold_velocities(world, island);
+  project_velocities(world, island);
   fill_lambda(island, T(0));
   island.evaluated = true;
-  island.factored = world.settings.solver == Solver::direct;
   if (has_velocity_rows(island)) exert_at_start(world, island, h);
   return T(1);
 }
@@ -79,8 +79,8 @@ void kick(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (!batch.law || !batch.law->force) continue;
-    find_known_forces(world, batch, segment.begin, segment.end);
-    batch.ops->apply(batch, segment.begin, segment.end, all, batch.lower.data(), all.velocity_rate.data());
+    find_known_forces(world, batch, segment.begin, segment.end, batch.impulse.data());
+    batch.ops->apply(batch, segment.begin, segment.end, all, batch.impulse.data(), all.velocity_rate.data());
   }
   exchange();
   for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.velocity_rate[i], h);
@@ -93,8 +93,8 @@ void guess_impulses(WorldState<S>& world, Island<S>& island, typename S::Scalar 
     Batch<S>& batch = *segment.batch;
     const int rows = batch.ops->rows;
     for (int i = segment.begin * rows; i < segment.end * rows; ++i)
-      batch.correction[i] = batch.scratch[i] = share * batch.lambda[i];
-    batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.scratch.data(),
+      batch.correction[i] = batch.impulse[i] = share * batch.lambda[i];
+    batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.impulse.data(),
                      world.bodies.velocity.data());
   }
 }
@@ -135,7 +135,7 @@ template <class S>
 bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T time = T(world.time) + h;
-  System<S>& system = island.system;
+  System<S>& system = island.at_work();
   island.flow.search.begin([&](size_t row) { return system.diagonal(static_cast<int>(row)); });
   T least = std::numeric_limits<T>::infinity();
   bool astray = false;
@@ -148,17 +148,18 @@ bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scal
       return !astray || !turned_round(world, island);
     else if (++vain > most_in_vain) return island.residual <= T(10) * converged<T> * island.scale;
     astray |= vain > 0;
-    solve_errors(island, T(-1) / h);
+    load_errors(system, T(-1) / h);
+    if (system.lawful()) factor_rows_with_errors(system);
+    system.solve();
     if (!island.flow.search.next(system.lambda.data())) return false;
-    apply_solution(world, island, world.bodies.velocity.data());
+    exert_correction(world, island, system, world.bodies.velocity.data());
   }
 }
 
 // Motors, limits and friction are solved for with the exact rows. Springs have pushed as forces.
 template <class S>
-void solve_bounded_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void bound_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
-  factorize_rows(world, island);
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     if (!batch.law) continue;
@@ -173,25 +174,15 @@ void solve_bounded_rows(WorldState<S>& world, Island<S>& island, typename S::Sca
       batch.upper[i] *= T(0.5);
     }
   }
-  island.factored = false;
-  if (world.settings.solver == Solver::direct) solve_direct(world, island);
-  else solve_iterative(world, island, T(1));
-}
-
-template <class S>
-bool has_laws(const Island<S>& island) {
-  return std::any_of(island.segments.begin(), island.segments.end(),
-                     [](const Segment<S>& segment) { return segment.batch->law != nullptr; });
 }
 
 // The velocities at the end: J v = -dC/dt, the impulses in lambda.
 template <class S>
-void hold_end(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
-  if (has_laws(island)) return solve_bounded_rows(world, island, h);
-  island.factored = false;
-  if (world.settings.solver == Solver::direct) return solve_direct(world, island);
+void solve_end(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   factorize_rows(world, island);
-  solve_iterative(world, island, typename S::Scalar(1));
+  bound_rows(world, island, h);
+  island.factored = false;
+  island.solver->velocities(world, island, world.bodies.velocity.data(), typename S::Scalar(1));
 }
 
 // Half a kick at the start, and what the joints are expected to exert there.
@@ -212,9 +203,9 @@ void drift_with_renewed_directions(WorldState<S>& world, Island<S>& island, type
   using T = typename S::Scalar;
   drift(world, island, h);
   scale_corrections(island, h);
-  hold_poses(world, island, T(world.time) + h, false);
-  tell_joints_apart(world, island, at_start);
-  const bool keep = world.settings.solver == Solver::iterative || bends_the_path(world, island, double(h));
+  island.solver->positions(world, island, T(world.time) + h, false);
+  fail_if_open(world, island, at_start);
+  const bool keep = !island.solver->exact || correction_is_small(world, island, double(h));
   add_corrections(world, island, keep ? T(1) / h : T(0));
 }
 
@@ -231,7 +222,7 @@ void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h) 
     flow.velocity[k] = all.velocity[island.bodies[k]];
   }
   start_half(world, island, h, share);
-  const bool by_sweeps = world.settings.solver == Solver::iterative;
+  const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
     if (!by_sweeps) start_half(world, island, h, share);
     drift_with_renewed_directions(world, island, h, at_start);
@@ -241,11 +232,20 @@ void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h) 
     flow.velocity[k] = S::sum(S::sum({}, all.velocity[island.bodies[k]], T(2)), flow.velocity[k], T(-1));
   evaluate_anew(world, island, T(world.time) + h);
   kick(world, island, h / 2);
-  hold_end(world, island, h);
+  solve_end(world, island, h);
   island.evaluated = true;
 }
 
-#define CDOT_INSTANTIATE(S) template void step_rattle(WorldState<S>&, Island<S>&, S::Scalar);
+template <class S>
+void prepare_rattle(Island<S>& island) {
+  island.flow.pose.resize(island.bodies.size());
+  island.flow.velocity.resize(island.bodies.size());
+  island.flow.search.reserve(static_cast<size_t>(island.system.rows()));
+}
+
+#define CDOT_INSTANTIATE(S)                                         \
+  template void step_rattle(WorldState<S>&, Island<S>&, S::Scalar); \
+  template void prepare_rattle(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -9,6 +9,7 @@
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/step/events.hpp"
 
 namespace cdot {
@@ -110,24 +111,23 @@ void take_stages(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>&
 }
 
 template <class S>
-void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
-  const bool holds = world.settings.drift == Drift::projection && !island.segments.empty();
+void project(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
+  const bool projects = world.settings.drift == Drift::projection && !island.segments.empty();
   for (int i : island.bodies) world.bodies.displacement[i] = {};
-  if (holds) hold_poses(world, island, time, fresh);
+  if (projects) island.solver->positions(world, island, time, fresh);
   evaluate_anew(world, island, time);
   island.factored = false;
-  if (holds) {
-    hold_velocities(world, island);
+  if (projects) {
+    project_velocities(world, island);
     if constexpr (S::has_gyroscopes) set_inertias(world, island);
-    island.factored = world.settings.solver == Solver::direct;
   }
   note_rates(world, island);
   accelerate(world, island, time);
 }
 
 template <class S>
-void settle_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
-  settle(world, island, time, false);
+void project_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+  project(world, island, time, false);
   measure_margins(island);
   read_rates(world, island, method.stages);
 }
@@ -155,7 +155,7 @@ double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typ
 }
 
 template <class S>
-void prepare_flow(Island<S>& island, const RungeKuttaOf<S>& method) {
+void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
   Flow<S>& flow = island.flow;
   const size_t n = island.bodies.size() * numbers_per_body<S>;
   flow.start.assign(n, 0);
@@ -187,12 +187,12 @@ void go_back(WorldState<S>& world, Island<S>& island) {
   template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                          \
   template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                           \
   template void take_stage(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
-  template void settle(WorldState<S>&, Island<S>&, S::Scalar, bool);                                       \
-  template void prepare_flow(Island<S>&, const RungeKuttaOf<S>&);                                          \
+  template void project(WorldState<S>&, Island<S>&, S::Scalar, bool);                                      \
+  template void prepare_runge_kutta(Island<S>&, const RungeKuttaOf<S>&);                                   \
   template void keep_start(const WorldState<S>&, Island<S>&);                                              \
   template void go_back(WorldState<S>&, Island<S>&);                                                       \
   template void take_stages(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
-  template void settle_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                 \
+  template void project_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                \
   template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);              \
   template double share_of_size(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)

@@ -13,13 +13,9 @@ template <class S>
 using RungeKuttaOf = RungeKutta<ExactNumber<typename S::Scalar>>;
 
 template <class S>
-const RungeKuttaOf<S>& runge_kutta(Integrator integrator) {
-  using Real = ExactNumber<typename S::Scalar>;
-  return integrator == Integrator::rk4 ? rk4<Real> : dop853<Real>;
-}
-
+void step_runge_kutta(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
 template <class S>
-void prepare_flow(Island<S>& island, const RungeKuttaOf<S>& method);
+void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method);
 
 // The present state, with its accelerations, is what the next steps start from; and back to it.
 template <class S>
@@ -49,11 +45,11 @@ void take_stages(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>&
 
 // The present state onto the constraints, with the accelerations there. `fresh`: J is not yet that of the step.
 template <class S>
-void settle(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
+void project(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
 
 // The same for the end of a step, whose k becomes the last.
 template <class S>
-void settle_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
+void project_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 
 // The estimated error of the step over what is allowed [m], [rad], [m/s], [rad/s]: of velocities relative where they
 // exceed 1, of no number less than its last bit.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -73,7 +72,7 @@ typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const Ru
     if (!(at > low && at < high)) break;
     go_back(world, island);
     take_stages(world, island, method, time, at);
-    settle_end(world, island, method, time + at);
+    project_end(world, island, method, time + at);
     const double margin = furthest(flow.margins_chosen, flow.margins);
     if (margin < passed) {
       high = at;
@@ -86,7 +85,7 @@ typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const Ru
   }
   go_back(world, island);
   take_stages(world, island, method, time, high);
-  settle_end(world, island, method, time + high);
+  project_end(world, island, method, time + high);
   return high;
 }
 
@@ -107,7 +106,7 @@ bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S
     return S::slower(world.bodies.displacement[i], slight_displacement<S> * island.size);
   };
   if (std::all_of(island.bodies.begin(), island.bodies.end(), slight)) return false;
-  return !bends_the_path(world, island, double(h));
+  return !correction_is_small(world, island, double(h));
 }
 
 // A step of h, at its end on the constraints. Returns its error, as error_now() tells it in units of what is allowed:
@@ -118,7 +117,7 @@ double try_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
   take_stages(world, island, method, time, h);
   double error = method.error_at_end ? 0 : error_now();
   if (!(error <= 1)) return error;
-  settle_end(world, island, method, time + h);
+  project_end(world, island, method, time + h);
   if (method.error_at_end) error = error_now();
   const bool lost = left_the_joints(world, island, island.flow.residual) || went_astray(world, island, h);
   return lost ? std::numeric_limits<double>::infinity() : error;
@@ -180,7 +179,7 @@ void begin(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typ
   if (island.flow.known) return;
   drop_modes(island);
   island.continuous = false;
-  settle_poses(world, island);
+  project_start(world, island);
   island.continuous = true;
   evaluate_anew(world, island, time);
   choose_modes(world, island, time, h);
@@ -199,7 +198,7 @@ void scale_forces(const Island<S>& island, typename S::Scalar by) {
 // What is left of a step, by the sturdiest of the other methods: linearly implicit, as it starts from `time`. It wants
 // the impulses of a step before.
 template <class S>
-void leave_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+void fall_back_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   ++world.counts.rescued;
   fill_lambda(island, typename S::Scalar(0));
   evaluate_anew(world, island, time);
@@ -210,14 +209,10 @@ void leave_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar 
   island.continuous = island.evaluated = island.factored = false;
   island.flow.forget();
   island.flow.slivers = 0;
-  const Integrator own = std::exchange(world.settings.integrator, Integrator::implicit);
-  const double last_step = std::exchange(world.last_step, double(h));
-  const bool tense = island.rescue.built();
-  if (tense) island.rescue.follow(island.system), std::swap(island.system, island.rescue);
-  step_euler(world, island, h);
-  if (tense) std::swap(island.system, island.rescue);
-  world.settings.integrator = own;
-  world.last_step = last_step;
+  if (island.rescue.built()) island.rescue.follow(island.system);
+  island.stiffened = true;
+  step_euler(world, island, h, double(h));
+  island.stiffened = false;
   for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
   scale_forces(island, 1 / h);
   island.evaluated = island.factored = false;
@@ -240,7 +235,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
   for (int events = 0; done < h;) {
     const T time = T(world.time) + done, left = h - done;
     if (events > most_events || flow.slivers > most_slivers) {
-      leave_to_euler(world, island, time, left);
+      fall_back_to_euler(world, island, time, left);
       return h;
     }
     begin(world, island, time, h);
@@ -252,7 +247,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
     flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, left, reach)
                                                  : take_fixed_step(world, island, method, time, left, h);
     if (!(flow.length > T(0))) {
-      leave_to_euler(world, island, time, left);
+      fall_back_to_euler(world, island, time, left);
       return h;
     }
     flow.longest = std::max(flow.longest, flow.length);
@@ -272,9 +267,8 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
 }  // namespace
 
 template <class S>
-void step_runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void step_runge_kutta(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
   using T = typename S::Scalar;
-  const RungeKuttaOf<S>& method = runge_kutta<S>(world.settings.integrator);
   Flow<S>& flow = island.flow;
   if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
   clear_correction(world, island);
@@ -286,7 +280,8 @@ void step_runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scala
   scale_forces(island, h);
 }
 
-#define CDOT_INSTANTIATE(S) template void step_runge_kutta(WorldState<S>&, Island<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S) \
+  template void step_runge_kutta(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

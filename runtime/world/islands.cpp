@@ -9,9 +9,10 @@
 #include <cdot/joints.hpp>
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/solver.hpp"
 #include "runtime/solve/sweep_order.hpp"
 #include "runtime/solve/tension.hpp"
-#include "runtime/step/runge_kutta.hpp"
+#include "runtime/step/integrators.hpp"
 #include "runtime/world/rollback.hpp"
 
 namespace cdot {
@@ -152,9 +153,8 @@ void give_out_forces(WorldState<S>& world) {
 template <class S>
 void build_systems(const WorldState<S>& world, Island<S>& island) {
   const std::vector<int> tensions = tension_rows(world, island);
-  const bool always = world.settings.integrator == Integrator::implicit;
-  island.system.build(island.segments, world.bodies, always ? tensions : std::vector<int>{});
-  if (!always && !tensions.empty()) island.rescue.build(island.segments, world.bodies, tensions);
+  island.system.build(island.segments, world.bodies, island.stiffened ? tensions : std::vector<int>{});
+  if (!island.stiffened && !tensions.empty()) island.rescue.build(island.segments, world.bodies, tensions);
 }
 
 }  // namespace
@@ -164,8 +164,8 @@ void prepare_topology(WorldState<S>& world) {
   if (world.prepared) return;
   number_islands(world);
   // The direct solver has its own order: each type of joint in one run, in the order in which they were added.
-  const bool sweeps = world.settings.solver == Solver::iterative;
-  const std::vector<int> places = sweeps ? sweep_places(world) : std::vector<int>(world.joints.size(), 0);
+  const std::vector<int> places =
+      sweeps(world.settings.solver) ? sweep_places(world) : std::vector<int>(world.joints.size(), 0);
   for (int i = 0; i < static_cast<int>(world.batches.size()); ++i) sort_slots(world, i, places);
   list_segments(world, places);
   give_out_forces(world);
@@ -173,14 +173,11 @@ void prepare_topology(WorldState<S>& world) {
   for (int i = 0; i < static_cast<int>(world.islands.size()); ++i) {
     Island<S>& island = world.islands[i];
     measure_size(world, island);
-    if (world.settings.solver == Solver::direct || world.on_failure == OnFailure::retry) build_systems(world, island);
-    island.flow.pose.resize(island.bodies.size());
-    island.flow.velocity.resize(island.bodies.size());
-    if (world.settings.integrator == Integrator::rattle)
-      island.flow.search.reserve(static_cast<size_t>(island.system.rows()));
-    if (works_on_accelerations(world.settings.integrator))
-      prepare_flow(island, runge_kutta<S>(world.settings.integrator));
-    prepare_to_keep(world, island);
+    island.solver = &solver_of<S>(world.settings.solver);
+    island.stiffened = row_of(world.settings.integrator).stiffens;
+    if (world.needs_systems()) build_systems(world, island);
+    stepper_of<S>(world.settings.integrator).prepare(island);
+    prepare_to_keep(island);
     world.awake.push_back(i);
   }
   world.prepared = true;

@@ -1,12 +1,13 @@
 // The initial state brought onto the joints: full Newton on C, then the velocities, each by the
-// least change in the metric of the masses. Apart from solve/drift.cpp, which corrects one step's drift
-// with that step's J.
+// least change in the metric of the masses. Apart from solve/projection.cpp, which corrects one step's drift with that
+// step's J.
 #include <algorithm>
 #include <cmath>
 
 #include <cdot/world.hpp>
 
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/direct.hpp"
 
 namespace cdot {
 namespace {
@@ -14,15 +15,12 @@ namespace {
 constexpr int newton_rounds = 50;
 
 template <class S>
-void solve_and_apply(WorldState<S>& world, Island<S>& island, std::vector<typename S::Velocity>& to) {
-  using T = typename S::Scalar;
+void solve_and_exert(WorldState<S>& world, Island<S>& island, std::vector<typename S::Velocity>& to) {
   island.system.assemble(world.bodies);
   island.system.factor();
   island.system.solve();
-  island.system.store([](Batch<S>& batch, int i, auto lambda) { batch.scratch[i] = T(lambda); });
-  for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, segment.batch->scratch.data(),
-                              to.data());
+  island.system.store([](Batch<S>& batch, int i, auto lambda) { batch.impulse[i] = typename S::Scalar(lambda); });
+  exert(world, island, island.system, &Batch<S>::impulse, to.data());
 }
 
 template <class S>
@@ -34,12 +32,12 @@ void evaluate(WorldState<S>& world, Island<S>& island) {
 
 // The law's idea of the error, or C itself; 0 for rows that do not constrain.
 template <class S>
-void errors_into_scratch(Island<S>& island) {
+void measure_errors(Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int rows = batch.ops->rows;
     for (int slot = segment.begin; slot < segment.end; ++slot) {
-      auto* error = batch.scratch.data() + slot * rows;
+      auto* error = batch.error.data() + slot * rows;
       if (batch.law && batch.law->error) batch.law->error(batch, slot, error);
       else
         for (int r = 0; r < rows; ++r) error[r] = batch.law ? 0 : batch.C[slot * rows + r];
@@ -51,7 +49,7 @@ template <class S>
 void move_poses(WorldState<S>& world, Island<S>& island) {
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.increment[i] = {};
-  solve_and_apply(world, island, all.increment);
+  solve_and_exert(world, island, all.increment);
   for (int i : island.bodies) {
     all.pose[i] = S::moved(all.pose[i], all.increment[i]);
     all.increment[i] = {};
@@ -69,16 +67,15 @@ void project_poses(WorldState<S>& world, Island<S>& island) {
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < newton_rounds; ++round) {
     evaluate(world, island);
-    errors_into_scratch(island);
+    measure_errors(island);
     double worst = 0;
-    island.system.load([&](const Batch<S>& batch, int i) {
-      worst = std::max(worst, std::abs(double(batch.scratch[i])));
-      return -batch.scratch[i];
-    });
+    load_errors(island.system, typename S::Scalar(-1));
+    island.system.each_row(
+        [&](int, const Batch<S>& batch, int i) { worst = std::max(worst, std::abs(double(batch.error[i]))); });
     // Down to round-off: from there on it does not get smaller.
     if (worst == 0 || (worst < 1e-6 && worst >= before)) return;
     before = worst;
-    island.system.choose([](const Batch<S>& batch, int i) { return !batch.law || batch.scratch[i] != 0; });
+    island.system.choose([](const Batch<S>& batch, int i) { return !batch.law || batch.error[i] != 0; });
     move_poses(world, island);
   }
 }
@@ -87,17 +84,14 @@ template <class S>
 void project_velocities(WorldState<S>& world, Island<S>& island, double tolerance) {
   Bodies<S>& all = world.bodies;
   evaluate(world, island);
-  for (const Segment<S>& segment : island.segments)
-    segment.batch->ops->velocity(*segment.batch, segment.begin, segment.end, all.velocity.data(),
-                                 segment.batch->scratch.data());
-  const auto rate = [](const Batch<S>& batch, int i) { return batch.scratch[i] + batch.bias[i]; };
-  island.system.load([&](const Batch<S>& batch, int i) { return -rate(batch, i); });
+  load_rates(island, island.system, all.velocity.data());
   island.system.choose([&](const Batch<S>& batch, int i) {
     if (!batch.law) return true;
     if (!batch.law->reported) return false;
-    return batch.kinds[i % batch.ops->rows] != RowKind::inequality || (batch.C[i] <= tolerance && rate(batch, i) < 0);
+    return batch.kinds[i % batch.ops->rows] != RowKind::inequality ||
+           (batch.C[i] <= tolerance && batch.rate[i] + batch.bias[i] < 0);
   });
-  solve_and_apply(world, island, all.velocity);
+  solve_and_exert(world, island, all.velocity);
 }
 
 }  // namespace

@@ -5,8 +5,9 @@
 
 #include <cdot/spaces.hpp>
 
-#include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/state/snapshot_list.hpp"
+#include "runtime/step/integrators.hpp"
 
 namespace cdot {
 namespace {
@@ -64,7 +65,7 @@ void copy_rows(Island<S>& island) {
   }
 }
 
-// What the end of the step before left for this one: J at these poses, and for RATTLE its factors.
+// What the end of the step before left for this one: J at these poses, and the factor of a method that begins with it.
 template <class S>
 void compute_again(WorldState<S>& world, Island<S>& island) {
   island.factored = false;
@@ -72,11 +73,7 @@ void compute_again(WorldState<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies,
                                  typename S::Scalar(world.kept_time));
-  if (world.settings.integrator != Integrator::rattle) return;
-  if (world.settings.solver == Solver::iterative) return factorize_rows(world, island);
-  island.system.choose([](const Batch<S>&, int) { return true; });
-  island.system.assemble(world.bodies);
-  island.system.factor();
+  if (stepper_of<S>(world.settings.integrator).starts_from_factor) island.solver->factor(world, island);
 }
 
 template <bool keep, class S>
@@ -96,7 +93,7 @@ void copy_island(WorldState<S>& world, Island<S>& island) {
 }  // namespace
 
 template <class S>
-void prepare_to_keep(const WorldState<S>& world, Island<S>& island) {
+void prepare_to_keep(Island<S>& island) {
   Kept<S>& kept = island.kept;
   for (int body : island.bodies) {
     if (kept.runs.empty() || kept.runs.back().first + kept.runs.back().second != body) kept.runs.push_back({body, 0});
@@ -104,7 +101,7 @@ void prepare_to_keep(const WorldState<S>& world, Island<S>& island) {
   }
   kept.pose.resize(island.bodies.size());
   kept.velocity.resize(island.bodies.size());
-  if (world.settings.integrator == Integrator::implicit) kept.effective_mass.resize(island.bodies.size());
+  if (island.stiffened) kept.effective_mass.resize(island.bodies.size());
   kept.gyroscopes.resize(island.gyroscopes.size());
   size_t numbers = 0;
   for (const Segment<S>& segment : island.segments)
@@ -142,9 +139,9 @@ void put_state_back(WorldState<S>& world) {
   world.counts = world.kept_counts;
 }
 
-#define CDOT_INSTANTIATE(S)                                        \
-  template void prepare_to_keep(const WorldState<S>&, Island<S>&); \
-  template void keep_state(WorldState<S>&);                        \
+#define CDOT_INSTANTIATE(S)                  \
+  template void prepare_to_keep(Island<S>&); \
+  template void keep_state(WorldState<S>&);  \
   template void put_state_back(WorldState<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

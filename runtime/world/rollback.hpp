@@ -8,7 +8,7 @@ namespace cdot {
 
 // Makes room; allocates.
 template <class S>
-void prepare_to_keep(const WorldState<S>& world, Island<S>& island);
+void prepare_to_keep(Island<S>& island);
 
 // Of all islands that are awake, with the time and the counts.
 template <class S>

@@ -123,7 +123,7 @@ std::uint64_t hash_of_order(WorldState<S>& world) {
   hash.add(world.island_of);
   for (Island<S>& island : world.islands) {
     for (const Segment<S>& segment : island.segments) hash.add(segment.begin);
-    if (world.settings.solver != Solver::direct) continue;
+    if (sweeps(world.settings.solver)) continue;
     for (const auto& block : island.system.blocks) hash.add(block.batch->joint[block.slot]), hash.add(block.first);
   }
   return hash.value;

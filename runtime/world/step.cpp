@@ -5,23 +5,13 @@
 #include <cdot/spaces.hpp>
 #include <cdot/world.hpp>
 
+#include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
 #include "runtime/world/islands.hpp"
 #include "runtime/world/rollback.hpp"
 
 namespace cdot {
 namespace {
-
-template <class S>
-void advance(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
-  switch (world.settings.integrator) {
-    case Integrator::euler:
-    case Integrator::implicit: return step_euler(world, island, h);
-    case Integrator::rattle: return step_rattle(world, island, h);
-    case Integrator::rk4:
-    case Integrator::dop853: return step_runge_kutta(world, island, h);
-  }
-}
 
 template <class S>
 bool finite(const WorldState<S>& world, const Island<S>& island) {
@@ -40,12 +30,13 @@ bool finite(const WorldState<S>& world, const Island<S>& island) {
 template <class S>
 StepResult attempt(WorldState<S>& world, double h, int parts) {
   StepResult result;
+  const auto& integrator = stepper_of<S>(world.settings.integrator);
   const double part = h / parts;
   const auto dt = typename S::Scalar(part);
   for (int k = 0; k < parts; ++k) {
     for (int index : world.awake) {
       Island<S>& island = world.islands[index];
-      advance(world, island, dt);
+      integrator.step(world, island, dt);
       if (island.trouble == StepProblem::none && !finite(world, island)) island.trouble = StepProblem::not_finite;
       if (island.trouble == StepProblem::none) continue;
       result.problem = island.trouble;
@@ -109,12 +100,12 @@ void blame(WorldState<S>& world, StepResult& result) {
   blame_joint(world, island, result);
 }
 
-// Settings::solver for one attempt.
+// In the next attempts.
 template <class S>
-void solve_by(WorldState<S>& world, Solver solver) {
-  world.settings.solver = solver;
+void solve_by(WorldState<S>& world, const RowSolver<S>& solver) {
   for (int index : world.awake) {
     Island<S>& island = world.islands[index];
+    island.solver = &solver;
     island.evaluated = island.factored = false;
     island.flow.forget();
   }
@@ -139,11 +130,12 @@ bool succeeds_in_parts(WorldState<S>& world, double h, int fewest, StepResult& r
 template <class S>
 StepResult try_again(WorldState<S>& world, double h) {
   StepResult result;
-  if (succeeds_in_parts(world, h, 2, result) || world.settings.solver == Solver::direct) return result;
-  solve_by(world, Solver::direct);
+  const RowSolver<S>& solver = solver_of<S>(world.settings.solver);
+  if (succeeds_in_parts(world, h, 2, result) || solver.exact) return result;
+  solve_by(world, direct_solver<S>());
   result.direct = succeeds_in_parts(world, h, 1, result);
   if (result.direct) ++world.counts.direct;
-  solve_by(world, Solver::iterative);
+  solve_by(world, solver);
   return result;
 }
 

@@ -196,7 +196,7 @@ TEST(ComposedRattle, IsOfOrderTen) {
   double before = 0;
   int seen = 0;
   for (int steps = 2; steps <= 8; steps *= 2) {
-    const Trajectory run = composed_rattle(scene, steps, equal_times(2, 4));
+    const Trajectory run = composed(Integrator::rattle, scene, steps, equal_times(2, 4));
     ASSERT_EQ(run.frames.size(), 4u);
     EXPECT_EQ(run.counts.evaluations, 4 * 35 * steps);
     double error = 0;

@@ -30,7 +30,7 @@ void add_spring_rows(const WorldState<S>& state, const Batch<S>& batch, std::vec
   std::vector<T> force(no_rate), further(no_rate);
   rows.ops->evaluate(rows, 0, rows.count(), state.bodies, T(state.time));
   rows.ops->effective_mass(rows, 0, rows.count(), state.bodies);
-  rows.ops->velocity(rows, 0, rows.count(), state.bodies.velocity.data(), rows.scratch.data());
+  rows.ops->velocity(rows, 0, rows.count(), state.bodies.velocity.data(), rows.rate.data());
   for (int slot = 0; slot < rows.count(); ++slot) {
     const int joint = rows.joint[static_cast<std::size_t>(slot)];
     const double whole = state.joints[static_cast<std::size_t>(joint)].broken ? 0 : 1;
@@ -41,7 +41,7 @@ void add_spring_rows(const WorldState<S>& state, const Batch<S>& batch, std::vec
       const auto of_row = static_cast<std::size_t>(r);
       const auto i = static_cast<std::size_t>(slot * count + r);
       const auto k = static_cast<std::size_t>(slot * rows.triangle() + r * (r + 1) / 2 + r);
-      springs.push_back({joint, double(rows.C[i]), double(rows.scratch[i]), whole * double(force[of_row]),
+      springs.push_back({joint, double(rows.C[i]), double(rows.rate[i]), whole * double(force[of_row]),
                          double(further[of_row] - force[of_row]), whole * double(rows.factor[k])});
     }
   }

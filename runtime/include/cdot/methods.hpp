@@ -28,13 +28,11 @@ inline constexpr std::array<Named<Drift>, 3> drifts{{
     {"baumgarte", Drift::baumgarte},
     {"none", Drift::none},
 }};
-inline constexpr std::array<Named<Integrator>, 5> integrators{{
-    {"euler", Integrator::euler},
-    {"implicit", Integrator::implicit},
-    {"rattle", Integrator::rattle},
-    {"rk4", Integrator::rk4},
-    {"dop853", Integrator::dop853},
-}};
+inline constexpr auto integrators = [] {
+  std::array<Named<Integrator>, integrator_rows.size()> names{};
+  for (std::size_t k = 0; k < names.size(); ++k) names[k] = {integrator_rows[k].name, integrator_rows[k].integrator};
+  return names;
+}();
 inline constexpr std::array<Named<Kernels>, 3> kernel_forms{{
     {"fast", Kernels::fast},
     {"balanced", Kernels::balanced},

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <cdot/integrators.hpp>
+
 namespace cdot {
 
 // Thrown by everything that sets a World up, with a sentence that says what is wrong and what would
@@ -20,23 +22,14 @@ enum class Solver {
   direct      // sparse LDL^T of each island's K: exact to round-off, for mechanisms
 };
 
+// Settings::iterations counts.
+constexpr bool sweeps(Solver solver) { return solver == Solver::iterative; }
+
 enum class Drift {
   none,       // velocities only; C grows with time
   baumgarte,  // a share of C is fed back into the velocities: J v = -(baumgarte / h) C
   projection  // Newton on C after every step, the velocities projected as well
 };
-
-enum class Integrator {
-  euler,     // symplectic Euler: first order, cheap
-  implicit,  // linearly implicit in what the joints' tension stiffens: heavy loads on light chains stay quiet
-  rattle,    // RATTLE: second order, symmetric, C and Cdot held to round-off
-  rk4,       // Runge-Kutta of order 4 on accelerations, poses and velocities projected after each step
-  dop853     // Dormand-Prince of order 8, likewise
-};
-
-constexpr bool works_on_accelerations(Integrator integrator) {
-  return integrator == Integrator::rk4 || integrator == Integrator::dop853;
-}
 
 // How the iterative solver solves the rows of one joint together, where a joint has several; tests/bench/ulp has what
 // each costs and what it is worth.
@@ -69,12 +62,12 @@ struct Settings {
 constexpr const char* wrong_with_methods(const Settings& s) {
   const bool accelerations = works_on_accelerations(s.integrator);
   if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4 and dop853 only";
-  if (s.integrator == Integrator::rattle && s.drift != Drift::projection)
+  if (row_of(s.integrator).projects && s.drift != Drift::projection)
     return "rattle holds the joints by itself: it needs drift = projection";
   if (!accelerations) return nullptr;
   if (s.drift == Drift::baumgarte)
     return "baumgarte feeds velocities of Euler's steps: rk4 and dop853 need drift = projection";
-  if (s.drift == Drift::none && s.solver == Solver::iterative)
+  if (s.drift == Drift::none && sweeps(s.solver))
     return "what the iterative solver leaves in accelerations only drift = projection takes away";
   return nullptr;
 }

@@ -20,7 +20,7 @@ constexpr double stages[] = {
 };
 constexpr int middle = std::size(stages) - 1;
 
-// Where velocities turn round, a step goes back the way that the motion came: RATTLE is reversible. J, C and the
+// Where velocities turn round, a step goes back the way that the motion came: the method is reversible. J, C and the
 // impulses are those of the poses, so that nothing has to be evaluated anew.
 template <class S>
 void turn_round(WorldState<S>& world) {
@@ -44,10 +44,11 @@ void composed_step(BasicWorld<S>& world, double h) {
 }
 
 template <class S>
-Trajectory composed_in(const Scene& scene, int steps, const std::vector<double>& times, const Stop& stop) {
+Trajectory composed_in(Integrator symmetric, const Scene& scene, int steps, const std::vector<double>& times,
+                       const Stop& stop) {
   Trajectory trajectory;
   std::string warnings;
-  BasicWorld<S> world = world_at_start<S>(solved_by({Integrator::rattle}, {}, scene), warnings);
+  BasicWorld<S> world = world_at_start<S>(solved_by({symmetric}, {}, scene), warnings);
   const double start = cpu_now();
   double from = 0;
   for (const double to : times) {
@@ -102,10 +103,10 @@ bool reversible(const Scene& scene) {
                       [](const SpringDefinition& spring) { return spring.damping > 0; });
 }
 
-Trajectory composed_rattle(const Scene& scene, int steps, const std::vector<double>& times, const Stop& stop,
-                           bool extended) {
+Trajectory composed(Integrator symmetric, const Scene& scene, int steps, const std::vector<double>& times,
+                    const Stop& stop, bool extended) {
   return in_space_of(scene, {.extended = extended},
-                     [&]<class S>(S) { return composed_in<S>(scene, steps, times, stop); });
+                     [&]<class S>(S) { return composed_in<S>(symmetric, scene, steps, times, stop); });
 }
 
 }  // namespace cdot

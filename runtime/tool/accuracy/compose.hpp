@@ -1,6 +1,7 @@
-// A trajectory of order 10 from RATTLE alone: 35 of its steps, of chosen lengths and some of them backwards, make one
-// in which the errors of lower order cancel. It knows the method only by its World, and what comes out owes nothing to
-// accelerations. Nothing is taken apart and weighted, as extrapolation would: round-off stays that of the steps.
+// A trajectory of order 10 from a symmetric method alone, as RATTLE is: 35 of its steps, of chosen lengths and some of
+// them backwards, make one in which the errors of lower order cancel. It knows the method only by its World, and what
+// comes out owes nothing to accelerations. Nothing is taken apart and weighted, as extrapolation would: round-off stays
+// that of the steps.
 #pragma once
 
 #include "runtime/tool/run/trajectory.hpp"
@@ -12,8 +13,8 @@ namespace cdot {
 bool reversible(const Scene& scene);
 
 // `steps` such steps from one of the times to the next, in doubles or in extended precision. Counts::evaluations are
-// RATTLE's steps.
-Trajectory composed_rattle(const Scene& scene, int steps, const std::vector<double>& times, const Stop& stop = {},
-                           bool extended = false);
+// the method's steps.
+Trajectory composed(Integrator symmetric, const Scene& scene, int steps, const std::vector<double>& times,
+                    const Stop& stop = {}, bool extended = false);
 
 }  // namespace cdot

@@ -18,13 +18,13 @@ constexpr int patience = 3;        // so many finer knobs without a smaller one 
 // The trajectory of one knob.
 Trajectory made(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
                 const Stop& stop) {
-  if (way.integrator == Integrator::rattle) return composed_rattle(scene, knob.steps, times, stop, way.extended);
+  if (row_of(way.integrator).symmetric) return composed(way.integrator, scene, knob.steps, times, stop, way.extended);
   return trajectory_of(scene, way, knob, times, stop);
 }
 
 std::string name_of_method(Integrator integrator) {
   const std::string name(name_of(integrators, integrator));
-  return integrator == Integrator::rattle ? "composed " + name : name;
+  return row_of(integrator).symmetric ? "composed " + name : name;
 }
 
 }  // namespace

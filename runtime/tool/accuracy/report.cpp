@@ -64,7 +64,7 @@ nlohmann::ordered_json json_of(const AccuracyReport& report, const Point& point)
       {"integrator", name_of(integrators, way.integrator)},
       {"solver", name_of(solvers, way.solver)},
       {"drift", name_of(drifts, way.drift)},
-      {"iterations", way.solver == Solver::direct ? 0 : way.iterations},
+      {"iterations", sweeps(way.solver) ? way.iterations : 0},
       {"precision", way.single ? "float" : "double"},
       {"step", way.adaptive ? 0 : step_of(report, point)},
       {"local_error", knob_at(way, point.level).local_error},
@@ -169,7 +169,7 @@ std::string accuracy_csv(const AccuracyReport& report) {
     const double local = knob_at(way, point.level).local_error;
     return fmt::format("\"{}\",{},{},{},{},{},{},{}", name_of(way), name_of(integrators, way.integrator),
                        name_of(solvers, way.solver), name_of(drifts, way.drift),
-                       way.solver == Solver::direct ? 0 : way.iterations, way.single ? "float" : "double",
+                       sweeps(way.solver) ? way.iterations : 0, way.single ? "float" : "double",
                        local > 0 ? 0 : step_of(report, point), local);
   };
   for (std::size_t k = 0; k < report.answers.size(); ++k) {

@@ -11,47 +11,47 @@ namespace {
 constexpr int most_doublings = 17;     // of the steps from one sample to the next
 constexpr int most_exact_digits = 15;  // of a local error
 
-constexpr auto euler = Integrator::euler, implicit = Integrator::implicit;
-constexpr auto rattle = Integrator::rattle, rk4 = Integrator::rk4, dop853 = Integrator::dop853;
 constexpr auto direct = Solver::direct, iterative = Solver::iterative;
 constexpr auto none = Drift::none, baumgarte = Drift::baumgarte, projection = Drift::projection;
 
-bool first_order(Integrator integrator) { return integrator == euler || integrator == implicit; }
+bool first_order(Integrator integrator) { return row_of(integrator).order == 1; }
+
+// Those of first order, for which the drift correction is a choice of its own.
+const std::vector<Way> first_order_ways = {
+    {Integrator::euler, direct, none, 0},
+    {Integrator::euler, direct, baumgarte, 0},
+    {Integrator::euler, direct, projection, 0},
+    {Integrator::euler, direct, projection, 0, true},
+    {Integrator::euler, iterative, baumgarte, 4},
+    {Integrator::euler, iterative, baumgarte, 20},
+    {Integrator::euler, iterative, projection, 4},
+    {Integrator::euler, iterative, projection, 20},
+    {Integrator::implicit, direct, baumgarte, 0},
+    {Integrator::implicit, direct, projection, 0},
+    {Integrator::implicit, iterative, projection, 20},
+};
 
 }  // namespace
 
 const std::vector<Way>& all_ways() {
-  static const std::vector<Way> ways = {
-      {euler, direct, none, 0},
-      {euler, direct, baumgarte, 0},
-      {euler, direct, projection, 0},
-      {euler, direct, projection, 0, true},
-      {euler, iterative, baumgarte, 4},
-      {euler, iterative, baumgarte, 20},
-      {euler, iterative, projection, 4},
-      {euler, iterative, projection, 20},
-      {implicit, direct, baumgarte, 0},
-      {implicit, direct, projection, 0},
-      {implicit, iterative, projection, 20},
-      {rattle, direct, projection, 0},
-      {rattle, direct, projection, 0, true},
-      {rattle, iterative, projection, 20},
-      {rk4, direct, projection, 0},
-      {rk4, direct, projection, 0, true},
-      {rk4, iterative, projection, 20},
-      {rk4, direct, projection, 0, false, true},
-      {dop853, direct, projection, 0},
-      {dop853, direct, projection, 0, true},
-      {dop853, iterative, projection, 20},
-      {dop853, direct, projection, 0, false, true},
-  };
+  static const std::vector<Way> ways = [] {
+    std::vector<Way> ways = first_order_ways;
+    for (const IntegratorRow& row : integrator_rows) {
+      if (row.order == 1) continue;
+      ways.push_back({row.integrator, direct, projection, 0});
+      ways.push_back({row.integrator, direct, projection, 0, true});
+      ways.push_back({row.integrator, iterative, projection, 20});
+      if (row.level == Level::acceleration) ways.push_back({row.integrator, direct, projection, 0, false, true});
+    }
+    return ways;
+  }();
   return ways;
 }
 
 std::string name_of(const Way& way) {
   std::string name(name_of(integrators, way.integrator));
   if (first_order(way.integrator) && way.drift != none) name += fmt::format(" + {}", name_of(drifts, way.drift));
-  name += way.solver == direct ? ", direct" : fmt::format(", {} iterations", way.iterations);
+  name += sweeps(way.solver) ? fmt::format(", {} iterations", way.iterations) : ", direct";
   if (way.adaptive) name += ", adaptive";
   if (way.single) name += ", float";
   if (way.extended) name += ", extended precision";
@@ -76,7 +76,7 @@ Scene solved_by(const Way& way, const Knob& knob, Scene scene) {
   settings.local_error = knob.local_error;
   settings.solver = way.solver;
   settings.drift = way.drift;
-  if (way.solver == iterative) settings.iterations = way.iterations;
+  if (sweeps(way.solver)) settings.iterations = way.iterations;
   settings.substeps = 1;
   scene.single = way.single;
   settings.sleep_after = 0;  // sleep is an error of its own, and none of a solver or an integrator

@@ -1,4 +1,5 @@
-// The ways of solving a scene that `cdot-run accuracy` compares: one row each. A new integrator is a new row.
+// The ways of solving a scene that `cdot-run accuracy` compares: every integrator of
+// higher order in the same ways.
 #pragma once
 
 #include <string>

@@ -45,8 +45,8 @@ struct BlockOps {
   void (*apply)(const Batch<S>&, int begin, int end, const Bodies<S>&, const T* lambda, Velocity*);
   // One sweep of sequential impulses, added to `lambda` and to the velocities: exact rows, and rows
   // with softness and bounds (which keep K in `factor`).
-  void (*iterate)(const Batch<S>&, int begin, int end, Bodies<S>&, T* lambda);
-  void (*iterate_bounded)(Slots, int begin, int end, Bodies<S>&);
+  void (*iterate)(const Batch<S>&, int begin, int end, const Bodies<S>&, Velocity*, T* lambda);
+  void (*iterate_bounded)(Slots, int begin, int end, const Bodies<S>&, Velocity*);
   // One sweep of Newton on C, with the J and K of the step: moves the poses and collects the moves
   // in displacement, the impulses in correction.
   void (*correct)(Slots, int begin, int end, Bodies<S>&, T time);
@@ -130,8 +130,10 @@ struct Batch {
   std::vector<T> C, bias;       // [slot][rows], as all below
   std::vector<T> lambda;        // impulse of the velocity solve, kept for the next step
   std::vector<T> correction;    // impulse of the drift correction
-  std::vector<T> scratch;
-  std::vector<T> counters;  // [slot][ops->counters]
+  std::vector<T> rate;          // J times the velocities last asked about
+  std::vector<T> error;         // the part of C that a projection is to remove
+  std::vector<T> impulse;       // of one round of a projection, or a force that is known
+  std::vector<T> counters;      // [slot][ops->counters]
   // Only under a law:
   std::vector<T> softness, lower, upper;  // [slot][rows]
   std::vector<Mode> mode;                 // [slot][rows]
@@ -142,8 +144,8 @@ struct Batch {
   template <class F>
   void for_each_array(F f) {
     f(joint), f(body), f(mode);
-    for (auto* array : {&parameters, &jacobian, &factor, &C, &bias, &lambda, &correction, &scratch, &counters,
-                        &softness, &lower, &upper, &constants})
+    for (auto* array : {&parameters, &jacobian, &factor, &C, &bias, &lambda, &correction, &rate, &error, &impulse,
+                        &counters, &softness, &lower, &upper, &constants})
       f(*array);
   }
   int triangle() const { return ops->rows * (ops->rows + 1) / 2; }

@@ -180,25 +180,25 @@ struct BlockLoops {
   }
 
   // K lambda = -(J v + bias)
-  static void iterate(const Batch<S>& batch, int begin, int end, Bodies<S>& all, T* impulses) {
+  static void iterate(const Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of, T* impulses) {
     for (int slot = begin; slot < end; ++slot) {
       Velocity v[bodies];
-      gather(all.velocity, bodies_of(batch, slot), v);
+      for (int k = 0; k < bodies; ++k) v[k] = of[bodies_of(batch, slot)[k]];
       T Jv[rows], b[rows], lambda[rows];
       Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
       for (int r = 0; r < rows; ++r) b[r] = -(Jv[r] + batch.bias[slot * rows + r]);
       solve(batch, slot, b, lambda);
       for (int r = 0; r < rows; ++r) impulses[slot * rows + r] += lambda[r];
-      push(batch, slot, all, lambda, all.velocity.data());
+      push(batch, slot, all, lambda, of);
     }
   }
 
   // Row by row, since each row may stop at a bound of its own:
   // (K_rr + softness) change = -(J v + bias + softness lambda), lower <= lambda + change <= upper
-  static void iterate_bounded(Batch<S>& batch, int begin, int end, Bodies<S>& all) {
+  static void iterate_bounded(Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of) {
     for (int slot = begin; slot < end; ++slot) {
       Velocity v[bodies];
-      gather(all.velocity, bodies_of(batch, slot), v);
+      for (int k = 0; k < bodies; ++k) v[k] = of[bodies_of(batch, slot)[k]];
       T Jv[rows], change[rows];
       Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
       const T* K = batch.factor.data() + slot * triangle;
@@ -213,7 +213,7 @@ struct BlockLoops {
         change[r] = after - before;
         for (int s = r + 1; s < rows; ++s) Jv[s] += K[s * (s + 1) / 2 + r] * change[r];
       }
-      push(batch, slot, all, change, all.velocity.data());
+      push(batch, slot, all, change, of);
     }
   }
 

@@ -1,0 +1,61 @@
+// The integrators, a row each: everything that others ask of a method. runtime/step/integrators.cpp has the functions
+// that take their steps.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace cdot {
+
+enum class Integrator { euler, implicit, rattle, rk4, dop853 };
+
+enum class Level {
+  velocity,     // impulses keep J v = -dC/dt
+  acceleration  // forces keep J dv/dt = gamma; a step ends at events
+};
+
+struct IntegratorRow {
+  Integrator integrator;
+  std::string_view name;
+  int order;
+  Level level;
+  bool stiffens;          // it takes what the joints' tension stiffens implicitly
+  bool projects;          // drift = projection is a part of the method
+  bool forces_springs;    // springs on coordinates act as forces; otherwise they are rows of the solver
+  bool symmetric;         // a step of -h undoes a step of h
+  double stable_radians;  // up to which it follows an oscillation: h omega
+};
+
+// Symplectic Euler and RATTLE are stable up to 2 exactly; the Runge-Kutta methods up to where their stability regions
+// cut the imaginary axis.
+// clang-format off
+inline constexpr std::array integrator_rows{
+    //                                          order, level,                stiffens, projects, springs, symmetric, stable
+    // Symplectic Euler: cheap.
+    IntegratorRow{Integrator::euler,    "euler",    1, Level::velocity,     false,    false,    false,   false,     2},
+    // Linearly implicit in what tension stiffens: heavy loads on light chains stay quiet.
+    IntegratorRow{Integrator::implicit, "implicit", 1, Level::velocity,     true,     false,    false,   false,     2},
+    // RATTLE keeps C and Cdot to round-off.
+    IntegratorRow{Integrator::rattle,   "rattle",   2, Level::velocity,     false,    true,     true,    true,      2},
+    // Runge-Kutta on accelerations; poses and velocities are projected after each step.
+    IntegratorRow{Integrator::rk4,      "rk4",      4, Level::acceleration, false,    false,    true,    false,     2.828},
+    // Dormand-Prince, likewise.
+    IntegratorRow{Integrator::dop853,   "dop853",   8, Level::acceleration, false,    false,    true,    false,     5},
+};
+// clang-format on
+
+constexpr const IntegratorRow& row_of(Integrator integrator) {
+  return integrator_rows[static_cast<std::size_t>(integrator)];
+}
+static_assert(
+    [] {
+      for (const IntegratorRow& row : integrator_rows)
+        if (&row_of(row.integrator) != &row) return false;
+      return true;
+    }(),
+    "the rows are in the order of the enumerators");
+
+constexpr bool works_on_accelerations(Integrator integrator) { return row_of(integrator).level == Level::acceleration; }
+
+}  // namespace cdot

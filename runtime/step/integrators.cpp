@@ -1,0 +1,61 @@
+#include "runtime/step/integrators.hpp"
+
+#include <array>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/step/runge_kutta.hpp"
+
+namespace cdot {
+
+// Each in the file of its name.
+template <class S>
+void prepare_euler(Island<S>& island);
+template <class S>
+void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+template <class S>
+void prepare_rattle(Island<S>& island);
+
+namespace {
+
+template <class S>
+void euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  step_euler(world, island, h, world.last_step);
+}
+
+template <class S, const auto& method>
+void runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  step_runge_kutta<S>(world, island, method, h);
+}
+template <class S, const auto& method>
+void prepare(Island<S>& island) {
+  prepare_runge_kutta<S>(island, method);
+}
+
+// In the order of integrator_rows.
+template <class S, class Real = ExactNumber<typename S::Scalar>>
+constexpr std::array<Stepper<S>, integrator_rows.size()> steppers{{
+    {Integrator::euler, euler<S>, prepare_euler<S>, false},
+    {Integrator::implicit, euler<S>, prepare_euler<S>, false},
+    {Integrator::rattle, step_rattle<S>, prepare_rattle<S>, true},
+    {Integrator::rk4, runge_kutta<S, rk4<Real>>, prepare<S, rk4<Real>>, false},
+    {Integrator::dop853, runge_kutta<S, dop853<Real>>, prepare<S, dop853<Real>>, false},
+}};
+
+}  // namespace
+
+template <class S>
+const Stepper<S>& stepper_of(Integrator integrator) {
+  static_assert([] {
+    for (std::size_t k = 0; k < integrator_rows.size(); ++k)
+      if (steppers<S>[k].integrator != integrator_rows[k].integrator) return false;
+    return true;
+  }());
+  return steppers<S>[static_cast<std::size_t>(integrator)];
+}
+
+#define CDOT_INSTANTIATE(S) template const Stepper<S>& stepper_of(Integrator);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
