@@ -1,5 +1,5 @@
 // The functions of the language, a row each. Whoever adds one writes its name and its row here, names it in
-// specs/README.md and calls it once in tests/reader/expressions_test.cpp; everything else reads this table.
+// specs/README.md and calls it once in tests/derive/language/expressions_test.cpp; everything else reads this table.
 #pragma once
 
 #include <algorithm>

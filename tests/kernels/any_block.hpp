@@ -35,23 +35,12 @@ enum Function {
   number_of_functions
 };
 
-inline constexpr std::array<std::string_view, number_of_functions> function_names = {"position",
-                                                                                     "jacobian",
-                                                                                     "effective_mass",
-                                                                                     "factor",
-                                                                                     "solve",
-                                                                                     "velocity",
-                                                                                     "apply",
-                                                                                     "dense",
-                                                                                     "inverse_mass_jacobian",
-                                                                                     "gamma",
-                                                                                     "time_derivative",
-                                                                                     "stiffness",
-                                                                                     "effective_mass_isotropic",
-                                                                                     "apply_isotropic",
-                                                                                     "inverse_mass_jacobian_isotropic",
-                                                                                     "local_jacobian",
-                                                                                     "euler_jacobian"};
+// clang-format off
+inline constexpr std::array<std::string_view, number_of_functions> function_names = {
+    "position", "jacobian", "effective_mass", "factor", "solve", "velocity", "apply", "dense", "inverse_mass_jacobian",
+    "gamma", "time_derivative", "stiffness", "effective_mass_isotropic", "apply_isotropic",
+    "inverse_mass_jacobian_isotropic", "local_jacobian", "euler_jacobian"};
+// clang-format on
 
 // What a variant does not have of its own, but of the block that it is a variant of.
 constexpr bool inherited_by_variants(Function f) {
@@ -109,5 +98,9 @@ struct AnyBlock {
 // Every block of the registry, computing in T.
 template <class T>
 const std::vector<AnyBlock>& blocks();
+
+// Those of one joint in the plane and one in space, in a pack T.
+template <class T>
+const std::vector<AnyBlock>& some_blocks();
 
 }  // namespace cdot

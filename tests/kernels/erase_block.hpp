@@ -11,6 +11,7 @@
 #include <cdot/spatial/registry.hpp>
 
 #include "tests/kernels/any_block.hpp"
+#include "tests/kernels/packs.hpp"
 
 namespace cdot {
 
@@ -27,6 +28,18 @@ struct Lanes<Pack<T, width>> {
     x.set(static_cast<int>(lane), static_cast<T>(value));
   }
   static double get(const Pack<T, width>& x, std::size_t lane) { return x[static_cast<int>(lane)]; }
+};
+
+template <>
+struct Lanes<packs::Packs> {
+  static constexpr std::size_t count = packs::lanes;
+  static void set(packs::Packs& x, std::size_t lane, double value) {
+    packs::at_lane(x, lane,
+                   [&]<class P>(P& pack, int i) { pack.set(i, static_cast<typename ScalarOf<P>::type>(value)); });
+  }
+  static double get(packs::Packs x, std::size_t lane) {
+    return packs::at_lane(x, lane, [](const auto& pack, int i) { return static_cast<double>(pack[i]); });
+  }
 };
 
 // How many numbers of type T a struct or an array of structs consists of.

@@ -11,7 +11,7 @@ using namespace cdot;
 
 namespace {
 
-constexpr double round_off = 1e-12;
+constexpr double mass_round_off = 1e-12;
 
 bool all_finite(const std::vector<double>& numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
@@ -36,9 +36,9 @@ TEST(Laws, effective_mass_is_J_inverse_M_J_transposed) {
   for_all([](const AnyBlock& block, const Inputs& in) {
     const Eigen::MatrixXd K = symmetric(evaluate_one(block, in).of[effective_mass], block.rows);
     const Eigen::MatrixXd long_way = expected(block, in).K;
-    expect_near(block, "K = J M^-1 J^T", K, long_way, round_off * (1 + long_way.norm()));
+    expect_near(block, "K = J M^-1 J^T", K, long_way, mass_round_off * (1 + long_way.norm()));
     const double least = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K).eigenvalues().minCoeff();
-    EXPECT_GE(least, -round_off * K.norm())
+    EXPECT_GE(least, -mass_round_off * K.norm())
         << block.space() << ' ' << block.joint << ", " << block.block << ": K is not semidefinite";
   });
 }
@@ -48,7 +48,7 @@ TEST(Laws, solve_inverts_the_effective_mass) {
     const Outputs out = evaluate_one(block, in);
     const Eigen::MatrixXd K = symmetric(out.of[effective_mass], block.rows);
     const Eigen::VectorXd lambda = vector(out.of[solve]);
-    const double tolerance = round_off * (1 + K.norm() * lambda.norm());
+    const double tolerance = mass_round_off * (1 + K.norm() * lambda.norm());
     expect_near(block, "K solve(rhs) = rhs", K * lambda, vector(in.rhs), tolerance);
   });
 }
@@ -56,7 +56,7 @@ TEST(Laws, solve_inverts_the_effective_mass) {
 TEST(Laws, velocity_is_J_times_v) {
   for_all([](const AnyBlock& block, const Inputs& in) {
     const Eigen::VectorXd Jv = vector(evaluate_one(block, in).of[velocity]);
-    expect_near(block, "velocity = J v", Jv, dense_jacobian(block, in) * vector(in.v), round_off);
+    expect_near(block, "velocity = J v", Jv, dense_jacobian(block, in) * vector(in.v), mass_round_off);
   });
 }
 
@@ -65,8 +65,9 @@ TEST(Laws, apply_adds_inverse_M_J_transposed_lambda) {
     const Outputs out = evaluate_one(block, in);
     const Expected e = expected(block, in);
     const Eigen::VectorXd v = vector(in.v) + e.inverse_mass * (e.J.transpose() * vector(in.lambda));
-    expect_near(block, "v + M^-1 J^T lambda", vector(out.of[apply]), v, round_off);
-    expect_near(block, "(M^-1 J^T)^T", matrix(out, inverse_mass_jacobian, e.J.cols()), e.J * e.inverse_mass, round_off);
+    expect_near(block, "v + M^-1 J^T lambda", vector(out.of[apply]), v, mass_round_off);
+    expect_near(block, "(M^-1 J^T)^T", matrix(out, inverse_mass_jacobian, e.J.cols()), e.J * e.inverse_mass,
+                mass_round_off);
   });
 }
 
@@ -80,7 +81,7 @@ TEST(Laws, an_impulse_solved_for_stops_the_rate) {
     stopped.v = evaluate_one(block, stopping).of[apply];
     const Eigen::VectorXd rest = vector(evaluate_one(block, stopped).of[velocity]);
     const double scale = 1 + vector(stopping.lambda).norm() * expected(block, in).K.norm();
-    expect_near(block, "J v = 0 after the impulse", rest, 0 * rest, round_off * scale);
+    expect_near(block, "J v = 0 after the impulse", rest, 0 * rest, mass_round_off * scale);
   });
 }
 
@@ -99,7 +100,7 @@ TEST(Laws, a_variant_is_the_general_block_with_a_body_at_rest_and_infinitely_hea
     for (int f = 0; f < number_of_functions; ++f) {
       if (f == jacobian) continue;  // stores other fields
       expect_near(block, function_names[static_cast<std::size_t>(f)], vector(of_variant.of[f]), vector(general.of[f]),
-                  f == solve || f == factor ? 1e-9 : round_off);
+                  f == solve || f == factor ? 1e-9 : mass_round_off);
     }
   });
   EXPECT_GT(variants, 0);

@@ -11,6 +11,7 @@
 
 #include "tests/kernels/counted.hpp"
 #include "tests/kernels/law.hpp"
+#include "tests/kernels/packs.hpp"
 
 using namespace cdot;
 
@@ -76,19 +77,48 @@ std::string text(const Operations& o) {
 
 }  // namespace
 
+// As many inputs as a scalar type has lanes, which for all packs are those of each pack in turn.
+template <class T>
+std::vector<Inputs> inputs_for(const AnyBlock& block, std::uint32_t seed) {
+  const std::vector<Inputs> inputs = lanes_of_inputs(block, seed);
+  if constexpr (!std::is_same_v<T, packs::Packs>) return inputs;
+  std::vector<Inputs> spread;
+  packs::Packs any;
+  for (std::size_t lane = 0; lane < packs::lanes; ++lane)
+    spread.push_back(inputs[packs::at_lane(any, lane, [](auto&, int i) { return static_cast<std::size_t>(i); })]);
+  return spread;
+}
+
+// Each lane of a Pack from `first` on, of a block that computes in Wide, against the same block in the pack's scalar.
+template <class Wide, class Pack>
+void expect_bits_of_the_scalar(const AnyBlock& wide, const AnyBlock& narrow, std::size_t first) {
+  for (std::uint32_t seed = 1; seed <= 4; ++seed) {
+    const std::vector<Inputs> inputs = inputs_for<Wide>(wide, 100 * seed);
+    const std::vector<Outputs> out = wide.evaluate(inputs);
+    ASSERT_LE(first + sizeof(Pack) / sizeof(typename ScalarOf<Pack>::type), out.size());
+    ASSERT_LE(out.size(), inputs.size());
+    for (std::size_t lane = first; lane < first + sizeof(Pack) / sizeof(typename ScalarOf<Pack>::type); ++lane)
+      expect_equal_bits(wide, out[lane], evaluate_one(narrow, inputs[lane]), lane - first);
+  }
+}
+
 TYPED_TEST(Packs, every_lane_has_the_bits_of_the_scalar) {
-  using T = typename ScalarOf<TypeParam>::type;
-  const std::vector<AnyBlock>&wide = blocks<TypeParam>(), &narrow = blocks<T>();
+  const std::vector<AnyBlock>&wide = blocks<packs::Packs>(), &narrow = blocks<typename ScalarOf<TypeParam>::type>();
   ASSERT_EQ(wide.size(), narrow.size());
-  for (std::size_t b = 0; b < wide.size(); ++b) {
-    for (std::uint32_t seed = 1; seed <= 4; ++seed) {
-      const std::vector<Inputs> inputs = lanes_of_inputs(wide[b], 100 * seed);
-      const std::vector<Outputs> out = wide[b].evaluate(inputs);
-      ASSERT_LE(out.size(), inputs.size());
-      for (std::size_t lane = 0; lane < out.size(); ++lane) {
-        expect_equal_bits(wide[b], out[lane], evaluate_one(narrow[b], inputs[lane]), lane);
-      }
-    }
+  for (std::size_t b = 0; b < wide.size(); ++b)
+    expect_bits_of_the_scalar<packs::Packs, TypeParam>(wide[b], narrow[b], packs::first_lane<TypeParam>);
+}
+
+// That all packs at once are each by itself.
+TYPED_TEST(Packs, a_kernel_compiled_for_one_pack_has_these_bits) {
+  ASSERT_GE(some_blocks<TypeParam>().size(), 8u);
+  for (const AnyBlock& wide : some_blocks<TypeParam>()) {
+    const std::vector<AnyBlock>& narrow = blocks<typename ScalarOf<TypeParam>::type>();
+    const auto same = std::find_if(narrow.begin(), narrow.end(), [&](const AnyBlock& n) {
+      return n.space() == wide.space() && n.joint == wide.joint && n.block == wide.block;
+    });
+    ASSERT_NE(same, narrow.end());
+    expect_bits_of_the_scalar<TypeParam, TypeParam>(wide, *same, 0);
   }
 }
 

@@ -164,7 +164,7 @@ TEST(References, AgreeWithThePublishedSolutions) {
   for (const ProblemRow& row : problem_rows()) {
     if (!ends.contains(row.name)) continue;
     const Problem problem = load(row);
-    std::ifstream in(source + "/tests/scenes/reference/" + row.name + ".json");
+    std::ifstream in(source + "/tests/runtime/tool/run/reference/" + row.name + ".json");
     const nlohmann::json published = nlohmann::json::parse(in);
     int compared = 0;
     for (const nlohmann::json& sample : published.at("samples")) {

@@ -3,7 +3,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::angle_past_half_a_turn {
 namespace {
 
 constexpr double degree = pi / 180;
@@ -24,4 +24,4 @@ const Register spatial({"angle_past_half_a_turn", "spatial",
                         only(all_ways(), {Integrator::euler, Integrator::implicit}), turn});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::angle_past_half_a_turn

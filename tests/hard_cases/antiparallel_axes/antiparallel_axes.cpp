@@ -3,7 +3,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::antiparallel_axes {
 namespace {
 
 void swing(Trial& t) {
@@ -27,4 +27,4 @@ const Register spatial({"antiparallel_axes", "spatial", without(all_ways(), {Int
 const Register spatial_motor({"antiparallel_axes", "spatial", all_ways(), motor, "a motor"});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::antiparallel_axes

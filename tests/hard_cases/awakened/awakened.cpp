@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::awakened {
 namespace {
 
 // The impulse that a World takes is in doubles.
@@ -44,4 +44,4 @@ const Register planar({"awakened", "planar", all_ways(), strike});
 const Register spatial({"awakened", "spatial", all_ways(), strike});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::awakened

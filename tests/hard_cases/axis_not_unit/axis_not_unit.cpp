@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::axis_not_unit {
 namespace {
 
 void slide(Trial& t) {
@@ -35,4 +35,4 @@ const Register planar_zero({"axis_not_unit", "planar", all_ways(), zero, "the ze
 const Register spatial_zero({"axis_not_unit", "spatial", all_ways(), zero, "the zero axis"});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::axis_not_unit

@@ -1,7 +1,7 @@
 // 41 joints with a mass ratio of 672 at their end.
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::ball_and_chain {
 namespace {
 
 void swing(Trial& t) {
@@ -24,4 +24,4 @@ const Register planar_at_rest({"ball_and_chain", "planar_at_rest",
                                rest});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::ball_and_chain

@@ -1,7 +1,7 @@
 // The rows of angles of bodies without inverse inertia: K has zeros on its diagonal.
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::bodies_that_cannot_turn {
 namespace {
 
 void hold(Trial& t) {
@@ -26,4 +26,4 @@ const Register planar_fall({"bodies_that_cannot_turn", "planar", all_ways(), fal
 const Register spatial_fall({"bodies_that_cannot_turn", "spatial", all_ways(), fall, "falling"});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::bodies_that_cannot_turn

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::both_immovable {
 namespace {
 
 void idle(Trial& t) {
@@ -26,4 +26,4 @@ const Register planar_no_mass({"both_immovable", "planar", all_ways(), no_mass, 
 const Register spatial_no_mass({"both_immovable", "spatial", all_ways(), no_mass, "mass 0"});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::both_immovable

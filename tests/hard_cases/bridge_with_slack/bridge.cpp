@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::bridge_with_slack {
 namespace {
 
 void sag(Trial& t) {
@@ -22,4 +22,4 @@ void sag(Trial& t) {
 const Register planar({"bridge_with_slack", "planar", only(direct(), {Integrator::implicit}), sag});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::bridge_with_slack

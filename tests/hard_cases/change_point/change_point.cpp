@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::change_point {
 namespace {
 
 // |angle| of the coupler, which the parallel branch keeps level: from its orientation's turn in space.
@@ -34,4 +34,4 @@ const Register spatial({"change_point", "spatial",
                         turn});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::change_point

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::changed_while_running {
 namespace {
 
 // A joint that welds two rods as they just stand takes their relative spin away, and nothing is thrown about: the
@@ -87,4 +87,4 @@ const Register planar_change({"changed_while_running", "planar", all_ways(), cha
 const Register spatial_change({"changed_while_running", "spatial", all_ways(), change, "joints changed"});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::changed_while_running

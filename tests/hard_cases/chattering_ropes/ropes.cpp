@@ -2,7 +2,7 @@
 #include "tests/hard_cases/scaled.hpp"
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::chattering_ropes {
 namespace {
 
 void swing(Trial& t) {
@@ -39,4 +39,4 @@ struct RegisterScaled {
 } const scaled;
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::chattering_ropes

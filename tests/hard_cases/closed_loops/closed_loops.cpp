@@ -1,7 +1,7 @@
 // Many closed loops driven for a minute: drift would add up.
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::closed_loops {
 namespace {
 
 void walk(Trial& t) {
@@ -15,4 +15,4 @@ const Register planar({"closed_loops", "planar", direct(), walk});
 const Register spatial({"closed_loops", "spatial", direct(), walk});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::closed_loops

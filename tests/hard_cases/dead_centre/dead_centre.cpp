@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::dead_centre {
 namespace {
 
 // Of the shared problem slider_crank, by Gauss-Legendre of order 12 [rad].
@@ -35,4 +35,4 @@ const Register spatial({"dead_centre", "spatial",
                         turn});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::dead_centre

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::far_from_origin {
 namespace {
 
 void swing(Trial& there, const char* scene) {
@@ -35,4 +35,4 @@ const Register planar({"far_from_origin", "planar", all_ways(), [](Trial& t) { s
 const Register spatial({"far_from_origin", "spatial", all_ways(), [](Trial& t) { swing(t, "spatial"); }});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::far_from_origin

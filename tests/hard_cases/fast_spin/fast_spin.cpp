@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::fast_spin {
 namespace {
 
 constexpr double fine = 5e-5;  // [s]
@@ -60,4 +60,4 @@ const Register spatial({"fast_spin", "spatial",
                         gyroscope});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::fast_spin

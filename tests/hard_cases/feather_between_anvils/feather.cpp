@@ -1,7 +1,7 @@
 // A mass ratio of a million both ways through one body.
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::feather_between_anvils {
 namespace {
 
 void fall(Trial& t) {
@@ -28,4 +28,4 @@ const Register planar({"feather_between_anvils", "planar", in_double(only(direct
 const Register spatial({"feather_between_anvils", "spatial", in_double(only(direct(), {Integrator::dop853})), fall});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::feather_between_anvils

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::gimbal_lock {
 namespace {
 
 // The arm turns about one axis at 1 rad/s: the other two components of its orientation stay zero.
@@ -39,4 +39,4 @@ const Register a_universal({"gimbal_lock", "universal", all_ways(), universal});
 const Register a_six_dof({"gimbal_lock", "six_dof", all_ways(), six_dof});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::gimbal_lock

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::hanging_chain {
 namespace {
 
 void hold(Trial& t) {
@@ -24,4 +24,4 @@ const Register planar({"hanging_chain", "planar", only(direct(), {Integrator::im
 const Register spatial({"hanging_chain", "spatial", only(direct(), {Integrator::implicit, Integrator::dop853}), hold});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::hanging_chain

@@ -2,7 +2,7 @@
 // tension turns, and beads on bars, whose places it couples.
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::heavy_load {
 namespace {
 
 void set_load(Trial& t, double mass) {
@@ -53,4 +53,4 @@ const Register spatial_beads_million({"heavy_load", "spatial_beads", in_double(i
                                       "a million kg"});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::heavy_load

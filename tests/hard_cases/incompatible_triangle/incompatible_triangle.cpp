@@ -3,7 +3,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::incompatible_triangle {
 namespace {
 
 void settle(Trial& t) {
@@ -23,4 +23,4 @@ const Register planar({"incompatible_triangle", "planar", all_ways(), settle});
 const Register spatial({"incompatible_triangle", "spatial", all_ways(), settle});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::incompatible_triangle

@@ -6,7 +6,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::jittered_step {
 namespace {
 
 void jitter(Trial& t) {
@@ -30,4 +30,4 @@ void jitter(Trial& t) {
 const Register planar({"jittered_step", "planar", only(direct(), {Integrator::implicit}), jitter});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::jittered_step

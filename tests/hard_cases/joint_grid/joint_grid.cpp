@@ -3,7 +3,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::joint_grid {
 namespace {
 
 void add_pin(Trial& t, int a, int b, double dx, double dy) {
@@ -44,4 +44,4 @@ const Register planar({"joint_grid", "planar", settled(), small, "25 x 25", true
 const Register planar_whole({"joint_grid", "planar", only(direct(), {Integrator::implicit}), whole, "100 x 100", true});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::joint_grid

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::long_chains_and_trees {
 namespace {
 
 constexpr int rods = 1000;
@@ -106,4 +106,4 @@ const Register all[] = {Register(resting("planar", direct(), pin_chain, "chain")
                         Register(swaying("spatial", cross_tree, "tree"))};
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::long_chains_and_trees

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::motor_against_limit {
 namespace {
 
 constexpr double degree = pi / 180;
@@ -39,4 +39,4 @@ const Register spatial({"motor_against_limit", "spatial",
                         fight});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::motor_against_limit

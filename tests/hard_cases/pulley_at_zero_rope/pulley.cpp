@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::pulley_at_zero_rope {
 namespace {
 
 double up(const BodyState& b, Dimension dimension) { return dimension == Dimension::planar ? b.y : b.z; }
@@ -33,4 +33,4 @@ const Register spatial({"pulley_at_zero_rope", "spatial",
                         direct() + only(iterative(), {Integrator::euler, Integrator::implicit}), pull});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::pulley_at_zero_rope

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::redundant_hinges {
 namespace {
 
 // The sum over all hinges of what they exert on the door.
@@ -41,4 +41,4 @@ void swing(Trial& four) {
 const Register spatial({"redundant_hinges", "spatial", direct() + without(iterative(), {Integrator::implicit}), swing});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::redundant_hinges

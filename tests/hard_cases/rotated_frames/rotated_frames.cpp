@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::rotated_frames {
 namespace {
 
 void stay(Trial& t) {
@@ -27,4 +27,4 @@ void stay(Trial& t) {
 const Register spatial({"rotated_frames", "spatial", all_ways(), stay});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::rotated_frames

@@ -4,7 +4,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::same_joint_ten_times {
 namespace {
 
 void swing(Trial& ten, const char* scene) {
@@ -26,4 +26,4 @@ const Register planar({"same_joint_ten_times", "planar", all_ways(), [](Trial& t
 const Register spatial({"same_joint_ten_times", "spatial", all_ways(), [](Trial& t) { swing(t, "spatial"); }});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::same_joint_ten_times

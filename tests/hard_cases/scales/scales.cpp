@@ -5,7 +5,7 @@
 #include "tests/hard_cases/scaled.hpp"
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::scales {
 namespace {
 
 // Against the same mechanism of metres and kilograms.
@@ -51,4 +51,4 @@ struct RegisterAll {
 } const all;
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::scales

@@ -3,7 +3,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::stiff_and_soft {
 namespace {
 
 void hang(Trial& t) {
@@ -18,4 +18,4 @@ void hang(Trial& t) {
 const Register planar({"stiff_and_soft", "planar", only(all_ways(), {Integrator::euler, Integrator::implicit}), hang});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::stiff_and_soft

@@ -1,7 +1,7 @@
 // A start that violates every joint by a metre.
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::stretched_chain {
 namespace {
 
 void snap(Trial& t) {
@@ -18,4 +18,4 @@ const Register planar({"stretched_chain", "planar", direct(), snap});
 const Register spatial({"stretched_chain", "spatial", direct(), snap});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::stretched_chain

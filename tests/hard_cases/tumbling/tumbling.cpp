@@ -6,7 +6,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::tumbling {
 namespace {
 
 using Vector = spatial::Vector<double>;
@@ -47,4 +47,4 @@ void flip(Trial& t) {
 const Register spatial({"tumbling", "spatial", all_ways(), flip});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::tumbling

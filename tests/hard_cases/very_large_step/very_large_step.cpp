@@ -1,7 +1,7 @@
 // A pendulum in eight steps a swing.
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::very_large_step {
 namespace {
 
 void swing(Trial& t, double step) {
@@ -25,4 +25,4 @@ const Register spatial_quarter({"very_large_step", "spatial",
                                 quarter, "0.25 s"});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::very_large_step

@@ -3,7 +3,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::welded_cantilever {
 namespace {
 
 double torque(const planar::Wrench& w) { return w.torque; }
@@ -27,4 +27,4 @@ const Register planar({"welded_cantilever", "planar", direct(), hold});
 const Register spatial({"welded_cantilever", "spatial", direct(), hold});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::welded_cantilever

@@ -2,7 +2,7 @@
 
 #include "tests/hard_cases/trial.hpp"
 
-namespace cdot::hard {
+namespace cdot::hard::zero_length_distance {
 namespace {
 
 void coincident_start(Trial& t) {
@@ -25,4 +25,4 @@ const Register planar_zero({"zero_length_distance", "planar", all_ways(), length
 const Register spatial_zero({"zero_length_distance", "spatial", all_ways(), length_zero, "length 0"});
 
 }  // namespace
-}  // namespace cdot::hard
+}  // namespace cdot::hard::zero_length_distance

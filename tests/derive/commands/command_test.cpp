@@ -1,0 +1,149 @@
+// `cdot derive` as a person meets it: what it writes, what --check says, and that nothing is written
+// from a broken spec.
+#include "tests/derive/commands/command.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+
+#include "derive/language/operators.hpp"
+
+namespace {
+
+const char* const broken = "joint broken planar\n  \"x\"\n  point pa on a\n  norm(pb) = 0\n";
+// Angles of bodies that do not cancel: readable, but it has no proof.
+const char* const wrong = "joint wrong planar\n  \"x\"\n  angle(a) + angle(b) = 0\n";
+const char* const pin =
+    "joint pin_on_line planar\n  \"A line with a second row.\"\n  include line\n"
+    "  angle(a) - angle(b) = 0\n";
+
+}  // namespace
+
+// What a mistake about operators sends a person to.
+TEST_F(Derive, TheOperatorsAreInTheHelpOfCheck) {
+  const Result help = cdot("check --help");
+  EXPECT_EQ(help.status, 0);
+  for (const ::cdot::derive::Operator& o : ::cdot::derive::operators()) {
+    const std::size_t at = help.said.find("  " + std::string(o.signature) + "  ");
+    EXPECT_NE(at, std::string::npos) << o.signature;
+    EXPECT_NE(help.said.find(o.help, at), std::string::npos) << o.help;
+  }
+}
+
+TEST_F(Derive, WritesKernelsRegistriesAndTheLedger) {
+  const Result derived = cdot("derive");
+  EXPECT_EQ(derived.status, 0) << derived.said;
+  std::string names;
+  for (const auto& [name, content] : files("generated")) names += name + "\n";
+  EXPECT_EQ(names,
+            "ledger.csv\nplanar/angle.hpp\nplanar/line.hpp\nplanar/registry.hpp\nproofs.csv\n"
+            "spatial/registry.hpp\n");
+  EXPECT_EQ(read("generated/planar/line.hpp"), content_of(fs::path(CDOT_SOURCE_DIR "/generated") / "planar/line.hpp"))
+      << "what is generated for a joint does not depend on the others";
+}
+
+TEST_F(Derive, WritesElsewhereIfAsked) {
+  EXPECT_EQ(cdot("derive -o build/own").status, 0);
+  EXPECT_TRUE(files("generated").empty());
+  EXPECT_EQ(files("build/own").size(), 6u);
+}
+
+TEST_F(Derive, TouchesNothingThatIsRight) {
+  ASSERT_EQ(cdot("derive").status, 0);
+  const auto time = fs::last_write_time(place_ / "generated/planar/line.hpp");
+  EXPECT_NE(cdot("derive").said.find("0 written, 0 removed"), std::string::npos);
+  EXPECT_EQ(fs::last_write_time(place_ / "generated/planar/line.hpp"), time);
+}
+
+TEST_F(Derive, CheckNamesTheOneCommandThatMends) {
+  for (const std::string options : {"", " -o own", " --specs specs line -o just_one"}) {
+    ASSERT_EQ(cdot("derive" + options).status, 0);
+    EXPECT_EQ(cdot("derive --check" + options).status, 0);
+    const std::string folder = options.empty() ? "generated" : options.substr(options.rfind(' ') + 1);
+    const auto right = files(folder);
+    write(folder + "/planar/line.hpp", "changed by hand\n");
+    write(folder + "/planar/stale.hpp", "no spec makes it\n");
+    fs::remove(place_ / folder / "ledger.csv");
+    const Result check = cdot("derive --check" + options);
+    EXPECT_EQ(check.status, 1);
+    for (const char* words : {"line.hpp: differs", "- changed by hand", "stale.hpp: no spec makes it",
+                              "ledger.csv: missing", "To mend it: cdot derive"}) {
+      EXPECT_NE(check.said.find(words), std::string::npos) << words << "\n" << check.said;
+    }
+    const std::string mend = check.said.substr(check.said.rfind("To mend it: cdot ") + 17);
+    EXPECT_EQ(cdot(mend.substr(0, mend.find('\n'))).status, 0) << mend;
+    EXPECT_EQ(files(folder), right);
+    EXPECT_EQ(cdot("derive --check" + options).status, 0);
+  }
+}
+
+TEST_F(Derive, WritesNothingFromABrokenSpec) {
+  ASSERT_EQ(cdot("derive").status, 0);
+  const auto before = files("generated");
+  for (const char* const text : {broken, wrong}) {
+    write("specs/planar/bad.joint", text);
+    write("specs/planar/line.joint", pin);  // would change something
+    for (const char* const command : {"derive", "derive --check"}) {
+      const Result result = cdot(command);
+      EXPECT_EQ(result.status, 2) << result.said;
+      EXPECT_NE(result.said.find("bad.joint:"), std::string::npos) << result.said;
+      EXPECT_EQ(files("generated"), before);
+    }
+  }
+}
+
+TEST_F(Derive, SaysWhichSpecIsMissing) {
+  const Result result = cdot("derive lin");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.said.find("did you mean `line`"), std::string::npos) << result.said;
+  EXPECT_TRUE(files("generated").empty());
+  EXPECT_EQ(run("mkdir away && cd away && " CDOT " derive").status, 2);
+  EXPECT_EQ(cdot("derive --such").status, 2);
+}
+
+TEST_F(Derive, TakesUpANewJointThatIncludesAnother) {
+  ASSERT_EQ(cdot("derive").status, 0);
+  write("specs/planar/pin_on_line.joint", pin);
+  EXPECT_EQ(cdot("derive --check").status, 1);
+  const Result derived = cdot("derive");
+  EXPECT_EQ(derived.status, 0) << derived.said;
+  EXPECT_NE(read("generated/planar/registry.hpp").find("pin_on_line"), std::string::npos);
+  EXPECT_NE(read("generated/planar/pin_on_line.hpp").find("struct pin_on_line"), std::string::npos);
+  fs::remove(place_ / "specs/planar/pin_on_line.joint");
+  EXPECT_EQ(cdot("derive").status, 0);
+  EXPECT_FALSE(files("generated").contains("planar/pin_on_line.hpp"));
+}
+
+// A reader in the middle of a write sees the old file or the new one.
+TEST_F(Derive, NeverShowsHalfAFile) {
+  const std::string one = content_of(fs::path(CDOT_SOURCE_DIR "/specs") / "planar/line.joint");
+  const std::string other = one + "  second: angle(a) = angle(b)\n";
+  std::string kernels[2];
+  for (int i = 0; i < 2; ++i) {
+    write("specs/planar/line.joint", i == 0 ? one : other);
+    ASSERT_EQ(cdot("derive line").status, 0);
+    kernels[i] = read("generated/planar/line.hpp");
+  }
+  std::atomic<bool> done = false;
+  std::jthread writer([&] {
+    for (int i = 0; i < 12; ++i) {
+      write("specs/planar/line.joint", i % 2 == 0 ? one : other);
+      cdot("derive line");
+    }
+    done = true;
+  });
+  int seen[2] = {0, 0}, halves = 0;
+  while (!done) {
+    const std::string now = read("generated/planar/line.hpp");
+    if (now == kernels[0]) {
+      ++seen[0];
+    } else if (now == kernels[1]) {
+      ++seen[1];
+    } else {
+      ++halves;
+    }
+  }
+  std::printf("read %d times the one, %d times the other, %d times half of one\n", seen[0], seen[1], halves);
+  EXPECT_EQ(halves, 0);
+  EXPECT_GT(std::min(seen[0], seen[1]), 0);
+}

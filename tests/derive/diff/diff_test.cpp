@@ -1,0 +1,176 @@
+// What `cdot diff` says of derivations that are wrong in known ways, and what it forgives.
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <ostream>
+
+#include "tests/derive/diff/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+using derive::Agreement;
+using derive::Difference;
+using derive::Judgement;
+
+// A wrong Jacobian of the prismatic joint, and every word that has to be said about it.
+struct Lesson {
+  const char* mistake;
+  const char* J;
+  const char *column, *kind, *generated, *hand, *difference, *sentence;
+};
+
+void PrintTo(const Lesson& lesson, std::ostream* out) { *out << lesson.mistake; }
+
+class Teaching : public testing::TestWithParam<Lesson> {};
+
+TEST_P(Teaching, NamesTermRowBodyAndReason) {
+  const Lesson& lesson = GetParam();
+  const Judgement j = judged("prismatic", std::string("  J = ") + lesson.J + "\n");
+  ASSERT_EQ(j.agreement, Agreement::differs);
+  ASSERT_EQ(j.differences.size(), 1u);
+  const Difference& d = j.differences[0];
+  EXPECT_EQ(d.what, "J");
+  EXPECT_EQ(d.row, "1");
+  EXPECT_EQ(d.column, lesson.column);
+  EXPECT_EQ(d.kind, lesson.kind);
+  EXPECT_EQ(d.generated, lesson.generated);
+  EXPECT_EQ(d.hand, lesson.hand);
+  EXPECT_EQ(d.difference, lesson.difference);
+  EXPECT_EQ(d.sentence, lesson.sentence);
+  ASSERT_EQ(j.remarks.size(), 1u);
+  EXPECT_EQ(j.remarks[0],
+            "row 1 of this J breaks conservation of angular momentum: a common rotation of all "
+            "bodies gives J v != 0");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Prismatic, Teaching,
+    testing::Values(Lesson{"WithoutTheTermOfTheTurningAxis", "[ t', cross(ra, t), -t', -cross(rb, t) ; 0, 1, 0, -1 ]",
+                           "w_b", "missing term", "-cross(rb + u, t)", "-cross(rb, t)", "cross(u, t)",
+                           "J, row 1, w_b: the hand derivation lacks -cross(u, t): t turns with b "
+                           "(dt/dt = w_b x t), so the "
+                           "product rule has a term for it; equal only where u = 0"},
+                    Lesson{"AFlippedSign", "[ t', cross(ra, t), -t', -cross(rb - u, t) ; 0, 1, 0, -1 ]", "w_b", "sign",
+                           "-cross(rb + u, t)", "-cross(rb - u, t)", "2*cross(u, t)",
+                           "J, row 1, w_b: the term -cross(u, t) has the wrong sign: t turns with "
+                           "b (dt/dt = w_b x t), so the "
+                           "product rule has a term for it"},
+                    Lesson{"ASwappedBody", "[ t', cross(rb, t), -t', -cross(rb + u, t) ; 0, 1, 0, -1 ]", "w_a",
+                           "wrong body", "cross(ra, t)", "cross(rb, t)", "-cross(ra - rb, t)",
+                           "J, row 1, w_a: rb stands where ra belongs"}),
+    [](const auto& info) { return info.param.mistake; });
+
+struct Kind {
+  const char* joint;
+  const char* items;
+  const char* kind;
+  const char* sentence;
+};
+
+TEST(Diff, NamesTheKindOfEveryMistake) {
+  const Kind table[] = {
+      {"line", "  J = [ t', -cross(ra, t), -t', -cross(rb + u, t) ]\n", "sign", "J, row 1, w_a: the sign is wrong"},
+      {"line", "  J = [ t', 2 * cross(ra, t), -t', -cross(rb + u, t) ]\n", "factor",
+       "J, row 1, w_a: it is 2 times what it should be"},
+      {"line", "  J = [ t', -cross(rb + u, t), -t', -cross(rb + u, t) ]\n", "wrong body",
+       "J, row 1, w_a: -cross(rb + u, t) is what belongs to another body's column"},
+      {"line", "  J = [ t', 0, -t', -cross(rb + u, t) ]\n", "missing term", "J, row 1, w_a: nothing stands here"},
+      {"angle", "  J = [ 0, 1, [1, 0], -1 ]\n", "extra term", "J, row 1, v_b.x: nothing belongs here"},
+      {"line", "  J = [ t ; cross(ra, t) ; -t ; -cross(rb + u, t) ]\n", "transposed",
+       "J: 6 x 1 numbers stand where 1 x 6 belong: it is transposed"},
+      {"prismatic", "  J = [ t', cross(ra, t), -t', -cross(rb + u, t) ]\n", "missing term",
+       "J, row 2: 1 x 6 numbers stand where 2 x 6 belong: this row (0, 0, 1, 0, 0, -1) is missing"},
+      {"line", "  K = 1/m(a) + 1/m(b) + cross(ra, t)^2/I(b) + cross(rb + u, t)^2/I(b)\n", "wrong body",
+       "K, row 1, column 1: it has inv_I_b*cross(ra, t)^2 where inv_I_a*cross(ra, t)^2 belongs: "
+       "inv_I_b stands "
+       "where inv_I_a belongs"},
+      {"line", "  claim C: dot(t, u) = 0\n", "undeclared assumption",
+       "claim on C: nothing belongs here; equal only where C = 0"},
+      {"pulley", "  J = -[ na', cross(ra, na), nb', ratio * cross(rb, nb) ]\n", "factor",
+       "J, row 1, v_b.x: the factor ratio is missing in -nb.x; equal only where ratio = 1"},
+      {"line", "  Cdot = dot(v(pa), t) - dot(v(b), t) + cross(rb + u, t) * v(b)\n", "factor",
+       "Cdot, row 1: a number and a vector cannot be added or compared: `cross(rb + u, t) * v(b)`"},
+  };
+  for (const Kind& row : table) {
+    const Judgement j = judged(row.joint, row.items);
+    ASSERT_FALSE(j.differences.empty()) << row.items;
+    EXPECT_EQ(j.differences[0].kind, row.kind) << row.items;
+    if (*row.sentence) {
+      EXPECT_EQ(j.differences[0].sentence, row.sentence);
+    }
+    EXPECT_FALSE(j.differences[0].confirmed.empty()) << row.items;
+  }
+}
+
+TEST(Diff, ForgivesTheSignOfCAndSaysSo) {
+  const Judgement j = judged("line", "  C = -dot(t, u)\n  J = [ -t', -cross(ra, t), t', cross(rb + u, t) ]\n");
+  EXPECT_EQ(j.agreement, Agreement::agrees);
+  ASSERT_EQ(j.remarks.size(), 1u);
+  EXPECT_EQ(j.remarks[0], "C is counted the other way round: J flips its sign, K does not");
+}
+
+// C and J with one sign, b with that of the other: b is what differs, and it alone.
+TEST(Diff, ChoosesTheSignWithWhichTheFewestItemsDiffer) {
+  const Judgement b = judged("angle", "  C = angle(b) - angle(a) + phi\n  J = [ 0, -1, 0, 1 ]\n  b = w(b) - w(a)\n");
+  ASSERT_EQ(b.differences.size(), 1u);
+  EXPECT_EQ(b.differences[0].what, "b");
+  EXPECT_EQ(b.differences[0].kind, "sign");
+  // No sign makes this C right; with one of them a single term is wrong.
+  const Judgement C = judged("angle", "  C = angle(b) - angle(a) - phi\n");
+  ASSERT_EQ(C.differences.size(), 1u);
+  EXPECT_EQ(C.differences[0].sentence, "C, row 1: it has -phi where phi belongs");
+  EXPECT_EQ(C.differences[0].kind, "sign");
+}
+
+TEST(Diff, AnAxisFixedInTheOtherBodyIsExactToo) {
+  const Judgement j = judged("line",
+                             "  assume t on a\n  let d = pb - pa\n"
+                             "  J = [ -t', -cross(d + ra, t), t', cross(rb, t) ]\n");
+  EXPECT_EQ(j.agreement, Agreement::agrees_if);
+  EXPECT_EQ(j.condition, "t is fixed in a");
+}
+
+TEST(Diff, AnInequalityNeedsItsBound) {
+  EXPECT_EQ(judged("max_distance", "  bound lambda >= 0\n").agreement, Agreement::agrees);
+  EXPECT_EQ(judged("max_distance", "  bound lambda free\n").agreement, Agreement::differs);
+  EXPECT_EQ(judged("distance", "  bound lambda >= 0\n").agreement, Agreement::differs);
+}
+
+TEST(Diff, UpdatesMustMakeTheVelocityConstraintHold) {
+  const std::string right = "  lambda = -(w(a) - w(b)) / (1/I(a) + 1/I(b))\n  update w(a) += lambda / I(a)\n";
+  EXPECT_EQ(judged("angle", right + "  update w(b) -= lambda / I(b)\n").agreement, Agreement::agrees);
+  const Judgement wrong = judged("angle", right + "  update w(b) += lambda / I(b)\n");
+  ASSERT_EQ(wrong.differences.size(), 1u);
+  EXPECT_EQ(wrong.differences[0].column, "w_b");
+  EXPECT_EQ(wrong.differences[0].kind, "sign");
+  const Judgement swapped = judged("angle", right + "  update w(b) -= lambda / I(a)\n");
+  ASSERT_EQ(swapped.differences.size(), 1u);
+  EXPECT_EQ(swapped.differences[0].kind, "wrong body");
+}
+
+// A condition that the entry states itself is kept while others are looked for.
+TEST(Diff, LooksForConditionsWithinWhatIsAssumed) {
+  const std::string K = "  K = 1/I(b) + abs(ratio)/I(a)\n";
+  const Judgement anywhere = judged("angle_ratio", K);
+  ASSERT_EQ(anywhere.differences.size(), 1u);
+  EXPECT_NE(anywhere.differences[0].sentence.find("equal only where ratio = 1"), std::string::npos);
+  const Judgement negative = judged("angle_ratio", "  free s\n  assume ratio = -s\n" + K);
+  ASSERT_EQ(negative.differences.size(), 1u);
+  EXPECT_NE(negative.differences[0].sentence.find("equal only where ratio = -1"), std::string::npos);
+}
+
+// Vector rows in world axes turn with the bodies: J v = w x C, which is zero where the joint holds.
+TEST(Diff, MomentumIsJudgedWhereTheJointHolds) {
+  EXPECT_TRUE(judged("revolute", "  J = [ E, S(ra), -E, -S(rb) ]\n").remarks.empty());
+  const Judgement broken = judged("revolute", "  J = [ E, S(ra), -E, -S(ra) ]\n");
+  ASSERT_EQ(broken.remarks.size(), 1u);
+  EXPECT_EQ(broken.remarks[0],
+            "rows 1, 2 of this J break conservation of angular momentum: a common rotation of all "
+            "bodies gives J v != 0");
+  const Judgement pushed = judged("revolute", "  J = [ E, S(ra), E, -S(rb) ]\n");
+  ASSERT_FALSE(pushed.remarks.empty());
+  EXPECT_NE(pushed.remarks[0].find("conservation of momentum"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cdot::test

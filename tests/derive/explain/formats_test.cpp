@@ -1,0 +1,190 @@
+// The other formats: HTML is well-formed and needs nothing from elsewhere, LaTeX compiles or at
+// least balances, and the JSON says the truth when another program evaluates it.
+#include <cstdlib>
+#include <fstream>
+#include <regex>
+#include <sstream>
+#include <sys/wait.h>
+
+#include "support.hpp"
+
+using namespace cdot::derive;
+namespace fs = std::filesystem;
+
+namespace {
+
+struct Ran {
+  int status = -1;
+  std::string output;  // stdout and stderr
+};
+
+Ran run(const std::string& command) {
+  Ran ran;
+  FILE* pipe = popen((command + " 2>&1").c_str(), "r");
+  if (pipe == nullptr) return ran;
+  char buffer[4096];
+  for (std::size_t n; (n = fread(buffer, 1, sizeof buffer, pipe)) > 0;) ran.output.append(buffer, n);
+  const int status = pclose(pipe);
+  ran.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ran;
+}
+
+// An empty folder of this test's own.
+fs::path folder(const std::string& name) {
+  const fs::path path = fs::temp_directory_path() / ("cdot_explain_" + name + "_" + std::to_string(getpid()));
+  fs::remove_all(path);
+  fs::create_directories(path);
+  return path;
+}
+
+void write(const fs::path& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+
+// Braces, environments and \left ... \right open and close in order.
+std::string imbalance(const std::string& latex) {
+  std::vector<std::string> open;
+  const std::regex token(R"(\\begin\{(\w+\*?)\}|\\end\{(\w+\*?)\}|\\left\b|\\right\b|\\.|[{}$])");
+  for (std::sregex_iterator it(latex.begin(), latex.end(), token), end; it != end; ++it) {
+    const std::string text = it->str();
+    std::string opens, closes;
+    if (text.starts_with("\\begin{")) opens = (*it)[1];
+    else if (text.starts_with("\\end{")) closes = (*it)[2];
+    else if (text == "\\left") opens = "left";
+    else if (text == "\\right") closes = "left";
+    else if (text == "{") opens = "{";
+    else if (text == "}") closes = "{";
+    else if (text == "$") (!open.empty() && open.back() == "$" ? closes : opens) = "$";
+    if (!opens.empty()) open.push_back(opens);
+    if (closes.empty()) continue;
+    if (open.empty() || open.back() != closes) return "`" + text + "` at " + std::to_string(it->position());
+    open.pop_back();
+  }
+  return open.empty() ? "" : "`" + open.back() + "` stays open";
+}
+
+std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
+
+const std::string python = CDOT_PYTHON;
+
+// By sympy, in a process of its own.
+Ran check_json(const fs::path& files) {
+  return run(python + " " + quoted(fs::path(CDOT_SOURCE_DIR "/tests/derive/explain") / "check_json.py") + " " +
+             quoted(files));
+}
+
+}  // namespace
+
+TEST(ExplainHtml, IsWellFormedAndNeedsNothingFromElsewhere) {
+  const fs::path pages = folder("html");
+  for (const std::string& name : spec_names()) {
+    const std::string page = explanation_html(explain(read_spec(name)));
+    EXPECT_EQ(page.find("http"), std::string::npos) << name;
+    EXPECT_EQ(page.find("src="), std::string::npos) << name;
+    EXPECT_EQ(page.find("href"), std::string::npos) << name;
+    EXPECT_EQ(page.find("@import"), std::string::npos) << name;
+    EXPECT_EQ(page.find("url("), std::string::npos) << name;
+    EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos) << name;
+    write(pages / (flat(name) + ".html"), page);
+  }
+  const Ran parsed = run(python +
+                         " -c \"import sys, glob, xml.etree.ElementTree as E\n"
+                         "files = glob.glob(sys.argv[1] + '/*.html')\n"
+                         "assert len(files) > 15\n"
+                         "[E.parse(f) for f in files]\" " +
+                         quoted(pages));
+  EXPECT_EQ(parsed.status, 0) << parsed.output;
+  fs::remove_all(pages);
+}
+
+TEST(ExplainLatex, BalancesAndCompilesWhereATexIsInstalled) {
+  const bool has_tex = run("command -v pdflatex").status == 0;
+  const fs::path papers = folder("latex");
+  for (const std::string& name : spec_names()) {
+    const std::string latex = explanation_latex(explain(read_spec(name)));
+    EXPECT_EQ(imbalance(latex), "") << name;
+    for (const char c : latex) ASSERT_LT(static_cast<unsigned char>(c), 128) << name << ": not ASCII";
+    if (!has_tex) continue;
+    write(papers / (flat(name) + ".tex"), latex);
+    const Ran compiled =
+        run("cd " + quoted(papers) + " && pdflatex -interaction=nonstopmode -halt-on-error " + flat(name) + ".tex");
+    EXPECT_EQ(compiled.status, 0) << compiled.output;
+  }
+  std::cout << (has_tex ? "compiled by pdflatex\n" : "no pdflatex here: balance checked only\n");
+  fs::remove_all(papers);
+}
+
+TEST(ExplainLatex, TheBalanceCheckCanFail) {
+  EXPECT_EQ(imbalance("\\begin{a} $x$ {\\left( y \\right)} \\{ \\end{a}"), "");
+  EXPECT_NE(imbalance("\\begin{a} { \\end{a}"), "");
+  EXPECT_NE(imbalance("\\left( x"), "");
+  EXPECT_NE(imbalance("$x"), "");
+}
+
+TEST(ExplainJson, IsTrueForTheCatalogueWhenSympyEvaluatesIt) {
+  const fs::path files = folder("json");
+  for (const std::string& name : spec_names()) {
+    write(files / (flat(name) + ".json"), explanation_json(read_spec(name)).dump(1));
+  }
+  const Ran ran = check_json(files);
+  EXPECT_EQ(ran.status, 0) << ran.output;
+  std::cout << ran.output;
+  fs::remove_all(files);
+}
+
+TEST(ExplainJson, IsTrueForUnusualJointsWhenSympyEvaluatesIt) {
+  const fs::path files = folder("unusual_json");
+  for (const auto& [name, text] : unusual_specs()) {
+    write(files / (name + ".json"), explanation_json(read_text(name, text)).dump(1));
+  }
+  const Ran ran = check_json(files);
+  EXPECT_EQ(ran.status, 0) << ran.output;
+  std::cout << ran.output;
+  fs::remove_all(files);
+}
+
+// What check_json.py says yes to, it says no to once an entry is wrong.
+TEST(ExplainJson, TheCheckFindsAWrongEntry) {
+  const fs::path files = folder("wrong_json");
+  for (const std::string key : {"J", "K", "gamma", "Cdot"}) {
+    fs::remove_all(files);
+    fs::create_directories(files);
+    nlohmann::ordered_json json = explanation_json(read_spec("line"));
+    nlohmann::ordered_json& entry = json[key][0].is_array() ? json[key][0][0] : json[key][0];
+    entry = "-(" + entry.get<std::string>() + ")";
+    write(files / "line.json", json.dump(1));
+    const Ran ran = check_json(files);
+    EXPECT_EQ(ran.status, 1) << key << "\n" << ran.output;
+    EXPECT_NE(ran.output.find("line"), std::string::npos) << ran.output;
+  }
+  fs::remove_all(files);
+}
+
+TEST(ExplainCommand, WritesFilesAndSaysWhatIsWrong) {
+  const fs::path out = folder("command");
+  const std::string specs = " --specs " + quoted(CDOT_SOURCE_DIR "/specs"), cdot = CDOT;
+  const Ran text = run(cdot + " explain line" + specs);
+  EXPECT_EQ(text.status, 0);
+  EXPECT_EQ(text.output, explanation_text(explain(read_spec("line"))));
+  const Ran page = run(cdot + " explain line --format html -o " + quoted(out / "line.html") + specs);
+  EXPECT_EQ(page.status, 0) << page.output;
+  EXPECT_TRUE(fs::exists(out / "line.html"));
+  const Ran json = run(cdot + " explain line --json" + specs);
+  EXPECT_EQ(nlohmann::json::parse(json.output)["joint"], "line");
+  EXPECT_NE(run(cdot + " explain --help").output.find("intermediates"), std::string::npos);
+
+  const Ran unknown = run(cdot + " explain lime" + specs);
+  EXPECT_EQ(unknown.status, 2);
+  EXPECT_NE(unknown.output.find("did you mean `line`"), std::string::npos) << unknown.output;
+  EXPECT_EQ(run(cdot + " explain line --format pdf" + specs).status, 2);
+  EXPECT_EQ(run(cdot + " explain line --format html --json" + specs).status, 2);
+  EXPECT_EQ(run(cdot + " explain line -o " + quoted(out / "none" / "x.txt") + specs).status, 2);
+  const Ran form = run(cdot + " explain line --form local" + specs);
+  EXPECT_EQ(form.status, 2);
+  EXPECT_NE(form.output.find("for spatial joints"), std::string::npos) << form.output;
+  write(out / "ball.joint", "joint ball spatial\n  \"pin\"\n  point pa on a\n  point pb on b\n  pa = pb\n");
+  const Ran ball = run(cdot + " explain " + quoted(out / "ball.joint") + " --form euler" + specs);
+  EXPECT_EQ(ball.status, 0);
+  EXPECT_NE(ball.output.find("J_euler = [ E | -2 S(ra) G_a | -E | 2 S(rb) G_b ]"), std::string::npos) << ball.output;
+  write(out / "bad.joint", "joint bad planar\n  point pa on\n");
+  EXPECT_EQ(run(cdot + " explain " + quoted(out / "bad.joint") + specs).status, 2);
+  fs::remove_all(out);
+}

@@ -1,0 +1,41 @@
+// Every spec and every hand derivation of the catalogue is read without a complaint.
+#include <gtest/gtest.h>
+
+#include "tests/derive/language/reading.hpp"
+
+namespace cdot::derive {
+namespace {
+
+TEST(Catalogue, SpecsAreReadWithoutErrors) {
+  const Library library = library_of(CDOT_SOURCE_DIR "/specs/planar");
+  EXPECT_GE(library.size(), 20u);
+  for (const auto& [name, file] : library) {
+    const ReadResult r = read_joint(file, library);
+    ASSERT_TRUE(r.joint) << render(*file, r.diagnostics);
+    EXPECT_EQ(r.joint->name, name);
+    EXPECT_FALSE(r.joint->title.empty()) << name;
+    EXPECT_FALSE(r.joint->source.empty()) << name;
+    EXPECT_FALSE(r.joint->comment.empty()) << name;
+  }
+}
+
+TEST(Catalogue, SpecsHaveNothingUnused) {
+  const Library library = library_of(CDOT_SOURCE_DIR "/specs/planar");
+  for (const auto& [name, file] : library) EXPECT_EQ(render(*file, read_joint(file, library).diagnostics), "");
+}
+
+TEST(Catalogue, HandDerivationsAreReadWithoutErrors) {
+  const Library library = library_of(CDOT_SOURCE_DIR "/specs/planar");
+  int entries = 0;
+  for (const auto& f : std::filesystem::directory_iterator(CDOT_SOURCE_DIR "/specs/planar")) {
+    if (f.path().extension() != ".hand") continue;
+    const auto joint = library.at(f.path().stem().string());
+    const std::string messages = messages_about_hand(file_of(f.path()), joint, library);
+    EXPECT_EQ(messages.find(": error:"), std::string::npos) << messages;
+    entries += static_cast<int>(read_hand(file_of(f.path())).entries.size());
+  }
+  EXPECT_GT(entries, 80);
+}
+
+}  // namespace
+}  // namespace cdot::derive

@@ -1,0 +1,237 @@
+// cdot-run as a person or a script meets it: help, exit status, files, JSON.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "runtime/tool/run/output.hpp"
+#include "tests/cases/cases.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::command_test {
+namespace {
+
+std::string scene(const std::string& name) { return fmt::format("'{}'", (scenes_dir() / (name + ".toml")).string()); }
+
+std::vector<std::vector<std::string>> csv(const std::filesystem::path& path) {
+  std::vector<std::vector<std::string>> rows;
+  std::ifstream file(path);
+  for (std::string line; std::getline(file, line);) {
+    std::vector<std::string>& row = rows.emplace_back();
+    std::stringstream cells(line);
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
+  }
+  return rows;
+}
+
+TEST(Command, HelpTeaches) {
+  for (const char* arguments : {"--help", "simulate --help"}) {
+    const CommandResult result = cdot_run(arguments);
+    EXPECT_EQ(result.status, 0);
+    for (const char* word : {"simulate", "Examples", "Exit status", "--html", "specs/scenes/README.md"}) {
+      EXPECT_NE(result.out.find(word), std::string::npos) << arguments << ": " << word;
+    }
+  }
+}
+
+TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
+  const CommandResult text = cdot_run("list");
+  EXPECT_EQ(text.status, 0);
+  EXPECT_NE(text.out.find("revolute  (2 bodies, 2 rows)"), std::string::npos) << text.out;
+  const auto list = nlohmann::json::parse(cdot_run("list --json").out);
+  const auto revolute =
+      std::find_if(list.begin(), list.end(), [](const auto& joint) { return joint["type"] == "revolute"; });
+  ASSERT_NE(revolute, list.end());
+  EXPECT_EQ((*revolute)["bodies"], 2);
+  EXPECT_EQ((*revolute)["parameters"][0]["name"], "pa");
+  EXPECT_EQ((*revolute)["parameters"][0]["kind"], "point");
+  EXPECT_EQ((*revolute)["coordinates"][0]["name"], "angle");
+}
+
+TEST(Command, ListShowsTheKeysOfAScene) {
+  const CommandResult text = cdot_run("list --keys");
+  EXPECT_EQ(text.status, 0);
+  for (const char* part : {"[[body]]", "orientation      in space:", "local_error", "friction         greatest force",
+                           "load             constant force", "[[spring]]"})
+    EXPECT_NE(text.out.find(part), std::string::npos) << part << text.out;
+}
+
+TEST(Command, JacobianSaysWhereItWent) {
+  const CommandResult result = cdot_run("jacobian " + scene("four_bar") + " --json");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_NE(result.err.find("use diagnose --matrix"), std::string::npos) << result.err;
+}
+
+TEST(Command, BadUsageAndBadScenesAreTwo) {
+  EXPECT_EQ(cdot_run("").status, 2);
+  EXPECT_EQ(cdot_run("simulate").status, 2);
+  EXPECT_EQ(cdot_run("simulate no_such_file.toml").status, 2);
+  EXPECT_EQ(cdot_run("simulate " + scene("compound_pendulum") + " --step -1").status, 2);
+  EXPECT_EQ(cdot_run("simulate " + scene("compound_pendulum") + " --solver magic").status, 2);
+  const TemporaryFolder folder;
+  const std::string broken = (folder / "many_at_once.toml").string();
+  std::ofstream(broken)
+      << case_named(themes_in(source_dir() / "tests/runtime/tool/scene/broken"), "many_at_once.toml").input;
+  const CommandResult result = cdot_run("simulate '" + broken + "'");
+  EXPECT_EQ(result.status, 2);
+  EXPECT_EQ(result.out, "");
+  EXPECT_NE(result.err.find("10 mistakes"), std::string::npos);
+  EXPECT_NE(result.err.find("did you mean `revolute`?"), std::string::npos);
+}
+
+TEST(Command, AnUnstableRunIsOneAndSaysWhy) {
+  const CommandResult result =
+      cdot_run("simulate " + scene("compound_pendulum") + " --drift none --step 0.05 --tolerance 1e-6");
+  EXPECT_EQ(result.status, 1);
+  EXPECT_NE(result.out.find("FAILED          joint \"pivot\" is off by"), std::string::npos) << result.out;
+}
+
+TEST(Command, SummaryAsJson) {
+  const CommandResult result = cdot_run("simulate " + scene("compound_pendulum") + " --until 1 --json");
+  EXPECT_EQ(result.status, 0) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  EXPECT_EQ(json["ok"], true);
+  EXPECT_EQ(json["steps"], 1000);
+  EXPECT_DOUBLE_EQ(json["time"], 1);
+  EXPECT_LT(json["worst_error"], 1e-9);
+  EXPECT_GT(json["cpu"], 0);
+  EXPECT_LT(json["energy_drift"], 0.1);
+}
+
+TEST(Command, ProgressOnlyWhereItIsSeen) {
+  EXPECT_EQ(cdot_run("simulate " + scene("compound_pendulum") + " --until 0.1").err, "");
+}
+
+TEST(Command, TrajectoryHasAColumnPerBodyAndQuantity) {
+  const TemporaryFolder folder;
+  const std::string path = folder / "four_bar.csv";
+  EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.01 -o '{}'", scene("four_bar"), path)).status, 0);
+  const auto rows = csv(path);
+  ASSERT_EQ(rows.size(), 12u);  // the head, the start, ten steps
+  ASSERT_EQ(rows[0].size(), 19u);
+  EXPECT_EQ(rows[0][0], "time");
+  const std::vector<std::string> first(rows[0].begin() + 1, rows[0].begin() + 7);
+  EXPECT_EQ(first, (std::vector<std::string>{"v0.x", "v0.y", "v0.angle", "v0.vx", "v0.vy", "v0.omega"}));
+  EXPECT_EQ(rows[0][7], "h0.x");
+  EXPECT_EQ(std::stod(rows[1][0]), 0);
+  EXPECT_EQ(std::stod(rows[1][6]), -1);
+  EXPECT_DOUBLE_EQ(std::stod(rows[11][0]), 0.01);
+  EXPECT_EQ(folder.contents(), std::vector<std::string>{"four_bar.csv"});
+}
+
+// Rows at asked times agree with the run's own steps where they meet, and lie on its path in
+// between.
+TEST(Command, RowTimesDoNotChangeTheRun) {
+  const TemporaryFolder folder;
+  const std::string steps = folder / "steps.csv", every = folder / "every.csv", times = folder / "times.csv";
+  const std::string simulate = fmt::format("simulate {} --until 0.5 ", scene("double_pendulum"));
+  ASSERT_EQ(cdot_run(simulate + "-o '" + steps + "'").status, 0);
+  ASSERT_EQ(cdot_run(simulate + "--every 0.1 -o '" + every + "'").status, 0);
+  ASSERT_EQ(cdot_run(simulate + "--times 0.25,0.10025,0.5 -o '" + times + "'").status, 0);
+  const auto all = csv(steps), tenths = csv(every), asked = csv(times);
+  ASSERT_EQ(all.size(), 502u);
+  ASSERT_EQ(tenths.size(), 7u);
+  for (std::size_t k = 1; k < tenths.size(); ++k) {
+    const std::size_t same = 1 + 100 * (k - 1);
+    EXPECT_TRUE(std::equal(tenths[k].begin() + 1, tenths[k].end(), all[same].begin() + 1)) << k;
+  }
+  ASSERT_EQ(asked.size(), 4u);
+  EXPECT_EQ(asked[1][0], "0.10025");
+  EXPECT_EQ(asked[2][0], "0.25");
+  const double before = std::stod(all[101][1]), after = std::stod(all[102][1]), between = std::stod(asked[1][1]);
+  EXPECT_NEAR(between, 0.75 * before + 0.25 * after, 1e-6);
+  EXPECT_EQ(cdot_run(simulate + "--every 0.1 --times 1").status, 2);
+}
+
+TEST(Command, SameInputSameBytes) {
+  const TemporaryFolder folder;
+  const std::string one = folder / "one.csv", two = folder / "two.csv";
+  cdot_run(fmt::format("simulate {} --until 0.5 -o '{}'", scene("slider_crank"), one));
+  cdot_run(fmt::format("simulate {} --until 0.5 -o '{}'", scene("slider_crank"), two));
+  EXPECT_GT(read_text(one).size(), 1000u);
+  EXPECT_EQ(read_text(one), read_text(two));
+}
+
+TEST(Command, NoHalfWrittenFiles) {
+  const TemporaryFolder folder;
+  const std::string missing = folder / "no_such_folder/run.csv";
+  EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.1 -o '{}'", scene("four_bar"), missing)).status, 2);
+  // Interrupted in the middle of a long run: the old file stays, no part of a new one does.
+  const std::string path = folder / "run.csv";
+  std::ofstream(path) << "old\n";
+  const CommandResult result = run_command(
+      fmt::format("timeout -s INT 0.5 '{}' simulate {} --until 100000 -o '{}'", CDOT_RUN, scene("four_bar"), path));
+  EXPECT_NE(result.status, 0);
+  EXPECT_EQ(read_text(path), "old\n");
+  EXPECT_EQ(folder.contents(), std::vector<std::string>{"run.csv"});
+}
+
+// Numbers of all rows but the head.
+std::vector<double> numbers_of(const std::filesystem::path& path) {
+  std::vector<double> numbers;
+  const auto rows = csv(path);
+  for (std::size_t k = 1; k < rows.size(); ++k)
+    for (const std::string& cell : rows[k]) numbers.push_back(std::stod(cell));
+  return numbers;
+}
+
+double largest_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double worst = 0;
+  for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) worst = std::max(worst, std::abs(a[k] - b[k]));
+  return worst;
+}
+
+// In float every number is one of float's, and the motion that of double, but for float's round-off.
+TEST(Command, PrecisionIsFloatIfAsked) {
+  const TemporaryFolder folder;
+  for (const char* name : {"double_pendulum", "spatial/double_pendulum"}) {
+    const auto run = [&](const std::string& precision) {
+      const std::string path = folder / (precision + ".csv");
+      const CommandResult result =
+          cdot_run(fmt::format("simulate {} --integrator rk4 --until 1 --step 0.0078125 -o '{}' --precision {}",
+                               scene(name), path, precision));
+      EXPECT_EQ(result.status, 0) << result.err;
+      EXPECT_EQ(result.err, "");
+      EXPECT_EQ(result.out.find("precision       float") != std::string::npos, precision == "float") << result.out;
+      return numbers_of(path);
+    };
+    const std::vector<double> single = run("float"), exact = run("double");
+    ASSERT_FALSE(single.empty());
+    for (const double number : single) EXPECT_EQ(number, double(float(number)));
+    const double apart = largest_difference(single, exact);
+    fmt::print("  {}: float is {:.1e} off\n", name, apart);
+    EXPECT_GT(apart, 1e-7);
+    EXPECT_LT(apart, 1e-3);
+  }
+  // The scene's own key, and JSON.
+  const std::string path = folder / "single.toml";
+  write_file(path, "precision = \"float\"\nduration = 0.1\n[[body]]\nname = \"ball\"\nmass = 1\ninertia = 1\n");
+  EXPECT_EQ(nlohmann::json::parse(cdot_run("simulate '" + path + "' --json").out)["precision"], "float");
+  EXPECT_EQ(cdot_run("simulate '" + path + "' --precision half").status, 2);
+  EXPECT_EQ(cdot_run("simulate '" + path + "' --accuracy 1e-4 --precision float").status, 2);
+}
+
+TEST(Command, KernelsAreThoseAskedFor) {
+  const TemporaryFolder folder;
+  const auto run = [&](const std::string& kernels) {
+    const std::string path = folder / (kernels + ".csv");
+    EXPECT_EQ(cdot_run(fmt::format("simulate {} --solver iterative --until 0.5 -o '{}' --kernels {}",
+                                   scene("spatial/double_pendulum"), path, kernels))
+                  .status,
+              0);
+    return numbers_of(path);
+  };
+  const std::vector<double> balanced = run("balanced"), robust = run("robust");
+  const double apart = largest_difference(balanced, robust);
+  fmt::print("  robust is {:.1e} from balanced\n", apart);
+  EXPECT_GT(apart, 0);
+  EXPECT_LT(apart, 1e-9);
+  EXPECT_EQ(cdot_run("simulate " + scene("spatial/double_pendulum") + " --kernels best").status, 2);
+}
+
+}  // namespace
+}  // namespace cdot::test::command_test

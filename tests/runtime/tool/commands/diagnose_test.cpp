@@ -1,0 +1,102 @@
+// cdot-run diagnose, and the warnings of cdot-run simulate: what is said of methods that are wrong for a scene, and
+// that nothing is said of those that are right.
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::diagnose_test {
+namespace {
+
+std::string hard(const std::string& name) {
+  return fmt::format("'{}/tests/hard_cases/{}.toml'", CDOT_SOURCE_DIR, name);
+}
+
+bool says(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
+
+// Every scene of the catalogue, by the method that it asks for.
+TEST(DiagnoseCommand, HasNothingAgainstTheCatalogue) {
+  int scenes = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(scenes_dir())) {
+    if (entry.path().extension() != ".toml") continue;
+    const CommandResult result = cdot_run(fmt::format("diagnose '{}' --until 0.5", entry.path().string()));
+    EXPECT_EQ(result.status, 0) << entry.path() << result.out << result.err;
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 19);
+}
+
+struct Wrong {
+  const char *scene, *method, *words, *fix;
+};
+
+// Method, and what must be said of it; the fix that is offered then is one of which nothing is said.
+constexpr Wrong wrong[] = {
+    {"ball_and_chain/planar", "--integrator euler", "the tension of the joints makes \"link",
+     "integrator = \"implicit\""},
+    {"ball_and_chain/planar", "--solver iterative", "sweeps of the iterative solver leave much of an error",
+     "solver = \"direct\""},
+    {"fast_spin/planar", "--integrator rattle", "rad per substep: rattle follows turns of less than about 0.5",
+     "integrator = \"dop853\" with local_error = 1e-6"},
+    {"incompatible_triangle/planar", "", "\"ab\", \"bc\", \"ca\" contradict each other",
+     "correct the anchors or the lengths"},
+    {"stiff_and_soft/planar", "--integrator rattle", "a spring makes \"box", "substeps = "},
+};
+
+TEST(DiagnoseCommand, SaysWhichMethodIsWrongAndWhatIsRight) {
+  for (const Wrong& one : wrong) {
+    const CommandResult simulated = cdot_run(fmt::format("simulate {} {} --until 1", hard(one.scene), one.method));
+    EXPECT_TRUE(says(simulated.out, "  warning         ")) << one.scene << " " << one.method << "\n" << simulated.out;
+    EXPECT_TRUE(says(simulated.out, one.words)) << one.scene << " " << one.method << "\n" << simulated.out;
+    EXPECT_TRUE(says(simulated.out, one.fix)) << one.scene << " " << one.method << "\n" << simulated.out;
+  }
+}
+
+// omega^2 = 1e6 / 1: 1000 rad/s. The run fails, and says why before it does.
+TEST(DiagnoseCommand, SaysThatASpringIsTooStiffForTheStep) {
+  const TemporaryFolder folder;
+  const auto file = folder / "spring.toml";
+  std::ofstream(file) << "duration = 20\nstep = 0.01\n[[body]]\nname = \"ball\"\nmass = 1\nshape = { disc = 1 }\n"
+                         "position = [1, 0]\n[[spring]]\nbodies = [\"world\", \"ball\"]\nstiffness = 1e6\nrest = 0.5\n";
+  const CommandResult result = cdot_run(fmt::format("simulate '{}'", file.string()));
+  EXPECT_EQ(result.status, 1);
+  EXPECT_TRUE(says(result.out,
+                   "a spring makes \"ball\" swing with 1e+03 rad/s, 10 rad per substep: euler is unstable from "
+                   "2 on. Likely fix: substeps = 20 or more, or integrator"))
+      << result.out;
+}
+
+TEST(DiagnoseCommand, PrintsIslands) {
+  const CommandResult result = cdot_run("diagnose " + hard("ball_and_chain/planar") + " --at 0");
+  EXPECT_EQ(result.status, 0) << result.err;
+  for (const char* words :
+       {"method: direct implicit, double, substeps of 0.01667 s", "at t = 0 s\n", "island 0: 41 bodies, from \"link1\"",
+        "rank            82 of 82 rows", "condition of K  1.09e+05", "masses          5.982 to 4021 kg",
+        "nothing speaks against this method"})
+    EXPECT_TRUE(says(result.out, words)) << words << "\n" << result.out;
+}
+
+TEST(DiagnoseCommand, HasAllNumbersInJson) {
+  const CommandResult result = cdot_run("diagnose " + hard("incompatible_triangle/planar") + " --at 0.5 --json");
+  EXPECT_EQ(result.status, 1) << result.err;
+  const auto json = nlohmann::json::parse(result.out);
+  const auto& island = json["islands"].at(0);
+  EXPECT_EQ(island["rows"], 6);
+  EXPECT_EQ(island["rank"], 5);
+  EXPECT_EQ(island["redundant"].at(0)["joints"], (std::vector<std::string>{"ab", "bc", "ca"}));
+  EXPECT_TRUE(island["redundant"][0]["conflicting"]);
+  EXPECT_NEAR(std::abs(island["redundant"][0]["missed"].get<double>()), 0.02, 1e-6);
+  EXPECT_EQ(json["concerns"].at(0)["level"], "warning");
+}
+
+TEST(DiagnoseCommand, RefusesATimeAfterTheEnd) {
+  const CommandResult result =
+      cdot_run(fmt::format("diagnose '{}' --at 1e9", (scenes_dir() / "four_bar.toml").string()));
+  EXPECT_EQ(result.status, 2);
+  EXPECT_TRUE(says(result.err, "--at 1000000000: the run ends at 10 s")) << result.err;
+}
+
+}  // namespace
+}  // namespace cdot::test::diagnose_test

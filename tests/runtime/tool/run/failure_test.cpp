@@ -1,0 +1,123 @@
+// cdot-run simulate when a step fails: where, what, the likely fix, exit status 1; what was written ends before it.
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "runtime/tool/run/state.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::failure_test {
+namespace {
+
+// A rope of stiffness without bound goes taut in the fall.
+constexpr const char* fall = R"(
+duration = 1
+step = 0.01
+{}
+[[body]]
+name = "stone"
+mass = 1
+inertia = 1
+position = [0, -1]
+[[body]]
+name = "rod"
+mass = 1
+shape = {{ rod = 1 }}
+position = [5.5, 0]
+[[joint]]
+name = "pivot"
+type = "revolute"
+bodies = ["world", "rod"]
+at = [5, 0]
+[[spring]]
+bodies = ["world", "stone"]
+stiffness = 1e308
+rest = 1
+)";
+
+struct Failing {
+  TemporaryFolder folder;
+  std::string run(const std::string& keys, const std::string& more = "") {
+    const auto file = folder / "fall.toml";
+    std::ofstream(file) << fmt::format(fmt::runtime(fall), keys);
+    return fmt::format("simulate '{}' {}", file.string(), more);
+  }
+};
+
+TEST(FailedStep, IsToldWithPlaceReasonAndFix) {
+  Failing scene;
+  const auto csv = scene.folder / "rows.csv", state = scene.folder / "before.state";
+  const CommandResult result =
+      cdot_run(scene.run("", fmt::format("-o '{}' --save-state '{}'", csv.string(), state.string())));
+  EXPECT_EQ(result.status, 1) << result.err;
+  EXPECT_NE(result.out.find("FAILED          the step of 0.01 s at t = "), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("failed in island 0: a pose or velocity came out not finite; body \"stone\" moved fastest. "
+                            "Likely fix: a shorter step"),
+            std::string::npos)
+      << result.out;
+  std::ifstream rows(csv);
+  std::string line, last;
+  while (std::getline(rows, line)) last = line;
+  EXPECT_NEAR(read_state(state.string()).time(), std::stod(last), 1e-9);
+  EXPECT_EQ(last.find("nan"), std::string::npos);
+  EXPECT_EQ(last.find("inf"), std::string::npos);
+  const auto json = nlohmann::json::parse(cdot_run(scene.run("", "--json")).out);
+  EXPECT_FALSE(json["ok"]);
+  EXPECT_EQ(json["failed_step"]["body"], "stone");
+  EXPECT_EQ(json["failed_step"]["problem"], "not_finite");
+}
+
+// A hard case with more keys at its head.
+CommandResult run_hard_case(const char* scene, const std::string& keys, const char* options) {
+  const TemporaryFolder folder;
+  std::ifstream original(source_dir() / "tests/hard_cases" / scene);
+  const auto file = folder / "scene.toml";
+  std::ofstream(file) << keys << original.rdbuf();
+  return cdot_run(fmt::format("simulate '{}' {}", file.string(), options));
+}
+
+// A ball of 4 t on a light chain, by steps far too long for its tension: the run ends at 1.8 s, or goes on in parts.
+TEST(FailedStep, IsTakenAgainInPartsWhereTheSceneAllows) {
+  const auto run = [](const std::string& keys) {
+    return run_hard_case("ball_and_chain/planar.toml", keys, "--integrator euler --until 1.9 --tolerance 1 --json");
+  };
+  const CommandResult stopped = run(""), retried = run("on_failure = \"retry\"\n");
+  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
+  const auto failed = nlohmann::json::parse(stopped.out)["failed_step"];
+  EXPECT_EQ(failed["problem"], "joints_apart");
+  EXPECT_EQ(retried.status, 0) << retried.out << retried.err;
+  const auto json = nlohmann::json::parse(retried.out);
+  EXPECT_GE(json["retried"]["steps"], 1);
+  EXPECT_GE(json["time"], 1.9 - 1e-9);
+  EXPECT_LT(json["worst_error"], 0.02);
+  EXPECT_FALSE(json.contains("failed_step"));
+}
+
+// Links that start a metre apart: no number of parts is enough for ten sweeps, but the direct solver puts them
+// together; then the run goes on by sweeps.
+TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
+  const auto run = [](const std::string& keys, const char* options) {
+    return run_hard_case("stretched_chain/planar.toml", "solver = \"iterative\"\n" + keys, options);
+  };
+  const char* until = "--integrator euler --until 1 --tolerance 4";
+  const CommandResult stopped = run("", until), retried = run("on_failure = \"retry\"\n", until);
+  EXPECT_EQ(stopped.status, 1) << stopped.out << stopped.err;
+  EXPECT_NE(stopped.out.find("or on_failure = \"retry\""), std::string::npos) << stopped.out;
+  EXPECT_EQ(retried.status, 0) << retried.out << retried.err;
+  EXPECT_NE(retried.out.find("1 step failed and went well in parts, 1 of them by the direct solver"), std::string::npos)
+      << retried.out;
+}
+
+// What has been tried is not advised.
+TEST(FailedStep, AdvisesWhatWasNotTried) {
+  Failing scene;
+  const CommandResult stopped = cdot_run(scene.run("", "")),
+                      retried = cdot_run(scene.run("on_failure = \"retry\"\n", ""));
+  EXPECT_NE(stopped.out.find("or on_failure = \"retry\""), std::string::npos) << stopped.out;
+  EXPECT_NE(retried.out.find("FAILED"), std::string::npos) << retried.out;
+  EXPECT_EQ(retried.out.find("on_failure"), std::string::npos) << retried.out;
+}
+
+}  // namespace
+}  // namespace cdot::test::failure_test

@@ -1,0 +1,158 @@
+// Where a Runge-Kutta step has nothing to do with the motion, the linearly implicit step takes its place, and that is
+// counted: nothing explodes, nothing hangs.
+#include <cmath>
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "runtime/tool/run/trajectory.hpp"
+#include "tests/runtime/tool/run/heavy_load.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::rescue_test {
+namespace {
+
+constexpr Integrator methods[] = {Integrator::rk4, Integrator::dop853};
+
+class Rescue : public testing::TestWithParam<std::tuple<Integrator, double>> {};
+
+// On rods or on beads.
+class RescueOfALoad : public testing::TestWithParam<std::tuple<Integrator, double, bool>> {};
+
+TEST_P(RescueOfALoad, DoesNotExplode) {
+  const auto& [integrator, local_error, beads] = GetParam();
+  World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
+  hang_load(world, beads, 1e6);
+  const double start = world.energy(), kick = 0.5e6;
+  double gained = 0, gap = 0;
+  for (int k = 0; k < 60; ++k) {
+    world.step(1.0 / 60);
+    gained = std::max(gained, world.energy() - start);
+    gap = std::max(gap, world.worst_position_error().value);
+  }
+  const StepCounts& counts = world.step_counts();
+  fmt::print("  gained {:.1e} of the kick's energy, gap {:.1e} m, {} steps left to Euler\n", gained / kick, gap,
+             counts.rescued);
+  EXPECT_LT(gained, 0.01 * kick);
+  EXPECT_LT(gap, 1e-3);
+  EXPECT_EQ(counts.rescued > 0, local_error == 0);
+}
+
+// A weight is pulled up to the wheel of its pulley, and through: there the rope has no direction, and then jams.
+TEST_P(Rescue, ARopeJamsInItsPulley) {
+  const auto& [integrator, local_error] = GetParam();
+  World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
+  const int heavy = world.add_body({.x = -1, .y = 5, .mass = 2, .inertia = 0.4});
+  const int light = world.add_body({.x = 1, .y = 9.8, .mass = 1, .inertia = 0.2});
+  world.add_joint({"pulley", {heavy, light}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"ga", {-1, 10}}, {"gb", {1, 10}}}, {}});
+  const double start = world.energy();
+  double gained = 0;
+  for (int k = 0; k < 60; ++k) {
+    world.step(1.0 / 60);
+    gained = std::max(gained, world.energy() - start);
+  }
+  const StepCounts& counts = world.step_counts();
+  fmt::print("  gained {:.1e} J, {} steps left to Euler, {} taken\n", gained, counts.rescued, counts.taken);
+  EXPECT_LT(gained, 1e-3 * 2 * 9.81);
+  EXPECT_GT(counts.rescued, 0);
+  EXPECT_LT(counts.taken, 100'000);
+}
+
+// A motor of any force turns a rod that a bar to the ground does not let turn: no step is short enough for both. Each
+// is left to Euler's after a few attempts, not taken in the thousands that are too short to be told from rest.
+TEST_P(Rescue, AMotorTurnsAgainstABar) {
+  const auto& [integrator, local_error] = GetParam();
+  World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
+  const int rod = world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
+  const int hinge = world.add_joint({"revolute", {world.ground(), rod}, {{"pa", {0, 0}}, {"pb", {-1, 0}}}, {}});
+  world.add_joint({"distance", {world.ground(), rod}, {{"pa", {2, -1}}, {"pb", {1, 0}}, {"l", {1}}}, {}});
+  add_motor(world, hinge, "angle", {.speed = 1});
+  constexpr int steps = 60;
+  for (int k = 0; k < steps; ++k) world.step(1.0 / 60);
+  const StepCounts& counts = world.step_counts();
+  const double gap = world.worst_position_error().value;
+  fmt::print("  gap {:.1e} m, {} evaluations, {} of {} steps left to Euler\n", gap, counts.evaluations, counts.rescued,
+             steps);
+  EXPECT_EQ(counts.rescued, steps);
+  EXPECT_LT(counts.evaluations, 100 * steps);
+  EXPECT_LT(gap, 1e-10);
+}
+
+// A double pendulum in floats, asked for an error far below their last bit: that of the last bit is what it gets, in
+// steps of a method of high order, and not by steps in which nothing but round-off is left.
+TEST(RescueOfFloats, NoErrorIsBelowTheLastBit) {
+  for (const Integrator integrator : methods) {
+    World<float> world({.integrator = integrator, .local_error = 1e-12, .gravity_y = -9.81});
+    int above = world.ground();
+    for (const double x : {0.5, 1.5}) {
+      const int rod = world.add_body({.x = x, .mass = 1, .inertia = 0.1});
+      world.add_joint({"revolute", {above, rod}, {{"pa", {x > 1 ? 0.5 : 0, 0}}, {"pb", {-0.5, 0}}}, {}});
+      above = rod;
+    }
+    const double start = world.energy();
+    for (int k = 0; k < 20; ++k) world.step(0.1);
+    const StepCounts& counts = world.step_counts();
+    const double off = std::abs(world.energy() - start);
+    fmt::print("  {} taken, {} left to Euler, energy off by {:.1e} J\n", counts.taken, counts.rescued, off);
+    EXPECT_LT(counts.taken, 20'000);
+    EXPECT_EQ(counts.rescued, 0);
+    EXPECT_LT(off, 1e-3);
+  }
+}
+
+// A bead of 1 g on two bars between the ground and a load of 1 kg that flies away: they come taut within less time than
+// a fixed step. One that would end beyond their reach, off its joints, is none, and the counts say so.
+TEST_P(Rescue, ALightBeadIsDrawnTaut) {
+  const auto& [integrator, local_error] = GetParam();
+  for (const auto& [x, h] : {std::pair{0.9, 0.027}, {0.97, 0.083}}) {
+    World<double> world({.integrator = integrator, .local_error = local_error});
+    const int bead = world.add_body({.x = x, .y = std::sqrt(1 - x * x), .mass = 1e-3, .inertia = 1e-4});
+    const int load = world.add_body({.x = 2 * x, .vx = 1, .mass = 1, .inertia = 0.1});
+    for (const auto& bodies : {std::vector{world.ground(), bead}, std::vector{bead, load}})
+      world.add_joint({"distance", bodies, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {1}}}, {}});
+    double unsaid = 0;
+    for (int k = 0; k < 40; ++k) {
+      world.step(h);
+      if (world.step_counts().rescued == 0) unsaid = std::max(unsaid, world.worst_position_error().value);
+    }
+    fmt::print("  off by {:.1e} m with nothing said, {:.1e} m at the end, {} steps left to Euler\n", unsaid,
+               world.worst_position_error().value, world.step_counts().rescued);
+    EXPECT_LT(unsaid, 1e-10);
+  }
+}
+
+// Ten links in space, for which a step of 1/24 s is now and then too long for rk4: it takes those in parts, and what it
+// ends at is still its own answer, beside that of another method in fine steps. Left to Euler's, it is 0.29 m away.
+TEST(RescueOfASpatialChain, TakesPartsOfTheStepFirst) {
+  Scene scene = scene_named("spatial/chain_10");
+  const auto end_of = [&](Integrator integrator, int steps, StepCounts& counts) {
+    scene.settings.integrator = integrator;
+    SpatialWorld<double> world = build_world_in<Spatial<double>>(scene);
+    for (int k = 0; k < steps; ++k) world.step(scene.duration / steps);
+    counts = world.step_counts();
+    return frame_of(world, scene.duration, 10);
+  };
+  StepCounts coarse, fine;
+  const Frame end = end_of(Integrator::rk4, 48, coarse), truth = end_of(Integrator::rattle, 2000, fine);
+  const double off = apart(end, truth, scene.dimension).position;
+  fmt::print("  off by {:.2e} m, {} attempts in parts, {} steps left to Euler\n", off, coarse.rejected, coarse.rescued);
+  EXPECT_LT(off, 0.05);
+  EXPECT_GT(coarse.rejected, 0);
+  EXPECT_EQ(coarse.rescued, 0);
+}
+
+std::string name_of(Integrator integrator, double local_error) {
+  return std::string(integrator == Integrator::rk4 ? "rk4" : "dop853") + (local_error == 0 ? "_fixed" : "_adaptive");
+}
+
+constexpr double local_errors[] = {0, 1e-6};
+INSTANTIATE_TEST_SUITE_P(Methods, Rescue, testing::Combine(testing::ValuesIn(methods), testing::ValuesIn(local_errors)),
+                         [](const auto& info) { return std::apply(name_of, info.param); });
+INSTANTIATE_TEST_SUITE_P(Methods, RescueOfALoad,
+                         testing::Combine(testing::ValuesIn(methods), testing::ValuesIn(local_errors), testing::Bool()),
+                         [](const auto& info) {
+                           return name_of(std::get<0>(info.param), std::get<1>(info.param)) +
+                                  (std::get<2>(info.param) ? "_on_beads" : "_on_rods");
+                         });
+
+}  // namespace
+}  // namespace cdot::test::rescue_test

@@ -1,0 +1,144 @@
+// Runs seen from inside: what is judged, what is warned of, what is projected, how frames are
+// picked.
+#include <cmath>
+#include <gtest/gtest.h>
+
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::run_test {
+namespace {
+
+Scene scene_of(const std::string& text) { return read_scene(std::string_view(text), "test.toml"); }
+
+constexpr const char* pendulum =
+    "duration = 1\n[[body]]\nname = \"rod\"\nmass = 1\nshape = { rod = 1 }\nposition = [0.5, 0]\n"
+    "[[joint]]\nname = \"pivot\"\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\npa = [0, "
+    "0]\npb = [-0.5, 0]\n";
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  return text.replace(text.find(from), from.size(), to);
+}
+
+TEST(Run, ConsistentStartIsSilent) {
+  std::string warnings;
+  const RunResult result = simulate(scene_of(pendulum), {}, warnings);
+  EXPECT_EQ(warnings, "");
+  EXPECT_EQ(result.steps, 1000);
+  EXPECT_EQ(failure(scene_of(pendulum), result), "");
+}
+
+TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
+  std::string warnings;
+  simulate(scene_of(with(pendulum, "[0.5, 0]", "[0.5, 0.25]\nvelocity = [3, 0]")), {}, warnings);
+  EXPECT_EQ(warnings,
+            "test.toml:8:1: warning: the start does not fit revolute \"pivot\": C2 = -0.25, Cdot1 = -3\n"
+            "    8 | [[joint]]\n"
+            "      | ^^^^^^^^^\n"
+            "  fix: correct the pose or velocity, or let project = true move the bodies onto their "
+            "joints\n");
+}
+
+// A chain that starts off its joints is no page of paragraphs for each link.
+TEST(Run, OfManyInconsistentJointsTheFirstAreTold) {
+  const std::string links =
+      with(with(pendulum, "[[body]]", "[[body]]\nrepeat = 40"), "[[joint]]", "[[joint]]\nrepeat = 40");
+  const Scene scene = scene_of(
+      with(with(with(with(links, "\"rod\"", "\"rod{i}\""), "\"pivot\"", "\"pivot{i}\""), "\"rod\"]", "\"rod{i}\"]"),
+           "[0.5, 0]", "[0.5, 0.25]"));
+  std::string warnings;
+  simulate(scene, {}, warnings);
+  std::size_t told = 0;
+  for (std::size_t at = 0; (at = warnings.find("does not fit", at)) != std::string::npos; ++at) ++told;
+  EXPECT_EQ(told, 5u) << warnings;
+  EXPECT_NE(warnings.find("\"pivot5\""), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("warning: nor does it fit 35 more joints\n"), std::string::npos) << warnings;
+}
+
+TEST(Run, ProjectionMakesTheStartConsistent) {
+  Scene scene = scene_of(with(pendulum, "[0.5, 0]", "[0.5, 0.25]\nvelocity = [3, 1]"));
+  scene.project = true;
+  std::string warnings;
+  std::vector<Frame> rows;
+  RunOptions options;
+  options.row = [&](const Frame& frame) { rows.push_back(frame); };
+  const RunResult result = simulate(scene, options, warnings);
+  EXPECT_EQ(warnings, "");
+  EXPECT_LT(result.worst_error, 1e-9);
+  EXPECT_LT(rows.front().worst.value, 1e-9);
+  const BodyState& rod = rows.front().bodies[0];
+  EXPECT_NEAR(std::hypot(rod.x, rod.y), 0.5, 1e-9);       // on its pin,
+  EXPECT_NEAR(rod.x * rod.vx + rod.y * rod.vy, 0, 1e-9);  // moving about it,
+  EXPECT_NEAR(rod.vx, -rod.w * rod.y, 1e-9);
+  EXPECT_NEAR(rod.vy, rod.w * rod.x, 1e-9);
+}
+
+TEST(Run, ContradictingJointsAreReported) {
+  Scene scene = scene_of(std::string(pendulum) +
+                         "[[joint]]\nname = \"other\"\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\n"
+                         "pa = [3, 0]\npb = [0.5, 0]\n");
+  scene.project = true;
+  std::string warnings;
+  simulate(scene, {}, warnings);
+  EXPECT_NE(warnings.find("could not be projected"), std::string::npos) << warnings;
+}
+
+TEST(Run, JointErrorBeyondToleranceIsAFailure) {
+  Scene scene = scene_of(pendulum);
+  scene.settings.drift = Drift::none;
+  scene.step = 0.02;
+  scene.tolerance = 1e-4;
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  EXPECT_GT(result.worst_error, 1e-4);
+  EXPECT_EQ(result.worst_joint, "pivot");
+  EXPECT_NE(failure(scene, result), "");
+  scene.tolerance = 10;
+  EXPECT_EQ(failure(scene, result), "");
+}
+
+// A spring far too stiff for an explicit force: the run ends before the state stops being a number, and says so.
+TEST(Run, NotFiniteEndsTheRun) {
+  Scene scene = scene_of(
+      "gravity = [0, 0]\nstep = 1\nduration = 5000\n[[body]]\nname = \"ball\"\nmass = 1\nshape = { "
+      "disc = 1 }\n"
+      "position = [1, 0]\n[[spring]]\nbodies = [\"world\", \"ball\"]\nstiffness = 1e6\nrest = "
+      "0.5\n");
+  std::string warnings;
+  const RunResult result = simulate(scene, {}, warnings);
+  ASSERT_TRUE(result.failed_step);
+  EXPECT_EQ(result.failed_step->problem, StepProblem::not_finite);
+  EXPECT_TRUE(result.finite);
+  EXPECT_LT(result.time, 5000);
+  EXPECT_NE(failure(scene, result).find("not finite"), std::string::npos);
+}
+
+TEST(Run, StaticJointIsNoted) {
+  std::string warnings;
+  const RunResult result =
+      simulate(read_scene((source_dir() / "tests/hard_cases/both_immovable/planar.toml").string()), {}, warnings);
+  EXPECT_EQ(result.notes, std::vector<std::string>{"joint \"idle\" connects only immovable bodies and does nothing"});
+}
+
+TEST(Frames, CubicBetweenStepsIsExactForCubics) {
+  const auto at = [](double t) {
+    Frame frame;
+    frame.time = t;
+    frame.bodies.push_back({t * t * t - t, 2 - t * t, t, 3 * t * t - 1, -2 * t, 1});
+    return frame;
+  };
+  const Frame middle = between(at(1), at(1.5), 1.2);
+  EXPECT_NEAR(middle.bodies[0].x, 1.2 * 1.2 * 1.2 - 1.2, 1e-14);
+  EXPECT_NEAR(middle.bodies[0].y, 2 - 1.2 * 1.2, 1e-14);
+  EXPECT_NEAR(middle.bodies[0].angle, 1.2, 1e-14);
+  EXPECT_EQ(middle.time, 1.2);
+}
+
+TEST(Frames, EveryReachesTheEnd) {
+  EXPECT_EQ(every(0.1, 0.3).size(), 4u);
+  EXPECT_EQ(every(0.1, 0.35).size(), 4u);
+  EXPECT_EQ(every(1.0 / 3, 1).size(), 4u);
+  EXPECT_EQ(every(2, 1).size(), 1u);
+}
+
+}  // namespace
+}  // namespace cdot::test::run_test
