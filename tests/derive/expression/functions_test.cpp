@@ -10,8 +10,8 @@
 namespace cdot::derive {
 namespace {
 
-// Where all functions are smooth.
-constexpr double places[] = {0.2, 0.7, 1.3};
+// Where all functions are smooth, and far from the pole of tan: the central difference has an error of h^2 f'''/6.
+constexpr double places[] = {0.2, 0.7, 1.1};
 
 TEST(Functions, HaveTheDerivativeOfTheirValues) {
   for (const Function& f : functions) {
