@@ -12,10 +12,13 @@ namespace {
 constexpr int most_reported = 50;
 
 // A long line is cut to a window that starts a little before the mistake.
-constexpr text::Look look{
-    100, "…",   "",
-    '^', false, [](int, int begin, int end) {
-                            return end <= look.columns ? 0 : std::max(0, begin - 20); }};
+constexpr text::Look look{100,
+                          "…",
+                          "",
+                          '^',
+                          false,
+                          [](int, int begin, int end) {
+                            return std::max(end, begin + 1) <= look.columns ? 0 : std::max(0, begin - 20); }};
 
 std::vector<std::string> split_lines(std::string_view text) {
   std::vector<std::string> lines;
