@@ -44,8 +44,8 @@ std::string text_of_graph(const Pool& pool, const std::vector<Expr>& roots) {
   for (const Expr e : topological(roots)) {
     const Pool::Axis axis = pool.axis_of(e);
     text += fmt::format("{} {} {} {} {} {} {} {} {} {}", static_cast<int>(e->kind), e->vector, e->unit_length,
-                        e->value.text(), e->symbol, static_cast<int>(e->role), e->body, static_cast<int>(e->fn),
-                        axis.index, axis.triad == nullptr ? "" : (*axis.triad)[0]->symbol);
+                        e->value.text(), e->symbol, static_cast<int>(e->role), e->body, name_of(e->fn), axis.index,
+                        axis.triad == nullptr ? "" : (*axis.triad)[0]->symbol);
     for (std::size_t i = 0; i < e->args.size(); ++i) {
       text += fmt::format(" {}:{}:{}", number(e->args[i]), i < e->coefs.size() ? e->coefs[i].text() : "",
                           i < e->exponents.size() ? e->exponents[i] : 1);

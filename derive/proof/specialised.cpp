@@ -82,7 +82,7 @@ class Specialised {
     law_.verdict = zero == Algebra::Zero::no ? Verdict::fails : Verdict::undecided;
     law_.row = row.row;
     law_.text = row.name + failure;
-    if (law_.verdict == Verdict::fails) law_.text += ", for instance " + names_.witness();
+    if (law_.verdict == Verdict::fails) law_.text += ", for instance " + names_.witness(difference);
   }
 
   const Joint& joint_;
