@@ -448,7 +448,8 @@ struct gear_revolute_prismatic::b_immovable : gear_revolute_prismatic {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vc = v[2];
     const Velocity<T>& vd = v[3];
-    Jv[0] = va.w - vc.w - J.ratio * (J.e_x * vd.x + J.e_y * vd.y + J.rd_ub_x_e * vd.w);
+    const T qa_dot = va.w - vc.w;
+    Jv[0] = qa_dot - J.ratio * (J.e_x * vd.x + J.e_y * vd.y + J.rd_ub_x_e * vd.w);
   }
 
   // v += M^-1 J^T lambda: 5 +, 8 *

@@ -283,7 +283,8 @@ struct gear_revolute_revolute::b_immovable : gear_revolute_revolute {
     const Velocity<T>& va = v[0];
     const Velocity<T>& vc = v[2];
     const Velocity<T>& vd = v[3];
-    Jv[0] = va.w - vc.w - J.ratio * vd.w;
+    const T qa_dot = va.w - vc.w;
+    Jv[0] = qa_dot - J.ratio * vd.w;
   }
 
   // v += M^-1 J^T lambda: 3 +, 4 *

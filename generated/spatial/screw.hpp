@@ -2467,12 +2467,12 @@ struct screw::a_immovable : screw {
     J.rb_x_fa_z_x = fa_z_z * rb_y - fa_z_y * rb_z;
     J.rb_x_fa_z_y = fa_z_x * rb_z - fa_z_z * rb_x;
     J.rb_x_fa_z_z = fa_z_y * rb_x - fa_z_x * rb_y;
-    J.vb_5_x = vb_5_x_1 * fa_x_x;
-    J.vb_5_y = vb_5_x_1 * fa_x_y;
-    J.vb_5_z = vb_5_x_1 * fa_x_z;
-    J.wb_5_x = vb_5_x_1 * rb_x_fa_x_x - turned_x_fb_z_x;
-    J.wb_5_y = vb_5_x_1 * rb_x_fa_x_y - turned_x_fb_z_y;
-    J.wb_5_z = vb_5_x_1 * rb_x_fa_x_z - turned_x_fb_z_z;
+    J.vb_5_x = fa_x_x * vb_5_x_1;
+    J.vb_5_y = fa_x_y * vb_5_x_1;
+    J.vb_5_z = fa_x_z * vb_5_x_1;
+    J.wb_5_x = rb_x_fa_x_x * vb_5_x_1 - turned_x_fb_z_x;
+    J.wb_5_y = rb_x_fa_x_y * vb_5_x_1 - turned_x_fb_z_y;
+    J.wb_5_z = rb_x_fa_x_z * vb_5_x_1 - turned_x_fb_z_z;
   }
 
   // K = J M^-1 J^T, lower triangle, from J: 84 +, 114 *
@@ -2781,7 +2781,7 @@ struct screw::b_immovable : screw {
     const T turned_z = fa_y_z * C5_1 + fa_z_z * C5_2;
     const T dot_fa_y_fb_z = fa_y_x * fb_z_x + fa_y_y * fb_z_y + fa_y_z * fb_z_z;
     const T dot_fa_z_fb_z = fa_z_x * fb_z_x + fa_z_y * fb_z_y + fa_z_z * fb_z_z;
-    const T va_5_x_1 = inv_pitch * (dot_fa_z_fb_z * C5_1 - dot_fa_y_fb_z * C5_2);
+    const T va_5_x_1 = inv_pitch * (dot_fa_y_fb_z * C5_2 - dot_fa_z_fb_z * C5_1);
     const T ra_d_x_fa_x_x = ra_d_y * fa_x_z - ra_d_z * fa_x_y;
     const T ra_d_x_fa_x_y = ra_d_z * fa_x_x - ra_d_x * fa_x_z;
     const T fa_y_x_fb_z_x = fa_y_y * fb_z_z - fa_y_z * fb_z_y;
@@ -2814,15 +2814,15 @@ struct screw::b_immovable : screw {
     J.ra_d_x_fa_z_x = ra_d_y * fa_z_z - ra_d_z * fa_z_y;
     J.ra_d_x_fa_z_y = ra_d_z * fa_z_x - ra_d_x * fa_z_z;
     J.ra_d_x_fa_z_z = ra_d_x * fa_z_y - ra_d_y * fa_z_x;
-    J.va_5_x = va_5_x_1 * fa_x_x;
-    J.va_5_y = va_5_x_1 * fa_x_y;
-    J.va_5_z = va_5_x_1 * fa_x_z;
-    J.wa_5_x = fa_y_x_fb_z_x * C5_1 - va_5_x_1 * ra_d_x_fa_x_x + fa_z_x_fb_z_x * C5_2;
-    J.wa_5_y = fa_y_x_fb_z_y * C5_1 - va_5_x_1 * ra_d_x_fa_x_y + fa_z_x_fb_z_y * C5_2;
-    J.wa_5_z = fa_y_x_fb_z_z * C5_1 - va_5_x_1 * ra_d_x_fa_x_z + fa_z_x_fb_z_z * C5_2;
+    J.va_5_x = fa_x_x * va_5_x_1;
+    J.va_5_y = fa_x_y * va_5_x_1;
+    J.va_5_z = fa_x_z * va_5_x_1;
+    J.wa_5_x = ra_d_x_fa_x_x * va_5_x_1 + fa_y_x_fb_z_x * C5_1 + fa_z_x_fb_z_x * C5_2;
+    J.wa_5_y = ra_d_x_fa_x_y * va_5_x_1 + fa_y_x_fb_z_y * C5_1 + fa_z_x_fb_z_y * C5_2;
+    J.wa_5_z = ra_d_x_fa_x_z * va_5_x_1 + fa_y_x_fb_z_z * C5_1 + fa_z_x_fb_z_z * C5_2;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J: 82 +, 114 *
+  // K = J M^-1 J^T, lower triangle, from J: 84 +, 114 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const InverseMass<T> (&m)[2], T (&K)[15]) {
     const InverseMass<T>& ma = m[0];
@@ -2853,10 +2853,10 @@ struct screw::b_immovable : screw {
         (J.fa_z_x * J.fa_z_x + J.fa_z_y * J.fa_z_y + J.fa_z_z * J.fa_z_z);
     K[10] = J.wa_5_x * K11_1 + J.wa_5_y * K11_2 + J.wa_5_z * K11_3;
     K[11] = J.wa_5_x * K22_1 + J.wa_5_y * K22_2 + J.wa_5_z * K22_3;
-    K[12] = ma.m * (J.fa_y_x * J.va_5_x + J.fa_y_y * J.va_5_y + J.fa_y_z * J.va_5_z) - J.wa_5_x *
-        K33_1 - J.wa_5_y * K33_2 - J.wa_5_z * K33_3;
-    K[13] = ma.m * (J.fa_z_x * J.va_5_x + J.fa_z_y * J.va_5_y + J.fa_z_z * J.va_5_z) - J.wa_5_x *
-        K44_1 - J.wa_5_y * K44_2 - J.wa_5_z * K44_3;
+    K[12] = -J.wa_5_x * K33_1 - J.wa_5_y * K33_2 - J.wa_5_z * K33_3 - ma.m *
+        (J.fa_y_x * J.va_5_x + J.fa_y_y * J.va_5_y + J.fa_y_z * J.va_5_z);
+    K[13] = -J.wa_5_x * K44_1 - J.wa_5_y * K44_2 - J.wa_5_z * K44_3 - ma.m *
+        (J.fa_z_x * J.va_5_x + J.fa_z_y * J.va_5_y + J.fa_z_z * J.va_5_z);
     K[14] = J.wa_5_x * (ma.Ixx * J.wa_5_x + ma.Ixy * J.wa_5_y + ma.Ixz * J.wa_5_z) + J.wa_5_y *
         (ma.Ixy * J.wa_5_x + ma.Iyy * J.wa_5_y + ma.Iyz * J.wa_5_z) + J.wa_5_z *
         (ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z) + ma.m *
@@ -2873,7 +2873,7 @@ struct screw::b_immovable : screw {
         J.ra_d_x_fa_y_y * va.wy - J.ra_d_x_fa_y_z * va.wz;
     Jv[3] = -J.fa_z_x * va.x - J.fa_z_y * va.y - J.fa_z_z * va.z - J.ra_d_x_fa_z_x * va.wx -
         J.ra_d_x_fa_z_y * va.wy - J.ra_d_x_fa_z_z * va.wz;
-    Jv[4] = J.wa_5_x * va.wx - J.va_5_x * va.x - J.va_5_y * va.y - J.va_5_z * va.z + J.wa_5_y *
+    Jv[4] = J.va_5_x * va.x + J.va_5_y * va.y + J.va_5_z * va.z + J.wa_5_x * va.wx + J.wa_5_y *
         va.wy + J.wa_5_z * va.wz;
   }
 
@@ -2889,15 +2889,15 @@ struct screw::b_immovable : screw {
         lambda[2] - J.ra_d_x_fa_z_y * lambda[3] + J.wa_5_y * lambda[4];
     const T v1_3 = J.fa_y_x_fb_x_z * lambda[0] + J.fa_z_x_fb_x_z * lambda[1] - J.ra_d_x_fa_y_z *
         lambda[2] - J.ra_d_x_fa_z_z * lambda[3] + J.wa_5_z * lambda[4];
-    v[0].x = va.x - ma.m * (J.fa_y_x * lambda[2] + J.fa_z_x * lambda[3] + J.va_5_x * lambda[4]);
-    v[0].y = va.y - ma.m * (J.fa_y_y * lambda[2] + J.fa_z_y * lambda[3] + J.va_5_y * lambda[4]);
-    v[0].z = va.z - ma.m * (J.fa_y_z * lambda[2] + J.fa_z_z * lambda[3] + J.va_5_z * lambda[4]);
+    v[0].x = va.x + ma.m * (J.va_5_x * lambda[4] - J.fa_y_x * lambda[2] - J.fa_z_x * lambda[3]);
+    v[0].y = va.y + ma.m * (J.va_5_y * lambda[4] - J.fa_y_y * lambda[2] - J.fa_z_y * lambda[3]);
+    v[0].z = va.z + ma.m * (J.va_5_z * lambda[4] - J.fa_y_z * lambda[2] - J.fa_z_z * lambda[3]);
     v[0].wx = va.wx + ma.Ixx * v1_1 + ma.Ixy * v1_2 + ma.Ixz * v1_3;
     v[0].wy = va.wy + ma.Ixy * v1_1 + ma.Iyy * v1_2 + ma.Iyz * v1_3;
     v[0].wz = va.wz + ma.Ixz * v1_1 + ma.Iyz * v1_2 + ma.Izz * v1_3;
   }
 
-  // J with its zeros: v, w of each body: 15 +
+  // J with its zeros: v, w of each body: 12 +
   template <class T>
   static void dense(const Jacobian<T>& J, T (&D)[5][12]) {
     for (auto& row : D) {
@@ -2921,15 +2921,15 @@ struct screw::b_immovable : screw {
     D[3][3] = -J.ra_d_x_fa_z_x;
     D[3][4] = -J.ra_d_x_fa_z_y;
     D[3][5] = -J.ra_d_x_fa_z_z;
-    D[4][0] = -J.va_5_x;
-    D[4][1] = -J.va_5_y;
-    D[4][2] = -J.va_5_z;
+    D[4][0] = J.va_5_x;
+    D[4][1] = J.va_5_y;
+    D[4][2] = J.va_5_z;
     D[4][3] = J.wa_5_x;
     D[4][4] = J.wa_5_y;
     D[4][5] = J.wa_5_z;
   }
 
-  // (M^-1 J^T)^T, laid out like dense: 45 +, 54 *
+  // (M^-1 J^T)^T, laid out like dense: 42 +, 54 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const InverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -2955,15 +2955,15 @@ struct screw::b_immovable : screw {
     D[3][3] = -ma.Ixx * J.ra_d_x_fa_z_x - ma.Ixy * J.ra_d_x_fa_z_y - ma.Ixz * J.ra_d_x_fa_z_z;
     D[3][4] = -ma.Ixy * J.ra_d_x_fa_z_x - ma.Iyy * J.ra_d_x_fa_z_y - ma.Iyz * J.ra_d_x_fa_z_z;
     D[3][5] = -ma.Ixz * J.ra_d_x_fa_z_x - ma.Iyz * J.ra_d_x_fa_z_y - ma.Izz * J.ra_d_x_fa_z_z;
-    D[4][0] = -ma.m * J.va_5_x;
-    D[4][1] = -ma.m * J.va_5_y;
-    D[4][2] = -ma.m * J.va_5_z;
+    D[4][0] = ma.m * J.va_5_x;
+    D[4][1] = ma.m * J.va_5_y;
+    D[4][2] = ma.m * J.va_5_z;
     D[4][3] = ma.Ixx * J.wa_5_x + ma.Ixy * J.wa_5_y + ma.Ixz * J.wa_5_z;
     D[4][4] = ma.Ixy * J.wa_5_x + ma.Iyy * J.wa_5_y + ma.Iyz * J.wa_5_z;
     D[4][5] = ma.Ixz * J.wa_5_x + ma.Iyz * J.wa_5_y + ma.Izz * J.wa_5_z;
   }
 
-  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 52 +, 83 *
+  // K = J M^-1 J^T, lower triangle, from J, for sphere-like bodies: 54 +, 83 *
   template <class T>
   static void effective_mass(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&K)[15]) {
@@ -3008,10 +3008,10 @@ struct screw::b_immovable : screw {
         J.ra_d_x_fa_z_x + ia_ra_d_x_fa_z_y * J.ra_d_x_fa_z_y + ia_ra_d_x_fa_z_z * J.ra_d_x_fa_z_z;
     K[10] = ia_fa_y_x_fb_x_x * J.wa_5_x + ia_fa_y_x_fb_x_y * J.wa_5_y + ia_fa_y_x_fb_x_z * J.wa_5_z;
     K[11] = ia_fa_z_x_fb_x_x * J.wa_5_x + ia_fa_z_x_fb_x_y * J.wa_5_y + ia_fa_z_x_fb_x_z * J.wa_5_z;
-    K[12] = ma_fa_y_x * J.va_5_x + ma_fa_y_y * J.va_5_y + ma_fa_y_z * J.va_5_z - ia_ra_d_x_fa_y_x *
-        J.wa_5_x - ia_ra_d_x_fa_y_y * J.wa_5_y - ia_ra_d_x_fa_y_z * J.wa_5_z;
-    K[13] = ma_fa_z_x * J.va_5_x + ma_fa_z_y * J.va_5_y + ma_fa_z_z * J.va_5_z - ia_ra_d_x_fa_z_x *
-        J.wa_5_x - ia_ra_d_x_fa_z_y * J.wa_5_y - ia_ra_d_x_fa_z_z * J.wa_5_z;
+    K[12] = -ma_fa_y_x * J.va_5_x - ma_fa_y_y * J.va_5_y - ma_fa_y_z * J.va_5_z -
+        ia_ra_d_x_fa_y_x * J.wa_5_x - ia_ra_d_x_fa_y_y * J.wa_5_y - ia_ra_d_x_fa_y_z * J.wa_5_z;
+    K[13] = -ma_fa_z_x * J.va_5_x - ma_fa_z_y * J.va_5_y - ma_fa_z_z * J.va_5_z -
+        ia_ra_d_x_fa_z_x * J.wa_5_x - ia_ra_d_x_fa_z_y * J.wa_5_y - ia_ra_d_x_fa_z_z * J.wa_5_z;
     K[14] = ma.I * (J.wa_5_x * J.wa_5_x + J.wa_5_y * J.wa_5_y + J.wa_5_z * J.wa_5_z) + ma.m *
         (J.va_5_x * J.va_5_x + J.va_5_y * J.va_5_y + J.va_5_z * J.va_5_z);
   }
@@ -3022,9 +3022,9 @@ struct screw::b_immovable : screw {
       const T (&lambda)[5], Velocity<T> (&v)[2]) {
     const Velocity<T> va = v[0];
     const IsotropicInverseMass<T>& ma = m[0];
-    v[0].x = va.x - ma.m * (J.fa_y_x * lambda[2] + J.fa_z_x * lambda[3] + J.va_5_x * lambda[4]);
-    v[0].y = va.y - ma.m * (J.fa_y_y * lambda[2] + J.fa_z_y * lambda[3] + J.va_5_y * lambda[4]);
-    v[0].z = va.z - ma.m * (J.fa_y_z * lambda[2] + J.fa_z_z * lambda[3] + J.va_5_z * lambda[4]);
+    v[0].x = va.x + ma.m * (J.va_5_x * lambda[4] - J.fa_y_x * lambda[2] - J.fa_z_x * lambda[3]);
+    v[0].y = va.y + ma.m * (J.va_5_y * lambda[4] - J.fa_y_y * lambda[2] - J.fa_z_y * lambda[3]);
+    v[0].z = va.z + ma.m * (J.va_5_z * lambda[4] - J.fa_y_z * lambda[2] - J.fa_z_z * lambda[3]);
     v[0].wx = va.wx + ma.I * (J.fa_y_x_fb_x_x * lambda[0] + J.fa_z_x_fb_x_x * lambda[1] -
         J.ra_d_x_fa_y_x * lambda[2] - J.ra_d_x_fa_z_x * lambda[3] + J.wa_5_x * lambda[4]);
     v[0].wy = va.wy + ma.I * (J.fa_y_x_fb_x_y * lambda[0] + J.fa_z_x_fb_x_y * lambda[1] -
@@ -3033,7 +3033,7 @@ struct screw::b_immovable : screw {
         J.ra_d_x_fa_y_z * lambda[2] - J.ra_d_x_fa_z_z * lambda[3] + J.wa_5_z * lambda[4]);
   }
 
-  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 15 +, 24 *
+  // (M^-1 J^T)^T, laid out like dense, for sphere-like bodies: 12 +, 24 *
   template <class T>
   static void inverse_mass_jacobian(const Jacobian<T>& J, const IsotropicInverseMass<T> (&m)[2],
       T (&D)[5][12]) {
@@ -3059,9 +3059,9 @@ struct screw::b_immovable : screw {
     D[3][3] = -ma.I * J.ra_d_x_fa_z_x;
     D[3][4] = -ma.I * J.ra_d_x_fa_z_y;
     D[3][5] = -ma.I * J.ra_d_x_fa_z_z;
-    D[4][0] = -ma.m * J.va_5_x;
-    D[4][1] = -ma.m * J.va_5_y;
-    D[4][2] = -ma.m * J.va_5_z;
+    D[4][0] = ma.m * J.va_5_x;
+    D[4][1] = ma.m * J.va_5_y;
+    D[4][2] = ma.m * J.va_5_z;
     D[4][3] = ma.I * J.wa_5_x;
     D[4][4] = ma.I * J.wa_5_y;
     D[4][5] = ma.I * J.wa_5_z;

@@ -2298,7 +2298,7 @@ struct six_dof {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 106 +, 161 *, 2 /, 1 sqrt, 2 <
+    // -Jdot v - d/dt(dC/dt): 104 +, 163 *, 2 /, 1 sqrt, 2 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -2370,32 +2370,30 @@ struct six_dof {
           w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
       const T rxz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_w_a_x_fa_x_fb_z + T(2) *
           dot_w_a_x_fa_x_w_b_x_fb_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
-          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
-      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_w_b_x_fb_z;
       const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
       const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
       const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
       const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
           w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
-      const T ryz_dot_dot_2 = dot_w_a_x_w_a_x_fa_y_fb_z + dot_w_a_x_fa_y_w_b_x_fb_z;
-      const T ryz_dot_dot_3 = ryz_dot_dot + ryz_dot_dot_2;
+      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
+          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
+      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z + T(2) *
+          dot_w_a_x_fa_y_w_b_x_fb_z;
       const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
           w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
-          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_w_b_x_fb_z;
       const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
       const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
       const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
       const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
           w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
-      const T rzz_dot_dot_2 = dot_w_a_x_w_a_x_fa_z_fb_z + dot_w_a_x_fa_z_w_b_x_fb_z;
-      const T rzz_dot_dot_3 = rzz_dot_dot + rzz_dot_dot_2;
+      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
+          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
+      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
+          dot_w_a_x_fa_z_w_b_x_fb_z;
       g[0] = g1_2 * (T(2) * (g1_3 + rxz_dot * rxz) * (rxz_dot * g1_1 - g1_5 * rxz) * g1_2 -
           rxz_dot_dot * g1_1 - rxz * g1_4 *
-          (g1_5 * g1_5 - ryz_dot_dot_3 * ryz - rzz_dot_dot_3 * rzz - ryz_dot * ryz_dot - rzz_dot *
-          rzz_dot));
+          (g1_5 * g1_5 - ryz_dot * ryz_dot - ryz_dot_dot * ryz - rzz_dot * rzz_dot - rzz_dot_dot *
+          rzz));
     }
 
     // dC/dt at fixed q: nothing
@@ -3295,7 +3293,7 @@ struct six_dof {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 121 +, 170 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 119 +, 172 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -3322,67 +3320,25 @@ struct six_dof {
       const T dot_fa_z_fb_y = fa_z_x * fb_y_x + fa_z_y * fb_y_y + fa_z_z * fb_y_z;
       const T g1_2 = dot_fa_z_fb_y - ryz;
       const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
-      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
       const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
       const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y *
-          w_b_x_w_b_x_fb_z_y + fa_y_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
-      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
-      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
-          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
-      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_w_b_x_fb_z;
-      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
-      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
-      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
-      const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
-          w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
-      const T ryz_dot_dot_2 = dot_w_a_x_w_a_x_fa_y_fb_z + dot_w_a_x_fa_y_w_b_x_fb_z;
-      const T ryz_dot_dot_3 = ryz_dot_dot + ryz_dot_dot_2;
-      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
-      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
-      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
-      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
-      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
-      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_w_b_x_fb_y_x + fa_z_y *
-          w_b_x_w_b_x_fb_y_y + fa_z_z * w_b_x_w_b_x_fb_y_z;
-      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_w_a_x_fa_z_x + fb_y_y *
-          w_a_x_w_a_x_fa_z_y + fb_y_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_y = w_a_x_fa_z_z * w_b_x_fb_y_z + w_a_x_fa_z_y *
-          w_b_x_fb_y_y + w_a_x_fa_z_x * w_b_x_fb_y_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
-          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
-          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_w_b_x_fb_z;
-      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
-          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
-      const T rzz_dot_dot_2 = dot_w_a_x_w_a_x_fa_z_fb_z + dot_w_a_x_fa_z_w_b_x_fb_z;
-      const T rzz_dot_dot_3 = rzz_dot_dot + rzz_dot_dot_2;
-      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
-          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
-      const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
-          w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
-      const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
-          w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
+      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
       const T dot_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_fb_z_x + fa_y_y * w_b_x_fb_z_y + fa_y_z *
           w_b_x_fb_z_z;
+      const T w_a_x_fa_y_x = va.wy * fa_y_z - va.wz * fa_y_y;
+      const T w_a_x_fa_y_y = va.wz * fa_y_x - va.wx * fa_y_z;
+      const T w_a_x_fa_y_z = va.wx * fa_y_y - va.wy * fa_y_x;
       const T dot_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_fa_y_x + fb_z_y * w_a_x_fa_y_y + fb_z_z *
           w_a_x_fa_y_z;
       const T ryz_dot = dot_w_b_x_fb_z_fa_y + dot_w_a_x_fa_y_fb_z;
+      const T w_b_x_fb_y_x = vb.wy * fb_y_z - vb.wz * fb_y_y;
+      const T w_b_x_fb_y_y = vb.wz * fb_y_x - vb.wx * fb_y_z;
+      const T w_b_x_fb_y_z = vb.wx * fb_y_y - vb.wy * fb_y_x;
       const T dot_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_fb_y_x + fa_z_y * w_b_x_fb_y_y + fa_z_z *
           w_b_x_fb_y_z;
+      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
+      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
       const T dot_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_fa_z_x + fb_y_y * w_a_x_fa_z_y + fb_y_z *
           w_a_x_fa_z_z;
       const T g1_4 = dot_w_b_x_fb_y_fa_z - ryz_dot + dot_w_a_x_fa_z_fb_y;
@@ -3396,11 +3352,51 @@ struct six_dof {
       const T dot_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_fa_y_x + fb_y_y * w_a_x_fa_y_y + fb_y_z *
           w_a_x_fa_y_z;
       const T g1_5 = rzz_dot + dot_w_b_x_fb_y_fa_y + dot_w_a_x_fa_y_fb_y;
-      g[0] = g1_3 * ((rzz_dot_dot_3 + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y +
-          T(2) * dot_w_a_x_fa_y_w_b_x_fb_y) * g1_2 -
-          (dot_w_b_x_w_b_x_fb_y_fa_z - ryz_dot_dot_3 + dot_w_a_x_w_a_x_fa_z_fb_y + T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_y) * g1_1 + T(2) * (g1_4 * g1_1 - g1_5 * g1_2) *
-          (g1_4 * g1_2 + g1_5 * g1_1) * g1_3);
+      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
+      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
+      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
+      const T dot_w_b_x_w_b_x_fb_z_fa_y = fa_y_x * w_b_x_w_b_x_fb_z_x + fa_y_y *
+          w_b_x_w_b_x_fb_z_y + fa_y_z * w_b_x_w_b_x_fb_z_z;
+      const T w_a_x_w_a_x_fa_y_x = va.wy * w_a_x_fa_y_z - va.wz * w_a_x_fa_y_y;
+      const T w_a_x_w_a_x_fa_y_y = va.wz * w_a_x_fa_y_x - va.wx * w_a_x_fa_y_z;
+      const T w_a_x_w_a_x_fa_y_z = va.wx * w_a_x_fa_y_y - va.wy * w_a_x_fa_y_x;
+      const T dot_w_a_x_w_a_x_fa_y_fb_z = fb_z_x * w_a_x_w_a_x_fa_y_x + fb_z_y *
+          w_a_x_w_a_x_fa_y_y + fb_z_z * w_a_x_w_a_x_fa_y_z;
+      const T dot_w_a_x_fa_y_w_b_x_fb_z = w_a_x_fa_y_z * w_b_x_fb_z_z + w_a_x_fa_y_y *
+          w_b_x_fb_z_y + w_a_x_fa_y_x * w_b_x_fb_z_x;
+      const T ryz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_y + dot_w_a_x_w_a_x_fa_y_fb_z + T(2) *
+          dot_w_a_x_fa_y_w_b_x_fb_z;
+      const T w_b_x_w_b_x_fb_y_x = vb.wy * w_b_x_fb_y_z - vb.wz * w_b_x_fb_y_y;
+      const T w_b_x_w_b_x_fb_y_y = vb.wz * w_b_x_fb_y_x - vb.wx * w_b_x_fb_y_z;
+      const T w_b_x_w_b_x_fb_y_z = vb.wx * w_b_x_fb_y_y - vb.wy * w_b_x_fb_y_x;
+      const T dot_w_b_x_w_b_x_fb_y_fa_z = fa_z_x * w_b_x_w_b_x_fb_y_x + fa_z_y *
+          w_b_x_w_b_x_fb_y_y + fa_z_z * w_b_x_w_b_x_fb_y_z;
+      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
+      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
+      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
+      const T dot_w_a_x_w_a_x_fa_z_fb_y = fb_y_x * w_a_x_w_a_x_fa_z_x + fb_y_y *
+          w_a_x_w_a_x_fa_z_y + fb_y_z * w_a_x_w_a_x_fa_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_y = w_a_x_fa_z_z * w_b_x_fb_y_z + w_a_x_fa_z_y *
+          w_b_x_fb_y_y + w_a_x_fa_z_x * w_b_x_fb_y_x;
+      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
+          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
+      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
+          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
+          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
+      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
+          dot_w_a_x_fa_z_w_b_x_fb_z;
+      const T dot_w_b_x_w_b_x_fb_y_fa_y = fa_y_x * w_b_x_w_b_x_fb_y_x + fa_y_y *
+          w_b_x_w_b_x_fb_y_y + fa_y_z * w_b_x_w_b_x_fb_y_z;
+      const T dot_w_a_x_w_a_x_fa_y_fb_y = fb_y_x * w_a_x_w_a_x_fa_y_x + fb_y_y *
+          w_a_x_w_a_x_fa_y_y + fb_y_z * w_a_x_w_a_x_fa_y_z;
+      const T dot_w_a_x_fa_y_w_b_x_fb_y = w_a_x_fa_y_z * w_b_x_fb_y_z + w_a_x_fa_y_y *
+          w_b_x_fb_y_y + w_a_x_fa_y_x * w_b_x_fb_y_x;
+      g[0] = g1_3 * (T(2) * (g1_4 * g1_1 - g1_5 * g1_2) * (g1_4 * g1_2 + g1_5 * g1_1) * g1_3 -
+          (dot_w_b_x_w_b_x_fb_y_fa_z - ryz_dot_dot + dot_w_a_x_w_a_x_fa_z_fb_y + T(2) *
+          dot_w_a_x_fa_z_w_b_x_fb_y) * g1_1 +
+          (rzz_dot_dot + dot_w_b_x_w_b_x_fb_y_fa_y + dot_w_a_x_w_a_x_fa_y_fb_y + T(2) *
+          dot_w_a_x_fa_y_w_b_x_fb_y) * g1_2);
     }
 
     // dC/dt at fixed q: nothing
@@ -3823,7 +3819,7 @@ struct six_dof {
       D[0][13] = T(2) * (J.wb_x * b.e2 - J.wb_y * b.e1 + J.wb_z * b.e0);
     }
 
-    // -Jdot v - d/dt(dC/dt): 121 +, 170 *, 1 /, 1 <
+    // -Jdot v - d/dt(dC/dt): 119 +, 172 *, 1 /, 1 <
     template <class T>
     static void gamma(const Pose<T> (&q)[2], const Velocity<T> (&v)[2], const Parameters<T>& p, T,
         T (&g)[1]) {
@@ -3850,67 +3846,25 @@ struct six_dof {
       const T dot_fa_z_fb_x = fa_z_x * fb_x_x + fa_z_y * fb_x_y + fa_z_z * fb_x_z;
       const T g1_2 = rxz - dot_fa_z_fb_x;
       const T g1_3 = inverse(g1_1 * g1_1 + g1_2 * g1_2);
-      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
       const T w_b_x_fb_z_x = vb.wy * fb_z_z - vb.wz * fb_z_y;
       const T w_b_x_fb_z_y = vb.wz * fb_z_x - vb.wx * fb_z_z;
-      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
-      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
-      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_w_b_x_fb_z_x + fa_x_y *
-          w_b_x_w_b_x_fb_z_y + fa_x_z * w_b_x_w_b_x_fb_z_z;
-      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
-      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
-      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
-          w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
-      const T rxz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_w_b_x_fb_z;
-      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
-      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
-      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
-      const T dot_w_a_x_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_w_a_x_fa_x_x + fb_z_y *
-          w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
-      const T rxz_dot_dot_2 = dot_w_a_x_w_a_x_fa_x_fb_z + dot_w_a_x_fa_x_w_b_x_fb_z;
-      const T rxz_dot_dot_3 = rxz_dot_dot + rxz_dot_dot_2;
-      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
-      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
-      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
-      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
-      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
-      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y *
-          w_b_x_w_b_x_fb_x_y + fa_z_z * w_b_x_w_b_x_fb_x_z;
-      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
-      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
-      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
-      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
-      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
-      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
-      const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y *
-          w_a_x_w_a_x_fa_z_y + fb_x_z * w_a_x_w_a_x_fa_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y *
-          w_b_x_fb_x_y + w_a_x_fa_z_x * w_b_x_fb_x_x;
-      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
-          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
-      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
-          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
-      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_fa_z_w_b_x_fb_z;
-      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
-          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
-      const T rzz_dot_dot_2 = dot_w_a_x_w_a_x_fa_z_fb_z + dot_w_a_x_fa_z_w_b_x_fb_z;
-      const T rzz_dot_dot_3 = rzz_dot_dot + rzz_dot_dot_2;
-      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
-          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
-      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
-          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
-      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
-          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
+      const T w_b_x_fb_z_z = vb.wx * fb_z_y - vb.wy * fb_z_x;
       const T dot_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_fb_z_x + fa_x_y * w_b_x_fb_z_y + fa_x_z *
           w_b_x_fb_z_z;
+      const T w_a_x_fa_x_x = va.wy * fa_x_z - va.wz * fa_x_y;
+      const T w_a_x_fa_x_y = va.wz * fa_x_x - va.wx * fa_x_z;
+      const T w_a_x_fa_x_z = va.wx * fa_x_y - va.wy * fa_x_x;
       const T dot_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_fa_x_x + fb_z_y * w_a_x_fa_x_y + fb_z_z *
           w_a_x_fa_x_z;
       const T rxz_dot = dot_w_b_x_fb_z_fa_x + dot_w_a_x_fa_x_fb_z;
+      const T w_b_x_fb_x_x = vb.wy * fb_x_z - vb.wz * fb_x_y;
+      const T w_b_x_fb_x_y = vb.wz * fb_x_x - vb.wx * fb_x_z;
+      const T w_b_x_fb_x_z = vb.wx * fb_x_y - vb.wy * fb_x_x;
       const T dot_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_fb_x_x + fa_z_y * w_b_x_fb_x_y + fa_z_z *
           w_b_x_fb_x_z;
+      const T w_a_x_fa_z_x = va.wy * fa_z_z - va.wz * fa_z_y;
+      const T w_a_x_fa_z_y = va.wz * fa_z_x - va.wx * fa_z_z;
+      const T w_a_x_fa_z_z = va.wx * fa_z_y - va.wy * fa_z_x;
       const T dot_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_fa_z_x + fb_x_y * w_a_x_fa_z_y + fb_x_z *
           w_a_x_fa_z_z;
       const T g1_4 = rxz_dot - dot_w_b_x_fb_x_fa_z - dot_w_a_x_fa_z_fb_x;
@@ -3924,11 +3878,51 @@ struct six_dof {
       const T dot_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_fa_x_x + fb_x_y * w_a_x_fa_x_y + fb_x_z *
           w_a_x_fa_x_z;
       const T g1_5 = rzz_dot + dot_w_b_x_fb_x_fa_x + dot_w_a_x_fa_x_fb_x;
-      g[0] = g1_3 * ((rzz_dot_dot_3 + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x +
-          T(2) * dot_w_a_x_fa_x_w_b_x_fb_x) * g1_2 -
-          (rxz_dot_dot_3 - dot_w_b_x_w_b_x_fb_x_fa_z - dot_w_a_x_w_a_x_fa_z_fb_x - T(2) *
-          dot_w_a_x_fa_z_w_b_x_fb_x) * g1_1 + T(2) * (g1_4 * g1_1 - g1_5 * g1_2) *
-          (g1_4 * g1_2 + g1_5 * g1_1) * g1_3);
+      const T w_b_x_w_b_x_fb_z_x = vb.wy * w_b_x_fb_z_z - vb.wz * w_b_x_fb_z_y;
+      const T w_b_x_w_b_x_fb_z_y = vb.wz * w_b_x_fb_z_x - vb.wx * w_b_x_fb_z_z;
+      const T w_b_x_w_b_x_fb_z_z = vb.wx * w_b_x_fb_z_y - vb.wy * w_b_x_fb_z_x;
+      const T dot_w_b_x_w_b_x_fb_z_fa_x = fa_x_x * w_b_x_w_b_x_fb_z_x + fa_x_y *
+          w_b_x_w_b_x_fb_z_y + fa_x_z * w_b_x_w_b_x_fb_z_z;
+      const T w_a_x_w_a_x_fa_x_x = va.wy * w_a_x_fa_x_z - va.wz * w_a_x_fa_x_y;
+      const T w_a_x_w_a_x_fa_x_y = va.wz * w_a_x_fa_x_x - va.wx * w_a_x_fa_x_z;
+      const T w_a_x_w_a_x_fa_x_z = va.wx * w_a_x_fa_x_y - va.wy * w_a_x_fa_x_x;
+      const T dot_w_a_x_w_a_x_fa_x_fb_z = fb_z_x * w_a_x_w_a_x_fa_x_x + fb_z_y *
+          w_a_x_w_a_x_fa_x_y + fb_z_z * w_a_x_w_a_x_fa_x_z;
+      const T dot_w_a_x_fa_x_w_b_x_fb_z = w_a_x_fa_x_z * w_b_x_fb_z_z + w_a_x_fa_x_y *
+          w_b_x_fb_z_y + w_a_x_fa_x_x * w_b_x_fb_z_x;
+      const T rxz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_x + dot_w_a_x_w_a_x_fa_x_fb_z + T(2) *
+          dot_w_a_x_fa_x_w_b_x_fb_z;
+      const T w_b_x_w_b_x_fb_x_x = vb.wy * w_b_x_fb_x_z - vb.wz * w_b_x_fb_x_y;
+      const T w_b_x_w_b_x_fb_x_y = vb.wz * w_b_x_fb_x_x - vb.wx * w_b_x_fb_x_z;
+      const T w_b_x_w_b_x_fb_x_z = vb.wx * w_b_x_fb_x_y - vb.wy * w_b_x_fb_x_x;
+      const T dot_w_b_x_w_b_x_fb_x_fa_z = fa_z_x * w_b_x_w_b_x_fb_x_x + fa_z_y *
+          w_b_x_w_b_x_fb_x_y + fa_z_z * w_b_x_w_b_x_fb_x_z;
+      const T w_a_x_w_a_x_fa_z_x = va.wy * w_a_x_fa_z_z - va.wz * w_a_x_fa_z_y;
+      const T w_a_x_w_a_x_fa_z_y = va.wz * w_a_x_fa_z_x - va.wx * w_a_x_fa_z_z;
+      const T w_a_x_w_a_x_fa_z_z = va.wx * w_a_x_fa_z_y - va.wy * w_a_x_fa_z_x;
+      const T dot_w_a_x_w_a_x_fa_z_fb_x = fb_x_x * w_a_x_w_a_x_fa_z_x + fb_x_y *
+          w_a_x_w_a_x_fa_z_y + fb_x_z * w_a_x_w_a_x_fa_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_x = w_a_x_fa_z_z * w_b_x_fb_x_z + w_a_x_fa_z_y *
+          w_b_x_fb_x_y + w_a_x_fa_z_x * w_b_x_fb_x_x;
+      const T dot_w_b_x_w_b_x_fb_z_fa_z = fa_z_x * w_b_x_w_b_x_fb_z_x + fa_z_y *
+          w_b_x_w_b_x_fb_z_y + fa_z_z * w_b_x_w_b_x_fb_z_z;
+      const T dot_w_a_x_w_a_x_fa_z_fb_z = fb_z_x * w_a_x_w_a_x_fa_z_x + fb_z_y *
+          w_a_x_w_a_x_fa_z_y + fb_z_z * w_a_x_w_a_x_fa_z_z;
+      const T dot_w_a_x_fa_z_w_b_x_fb_z = w_a_x_fa_z_z * w_b_x_fb_z_z + w_a_x_fa_z_y *
+          w_b_x_fb_z_y + w_a_x_fa_z_x * w_b_x_fb_z_x;
+      const T rzz_dot_dot = dot_w_b_x_w_b_x_fb_z_fa_z + dot_w_a_x_w_a_x_fa_z_fb_z + T(2) *
+          dot_w_a_x_fa_z_w_b_x_fb_z;
+      const T dot_w_b_x_w_b_x_fb_x_fa_x = fa_x_x * w_b_x_w_b_x_fb_x_x + fa_x_y *
+          w_b_x_w_b_x_fb_x_y + fa_x_z * w_b_x_w_b_x_fb_x_z;
+      const T dot_w_a_x_w_a_x_fa_x_fb_x = fb_x_x * w_a_x_w_a_x_fa_x_x + fb_x_y *
+          w_a_x_w_a_x_fa_x_y + fb_x_z * w_a_x_w_a_x_fa_x_z;
+      const T dot_w_a_x_fa_x_w_b_x_fb_x = w_a_x_fa_x_z * w_b_x_fb_x_z + w_a_x_fa_x_y *
+          w_b_x_fb_x_y + w_a_x_fa_x_x * w_b_x_fb_x_x;
+      g[0] = g1_3 * (T(2) * (g1_4 * g1_1 - g1_5 * g1_2) * (g1_4 * g1_2 + g1_5 * g1_1) * g1_3 -
+          (rxz_dot_dot - dot_w_b_x_w_b_x_fb_x_fa_z - dot_w_a_x_w_a_x_fa_z_fb_x - T(2) *
+          dot_w_a_x_fa_z_w_b_x_fb_x) * g1_1 +
+          (rzz_dot_dot + dot_w_b_x_w_b_x_fb_x_fa_x + dot_w_a_x_w_a_x_fa_x_fb_x + T(2) *
+          dot_w_a_x_fa_x_w_b_x_fb_x) * g1_2);
     }
 
     // dC/dt at fixed q: nothing
