@@ -133,8 +133,9 @@ bool has_soft_rows(const Scene& scene) {
 bool is_smooth(const Scene& scene) {
   return std::none_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
     if (one_sided(type_of(scene, joint)) || joint.breaking) return true;
-    return std::any_of(joint.effects.begin(), joint.effects.end(),
-                       [](const CoordinateEffects& effects) { return effects.limit || effects.motor || effects.friction; });
+    return std::any_of(joint.effects.begin(), joint.effects.end(), [](const CoordinateEffects& effects) {
+      return effects.limit || effects.motor || effects.friction;
+    });
   });
 }
 

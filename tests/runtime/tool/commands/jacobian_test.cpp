@@ -1,6 +1,4 @@
 // cdot-run diagnose --matrix: the system's D against what is known of it by other routes.
-#include "runtime/tool/commands/matrix.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "runtime/tool/commands/matrix.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test::jacobian_test {
