@@ -56,6 +56,9 @@ T unit_of(const Symmetric<T>& S) {
   return largest > T(0) ? std::scalbn(T(1), -std::ilogb(largest)) : T(1);
 }
 
+// Beside the kernels' inverse of a number, which the tensor's would hide from kernels that are included later.
+using cdot::inverse;
+
 // S^-1 by its cofactors; 0 of the zero tensor.
 template <class T>
 Symmetric<T> inverse(const Symmetric<T>& tensor) {
