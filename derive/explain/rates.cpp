@@ -1,4 +1,4 @@
-// What the rules of d/dt say, written down and not simplified.
+// The rules of d/dt, written down and not simplified.
 #include "derive/explain/rates.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What a kernel computes: every function of the contract (runtime/include/cdot/kernel.hpp) as a program, before
+// A kernel as programs: every function of the contract (runtime/include/cdot/kernel.hpp) as a program, before
 // it becomes text.
 #pragma once
 

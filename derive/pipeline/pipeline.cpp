@@ -44,7 +44,7 @@ void prove_derivation(const Derivation& derivation, const ProofRecord& record, O
   outcome.said += shown_text(outcome.proofs);
 }
 
-// What the published derivations beside it cost, as far as they are right.
+// The cost of the published derivations beside it, as far as they are right.
 void judge_hand(const fs::path& spec, const SpecsFolder& folder, Outcome& outcome) {
   const fs::path hand = fs::path(spec).replace_extension(".hand");
   if (!fs::exists(hand)) return;

@@ -91,7 +91,7 @@ Program take_out_coefficients(const Program& program) {
   return rewritten(
       program,
       [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
-        // What has a name in the spec keeps it.
+        // A name of the spec stays.
         if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
         const bool alike =
             std::all_of(op.coefs.begin(), op.coefs.end(), [&](Rational c) { return abs(c) == abs(op.coefs[0]); });

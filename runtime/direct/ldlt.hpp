@@ -12,7 +12,7 @@
 
 namespace cdot {
 
-// What runtime/direct/ldlt_kernels.hpp works on.
+// The data of runtime/direct/ldlt_kernels.hpp.
 namespace dense {
 
 // A row that depended on others in so many factorisations on end, or in the first of all, is

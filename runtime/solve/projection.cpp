@@ -44,7 +44,7 @@ void add_wanted_rates(const Island<S>& island, typename S::Scalar share) {
   }
 }
 
-// What numbers of the size of the poses leave of C, at most about.
+// Round-off in C from numbers of the size of the poses, at most about.
 template <class S>
 typename S::Scalar round_off(const WorldState<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;

@@ -1,4 +1,4 @@
-// What is connected: islands, their sizes, and which of them sleep.
+// Islands, their sizes, and which of them sleep.
 #pragma once
 
 #include "runtime/state/world_state.hpp"
