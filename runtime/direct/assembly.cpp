@@ -59,7 +59,7 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   lawful_ = taut_ = false;
   int numbers = 0;
   const auto add = [&](std::vector<Block>& to, Batch<S>* batch, int slot, int rows) {
-    to.push_back({batch, slot, 0, rows, numbers, {}});
+    to.push_back({batch, slot, slot, 0, rows, numbers, {}});
     rows_ += rows;
     numbers += rows * S::freedom * batch->ops->bodies;
   };
@@ -81,7 +81,8 @@ void System<S>::build(const std::vector<Segment<S>>& segments, const Bodies<S>& 
   for (auto& vector : shared_) vector.assign(n, 0.0);
   lower.assign(n, -std::numeric_limits<Real>::infinity());
   upper.assign(n, std::numeric_limits<Real>::infinity());
-  for (auto* flags : {&fixed, &broken, &out_, &held_}) flags->assign(n, 0);
+  for (auto* flags : {&fixed, &broken, &out_}) flags->assign(n, 0);
+  active_set_.assign(n, free);
   order_rows(bodies);
   list_products(bodies);
   slacken();

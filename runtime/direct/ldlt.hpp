@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include <cdot/detail/state_array.hpp>
 #include <cdot/precision.hpp>
 
 #include "runtime/direct/elimination_order.hpp"
@@ -127,11 +128,14 @@ class BasicLdlt {
   // y = K x, with values() alone.
   void multiply(const Real* x, Real* y) const;
 
+  // Its State.
+  StateArray<unsigned char>& dependent() { return dependent_; }
+  StateNumber<bool>& factored() { return factored_; }
+
   // Of one factor() and one solve(): what the order of elimination costs.
   long multiplications() const;
 
  private:
-  friend struct StateList;  // runtime/state/snapshot_list.hpp
   struct Column : dense::Column {
     int updates_begin, updates_end;
     dense::Eliminate<Real> eliminate;
@@ -157,8 +161,10 @@ class BasicLdlt {
   std::vector<Real> values_, l_;
   std::vector<Real> inverse_, noise_, doubtful_, overstated_;  // by unknown; overstated_: of noise_, within factor()
   std::vector<char> out_;
-  std::vector<unsigned char> dependent_, definite_;  // definite_: nobody asks what factor_definite() says there
-  bool any_out_ = false, factored_ = false;
+  StateArray<unsigned char> dependent_;      // State: in how many factorisations on end, by unknown
+  StateNumber<bool> factored_ = false;          // State: not the first
+  std::vector<unsigned char> definite_;  // nobody asks what factor_definite() says there
+  bool any_out_ = false;
   double share_ = pivot_share<Real>;
   std::vector<Real> unscaled_, given_;
 };

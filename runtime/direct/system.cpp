@@ -8,30 +8,6 @@
 namespace cdot {
 
 template <class S>
-void System<S>::exchange(const Batch<S>* batch, int slot, int last, int marked, char value) {
-  for (Block& block : blocks) {
-    if (block.batch != batch || (block.slot != slot && block.slot != last)) continue;
-    if (block.slot == marked) std::fill_n(broken.begin() + block.first, block.rows, value);
-    block.slot = block.slot == slot ? last : slot;
-  }
-  for (Block& tension : tensions) {
-    if (tension.batch != batch || (tension.slot != slot && tension.slot != last)) continue;
-    tension.slot = tension.slot == slot ? last : slot;
-  }
-}
-
-template <class S>
-void System<S>::remove(const Batch<S>* batch, int slot, int last) {
-  exchange(batch, slot, last, slot, 1);
-  ldlt_.doubt_lasting();
-}
-
-template <class S>
-void System<S>::put_back(const Batch<S>* batch, int slot, int last) {
-  exchange(batch, slot, last, last, 0);
-}
-
-template <class S>
 void System<S>::load_laws() {
   each_row([&](int row, const Batch<S>& batch, int i) {
     if (!batch.law) return;
@@ -88,13 +64,20 @@ void System<S>::solve_kept_rows() {
   ldlt_.solve(right_side_.data(), lambda.data());
 }
 
+template <class S>
+typename System<S>::Real System<S>::largest_b() const {
+  Real largest = 0;
+  for (int r = 0; r < rows_; ++r)
+    if (!broken[r]) largest = std::max(largest, std::abs(b[r]));
+  return largest;
+}
+
 // Moves rows that left their bounds onto them, and lets rows go whose bound pushes the wrong way.
 // True if none had to.
 template <class S>
 bool System<S>::revise_active_set(bool one_by_one) {
   ldlt_.multiply(lambda.data(), product_.data());
-  Real scale = 0;
-  for (int r = 0; r < rows_; ++r) scale = std::max(scale, std::abs(b[r]));
+  const Real scale = largest_b();
   const Real tolerance = by_precision<Real>(1e-12) * scale;
   bool settled = true;
   for (int r = rows_ - 1; r >= 0; --r) {
@@ -128,8 +111,7 @@ constexpr double slight_softness = 1e-8;
 template <class S>
 bool System<S>::part_contradicting_rows() {
   const auto bounded = [&](int r) { return std::isfinite(lower[r]) || std::isfinite(upper[r]); };
-  Real scale = 0;
-  for (int r = 0; r < rows_; ++r) scale = std::max(scale, std::abs(b[r]));
+  const Real scale = largest_b();
   bool any = false;
   for (int r = 0; r < rows_; ++r)
     any |= bounded(r) && !fixed[r] && !broken[r] &&
@@ -155,15 +137,16 @@ int System<S>::find_active_set() {
 
 template <class S>
 int System<S>::solve_bounded() {
-  fixed = held_;  // the rows that were held back in the step before
+  std::copy(active_set_.begin(), active_set_.end(), fixed.begin());  // the rows that were held back in the step before
   for (int r = 0; r < rows_; ++r) {
+    if (broken[r]) fixed[r] = free;
     if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];
     if (!std::isfinite(lambda[r])) fixed[r] = free;
   }
   int dependent = find_active_set();
   if (dependent > 0 && part_contradicting_rows()) dependent = find_active_set();
   share_contradictions();
-  held_ = fixed;
+  std::copy(fixed.begin(), fixed.end(), active_set_.begin());
   for (int r = 0; r < rows_; ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
   return dependent;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <cdot/detail/block.hpp>
+#include <cdot/detail/state_array.hpp>
 
 #include "runtime/direct/ldlt.hpp"
 
@@ -27,11 +28,16 @@ class System {
   // K from the present J and effective masses.
   void assemble(const Bodies<S>& bodies);
 
-  // The rows of `slot`, now kept at `last`, are no more; those that were at `last` are now at
-  // `slot`.
-  void remove(const Batch<S>* batch, int slot, int last);
-  // The reverse.
-  void put_back(const Batch<S>* batch, int slot, int last);
+  // Rows have changed places, and those of a slot that is broken(batch, slot) are no more.
+  template <class F>
+  void find_rows(F broken_slot) {
+    for (auto* list : {&blocks, &tensions})
+      for (Block& block : *list) block.slot = block.batch->slot_of[block.home];
+    for (const Block& block : blocks)
+      std::fill_n(broken.begin() + block.first, block.rows, broken_slot(*block.batch, block.slot) ? 1 : 0);
+  }
+  // Rows have broken: others that seemed redundant for long may have been so beside these only.
+  void doubt_redundant_rows() { ldlt_.doubt_lasting(); }
 
   // Some rows have softness or bounds.
   bool lawful() const { return lawful_; }
@@ -109,10 +115,14 @@ class System {
   // not vanish. Returns the number of dependent rows of the last factorisation.
   int solve_bounded();
 
+  // Its State.
+  StateArray<char>& active_set() { return active_set_; }
+  BasicLdlt<Real>& factors() { return ldlt_; }
+
   // One block: rows [first, first + rows) belong to a slot of a batch.
   struct Block {
     Batch<S>* batch;
-    int slot;
+    int home, slot;  // Batch::slot_of[home]
     int first, rows;
     int jacobian;                         // into jacobian_ and weighted_
     typename BasicLdlt<Real>::Place own;  // its square in K
@@ -144,9 +154,6 @@ class System {
  private:
   // The factor is that of K with every row softened (runtime/direct/regularise.cpp).
   enum class Softened : char { no, slightly, plainly };
-  friend struct StateList;  // runtime/state/snapshot_list.hpp
-  // Of a batch: what is said of one slot is said of the other; `broken` of the marked one becomes `value`.
-  void exchange(const Batch<S>* batch, int slot, int last, int marked, char value);
   template <class F>
   void each_tension_row(F f) const {
     for (const Block& tension : tensions)
@@ -156,6 +163,7 @@ class System {
   void order_rows(const Bodies<S>& bodies);
   void list_products(const Bodies<S>& bodies);
   std::vector<int> movable_bodies(const Block& block, const Bodies<S>& bodies) const;
+  Real largest_b() const;
   bool revise_active_set(bool one_by_one);
   int find_active_set();
   bool part_contradicting_rows();
@@ -183,7 +191,8 @@ class System {
   std::array<std::vector<Real>, 4> shared_;  // by row, while contradictions are shared out or rows refined
   std::vector<Real> unmet_;                  // by row
   std::vector<int> tension_of_;              // which of `blocks`
-  std::vector<char> out_, held_;             // held_: the active set of the last solve_bounded()
+  std::vector<char> out_;
+  StateArray<char> active_set_;  // State: Hold by row, of the last solve_bounded()
 };
 
 }  // namespace cdot

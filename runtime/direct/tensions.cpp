@@ -26,7 +26,7 @@ void System<S>::follow(const System& other) {
     std::copy_n(other.broken.begin() + other.blocks[k].first, blocks[k].rows, broken.begin() + blocks[k].first);
   }
   for (size_t k = 0; k < tensions.size(); ++k) tensions[k].slot = blocks[static_cast<size_t>(tension_of_[k])].slot;
-  std::fill(held_.begin(), held_.end(), free);
+  std::fill(active_set_.begin(), active_set_.end(), free);
   ldlt_.forget();
 }
 

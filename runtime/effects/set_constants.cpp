@@ -19,7 +19,7 @@ void set_constants(BasicWorld<S>& world, int joint, int effect, const Law<S>& la
   Batch<S>& batch = *state.batches[record.places[place].batch];
   if (batch.law != &law) throw Error(fmt::format("effect number {} of joint number {} is no {}", effect, joint, name));
   for (size_t k = 0; k < constants.size(); ++k)
-    batch.constants[record.places[place].slot * constants.size() + k] = typename S::Scalar(constants[k]);
+    batch.constants[slot_of(state, record.places[place]) * constants.size() + k] = typename S::Scalar(constants[k]);
   const int body = movable_body(state, record);
   if (law.error)  // of where the bodies shall be
     wake(state, body);

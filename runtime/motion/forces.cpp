@@ -9,7 +9,7 @@ namespace {
 // to += M^-1 of what the spring exerts, over a time h.
 template <class S>
 void pull(const Bodies<S>& all, const typename S::PointSpring& spring, typename S::Scalar h,
-          std::vector<typename S::Velocity>& to) {
+          StateArray<typename S::Velocity>& to) {
   using T = typename S::Scalar;
   const auto a = static_cast<size_t>(spring.body_a), b = static_cast<size_t>(spring.body_b);
   const auto stretch = S::stretch(spring, all.pose[a], all.pose[b]);

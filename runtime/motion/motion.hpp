@@ -29,7 +29,7 @@ template <class S>
 void set_inertias(WorldState<S>& world, Island<S>& island);
 template <class S, class F>
 void for_each_gyroscope(WorldState<S>& world, const Island<S>& island, F f) {
-  for (int index : island.gyroscopes) f(world.gyroscopes[index], world.gyroscopes[index].body);
+  for (int index : island.gyroscopes) f(world.gyroscopes[index], world.turning[index]);
 }
 
 }  // namespace cdot

@@ -22,7 +22,7 @@ void find_known_forces(WorldState<S>& world, Batch<S>& batch, int begin, int end
 
 template <class S>
 void ask_for_gamma(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
-  ++world.counts.evaluations;
+  ++world.counts->evaluations;
   free_accelerations(world, island);
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;

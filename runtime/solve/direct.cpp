@@ -31,7 +31,7 @@ template <class S>
 [[gnu::always_inline]] inline void exert_solution(const WorldState<S>& world, const Island<S>& island,
                                                   System<S>& system, typename S::Velocity* to) {
   system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });
-  exert(world, island, system, &Batch<S>::lambda, to);
+  exert(world, island, system, &BatchState<S>::lambda, to);
 }
 
 template <class S>
@@ -160,7 +160,7 @@ void exert_correction(const WorldState<S>& world, const Island<S>& island, Syste
     batch.impulse[i] = T(lambda);
     if (!island.continuous) batch.correction[i] += T(lambda);
   });
-  exert(world, island, system, &Batch<S>::impulse, to);
+  exert(world, island, system, &BatchWorkspace<S>::impulse, to);
 }
 
 template <class S>

@@ -25,9 +25,9 @@ template <class S>
 }
 
 // to += M^-1 J^T x, x being an array of the batches; what tension adds to the rows is part of it.
-template <class S>
+template <class S, class Array>
 [[gnu::always_inline]] inline void exert(const WorldState<S>& world, const Island<S>& island, const System<S>& system,
-                                         std::vector<typename S::Scalar> Batch<S>::*x, typename S::Velocity* to) {
+                                         Array x, typename S::Velocity* to) {
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, (segment.batch->*x).data(), to);
   system.pull(world.bodies, to);

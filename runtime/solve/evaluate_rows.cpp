@@ -45,6 +45,7 @@ void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   if (!island.evaluated)
     for (const Segment<S>& segment : island.segments)
       segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, T(world.time));
+  if (!island.evaluated) island.evaluated_at = T(world.time);
   island.evaluated = true;
   factorize_rows(world, island);
   const T share = T(world.settings.baumgarte) / h;

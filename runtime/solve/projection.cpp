@@ -93,6 +93,7 @@ void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar t
     if (island.continuous) set_inertias(world, island);
     else turn_inertias(world, island);
   }
+  island.evaluated_at = time;
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, time);
 }

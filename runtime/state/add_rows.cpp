@@ -27,6 +27,10 @@ template <class Item>
 void grow(std::vector<Item>& array, int by, Item value = Item{}) {
   array.insert(array.end(), static_cast<size_t>(by), value);
 }
+template <class Item>
+void grow(StateArray<Item>& column, int by, Item value = Item{}) {
+  column.append(static_cast<size_t>(by), value);
+}
 
 }  // namespace
 
@@ -41,14 +45,16 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
   record.added.add(index), record.added.add(ops->rows), record.added.add(ops->bodies);
   record.added.bytes(constants.data(), constants.size_bytes());
   record.places.push_back({index, batch.count()});
+  batch.home.push_back(batch.count());
+  batch.slot_of.push_back(batch.count());
   batch.joint.push_back(joint);
-  batch.body.insert(batch.body.end(), record.bodies.begin(), record.bodies.end());
+  batch.body.append(record.bodies.begin(), record.bodies.end());
   for (int k = 0; k < ops->parameter_size; ++k) batch.parameters.push_back(T(record.parameters[k]));
   grow(batch.jacobian, ops->jacobian_size);
   grow(batch.factor, batch.triangle());
-  for (auto* array :
-       {&batch.C, &batch.bias, &batch.lambda, &batch.correction, &batch.rate, &batch.error, &batch.impulse})
-    grow(*array, ops->rows);
+  grow(batch.lambda, ops->rows);
+  grow(batch.correction, ops->rows);
+  for (auto* array : {&batch.C, &batch.bias, &batch.rate, &batch.error, &batch.impulse}) grow(*array, ops->rows);
   if (law) {
     grow(batch.softness, ops->rows);
     grow(batch.lower, ops->rows, -std::numeric_limits<T>::infinity());

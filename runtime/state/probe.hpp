@@ -29,7 +29,8 @@ class Probe {
     batch_.jacobian.assign(static_cast<size_t>(ops_->jacobian_size), T(0));
     for (auto* array : {&batch_.C, &batch_.bias, &batch_.rate}) array->assign(static_cast<size_t>(ops_->rows), T(0));
     batch_.body.resize(joint.bodies.size());
-    for (auto* array : {&bodies_.velocity, &bodies_.displacement}) array->resize(joint.bodies.size());
+    bodies_.velocity.resize(joint.bodies.size());
+    bodies_.displacement.resize(joint.bodies.size());
     bodies_.pose.resize(joint.bodies.size());
     bodies_.effective_mass.resize(joint.bodies.size());
     for (size_t k = 0; k < joint.bodies.size(); ++k) {
@@ -117,7 +118,7 @@ class Probe {
     for (const Place& place : joint.places) {
       const Batch<S>& kept = *world_.batches[place.batch];
       if (!variants.has(kept.ops)) continue;
-      const auto from = kept.counters.begin() + place.slot * kept.ops->counters;
+      const auto from = kept.counters.begin() + slot_of(world_, place) * kept.ops->counters;
       std::copy_n(from, kept.ops->counters, batch_.counters.begin());
     }
   }
@@ -175,7 +176,7 @@ std::vector<typename S::Scalar> total_impulse(const WorldState<S>& world, const 
   if (joint.places.empty() || joint.broken) return lambda;
   const Batch<S>& batch = *world.batches[joint.places[0].batch];
   for (size_t r = 0; r < rows; ++r) {
-    const size_t i = joint.places[0].slot * rows + r;
+    const size_t i = slot_of(world, joint.places[0]) * rows + r;
     lambda[r] = batch.lambda[i] + batch.correction[i];
   }
   return lambda;

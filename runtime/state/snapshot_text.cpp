@@ -12,13 +12,14 @@
 namespace cdot {
 namespace {
 
-constexpr std::string_view first_line = "cdot state 1";
+constexpr std::string_view first_line = "cdot state 2";
 
 template <class F>
 bool with_number_type(char type, F f) {
   switch (type) {
     case 'd': return f(double{}), true;
     case 'f': return f(float{}), true;
+    case 'e': return f(0.0L), true;
     case 'i': return f(int{}), true;
     case 'l': return f(0ll), true;
     case 'c': return f(static_cast<signed char>(0)), true;
@@ -128,6 +129,7 @@ Snapshot::Item read_item(Reader& reader, std::string_view name, std::vector<std:
       bytes.insert(bytes.end(), from, from + sizeof number);
     }
   });
+  bytes.resize(Snapshot::aligned(bytes.size()));
   if (!known) reader.fail(fmt::format("\"{}\" is no type of numbers", type));
   reader.end_line();
   return item;
@@ -139,15 +141,16 @@ std::string Snapshot::text() const {
   std::string text =
       fmt::format("{}\nof {}\nbodies {} {:x}\njoints {} {:x}\norder {:x}\n", first_line, origin_.method,
                   origin_.body_count, origin_.bodies, origin_.joint_count, origin_.joints, origin_.order);
-  const std::byte* at = bytes_.data();
+  std::size_t at = 0;
   for (const Item& item : items_) {
     text += fmt::format("{} {} {}", item.name, item.type, item.count);
     with_number_type(item.type, [&](auto number) {
       for (std::size_t k = 0; k < item.count; ++k, at += sizeof number) {
-        std::memcpy(&number, at, sizeof number);
+        std::memcpy(&number, bytes_.data() + at, sizeof number);
         write(text, number);
       }
     });
+    at = aligned(at);
     text += '\n';
   }
   return text + fmt::format("end {:x}\n", hash_of(text));

@@ -14,11 +14,9 @@
 namespace cdot {
 namespace {
 
-// What is not told apart, as a share of what C, its rate and its force are made of.
+// What is not resolution apart, as a share of what C, its rate and its force are made of.
 template <class T>
 constexpr T slight = T(by_precision<T>(1e-4, 1e-9));
-template <class S>
-using Told = typename Flow<S>::Told;
 template <class T>
 constexpr T infinite = std::numeric_limits<T>::infinity();
 
@@ -31,26 +29,26 @@ void each_guarded_slot(const Island<S>& island, F f) {
   }
 }
 
-// f(batch, index, guard, told) for every row that comes and goes, guards at the C at hand.
+// f(batch, index, guard, resolution) for every row that comes and goes, guards at the C at hand.
 template <class S, class F>
 void each_guarded_row(Island<S>& island, F f) {
   Guard<typename S::Scalar> guards[most_rows];
-  auto told = island.flow.told.begin();
+  auto resolution = island.flow.resolution.begin();
   each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
     batch.law->guard(batch, slot, guards);
-    for (int r = 0; r < batch.ops->rows; ++r) f(batch, slot * batch.ops->rows + r, guards[r], *told++);
+    for (int r = 0; r < batch.ops->rows; ++r) f(batch, slot * batch.ops->rows + r, guards[r], *resolution++);
   });
 }
 
-// Raises what is not told apart of the rows of one slot to a slight share of
+// Raises what is not resolution apart of the rows of one slot to a slight share of
 //   C       what a displacement by the island's size and a turn of 1 rad make of it: c
 //   rate    the sum of all |J v|; sqrt(c dJv/dt), what acceleration makes of it on that way; less moves nothing in h
 //   force   dJv/dt + rate^2 / c over K
 // where dJv/dt is the largest of the sum of all |J dv/dt|, a linear acceleration being taken for an angular one too,
 // and of what the row's own force keeps from it, K lambda. A row without a direction here is taken for a length.
 template <class S>
-void tell_apart(const WorldState<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
-                typename S::Scalar h, Told<S>* told) {
+void find_resolution(const WorldState<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
+                     typename S::Scalar h, Resolution<typename S::Scalar>* resolution) {
   using T = typename S::Scalar;
   using Real = ExactNumber<T>;
   const Bodies<S>& all = world.bodies;
@@ -78,19 +76,19 @@ void tell_apart(const WorldState<S>& world, const Island<S>& island, const Batch
     if (!(c > T(0))) c = island.size;
     acceleration = std::max(acceleration, k * std::abs(batch.lambda[slot * rows + r]));
     rate = std::max({rate, std::sqrt(acceleration * c), std::numeric_limits<T>::epsilon() / slight<T> * c / h});
-    told[r].C = slight<T> * c;
-    told[r].rate = std::max(told[r].rate, slight<T> * rate);
-    told[r].force = std::max(told[r].force, slight<T> * (acceleration + rate * rate / c) / k);
+    resolution[r].C = slight<T> * c;
+    resolution[r].rate = std::max(resolution[r].rate, slight<T> * rate);
+    resolution[r].force = std::max(resolution[r].force, slight<T> * (acceleration + rate * rate / c) / k);
   }
 }
 
 // With dv/dt as it is: without joints, then with them.
 template <class S>
-void tell_apart(const WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
-  auto* told = island.flow.told.data();
+void find_resolution(const WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+  auto* resolution = island.flow.resolution.data();
   each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
-    tell_apart(world, island, batch, slot, h, told);
-    told += batch.ops->rows;
+    find_resolution(world, island, batch, slot, h, resolution);
+    resolution += batch.ops->rows;
   });
 }
 
@@ -116,9 +114,9 @@ void clear_laws(Island<S>& island) {
 
 // v, be it velocities or accelerations, such that J v = -bias within the bounds.
 template <class S>
-void solve(WorldState<S>& world, Island<S>& island, std::vector<typename S::Velocity>& v) {
+void solve(WorldState<S>& world, Island<S>& island, typename S::Velocity* v) {
   island.solver->renew(world, island);
-  island.solver->velocities(world, island, v.data(), typename S::Scalar(0));
+  island.solver->velocities(world, island, v, typename S::Scalar(0));
 }
 
 // Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. What has stopped is `held`:
@@ -128,27 +126,30 @@ void stop_what_hits(WorldState<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   bool hits = false;
   find_rates(world, island);
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard,
+                               const Resolution<typename S::Scalar>& resolution) {
     const T rate = batch.rate[i] + batch.bias[i];
-    hits |= guard.one_sided() && guard.gap() <= told.C && (guard.lower == T(0) ? rate : -rate) < -told.rate;
+    hits |= guard.one_sided() && guard.gap() <= resolution.C && (guard.lower == T(0) ? rate : -rate) < -resolution.rate;
   });
   if (!hits) return;
   clear_laws(island);
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
-    if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= told.C)) return;
-    batch.lower[i] = guard.lower;
-    batch.upper[i] = guard.upper;
-    batch.bias[i] -= guard.rate;
-  });
-  solve(world, island, world.bodies.velocity);
+  each_guarded_row(
+      island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
+        if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= resolution.C)) return;
+        batch.lower[i] = guard.lower;
+        batch.upper[i] = guard.upper;
+        batch.bias[i] -= guard.rate;
+      });
+  solve(world, island, world.bodies.velocity.data());
   for (const Segment<S>& segment : island.segments)
     for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
       segment.batch->correction[i] += segment.batch->lambda[i];
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
-    if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= told.C)) return;
-    batch.bias[i] += guard.rate;
-    if (batch.lambda[i] != T(0)) batch.mode[i] = Mode::held;
-  });
+  each_guarded_row(
+      island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
+        if (!guard.bilateral() && !(guard.one_sided() && guard.gap() <= resolution.C)) return;
+        batch.bias[i] += guard.rate;
+        if (batch.lambda[i] != T(0)) batch.mode[i] = Mode::held;
+      });
 }
 
 // What each row may do, as bounds of its force. True if for some it depends on the forces.
@@ -158,22 +159,23 @@ bool offer_bounds(WorldState<S>& world, Island<S>& island) {
   bool open = false;
   find_rates(world, island);
   clear_laws(island);
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
-    const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
-    const bool slow = std::abs(missing) <= T(4) * told.rate || batch.mode[i] == Mode::held;
-    batch.mode[i] = Mode::held;
-    batch.lower[i] = guard.lower;
-    batch.upper[i] = guard.upper;
-    if (guard.bilateral()) return;
-    open = true;
-    if (guard.one_sided() && !(slow && guard.gap() <= told.C)) {
-      batch.mode[i] = Mode::off;
-      batch.lower[i] = batch.upper[i] = 0;
-    } else if (!guard.one_sided() && !slow) {
-      batch.mode[i] = Mode::pushed;
-      batch.lower[i] = batch.upper[i] = missing > T(0) ? guard.upper : guard.lower;
-    }
-  });
+  each_guarded_row(
+      island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
+        const T missing = guard.rate - (batch.rate[i] + batch.bias[i]);
+        const bool slow = std::abs(missing) <= T(4) * resolution.rate || batch.mode[i] == Mode::held;
+        batch.mode[i] = Mode::held;
+        batch.lower[i] = guard.lower;
+        batch.upper[i] = guard.upper;
+        if (guard.bilateral()) return;
+        open = true;
+        if (guard.one_sided() && !(slow && guard.gap() <= resolution.C)) {
+          batch.mode[i] = Mode::off;
+          batch.lower[i] = batch.upper[i] = 0;
+        } else if (!guard.one_sided() && !slow) {
+          batch.mode[i] = Mode::pushed;
+          batch.lower[i] = batch.upper[i] = missing > T(0) ? guard.upper : guard.lower;
+        }
+      });
   return open;
 }
 
@@ -183,8 +185,8 @@ template <class S>
 void decide_by_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
   ask_for_gamma(world, island, time);
-  solve(world, island, world.bodies.velocity_rate);
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>&) {
+  solve(world, island, world.bodies.velocity_rate.data());
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>&) {
     if (batch.mode[i] != Mode::held) return;
     const T force = batch.lambda[i];
     if (!guard.bilateral() && (force <= batch.lower[i] || force >= batch.upper[i])) {
@@ -199,17 +201,17 @@ void decide_by_forces(WorldState<S>& world, Island<S>& island, typename S::Scala
 
 // Of one row; infinite where nothing can happen.
 template <class S>
-typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard, const Told<S>& told,
-                             typename S::Scalar rate) {
+typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
+                             const Resolution<typename S::Scalar>& resolution, typename S::Scalar rate) {
   using T = typename S::Scalar;
   const T force = batch.lambda[i];
   switch (batch.mode[i]) {
-    case Mode::off: return guard.gap() / told.C;
+    case Mode::off: return guard.gap() / resolution.C;
     case Mode::held:
-      return std::min(force - guard.lower, guard.upper - force) / (told.force + slight<T> * std::abs(force));
+      return std::min(force - guard.lower, guard.upper - force) / (resolution.force + slight<T> * std::abs(force));
     case Mode::pushed:
       if (guard.lower == guard.upper) return infinite<T>;
-      return (force == guard.upper ? guard.rate - rate : rate - guard.rate) / told.rate;
+      return (force == guard.upper ? guard.rate - rate : rate - guard.rate) / resolution.rate;
     case Mode::bounded: break;
   }
   return infinite<T>;
@@ -225,17 +227,18 @@ void count_guarded_rows(Island<S>& island) {
   for (const Segment<S>& segment : island.segments)
     if (segment.batch->law && segment.batch->law->guard)
       flow.guarded += (segment.end - segment.begin) * segment.batch->ops->rows;
-  for (auto* margins : {&flow.row_rates, &flow.margins, &flow.margins_chosen, &flow.low, &flow.high})
-    margins->assign(static_cast<size_t>(flow.guarded), infinite<T>);
-  flow.told.resize(static_cast<size_t>(flow.guarded));
+  const auto rows = static_cast<size_t>(flow.guarded);
+  for (auto* margins : {&flow.row_rates, &flow.margins, &flow.margins_chosen}) margins->assign(rows, infinite<T>);
+  for (auto* margins : {&flow.low, &flow.high}) margins->assign(rows, infinite<T>);
+  flow.resolution.resize(rows);
 }
 
 template <class S>
 void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   if (island.flow.guarded > 0) {
-    std::fill(island.flow.told.begin(), island.flow.told.end(), Told<S>{});
+    std::fill(island.flow.resolution.begin(), island.flow.resolution.end(), Resolution<typename S::Scalar>{});
     free_accelerations(world, island);
-    tell_apart(world, island, h);
+    find_resolution(world, island, h);
     stop_what_hits(world, island);
     if (offer_bounds(world, island)) {
       decide_by_forces(world, island, time);
@@ -245,7 +248,7 @@ void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar ti
   project_velocities(world, island);
   note_rates(world, island);
   accelerate(world, island, time);
-  tell_apart(world, island, h);
+  find_resolution(world, island, h);
   measure_margins(island);
   island.flow.margins_chosen = island.flow.margins;
 }
@@ -256,7 +259,7 @@ void note_rates(WorldState<S>& world, Island<S>& island) {
   if (island.flow.guarded == 0) return;
   find_rates(world, island);
   size_t k = 0;
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>&, const Told<S>&) {
+  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>&, const Resolution<typename S::Scalar>&) {
     island.flow.row_rates[k++] = batch.rate[i] + batch.bias[i];
   });
 }
@@ -265,10 +268,11 @@ template <class S>
 void measure_margins(Island<S>& island) {
   using T = typename S::Scalar;
   size_t k = 0;
-  each_guarded_row(island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Told<S>& told) {
-    island.flow.margins[k] = margin_of(batch, i, guard, told, island.flow.row_rates[k]);
-    ++k;
-  });
+  each_guarded_row(
+      island, [&](Batch<S>& batch, int i, const Guard<T>& guard, const Resolution<typename S::Scalar>& resolution) {
+        island.flow.margins[k] = margin_of(batch, i, guard, resolution, island.flow.row_rates[k]);
+        ++k;
+      });
 }
 
 template <class S>

@@ -174,13 +174,13 @@ template <class S>
 void keep_start(const WorldState<S>& world, Island<S>& island) {
   read_numbers(world, island, island.flow.start.data());
   read_rates(world, island, 0);
-  island.flow.residual = island.residual;
+  island.flow.start_residual = island.residual;
 }
 
 template <class S>
 void go_back(WorldState<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
-  island.residual = island.flow.residual;
+  island.residual = island.flow.start_residual;
 }
 
 #define CDOT_INSTANTIATE(S)                                                                                \

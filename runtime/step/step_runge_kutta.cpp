@@ -33,12 +33,12 @@ constexpr auto slight_displacement = typename S::Scalar(1e-6);  // of its size, 
 constexpr int most_searches = 60;                               // for one event
 constexpr int furthest_reach = 64;                              // of a step of its own length, in step()s
 
-// In units of what is not told apart, from where a row stood when its mode was chosen, which is steps ago for one that
-// creeps: an event is behind us, and just behind us.
+// In units of what is not resolution apart, from where a row stood when its mode was chosen, which is steps ago for one
+// that creeps: an event is behind us, and just behind us.
 constexpr double passed = -1, just_passed = -3;
 
 template <class T>
-double furthest(const std::vector<T>& chosen, const std::vector<T>& now) {
+double furthest(const StateArray<T>& chosen, const StateArray<T>& now) {
   double worst = 0;
   for (size_t k = 0; k < now.size(); ++k) worst = std::min(worst, double(now[k]) - std::min(double(chosen[k]), 0.0));
   return worst;
@@ -63,7 +63,7 @@ typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const Ru
                                typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
-  flow.high = flow.margins;
+  flow.high.assign(flow.margins.begin(), flow.margins.end());
   T low = 0, high = h;
   for (int search = 0; search < most_searches; ++search) {
     // Every third time in the middle, where straight lines mislead.
@@ -76,11 +76,11 @@ typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const Ru
     const double margin = furthest(flow.margins_chosen, flow.margins);
     if (margin < passed) {
       high = at;
-      flow.high = flow.margins;
+      flow.high.assign(flow.margins.begin(), flow.margins.end());
       if (margin >= just_passed) return at;
     } else {
       low = at;
-      flow.low = flow.margins;
+      flow.low.assign(flow.margins.begin(), flow.margins.end());
     }
   }
   go_back(world, island);
@@ -119,7 +119,7 @@ double try_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
   if (!(error <= 1)) return error;
   project_end(world, island, method, time + h);
   if (method.error_at_end) error = error_now();
-  const bool lost = left_the_joints(world, island, island.flow.residual) || went_astray(world, island, h);
+  const bool lost = left_the_joints(world, island, island.flow.start_residual) || went_astray(world, island, h);
   return lost ? std::numeric_limits<double>::infinity() : error;
 }
 
@@ -135,7 +135,7 @@ typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, cons
     const double allowed = absurd * double(h / whole);
     if (try_step(world, island, method, time, h, [&] { return share_of_size(island, method, h) / allowed; }) <= 1)
       return h;
-    ++world.counts.rejected;
+    ++world.counts->rejected;
     go_back(world, island);
     h /= 2;
   } while (h >= T(smallest_part) * whole);
@@ -160,13 +160,13 @@ typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, c
     if (error <= 1) {
       // One that was cut short tells nothing against the length that was proposed; after one that was too long none
       // grows.
-      if (attempt == 0 && h < proposed) flow.next_step = std::max(flow.next_step, proposed);
-      if (attempt > 0) flow.next_step = std::min(flow.next_step, h);
+      if (attempt == 0 && h < proposed) flow.next_step = std::max<T>(flow.next_step, proposed);
+      if (attempt > 0) flow.next_step = std::min<T>(flow.next_step, h);
       return h;
     }
-    ++world.counts.rejected;
+    ++world.counts->rejected;
     astray = std::isinf(error) ? astray + 1 : 0;
-    h = length_of_step(flow.next_step, left, reach);
+    h = length_of_step<T>(flow.next_step, left, reach);
     go_back(world, island);
   }
   flow.next_step = proposed;
@@ -199,7 +199,7 @@ void scale_forces(const Island<S>& island, typename S::Scalar by) {
 // the impulses of a step before.
 template <class S>
 void fall_back_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
-  ++world.counts.rescued;
+  ++world.counts->rescued;
   fill_lambda(island, typename S::Scalar(0));
   evaluate_anew(world, island, time);
   island.factored = false;
@@ -240,7 +240,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
     }
     begin(world, island, time, h);
     keep_start(world, island);
-    flow.low = flow.margins;
+    flow.low.assign(flow.margins.begin(), flow.margins.end());
     flow.end_kept = false;
     // Whoever looks at the loads after every step may change what follows.
     const T reach = world.after_substep.empty() ? furthest_reach * h : left;
@@ -250,11 +250,11 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
       fall_back_to_euler(world, island, time, left);
       return h;
     }
-    flow.longest = std::max(flow.longest, flow.length);
+    flow.longest = std::max<T>(flow.longest, flow.length);
     flow.slivers = flow.length < T(sliver) * flow.longest ? flow.slivers + 1 : 0;
     if (flow.guarded > 0 && furthest(flow.margins_chosen, flow.margins) < passed) {
       flow.length = go_to_event(world, island, method, time, flow.length);
-      ++world.counts.events;
+      ++world.counts->events;
       ++events;
       flow.known = false;
     }

@@ -20,7 +20,8 @@ void hand_out(WorldState<S>& world, const JointRecord& record, const std::vector
     Batch<S>& batch = *world.batches[place.batch];
     for (const ParameterInfo* info : changed)
       for (int k = info->offset; k < info->offset + info->size; ++k)
-        batch.parameters[place.slot * batch.ops->parameter_size + k] = typename S::Scalar(record.parameters[k]);
+        batch.parameters[slot_of(world, place) * batch.ops->parameter_size + k] =
+            typename S::Scalar(record.parameters[k]);
   }
 }
 

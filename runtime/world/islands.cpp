@@ -12,8 +12,8 @@
 #include "runtime/solve/solver.hpp"
 #include "runtime/solve/sweep_order.hpp"
 #include "runtime/solve/tension.hpp"
+#include "runtime/state/state_list.hpp"
 #include "runtime/step/integrators.hpp"
-#include "runtime/world/rollback.hpp"
 
 namespace cdot {
 namespace {
@@ -68,16 +68,19 @@ void number_islands(WorldState<S>& world) {
   }
 }
 
-template <class Item>
-void permute(std::vector<Item>& items, const std::vector<int>& order) {
-  if (items.empty() || order.empty()) return;
-  const size_t width = items.size() / order.size();
-  std::vector<Item> sorted;
-  sorted.reserve(items.size());
-  for (int from : order)
-    for (size_t k = 0; k < width; ++k) sorted.push_back(items[from * width + k]);
-  items = std::move(sorted);
-}
+// StateArrays by slot; the numbers of the Workspace are computed anew.
+struct Permute {
+  const std::vector<int>& order;
+  void item(const char*, int) {}
+  template <class Number>
+  void operator()(StateArray<Number>& column) {
+    if (column.empty()) return;
+    const size_t width = column.size() / order.size();
+    const std::vector<Number> before(column.begin(), column.end());
+    auto to = column.begin();
+    for (int from : order) to = std::copy_n(before.begin() + static_cast<std::ptrdiff_t>(from * width), width, to);
+  }
+};
 
 template <class S>
 int island_of_slot(const WorldState<S>& world, const Batch<S>& batch, int slot) {
@@ -100,13 +103,17 @@ void sort_slots(WorldState<S>& world, int index, const std::vector<int>& places)
   std::vector<int> order(key.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return key[i] < key[j]; });
-  batch.for_each_array([&](auto& array) { permute(array, order); });
+  Permute permute{order};
+  StateList::each_slot(batch, index, permute);
 
-  std::vector<int> now(order.size());
-  for (size_t slot = 0; slot < order.size(); ++slot) now[order[slot]] = static_cast<int>(slot);
+  std::vector<int> now(order.size());  // by home before
+  for (size_t slot = 0; slot < order.size(); ++slot) {
+    now[batch.home[slot]] = static_cast<int>(slot);
+    batch.home[slot] = batch.slot_of[slot] = static_cast<int>(slot);
+  }
   for (JointRecord& joint : world.joints)
     for (Place& place : joint.places)
-      if (place.batch == index) place.slot = now[place.slot];
+      if (place.batch == index) place.home = now[place.home];
 }
 
 // Runs of slots of one batch that follow each other in the sweep, rows under a law before all others: what is solved
@@ -132,8 +139,9 @@ void list_segments(WorldState<S>& world, const std::vector<int>& places) {
     Batch<S>& batch = *world.batches[run.batch];
     Island<S>& island = world.islands[island_of_slot(world, batch, run.slot)];
     auto& segments = island.segments;
-    if (!segments.empty() && segments.back().batch == &batch && segments.back().end == run.slot) ++segments.back().end;
-    else segments.push_back({&batch, run.slot, run.slot + 1});
+    if (!segments.empty() && segments.back().batch == &batch && segments.back().end == run.slot)
+      segments.back().whole_end = ++segments.back().end;
+    else segments.push_back({&batch, run.slot, run.slot + 1, run.slot + 1});
     island.restless |= batch.ops->explicit_time;
   }
 }
@@ -146,8 +154,8 @@ void give_out_forces(WorldState<S>& world) {
   }
   for (const auto& drag : world.drags) world.islands[world.island_of[drag.body]].drags.push_back(drag);
   if constexpr (S::has_gyroscopes)
-    for (size_t i = 0; i < world.gyroscopes.size(); ++i)
-      world.islands[world.island_of[world.gyroscopes[i].body]].gyroscopes.push_back(static_cast<int>(i));
+    for (size_t i = 0; i < world.turning.size(); ++i)
+      world.islands[world.island_of[world.turning[i]]].gyroscopes.push_back(static_cast<int>(i));
 }
 
 template <class S>
@@ -177,9 +185,9 @@ void prepare_topology(WorldState<S>& world) {
     island.stiffened = row_of(world.settings.integrator).stiffens;
     if (world.needs_systems()) build_systems(world, island);
     stepper_of<S>(world.settings.integrator).prepare(island);
-    prepare_to_keep(island);
     world.awake.push_back(i);
   }
+  settle_state(world);
   world.prepared = true;
 }
 

@@ -15,12 +15,12 @@ namespace {
 constexpr int newton_rounds = 50;
 
 template <class S>
-void solve_and_exert(WorldState<S>& world, Island<S>& island, std::vector<typename S::Velocity>& to) {
+void solve_and_exert(WorldState<S>& world, Island<S>& island, typename S::Velocity* to) {
   island.system.assemble(world.bodies);
   island.system.factor();
   island.system.solve();
   island.system.store([](Batch<S>& batch, int i, auto lambda) { batch.impulse[i] = typename S::Scalar(lambda); });
-  exert(world, island, island.system, &Batch<S>::impulse, to.data());
+  exert(world, island, island.system, &BatchWorkspace<S>::impulse, to);
 }
 
 template <class S>
@@ -49,7 +49,7 @@ template <class S>
 void move_poses(WorldState<S>& world, Island<S>& island) {
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.increment[i] = {};
-  solve_and_exert(world, island, all.increment);
+  solve_and_exert(world, island, all.increment.data());
   for (int i : island.bodies) {
     all.pose[i] = S::moved(all.pose[i], all.increment[i]);
     all.increment[i] = {};
@@ -91,7 +91,7 @@ void project_velocities(WorldState<S>& world, Island<S>& island, double toleranc
     return batch.kinds[i % batch.ops->rows] != RowKind::inequality ||
            (batch.C[i] <= tolerance && batch.rate[i] + batch.bias[i] < 0);
   });
-  solve_and_exert(world, island, all.velocity);
+  solve_and_exert(world, island, all.velocity.data());
 }
 
 }  // namespace

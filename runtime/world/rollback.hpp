@@ -1,19 +1,25 @@
-// What a step that fails goes back to. Less than a snapshot, since every step pays for it: what is computed from poses
-// and velocities is computed again.
+// From State to State: back to the one before a step that failed, or on from another.
 #pragma once
 
 #include "runtime/state/world_state.hpp"
 
 namespace cdot {
 
-// Makes room; allocates.
-template <class S>
-void prepare_to_keep(Island<S>& island);
-
-// Of all islands that are awake, with the time and the counts.
+// The State of all islands that are awake is kept, with the time and the counts; and is that of the World again.
 template <class S>
 void keep_state(WorldState<S>& world);
 template <class S>
-void put_state_back(WorldState<S>& world);
+void roll_back(WorldState<S>& world);
+
+// The World goes on from these bytes, which are laid out like its own.
+template <class S>
+void adopt_state(WorldState<S>& world, const std::vector<std::byte>& bytes);
+
+// Where rows stand, after some have changed places: from BatchState::home and the joints that broke.
+template <class S>
+void find_rows(WorldState<S>& world, Island<S>& island);
+// C and J, if they are those of the present poses.
+template <class S>
+void evaluate_again(WorldState<S>& world, Island<S>& island);
 
 }  // namespace cdot

@@ -48,7 +48,8 @@ void put_to_sleep(WorldState<S>& world, double h) {
     island.rested = resting ? island.rested + h : 0.0;
     if (island.rested < world.settings.sleep_after) return false;
     for (int i : island.bodies) all.velocity[i] = {};
-    return island.asleep = true;
+    island.asleep = true;
+    return true;
   };
   world.awake.erase(std::remove_if(world.awake.begin(), world.awake.end(), falls_asleep), world.awake.end());
 }

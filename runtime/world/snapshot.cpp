@@ -1,4 +1,4 @@
-// Saving, restoring and comparing a World's state: three visitors of the one list in state/snapshot_list.hpp.
+// Saving, restoring and comparing the State of a World: its bytes, and a word on what they are a State of.
 #include <cstring>
 #include <fmt/format.h>
 #include <type_traits>
@@ -8,89 +8,12 @@
 #include <cdot/world.hpp>
 
 #include "runtime/number/hash.hpp"
-#include "runtime/state/snapshot_list.hpp"
+#include "runtime/state/world_state.hpp"
 #include "runtime/world/islands.hpp"
+#include "runtime/world/rollback.hpp"
 
 namespace cdot {
 namespace {
-
-// The letter of Snapshot::Item::type; what is a struct consists of numbers of type T.
-template <class Number, class T>
-constexpr char type_of() {
-  if constexpr (std::is_same_v<Number, double>) return 'd';
-  if constexpr (std::is_same_v<Number, float>) return 'f';
-  if constexpr (std::is_same_v<Number, int>) return 'i';
-  if constexpr (std::is_same_v<Number, long long>) return 'l';
-  if constexpr (std::is_class_v<Number>) return type_of<T, T>();
-  static_assert(std::is_class_v<Number> || std::is_arithmetic_v<Number> || sizeof(Number) == 1);
-  return 'c';
-}
-
-// What visitors have in common: a vector is its numbers. Own::numbers(type, address, count) does the rest.
-template <class T, class Own>
-struct Visitor {
-  template <class Number>
-  void operator()(std::vector<Number>& array) {
-    add(array.data(), array.size());
-  }
-  template <class Number>
-  void operator()(Number& number) {
-    add(&number, 1);
-  }
-
- private:
-  template <class Number>
-  static constexpr std::size_t size_of_one() {
-    constexpr std::size_t size = std::is_class_v<Number> ? sizeof(T) : sizeof(Number);
-    static_assert(sizeof(Number) % size == 0);
-    return size;
-  }
-  template <class Number>
-  void add(Number* first, std::size_t count) {
-    static_cast<Own&>(*this).numbers(type_of<Number, T>(), first, count * sizeof(Number) / size_of_one<Number>());
-  }
-};
-
-// The names and sizes of all arrays.
-template <class T>
-struct Layout : Visitor<T, Layout<T>> {
-  std::vector<Snapshot::Item> items;
-  std::size_t bytes = 0;
-  void item(const char* name, int index) {
-    items.push_back({index < 0 ? std::string(name) : fmt::format("{}[{}]", name, index), 'c', 0});
-  }
-  void numbers(char type, const void*, std::size_t count) {
-    items.back().type = type;
-    items.back().count += count;
-    bytes += count * Snapshot::size_of(type);
-  }
-};
-
-// Copies between the World and the bytes of a snapshot, as long as its items are those of the World: `fits` says.
-template <class T, bool save>
-struct Copy : Visitor<T, Copy<T, save>> {
-  using Byte = std::conditional_t<save, std::byte, const std::byte>;
-  const std::vector<Snapshot::Item>& items;
-  Byte* at;
-  std::size_t next = 0, left = 0;
-  bool fits = true;
-
-  Copy(const std::vector<Snapshot::Item>& items, Byte* bytes) : items(items), at(bytes) {}
-  void item(const char*, int) {
-    fits &= left == 0 && next < items.size();
-    if (fits) left = items[next++].count;
-  }
-  void numbers(char type, void* here, std::size_t count) {
-    fits &= count <= left && (count == 0 || type == items[next - 1].type);
-    if (!fits || count == 0) return;
-    left -= count;
-    const std::size_t bytes = count * Snapshot::size_of(type);
-    if constexpr (save) std::memcpy(at, here, bytes);
-    else std::memcpy(here, at, bytes);
-    at += bytes;
-  }
-  bool all() const { return fits && left == 0 && next == items.size(); }
-};
 
 // Masses, and inertias in the bodies' frames: where those turn with the bodies, the ones in world axes are state.
 template <class S>
@@ -98,8 +21,8 @@ std::uint64_t hash_of_bodies(const WorldState<S>& world) {
   Hash hash;
   for (const auto& m : world.bodies.inverse_mass) hash.add(m.m), hash.add(S::immovable(m));
   if constexpr (S::has_gyroscopes)
-    for (const auto& gyroscope : world.gyroscopes) hash.add(gyroscope.body), hash.add(gyroscope.inertia);
-  else hash.add(world.bodies.inverse_mass);
+    for (size_t k = 0; k < world.turning.size(); ++k) hash.add(world.turning[k]), hash.add(world.gyroscopes[k].inertia);
+  else hash.bytes(world.bodies.inverse_mass.data(), world.bodies.inverse_mass.size() * sizeof(typename S::InverseMass));
   return hash.value;
 }
 
@@ -166,41 +89,26 @@ void check_origin(const Snapshot::Origin& state, const Snapshot::Origin& world) 
         "of the World");
 }
 
-// Islands asleep are not on the list that step() walks.
-template <class S>
-void list_awake(WorldState<S>& world) {
-  world.awake.clear();
-  for (size_t k = 0; k < world.islands.size(); ++k)
-    if (!world.islands[k].asleep) world.awake.push_back(static_cast<int>(k));
-}
-
 }  // namespace
 
 struct SnapshotAccess {
   template <class S>
   static void save(WorldState<S>& world, Snapshot& to) {
-    using T = typename S::Scalar;
     Snapshot::Origin origin = origin_of(world);
-    if (same_hashes(origin, to.origin_)) {
-      Copy<T, true> copy(to.items_, to.bytes_.data());
-      StateList::each(world, copy);
-      if (copy.all()) return;
+    if (!same_hashes(origin, to.origin_) || to.items_.size() != world.state.items.size()) {
+      to.origin_ = origin;
+      to.origin_.method = method_of<S>(world.settings);
+      to.items_ = world.state.items;
     }
-    to.origin_ = origin;
-    to.origin_.method = method_of<S>(world.settings);
-    Layout<T> layout;
-    StateList::each(world, layout);
-    to.items_ = layout.items;
-    to.bytes_.resize(layout.bytes);
-    Copy<T, true> copy(to.items_, to.bytes_.data());
-    StateList::each(world, copy);
+    to.bytes_ = world.state.bytes;
   }
 
   // Joints that broke before the state's World was prepared have no place in its order of rows.
   template <class S>
   static void prepare_with_broken_joints(WorldState<S>& world, const Snapshot& from) {
     const Snapshot::Item& item = from.items_[1];  // joints.broken
-    const std::byte* broken = from.bytes_.data() + from.items_[0].count * Snapshot::size_of(from.items_[0].type);
+    const std::byte* broken =
+        from.bytes_.data() + Snapshot::aligned(from.items_[0].count * Snapshot::size_of(from.items_[0].type));
     for (size_t k = 0; k < world.joints.size() && k < item.count; ++k)
       world.joints[k].broken = broken[k] != std::byte{0};
     world.prepared = false;
@@ -209,13 +117,8 @@ struct SnapshotAccess {
 
   template <class S>
   static bool load(WorldState<S>& world, const Snapshot& from) {
-    using T = typename S::Scalar;
-    Layout<T> layout;
-    StateList::each(world, layout);
-    if (origin_of(world).order != from.origin_.order || layout.items != from.items_) return false;
-    Copy<T, false> copy(from.items_, from.bytes_.data());
-    StateList::each(world, copy);
-    list_awake(world);
+    if (origin_of(world).order != from.origin_.order || world.state.items != from.items_) return false;
+    adopt_state(world, from.bytes_);
     return true;
   }
 
@@ -253,7 +156,7 @@ std::vector<std::string> Snapshot::differences(const Snapshot& other) const {
     }
     const std::size_t bytes = items_[k].count * Snapshot::size_of(items_[k].type);
     if (std::memcmp(bytes_.data() + here, other.bytes_.data() + there, bytes) != 0) names.push_back(items_[k].name);
-    here += bytes, there += bytes;
+    here = Snapshot::aligned(here + bytes), there = Snapshot::aligned(there + bytes);
   }
   return names;
 }

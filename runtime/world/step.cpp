@@ -43,7 +43,7 @@ StepResult attempt(WorldState<S>& world, double h, int parts) {
       result.island = index;
       return result;
     }
-    for (const auto& hook : world.after_substep) hook.run(world, dt);
+    for (const auto& look : world.after_substep) look(world, dt);
     world.time += part;
     world.last_step = part;
   }
@@ -119,10 +119,10 @@ bool succeeds_in_parts(WorldState<S>& world, double h, int fewest, StepResult& r
     result = attempt(world, h, parts * world.settings.substeps);
     if (result) {
       result.parts = parts;
-      ++world.counts.retried;
+      ++world.counts->retried;
       return true;
     }
-    put_state_back(world);
+    roll_back(world);
   }
   return false;
 }
@@ -134,7 +134,7 @@ StepResult try_again(WorldState<S>& world, double h) {
   if (succeeds_in_parts(world, h, 2, result) || solver.exact) return result;
   solve_by(world, direct_solver<S>());
   result.direct = succeeds_in_parts(world, h, 1, result);
-  if (result.direct) ++world.counts.direct;
+  if (result.direct) ++world.counts->direct;
   solve_by(world, solver);
   return result;
 }
@@ -150,11 +150,11 @@ StepResult BasicWorld<S>::step(double h) {
   const double start = world.time;
   StepResult result = attempt(world, h, world.settings.substeps);
   if (!result) {
-    put_state_back(world);
+    roll_back(world);
     if (world.on_failure == OnFailure::retry) result = try_again(world, h);
     if (!result) {
       blame(world, result);
-      put_state_back(world);  // whom to blame was found by evaluating
+      roll_back(world);  // whom to blame was found by evaluating
     }
   }
   result.time = start, result.length = h;

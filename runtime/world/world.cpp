@@ -108,6 +108,13 @@ void check_joint_bodies(const WorldState<S>& world, const JointType& type, const
   }
 }
 
+// f(gyroscope) if the body's inertia tensor turns with it.
+template <class S, class F>
+void with_gyroscope(WorldState<S>& world, int body, F f) {
+  const auto found = std::find(world.turning.begin(), world.turning.end(), body);
+  if (found != world.turning.end()) f(world.gyroscopes[static_cast<size_t>(found - world.turning.begin())]);
+}
+
 template <class S>
 void set_acceleration(WorldState<S>& world, int body) {
   using T = typename S::Scalar;
@@ -117,8 +124,7 @@ void set_acceleration(WorldState<S>& world, int body) {
   const bool falls = !all.immovable(body);
   all.acceleration[body] = S::sum(own, gravity, falls ? T(1) : T(0));
   if constexpr (S::has_gyroscopes)
-    for (auto& gyroscope : world.gyroscopes)
-      if (gyroscope.body == body) S::set_torque(gyroscope, all.force[body]);
+    with_gyroscope(world, body, [&](auto& gyroscope) { S::set_torque(gyroscope, all.force[body]); });
 }
 
 }  // namespace
@@ -154,11 +160,11 @@ int BasicWorld<S>::add_body(const BodyDefinition& d) {
   all.inverse_mass.push_back(m);
   all.effective_mass.push_back(m);
   all.force.push_back(S::components(S::wrench_of(d)));
-  all.stiffness.push_back({});
-  for (auto* array : {&all.acceleration, &all.velocity_rate, &all.displacement, &all.increment}) array->push_back({});
-  all.start.push_back(all.pose.back());
+  all.acceleration.push_back({}), all.velocity_rate.push_back({});
+  all.displacement.push_back({}), all.increment.push_back({}), all.stiffness.push_back({});
+  all.start.push_back(all.pose[body]);
   if constexpr (S::has_gyroscopes)
-    if (S::is_gyroscope(d)) state_->gyroscopes.push_back(S::gyroscope_of(body, d));
+    if (S::is_gyroscope(d)) state_->turning.push_back(body), state_->gyroscopes.push_back(S::gyroscope_of(d));
   set_acceleration(*state_, body);
   if (!d.is_static && (d.linear_damping > 0 || d.angular_damping > 0))
     state_->drags.push_back({body, T(d.linear_damping), T(d.angular_damping)});
@@ -182,17 +188,20 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   if (is_extended<T> && type - joint_types(S::dimension).data() >= std::ssize(joint_entries<S>()))
     throw Error(fmt::format("joint `{}` was not made for extended precision", type->name));
   check_joint_bodies(*state_, *type, definition.bodies);
-  JointRecord record{static_cast<int>(type - joint_types(S::dimension).data()), definition.bodies, {}, {}, false};
+  JointRecord record;
+  record.type = static_cast<int>(type - joint_types(S::dimension).data());
+  record.bodies = definition.bodies;
   using InDoubles = typename S::InDoubles;
   std::vector<typename InDoubles::Pose> poses;
   for (int body : record.bodies) poses.push_back(InDoubles::placed(place_in_world(*state_, body)));
-  record.parameters = parameter_numbers<InDoubles>(record.type, definition.parameters, poses.data(), state_->time);
+  auto numbers = parameter_numbers<InDoubles>(record.type, definition.parameters, poses.data(), state_->time);
   move_world_points(
-      *type, record.bodies, [&](int body) { return body == state_->ground; }, state_->origin, -1, record.parameters);
+      *type, record.bodies, [&](int body) { return body == state_->ground; }, state_->origin, -1, numbers);
+  record.parameters = numbers;
   double spring[spring_constants_count] = {};
   if (definition.soft) spring_constants(*definition.soft, spring);
 
-  record.added.add(record.type), record.added.add(record.bodies), record.added.add(record.parameters);
+  record.added.add(record.type), record.added.add(record.bodies), record.added.add(numbers);
 
   check_rows(*state_, record, definition.soft.has_value());
   const int joint = joint_count();
@@ -246,12 +255,11 @@ void BasicWorld<S>::set_pose(int body, const Place& place) {
   check_finite<S>(pose);
   all.pose[body] = pose;
   if constexpr (S::has_gyroscopes)
-    for (auto& gyroscope : state_->gyroscopes)
-      if (gyroscope.body == body) {
-        S::set_inertia(gyroscope, all.pose[body], all.inverse_mass[body], all.velocity[body]);
-        all.effective_mass[body] = all.inverse_mass[body];
-        set_acceleration(*state_, body);
-      }
+    with_gyroscope(*state_, body, [&](auto& gyroscope) {
+      S::set_inertia(gyroscope, all.pose[body], all.inverse_mass[body], all.velocity[body]);
+      all.effective_mass[body] = all.inverse_mass[body];
+      set_acceleration(*state_, body);
+    });
   wake(*state_, body);
 }
 

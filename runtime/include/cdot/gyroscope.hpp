@@ -10,8 +10,7 @@ namespace cdot::spatial {
 
 template <class T>
 struct Gyroscope {
-  int body;
-  Symmetric<T> inertia, inverse;  // in the body's frame
+  Symmetric<T> inertia, inverse;  // in the body's frame: these two never change
   Symmetric<T> world;             // inertia in world axes, at the pose of the last turn()
   Vector<T> torque;               // constant, in world axes
   // L = I w for this w. Kept from step to step, so that round-off of I^-1 I does not add up: what

@@ -23,12 +23,17 @@ class Snapshot {
   // One array, by name, of numbers of one type.
   struct Item {
     std::string name;
-    char type;  // d, f: double, float; i, l: int, long long; c: a byte
+    char type;  // d, f, e: double, float, long double; i, l: int, long long; c: a byte
     std::size_t count;
     bool operator==(const Item&) const = default;
   };
 
-  static constexpr std::size_t size_of(char type) { return type == 'd' || type == 'l' ? 8 : type == 'c' ? 1 : 4; }
+  static constexpr std::size_t size_of(char type) {
+    return type == 'e' ? sizeof(long double) : type == 'd' || type == 'l' ? 8 : type == 'c' ? 1 : 4;
+  }
+  // Each array begins at a multiple of this.
+  static constexpr std::size_t alignment = alignof(long double);
+  static constexpr std::size_t aligned(std::size_t at) { return (at + alignment - 1) / alignment * alignment; }
 
   bool empty() const { return items_.empty(); }
   const Origin& origin() const { return origin_; }
@@ -47,7 +52,7 @@ class Snapshot {
   friend struct SnapshotAccess;  // runtime/state/snapshot.cpp
   Origin origin_;
   std::vector<Item> items_;
-  std::vector<std::byte> bytes_;  // of all items, without gaps
+  std::vector<std::byte> bytes_;  // of all items
 };
 
 }  // namespace cdot

@@ -72,7 +72,7 @@ struct Spatial {
       const T I = T(one / d.inertia.xx);
       return inverse_mass(m, {I, I, I, T(0), T(0), T(0)});
     }
-    const Gyroscope gyroscope = gyroscope_of(0, d);
+    const Gyroscope gyroscope = gyroscope_of(d);
     return inverse_mass(m, spatial::turned(placed(place_of(d)), gyroscope.inverse));
   }
   static InverseMass inverse_mass(T m, const Symmetric& I) { return {m, I.xx, I.yy, I.zz, I.xy, I.xz, I.yz}; }
@@ -81,12 +81,12 @@ struct Spatial {
   // --- bodies whose inertia tensor turns with them ---
 
   static bool is_gyroscope(const BodyDefinition& d) { return turns(d) && !isotropic(d.inertia); }
-  static Gyroscope gyroscope_of(int body, const BodyDefinition& d) {
+  static Gyroscope gyroscope_of(const BodyDefinition& d) {
     const auto I = inertia_of(d), inverse = spatial::inverse(I);
     const auto cast = [](const spatial::Symmetric<ExactNumber<T>>& S) {
       return Symmetric{T(S.xx), T(S.yy), T(S.zz), T(S.xy), T(S.xz), T(S.yz)};
     };
-    Gyroscope g{body, cast(I), cast(inverse), {}, {}, {}, {}, {}};
+    Gyroscope g{cast(I), cast(inverse), {}, {}, {}, {}, {}};
     InverseMass m{};
     set_inertia(g, placed(place_of(d)), m, velocity_of(d));
     return g;

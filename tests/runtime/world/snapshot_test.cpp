@@ -214,6 +214,46 @@ TEST(Snapshot, AJointThatBrokeLongAgoStaysBroken) {
   EXPECT_TRUE(other.broken(2));
 }
 
+// One Model and many States: a World steps equal mechanisms by turns, each as if it had a World of its own.
+template <class S>
+void check_many_states(const Settings& settings, const std::string& name) {
+  constexpr int count = 4, steps = 25;
+  const auto made = [&] {
+    BasicWorld<S> world(settings);
+    build_all_kinds(world);
+    return world;
+  };
+  std::vector<BasicWorld<S>> alone;
+  std::vector<Snapshot> states;
+  for (int k = 0; k < count; ++k) {
+    alone.push_back(made());
+    typename S::Exact::Velocity push{};
+    push.x = 0.1 * k;
+    alone[k].apply_impulse(2, push);
+    states.push_back(alone[k].snapshot());
+  }
+  BasicWorld<S> shared = made();
+  for (int step = 0; step < steps; ++step) {
+    for (int k = 0; k < count; ++k) {
+      shared.restore(states[k]);
+      shared.step(0.005);
+      shared.snapshot_into(states[k]);
+      alone[k].step(0.005);
+    }
+  }
+  for (int k = 0; k < count; ++k)
+    EXPECT_EQ(alone[k].snapshot().differences(states[k]), same) << name << ", mechanism " << k;
+}
+
+TEST(Snapshot, OneWorldStepsManyStates) {
+  const Settings base = settings(Solver::direct, Drift::projection, -9.81);
+  const int methods = for_each_method(base, [&](const Settings& s, const std::string& name) {
+    check_many_states<Planar<double>>(s, name);
+    check_many_states<Spatial<double>>(s, name);
+  });
+  std::printf("%d methods: 4 mechanisms in one World, as 4 in their own\n", methods);
+}
+
 TEST(Snapshot, OneAtHandIsFilledWithoutAllocation) {
   World<double> world(settings(Solver::direct, Drift::projection, -9.81));
   build_all_kinds(world);
@@ -238,7 +278,7 @@ TEST(Snapshot, TextComesBackToTheBitAndSaysWhereItIsWrong) {
   EXPECT_EQ(Snapshot::read(text).text(), text);
   const auto wrong = [&](std::string changed) { return error_of([&] { Snapshot::read(changed); }); };
   EXPECT_EQ(wrong("time d 2"),
-            "line 1: it does not begin with \"cdot state 1\": this is no state, or not the whole of one");
+            "line 1: it does not begin with \"cdot state 2\": this is no state, or not the whole of one");
   EXPECT_NE(wrong(text.substr(0, text.size() / 2)).find("not the whole of one"), std::string::npos);
   EXPECT_NE(wrong(text.substr(0, text.rfind("end"))).find("the last line is missing"), std::string::npos);
   std::string other = text;

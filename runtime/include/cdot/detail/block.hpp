@@ -114,48 +114,55 @@ struct Law {
   void (*guard)(const Batch<S>&, int slot, Guard<T>* guards);
 };
 
-// All blocks of one kind under one law, slot by slot. Slots of an island are neighbours.
 template <class S>
-struct Batch {
-  using T = typename S::Scalar;
-
+struct BatchModel {
   const BlockOps<S>* ops = nullptr;
   const Law<S>* law = nullptr;  // null: exact rows, J v = -bias
   std::vector<RowKind> kinds;   // [rows]
-  std::vector<int> joint;       // that the slot belongs to
-  std::vector<int> body;        // [slot][bodies]
-  std::vector<T> parameters;    // [slot][parameter_size]
-  std::vector<T> jacobian;      // [slot][jacobian_size]
-  std::vector<T> factor;        // [slot][rows (rows + 1) / 2]
-  std::vector<T> C, bias;       // [slot][rows], as all below
-  std::vector<T> lambda;        // impulse of the velocity solve, kept for the next step
-  std::vector<T> correction;    // impulse of the drift correction
-  std::vector<T> rate;          // J times the velocities last asked about
-  std::vector<T> error;         // the part of C that a projection is to remove
-  std::vector<T> impulse;       // of one round of a projection, or a force that is known
-  std::vector<T> counters;      // [slot][ops->counters]
-  // Only under a law:
-  std::vector<T> softness, lower, upper;  // [slot][rows]
-  std::vector<Mode> mode;                 // [slot][rows]
-  std::vector<T> constants;               // [slot][law->constants]
-
-  int count() const { return static_cast<int>(joint.size()); }
-  // Everything that is kept per slot.
-  template <class F>
-  void for_each_array(F f) {
-    f(joint), f(body), f(mode);
-    for (auto* array : {&parameters, &jacobian, &factor, &C, &bias, &lambda, &correction, &rate, &error, &impulse,
-                        &counters, &softness, &lower, &upper, &constants})
-      f(*array);
-  }
-  int triangle() const { return ops->rows * (ops->rows + 1) / 2; }
 };
 
-// The slots of a batch that belong to one island.
+// By slot. Breaking joints exchange slots.
+template <class S>
+struct BatchState {
+  using T = typename S::Scalar;
+  StateArray<int> home;      // the slot's number when islands were last analysed
+  StateArray<int> joint;     // that it belongs to
+  StateArray<int> body;      // [slot][bodies]
+  StateArray<T> parameters;  // [slot][parameter_size]
+  StateArray<T> counters;    // [slot][ops->counters]
+  StateArray<T> lambda;      // [slot][rows] impulse of the velocity solve, kept for the next step
+  StateArray<T> correction;  // [slot][rows] impulse of the drift correction
+  // [slot][rows], only under a law. In continuous time the bounds go with the mode, from event to event.
+  StateArray<Mode> mode;
+  StateArray<T> softness, lower, upper;
+  StateArray<T> constants;  // [slot][law->constants]
+};
+
+template <class S>
+struct BatchWorkspace {
+  using T = typename S::Scalar;
+  std::vector<int> slot_of;  // by home
+  std::vector<T> jacobian;   // [slot][jacobian_size]
+  std::vector<T> factor;     // [slot][rows (rows + 1) / 2]
+  std::vector<T> C, bias;    // [slot][rows], as all below
+  std::vector<T> rate;       // J times the velocities last asked about
+  std::vector<T> error;      // the part of C that a projection is to remove
+  std::vector<T> impulse;    // of one round of a projection, or a force that is known
+};
+
+// All blocks of one kind under one law, slot by slot. Slots of an island are neighbours.
+template <class S>
+struct Batch : BatchModel<S>, BatchState<S>, BatchWorkspace<S> {
+  using T = typename S::Scalar;
+  int count() const { return static_cast<int>(this->joint.size()); }
+  int triangle() const { return this->ops->rows * (this->ops->rows + 1) / 2; }
+};
+
+// The slots of a batch that belong to one island: those of broken joints lie between `end` and `whole_end`.
 template <class S>
 struct Segment {
   Batch<S>* batch;
-  int begin, end;
+  int begin, end, whole_end;
 };
 
 }  // namespace cdot

@@ -52,7 +52,7 @@ struct BlockLoops {
   static const int* bodies_of(const Batch<S>& batch, int slot) { return batch.body.data() + slot * bodies; }
 
   template <class Item>
-  static void gather(const std::vector<Item>& from, const int* body, Item (&to)[bodies]) {
+  static void gather(const StateArray<Item>& from, const int* body, Item (&to)[bodies]) {
     for (int k = 0; k < bodies; ++k) to[k] = from[static_cast<size_t>(body[k])];
   }
 

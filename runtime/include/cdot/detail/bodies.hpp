@@ -5,6 +5,7 @@
 #include <type_traits>
 #include <vector>
 
+#include <cdot/detail/state_array.hpp>
 #include <cdot/kernel.hpp>
 #include <cdot/precision.hpp>
 
@@ -25,27 +26,38 @@ Exact exact(const Struct& of) {
   return to;
 }
 
-// S is a space: Planar<double>, Planar<float>.
+// S is a space: Planar<double>, Planar<float>. All arrays are by body.
 template <class S>
-struct Bodies {
+struct BodiesModel {
+  std::vector<typename S::Pose> start;  // where the body was added: zero of its potential energy
+};
+
+template <class S>
+struct BodiesState {
+  using Velocity = typename S::Velocity;
+  StateArray<typename S::Pose> pose;
+  StateArray<Velocity> velocity;
+  StateArray<typename S::InverseMass> inverse_mass;  // exactly 0 where immovable; tensors turn with their bodies
+  // What the solvers divide by: inverse_mass, unless geometric stiffness has added to the inertias.
+  StateArray<typename S::InverseMass> effective_mass;
+  StateArray<Velocity> force;          // constant, beside gravity
+  StateArray<Velocity> acceleration;   // M^-1 force + gravity
+  StateArray<Velocity> velocity_rate;  // dv/dt, of integrators at acceleration level
+};
+
+template <class S>
+struct BodiesWorkspace {
+  using Velocity = typename S::Velocity;
+  std::vector<Velocity> displacement;            // of the drift correction in this step
+  std::vector<Velocity> increment;               // 0 between its uses
+  std::vector<typename S::Stiffness> stiffness;  // of the last step's impulses
+};
+
+template <class S>
+struct Bodies : BodiesModel<S>, BodiesState<S>, BodiesWorkspace<S> {
   using T = typename S::Scalar;
-
-  std::vector<typename S::Pose> pose;
-  std::vector<typename S::Velocity> velocity;
-  std::vector<typename S::InverseMass> inverse_mass;  // exactly 0 where immovable
-  // What the solvers divide by: inverse_mass, unless the geometric stiffness has added to the
-  // inertias.
-  std::vector<typename S::InverseMass> effective_mass;
-  std::vector<typename S::Velocity> force;          // constant, beside gravity
-  std::vector<typename S::Velocity> acceleration;   // M^-1 force + gravity, constant between calls to set_force
-  std::vector<typename S::Velocity> velocity_rate;  // dv/dt, of integrators at acceleration level
-  std::vector<typename S::Velocity> displacement;   // of the drift correction in this step
-  std::vector<typename S::Velocity> increment;      // scratch: 0 between its uses
-  std::vector<typename S::Stiffness> stiffness;     // of the last step's impulses
-  std::vector<typename S::Pose> start;              // where the body was added: zero of its potential energy
-
-  int count() const { return static_cast<int>(pose.size()); }
-  bool immovable(int body) const { return S::immovable(inverse_mass[static_cast<size_t>(body)]); }
+  int count() const { return static_cast<int>(this->pose.size()); }
+  bool immovable(int body) const { return S::immovable(this->inverse_mass[static_cast<size_t>(body)]); }
 };
 
 }  // namespace cdot

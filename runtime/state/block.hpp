@@ -1,0 +1,28 @@
+// The bytes of a State, one array after another, each from a multiple of Snapshot::alignment on.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <cdot/snapshot.hpp>
+
+namespace cdot {
+
+struct Block {
+  struct Range {
+    std::size_t begin, end;
+  };
+  std::vector<std::byte> bytes;
+  std::vector<Snapshot::Item> items;
+  Range common{};                           // of no island
+  std::vector<std::vector<Range>> islands;  // what each island has of it
+  std::size_t between_steps = 0;            // no step changes what lies beyond
+};
+
+// Lays out the State of a World whose islands were just analysed, and moves it there. Allocates.
+template <class S>
+struct WorldState;
+template <class S>
+void settle_state(WorldState<S>& world);
+
+}  // namespace cdot
