@@ -41,9 +41,9 @@ void break_joint(WorldState<S>& world, int joint) {
     }
   }
   find_rows(world, island);
-  evaluate_again(world, island);
-  island.system.doubt_redundant_rows();
   island.factored = false;
+  compute_again(world, island);
+  island.system.doubt_redundant_rows();
   island.flow.forget();
 }
 

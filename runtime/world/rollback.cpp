@@ -23,17 +23,6 @@ void copy_awake(const WorldState<S>& world, const std::vector<std::byte>& from, 
     for (const Block::Range& range : world.state.islands[index]) copy(range.begin, range.end);
 }
 
-// The Workspace that the end of a step leaves for the next one: J at these poses, and the factor of a method that
-// begins with it.
-template <class S>
-void compute_again(WorldState<S>& world, Island<S>& island) {
-  island.system.slacken();
-  island.trouble = StepProblem::none;
-  evaluate_again(world, island);
-  if (island.evaluated && (island.factored || stepper_of<S>(world.settings.integrator).starts_from_factor))
-    island.solver->factor(world, island);
-}
-
 }  // namespace
 
 template <class S>
@@ -49,10 +38,14 @@ void find_rows(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void evaluate_again(WorldState<S>& world, Island<S>& island) {
+void compute_again(WorldState<S>& world, Island<S>& island) {
+  island.system.slacken();
+  island.trouble = StepProblem::none;
   if (!island.evaluated) return;
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies, island.evaluated_at);
+  if (island.factored || stepper_of<S>(world.settings.integrator).starts_from_factor)
+    island.solver->factor(world, island);
 }
 
 template <class S>
@@ -93,7 +86,7 @@ void adopt_state(WorldState<S>& world, const std::vector<std::byte>& bytes) {
   template void roll_back(WorldState<S>&);                                  \
   template void adopt_state(WorldState<S>&, const std::vector<std::byte>&); \
   template void find_rows(WorldState<S>&, Island<S>&);                      \
-  template void evaluate_again(WorldState<S>&, Island<S>&);
+  template void compute_again(WorldState<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -18,8 +18,9 @@ void adopt_state(WorldState<S>& world, const std::vector<std::byte>& bytes);
 // Where rows stand, after some have changed places: from BatchState::home and the joints that broke.
 template <class S>
 void find_rows(WorldState<S>& world, Island<S>& island);
-// C and J, if they are those of the present poses.
+// The Workspace that the end of a step leaves for the next one: J at these poses, and the factor of a method that
+// begins with it.
 template <class S>
-void evaluate_again(WorldState<S>& world, Island<S>& island);
+void compute_again(WorldState<S>& world, Island<S>& island);
 
 }  // namespace cdot
