@@ -161,8 +161,8 @@ class BasicLdlt {
   std::vector<Real> values_, l_;
   std::vector<Real> inverse_, noise_, doubtful_, overstated_;  // by unknown; overstated_: of noise_, within factor()
   std::vector<char> out_;
-  StateArray<unsigned char> dependent_;      // State: in how many factorisations on end, by unknown
-  StateNumber<bool> factored_ = false;          // State: not the first
+  StateArray<unsigned char> dependent_;  // State: in how many factorisations on end, by unknown
+  StateNumber<bool> factored_ = false;   // State: not the first
   std::vector<unsigned char> definite_;  // nobody asks what factor_definite() says there
   bool any_out_ = false;
   double share_ = pivot_share<Real>;

@@ -14,7 +14,7 @@ namespace {
 
 struct SwapSlots {
   int count, i, j;
-  void item(const char*, int) {}
+  void item(const char*, int, bool) {}
   template <class Number>
   void operator()(StateArray<Number>& column) {
     const auto width = static_cast<std::ptrdiff_t>(column.size()) / count;
@@ -36,7 +36,7 @@ void break_joint(WorldState<S>& world, int joint) {
       if (segment.batch != &batch || slot < segment.begin || slot >= segment.end) continue;
       const int last = --segment.end;
       SwapSlots swap{batch.count(), slot, last};
-      if (slot != last) StateList::each_slot(batch, 0, swap);
+      if (slot != last) StateList::each_slot(batch, 0, true, swap);
       for (int moved : {slot, last}) batch.slot_of[batch.home[moved]] = moved;
     }
   }

@@ -29,7 +29,7 @@ class Layout {
  public:
   Layout(Block& block, std::byte* to) : block_(block), to_(to) { block.items.clear(); }
 
-  void item(const char* name, int index) {
+  void item(const char* name, int index, bool) {
     at_ = Snapshot::aligned(at_);
     block_.items.push_back({index < 0 ? std::string(name) : fmt::format("{}[{}]", name, index), 'c', 0});
   }
@@ -43,13 +43,12 @@ class Layout {
   }
   // Its fractions go by their bits.
   void counts(StateNumber<StepCounts>& counts) {
-    item("counts", -1);
+    item("counts", -1, true);
     if (to_) counts.settle(to_ + at_);
     block_.items.back() = {"counts", 'l', sizeof(StepCounts) / sizeof(long long)};
     at_ += sizeof(StepCounts);
   }
   void common_ends() { block_.common = {0, at_}; }
-  void steps_end() { block_.between_steps = at_; }
   std::size_t size() const { return Snapshot::aligned(at_); }
 
  private:
@@ -69,68 +68,86 @@ class Layout {
   std::size_t at_ = 0;
 };
 
-// What an island has of the arrays by body, by slot, or by itself.
+// The share of an island in the arrays that steps change, by body, by slot, or its own. It does not depend on which
+// other islands there are: neither must the price of a step.
 class Ranges {
  public:
-  Ranges(const Block& block, std::vector<Block::Range>& ranges) : base_(block.bytes.data()), ranges_(ranges) {}
+  explicit Ranges(const Block& block) : base_(block.bytes.data()) {}
 
-  // Elements [begin, end) of arrays with so many: of each array `size / of` numbers belong to one element.
-  void take(std::size_t begin, std::size_t end, std::size_t of) { begin_ = begin, end_ = end, of_ = of; }
-  void item(const char*, int) {}
+  // Elements [begin, end) of arrays with `of` elements.
+  void take(int begin, int end, std::size_t of) {
+    begin_ = static_cast<std::size_t>(begin), end_ = static_cast<std::size_t>(end), of_ = of;
+  }
+  // Whole arrays and numbers, which follow each other.
+  void take_all() { own_ = true; }
+  void item(const char*, int, bool in_steps) { in_steps_ = in_steps; }
   template <class Number>
-  void operator()(StateArray<Number>& column) {
-    const std::size_t width = of_ > 0 ? column.size() / of_ : column.size(), first = of_ > 0 ? begin_ * width : 0;
-    add(column.data() + first, of_ > 0 ? (end_ - begin_) * width : column.size());
+  void operator()(StateArray<Number>& array) {
+    if (own_) return add(array.data(), array.size());
+    const std::size_t width = array.size() / of_;
+    add(array.data() + begin_ * width, (end_ - begin_) * width);
   }
   template <class Number>
-  void operator()(StateNumber<Number>& cell) {
-    add(cell.operator->(), 1);
+  void operator()(StateNumber<Number>& number) {
+    add(number.operator->(), 1);
   }
+  std::vector<Block::Range> found;
 
  private:
   template <class Number>
   void add(const Number* first, std::size_t count) {
-    if (count == 0) return;
+    if (count == 0 || !in_steps_) return;
     const auto begin = static_cast<std::size_t>(reinterpret_cast<const std::byte*>(first) - base_);
     const std::size_t end = begin + count * sizeof(Number);
-    // Padding between two arrays never changes.
-    if (!ranges_.empty() && Snapshot::aligned(ranges_.back().end) >= begin && ranges_.back().end <= begin)
-      ranges_.back().end = end;
-    else ranges_.push_back({begin, end});
+    if (follows_) found.back().end = end;
+    else found.push_back({begin, end});
+    follows_ = own_;
   }
 
   const std::byte* base_;
-  std::vector<Block::Range>& ranges_;
   std::size_t begin_ = 0, end_ = 0, of_ = 0;
+  bool in_steps_ = true, own_ = false, follows_ = false;
 };
+
+// Which of the island's joints may break. Their flags are numbers of its own.
+template <class S>
+bool find_breakable(WorldState<S>& world, int index, Ranges& ranges) {
+  bool any = false;
+  ranges.item("joints.broken", -1, true);
+  for (const auto& [joint, load] : world.breaking_loads) {
+    JointRecord& record = world.joints[joint];
+    if (world.island_of[movable_body(world, record)] != index) continue;
+    any = true;
+    ranges(record.broken);
+  }
+  return any;
+}
 
 template <class S>
 std::vector<Block::Range> ranges_of(WorldState<S>& world, int index) {
-  std::vector<Block::Range> found;
-  Ranges ranges(world.state, found);
+  Ranges ranges(world.state);
   Island<S>& island = world.islands[index];
-  const auto bodies = static_cast<std::size_t>(world.bodies.count());
-  for (std::size_t k = 0, next; k < island.bodies.size(); k = next) {  // runs of bodies that follow each other
-    for (next = k + 1; next < island.bodies.size() && island.bodies[next] == island.bodies[next - 1] + 1;) ++next;
-    ranges.take(static_cast<std::size_t>(island.bodies[k]), static_cast<std::size_t>(island.bodies[next - 1]) + 1,
-                bodies);
-    StateList::each_body(world.bodies, ranges);
+  const auto& bodies = island.bodies;
+  const bool breaks = find_breakable(world, index, ranges);
+  for (std::size_t k = 0, next; k < bodies.size(); k = next) {  // runs of bodies that follow each other
+    for (next = k + 1; next < bodies.size() && bodies[next] == bodies[next - 1] + 1;) ++next;
+    ranges.take(bodies[k], bodies[next - 1] + 1, world.bodies.pose.size());
+    const bool masses_change = !island.gyroscopes.empty() || world.may_stiffen();
+    StateList::each_body(world.bodies, masses_change, ranges);
   }
   if constexpr (S::has_gyroscopes) {
     for (int gyroscope : island.gyroscopes) {
-      ranges.take(static_cast<std::size_t>(gyroscope), static_cast<std::size_t>(gyroscope) + 1,
-                  world.gyroscopes.size());
-      ranges(world.gyroscopes);
+      ranges.take(gyroscope, gyroscope + 1, world.gyroscopes.size());
+      ranges.item("gyroscopes", -1, true), ranges(world.gyroscopes);
     }
   }
   for (const Segment<S>& segment : island.segments) {
-    ranges.take(static_cast<std::size_t>(segment.begin), static_cast<std::size_t>(segment.whole_end),
-                static_cast<std::size_t>(segment.batch->count()));
-    StateList::each_slot(*segment.batch, 0, ranges);
+    ranges.take(segment.begin, segment.whole_end, segment.batch->joint.size());
+    StateList::each_slot(*segment.batch, 0, breaks, ranges);
   }
-  ranges.take(0, 0, 0);
+  ranges.take_all();
   StateList::each_of_island(island, index, world.needs_systems(), ranges);
-  return found;
+  return ranges.found;
 }
 
 }  // namespace

@@ -14,9 +14,8 @@ struct Block {
   };
   std::vector<std::byte> bytes;
   std::vector<Snapshot::Item> items;
-  Range common{};                           // of no island
-  std::vector<std::vector<Range>> islands;  // what each island has of it
-  std::size_t between_steps = 0;            // no step changes what lies beyond
+  Range common{};                           // time and counts
+  std::vector<std::vector<Range>> islands;  // the share of each in all that steps change
 };
 
 // Lays out the State of a World whose islands were just analysed, and moves it there. Allocates.

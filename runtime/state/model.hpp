@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <cdot/detail/block.hpp>
+#include <cdot/integrators.hpp>
 #include <cdot/settings.hpp>
 #include <cdot/step_result.hpp>
 
@@ -70,6 +71,8 @@ struct Model {
   bool prepared = false;       // the following, and the order of slots, are those of the present joints
   std::vector<int> island_of;  // by body; -1: immovable
 
+  // Steps are linearly implicit: effective masses change.
+  bool may_stiffen() const { return row_of(settings.integrator).stiffens; }
   // The direct solver works on islands, or may have to.
   bool needs_systems() const { return !sweeps(settings.solver) || on_failure == OnFailure::retry; }
 };

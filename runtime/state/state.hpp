@@ -1,6 +1,6 @@
-// All that a run is made of: who has these numbers, and the Model, can go on with the same bits. StateNumbers and StateArrays lie
-// in one block of bytes (runtime/state/block.hpp); the state of bodies is in <cdot/detail/bodies.hpp>, that of rows in
-// <cdot/detail/block.hpp>, that of a system in runtime/direct/system.hpp.
+// All that a run is made of: who has these numbers, and the Model, can go on with the same bits. StateNumbers and
+// StateArrays lie in one block of bytes (runtime/state/block.hpp); the state of bodies is in <cdot/detail/bodies.hpp>,
+// that of rows in <cdot/detail/block.hpp>, that of a system in runtime/direct/system.hpp.
 #pragma once
 
 #include <limits>
@@ -29,18 +29,18 @@ struct FlowState {
   StateArray<T> row_rates;               // J v + dC/dt
   StateArray<T> margins;                 // how far rows are from their next event
   StateArray<T> margins_chosen;          // the same when their modes were chosen
-  StateNumber<T> next_step = T(0);          // [s] that the error control proposes; 0: none yet
-  StateNumber<T> longest = T(0);            // [s] of the steps so far
-  StateNumber<int> slivers = 0;             // steps in a row that were far shorter
-  StateNumber<bool> known = false;          // C, J, forces and dv/dt belong to the end of the last step
+  StateNumber<T> next_step = T(0);       // [s] that the error control proposes; 0: none yet
+  StateNumber<T> longest = T(0);         // [s] of the steps so far
+  StateNumber<int> slivers = 0;          // steps in a row that were far shorter
+  StateNumber<bool> known = false;       // C, J, forces and dv/dt belong to the end of the last step
   // A step of its own length may end beyond the time asked for. The bodies then stand between its ends.
   StateNumber<T> ahead = T(0);         // [s] how far beyond; 0: they stand at its end
   StateNumber<T> length = T(0);        // [s] of that step
   StateNumber<bool> end_kept = false;  // `end` and `end_forces` belong to it
-  StateArray<T> start, end;         // of that step, as numbers
-  StateArray<T> end_forces;         // of the joints, by row
-  StateArray<T> rates;              // of the numbers, [stage][...]
-  StateArray<T> further_terms;      // of the interpolant, [term][...]
+  StateArray<T> start, end;            // of that step, as numbers
+  StateArray<T> end_forces;            // of the joints, by row
+  StateArray<T> rates;                 // of the numbers, [stage][...]
+  StateArray<T> further_terms;         // of the interpolant, [term][...]
 
   // The present state is not one that the last step led to.
   void forget() {
@@ -68,7 +68,8 @@ struct IslandState {
 template <class S>
 struct State {
   StateNumber<double> time = 0.0;
-  StateNumber<double> last_step = 0.0;  // [s], the substep before: impulses kept for warm starting are scaled by h / last_step
+  StateNumber<double> last_step =
+      0.0;  // [s], the substep before: impulses kept for warm starting are scaled by h / last_step
   StateNumber<StepCounts> counts;
   StateArray<typename S::Gyroscope> gyroscopes;  // of Model::turning
 };

@@ -8,51 +8,51 @@
 
 namespace cdot {
 
-// visit.item(name, index) begins an array, index telling those of one name apart (-1: there is one); visit(x) hands it
-// a StateNumber or a StateArray. Numbers of one item are of one type.
+// visit.item(name, index, in_steps) begins an array, index telling those of one name apart (-1: there is one);
+// in_steps: a step may change it. visit(x) hands it a StateNumber or a StateArray. Numbers of one item are of one type.
 struct StateList {
   template <class S, class Visitor>
   static void each(WorldState<S>& world, Visitor& visit) {
     each_in_common(world, visit);
-    visit.common_ends();
-    each_body(world.bodies, visit);
-    if constexpr (S::has_gyroscopes) visit.item("gyroscopes", -1), visit(world.gyroscopes);
-    for (std::size_t k = 0; k < world.batches.size(); ++k) each_slot(*world.batches[k], static_cast<int>(k), visit);
+    each_body(world.bodies, true, visit);
+    if constexpr (S::has_gyroscopes) visit.item("gyroscopes", -1, true), visit(world.gyroscopes);
+    for (std::size_t k = 0; k < world.batches.size(); ++k)
+      each_slot(*world.batches[k], static_cast<int>(k), true, visit);
     for (std::size_t k = 0; k < world.islands.size(); ++k)
       each_of_island(world.islands[k], static_cast<int>(k), world.needs_systems(), visit);
-    visit.steps_end();
-    visit.item("joints.parameters", -1);
-    for (JointRecord& record : world.joints) visit(record.parameters);
   }
 
+  // masses_change: tensors turn, or geometric stiffness is added.
   template <class S, class Visitor>
-  static void each_body(Bodies<S>& bodies, Visitor& visit) {
+  static void each_body(Bodies<S>& bodies, bool masses_change, Visitor& visit) {
     auto& [pose, velocity, inverse_mass, effective_mass, force, acceleration, velocity_rate] =
         static_cast<BodiesState<S>&>(bodies);
-    visit.item("bodies.pose", -1), visit(pose);
-    visit.item("bodies.velocity", -1), visit(velocity);
-    visit.item("bodies.inverse_mass", -1), visit(inverse_mass);
-    visit.item("bodies.effective_mass", -1), visit(effective_mass);
-    visit.item("bodies.force", -1), visit(force);
-    visit.item("bodies.acceleration", -1), visit(acceleration);
-    visit.item("bodies.velocity_rate", -1), visit(velocity_rate);
+    visit.item("bodies.pose", -1, true), visit(pose);
+    visit.item("bodies.velocity", -1, true), visit(velocity);
+    visit.item("bodies.inverse_mass", -1, masses_change), visit(inverse_mass);
+    visit.item("bodies.effective_mass", -1, masses_change), visit(effective_mass);
+    visit.item("bodies.force", -1, false), visit(force);
+    visit.item("bodies.acceleration", -1, masses_change), visit(acceleration);
+    visit.item("bodies.velocity_rate", -1, true), visit(velocity_rate);
   }
 
+  // breaks: slots may change places.
   template <class S, class Visitor>
-  static void each_slot(Batch<S>& batch, int index, Visitor& visit) {
+  static void each_slot(Batch<S>& batch, int index, bool breaks, Visitor& visit) {
     auto& [home, joint, body, parameters, counters, lambda, correction, mode, softness, lower, upper, constants] =
         static_cast<BatchState<S>&>(batch);
-    visit.item("rows.home", index), visit(home);
-    visit.item("rows.joint", index), visit(joint);
-    visit.item("rows.body", index), visit(body);
-    visit.item("rows.parameters", index), visit(parameters);
-    visit.item("rows.counters", index), visit(counters);
-    visit.item("rows.lambda", index), visit(lambda);
-    visit.item("rows.correction", index), visit(correction);
-    visit.item("rows.mode", index), visit(mode);
-    visit.item("rows.softness", index), visit(softness);
-    visit.item("rows.bounds", index), visit(lower), visit(upper);
-    visit.item("rows.constants", index), visit(constants);
+    const bool counts = batch.ops && batch.ops->start_counting;  // whole turns, in parameters too
+    visit.item("rows.home", index, breaks), visit(home);
+    visit.item("rows.joint", index, breaks), visit(joint);
+    visit.item("rows.body", index, breaks), visit(body);
+    visit.item("rows.parameters", index, breaks || counts), visit(parameters);
+    visit.item("rows.counters", index, true), visit(counters);
+    visit.item("rows.lambda", index, true), visit(lambda);
+    visit.item("rows.correction", index, true), visit(correction);
+    visit.item("rows.mode", index, true), visit(mode);
+    visit.item("rows.softness", index, true), visit(softness);
+    visit.item("rows.bounds", index, true), visit(lower), visit(upper);
+    visit.item("rows.constants", index, breaks), visit(constants);
   }
 
   // The iterative solver alone needs no system; projecting the start makes one nevertheless.
@@ -60,10 +60,10 @@ struct StateList {
   static void each_of_island(Island<S>& island, int index, bool has_system, Visitor& visit) {
     auto& [size, scale, residual, evaluated_at, evaluated, factored, continuous, asleep, rested, redundant_rows] =
         static_cast<IslandState<S>&>(island);
-    visit.item("island.numbers", index), visit(size), visit(scale), visit(residual), visit(evaluated_at);
-    visit.item("island.flags", index), visit(evaluated), visit(factored), visit(continuous), visit(asleep);
-    visit.item("island.rested", index), visit(rested);
-    visit.item("island.redundant_rows", index), visit(redundant_rows);
+    visit.item("island.numbers", index, true), visit(size), visit(scale), visit(residual), visit(evaluated_at);
+    visit.item("island.flags", index, true), visit(evaluated), visit(factored), visit(continuous), visit(asleep);
+    visit.item("island.rested", index, true), visit(rested);
+    visit.item("island.redundant_rows", index, true), visit(redundant_rows);
     each_of_flow(island.flow, index, visit);
     if (has_system) each_of_system(island.system, index, visit);
   }
@@ -72,36 +72,40 @@ struct StateList {
   template <class S, class Visitor>
   static void each_in_common(WorldState<S>& world, Visitor& visit) {
     auto& [time, last_step, counts, gyroscopes] = static_cast<State<S>&>(world);
-    visit.item("time", -1), visit(time), visit(last_step);  // must come first: Snapshot::time()
-    visit.item("joints.broken", -1);                        // second: restoring begins with it
+    visit.item("time", -1, true), visit(time), visit(last_step);  // must come first: Snapshot::time()
+    visit.counts(counts);
+    visit.common_ends();
+    visit.item("joints.broken", -1, true);
+    for (JointRecord& record : world.joints) visit(record.broken);
+    visit.item("joints.parameters", -1, false);
     for (JointRecord& record : world.joints) {
       auto& [broken, parameters] = static_cast<JointState&>(record);
-      visit(broken);
+      visit(parameters);
     }
-    visit.counts(counts);
   }
 
   template <class S, class Visitor>
   static void each_of_flow(Flow<S>& flow, int index, Visitor& visit) {
     auto& [resolution, row_rates, margins, margins_chosen, next_step, longest, slivers, known, ahead, length, end_kept,
            start, end, end_forces, rates, further_terms] = static_cast<FlowState<S>&>(flow);
-    visit.item("flow.resolution", index), visit(resolution);
-    visit.item("flow.row_rates", index), visit(row_rates);
-    visit.item("flow.margins", index), visit(margins), visit(margins_chosen);
-    visit.item("flow.lengths", index), visit(next_step), visit(longest), visit(ahead), visit(length);
-    visit.item("flow.slivers", index), visit(slivers);
-    visit.item("flow.flags", index), visit(known), visit(end_kept);
-    visit.item("flow.start", index), visit(start);
-    visit.item("flow.end", index), visit(end);
-    visit.item("flow.end_forces", index), visit(end_forces);
-    visit.item("flow.rates", index), visit(rates);
-    visit.item("flow.further_terms", index), visit(further_terms);
+    visit.item("flow.resolution", index, true), visit(resolution);
+    visit.item("flow.row_rates", index, true), visit(row_rates);
+    visit.item("flow.margins", index, true), visit(margins), visit(margins_chosen);
+    visit.item("flow.lengths", index, true), visit(next_step), visit(longest), visit(ahead), visit(length);
+    visit.item("flow.slivers", index, true), visit(slivers);
+    visit.item("flow.flags", index, true), visit(known), visit(end_kept);
+    visit.item("flow.start", index, true), visit(start);
+    visit.item("flow.end", index, true), visit(end);
+    visit.item("flow.end_forces", index, true), visit(end_forces);
+    visit.item("flow.rates", index, true), visit(rates);
+    visit.item("flow.further_terms", index, true), visit(further_terms);
   }
 
   template <class S, class Visitor>
   static void each_of_system(System<S>& system, int index, Visitor& visit) {
-    visit.item("system.active_set", index), visit(system.active_set());
-    visit.item("system.redundant", index), visit(system.factors().dependent()), visit(system.factors().factored());
+    visit.item("system.active_set", index, true), visit(system.active_set());
+    visit.item("system.redundant", index, true), visit(system.factors().dependent()),
+        visit(system.factors().factored());
   }
 };
 

@@ -71,7 +71,7 @@ void number_islands(WorldState<S>& world) {
 // StateArrays by slot; the numbers of the Workspace are computed anew.
 struct Permute {
   const std::vector<int>& order;
-  void item(const char*, int) {}
+  void item(const char*, int, bool) {}
   template <class Number>
   void operator()(StateArray<Number>& column) {
     if (column.empty()) return;
@@ -104,7 +104,7 @@ void sort_slots(WorldState<S>& world, int index, const std::vector<int>& places)
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](int i, int j) { return key[i] < key[j]; });
   Permute permute{order};
-  StateList::each_slot(batch, index, permute);
+  StateList::each_slot(batch, index, true, permute);
 
   std::vector<int> now(order.size());  // by home before
   for (size_t slot = 0; slot < order.size(); ++slot) {

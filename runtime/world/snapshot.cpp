@@ -106,11 +106,13 @@ struct SnapshotAccess {
   // Joints that broke before the state's World was prepared have no place in its order of rows.
   template <class S>
   static void prepare_with_broken_joints(WorldState<S>& world, const Snapshot& from) {
-    const Snapshot::Item& item = from.items_[1];  // joints.broken
-    const std::byte* broken =
-        from.bytes_.data() + Snapshot::aligned(from.items_[0].count * Snapshot::size_of(from.items_[0].type));
-    for (size_t k = 0; k < world.joints.size() && k < item.count; ++k)
-      world.joints[k].broken = broken[k] != std::byte{0};
+    const std::byte* at = from.bytes_.data();
+    for (const Snapshot::Item& item : from.items_) {
+      if (item.name == "joints.broken")
+        for (size_t k = 0; k < world.joints.size() && k < item.count; ++k)
+          world.joints[k].broken = at[k] != std::byte{0};
+      at += Snapshot::aligned(item.count * Snapshot::size_of(item.type));
+    }
     world.prepared = false;
     prepare_topology(world);
   }
@@ -124,7 +126,7 @@ struct SnapshotAccess {
 
   template <class S>
   static void restore(WorldState<S>& world, const Snapshot& from) {
-    if (from.items_.size() < 2) throw Error("an empty snapshot is no state of a World");
+    if (from.empty()) throw Error("an empty snapshot is no state of a World");
     Snapshot::Origin origin = origin_of(world);
     origin.method = method_of<S>(world.settings);
     check_origin(from.origin_, origin);

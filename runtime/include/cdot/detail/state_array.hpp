@@ -87,7 +87,9 @@ class StateArray {
   }
 
  private:
-  void swap(StateArray& other) { std::swap(own_, other.own_), std::swap(at_, other.at_), std::swap(size_, other.size_); }
+  void swap(StateArray& other) {
+    std::swap(own_, other.own_), std::swap(at_, other.at_), std::swap(size_, other.size_);
+  }
   void come_home() { at_ = own_.data(), size_ = own_.size(); }
   void leave_block() {
     if (at_ != own_.data()) own_.assign(begin(), end()), come_home();
