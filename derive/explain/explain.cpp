@@ -146,11 +146,12 @@ void introduce(Lecture& lecture) {
   }
 }
 
-Explanation explain(const Joint& joint, Form form) {
+Explanation explain(const Derivation& derivation, Form form) {
+  const Joint& joint = derivation.joint;
   Lecture lecture(joint);
-  const Part rows = rows_part(joint, lecture.notation);
+  const Part rows = rows_part(lecture, derivation.rows);
   std::vector<Part> coordinates;
-  for (const Coordinate& c : joint.coordinates) coordinates.push_back(coordinate_part(joint, c));
+  for (const Block& block : derivation.coordinates) coordinates.push_back(coordinate_part(block));
   introduce(lecture);
   explain_rows(lecture, rows, form);
   std::vector<const Part*> all{&rows};

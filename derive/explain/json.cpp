@@ -149,19 +149,20 @@ void add_block(Json& out, Infix& infix, const Block& block) {
 
 }  // namespace
 
-nlohmann::ordered_json explanation_json(const Joint& joint) {
+nlohmann::ordered_json explanation_json(const Derivation& derivation) {
+  const Joint& joint = derivation.joint;
   Infix infix(joint);
   Json rows, coordinates = Json::array();
   rows["rows"] = Json::array();
-  const Block block = derive_rows(joint);
-  for (const ScalarRow& row : block.rows) {
+  for (const ScalarRow& row : derivation.rows.rows) {
     rows["rows"].push_back(
         {{"name", row.name}, {"kind", kind_name(row.kind)}, {"text", row.row->text}, {"unit", text(row.row->unit)}});
   }
-  add_block(rows, infix, block);
-  for (const Coordinate& c : joint.coordinates) {
+  add_block(rows, infix, derivation.rows);
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+    const Coordinate& c = joint.coordinates[i];
     Json out{{"name", c.name}, {"text", c.text}, {"unit", text(c.unit)}};
-    add_block(out, infix, derive_coordinate(joint, c));
+    add_block(out, infix, derivation.coordinates[i]);
     coordinates.push_back(std::move(out));
   }
   Json all{{"format", 1},

@@ -40,14 +40,15 @@ Step& Lecture::section(std::string heading) {
   return out.steps.back();
 }
 
-Part rows_part(const Joint& joint, const Notation& notation) {
-  Part part{derive_rows(joint), {}};
-  const std::vector<ScalarRow>& rows = part.block.rows;
+Part rows_part(const Lecture& lecture, const Block& block) {
+  const Joint& joint = lecture.joint;
+  const std::vector<ScalarRow>& rows = block.rows;
+  Part part{block, {}};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = *rows[i].row;
     const bool vector = row.C->vector;
     const Expr Cdot = row.kind == RowKind::velocity ? row.C : time_derivative(row.C, joint);
-    const auto entries = vector ? isolate_vector(Cdot, joint, notation) : std::nullopt;
+    const auto entries = vector ? isolate_vector(Cdot, joint, lecture.notation) : std::nullopt;
     if (!entries) {
       part.statements.push_back(scalar_statement(rows[i], i));
       continue;
@@ -59,11 +60,7 @@ Part rows_part(const Joint& joint, const Notation& notation) {
   return part;
 }
 
-Part coordinate_part(const Joint& joint, const Coordinate& coordinate) {
-  Part part{derive_coordinate(joint, coordinate), {}};
-  part.statements.push_back(scalar_statement(part.block.rows[0], 0));
-  return part;
-}
+Part coordinate_part(const Block& coordinate) { return {coordinate, {scalar_statement(coordinate.rows[0], 0)}}; }
 
 Formula label(const std::string& letter, const Statement& statement, Expr e) {
   const bool coordinate = statement.row == nullptr;

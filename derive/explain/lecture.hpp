@@ -23,7 +23,7 @@ struct Statement {
 
 // The rows of the joint, or a coordinate.
 struct Part {
-  Block block;
+  const Block& block;
   std::vector<Statement> statements;
 };
 
@@ -38,8 +38,8 @@ struct Lecture {
   Step& section(std::string heading);
 };
 
-Part rows_part(const Joint& joint, const Notation& notation);
-Part coordinate_part(const Joint& joint, const Coordinate& coordinate);
+Part rows_part(const Lecture& lecture, const Block& rows);
+Part coordinate_part(const Block& coordinate);
 
 // "C", or "C_line" where there are several; e is what it equals, if that is an expression.
 Formula label(const std::string& letter, const Statement& statement, Expr e = {});

@@ -60,17 +60,15 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
 
 }  // namespace
 
-std::vector<std::vector<Chain>> summarise(const Joint& joint) {
-  const Lecture lecture(joint);
-  std::vector<std::vector<Chain>> all = {summarise(lecture, rows_part(joint, lecture.notation))};
+std::vector<std::vector<Chain>> summarise(const Derivation& derivation) {
+  const Lecture lecture(derivation.joint);
+  std::vector<std::vector<Chain>> all = {summarise(lecture, rows_part(lecture, derivation.rows))};
   std::vector<Chain> names;
-  for (const Let& let : joint.lets) {
+  for (const Let& let : derivation.joint.lets) {
     names.push_back(equation(leaf(let.value, let.name), lecture.notation.definition(let.value)));
   }
   all[0].insert(all[0].begin(), names.begin(), names.end());
-  for (const Coordinate& c : joint.coordinates) {
-    all.push_back(summarise(lecture, coordinate_part(joint, c)));
-  }
+  for (const Block& block : derivation.coordinates) all.push_back(summarise(lecture, coordinate_part(block)));
   return all;
 }
 

@@ -34,8 +34,8 @@ void parse_source(Source& source) {
       source.declared_anywhere.emplace(s.declared.name.text, s.declared.name.where);
 }
 
-Elaborator::Elaborator(const Library& library, int dimension, const ReadOptions& options)
-    : library_(library), pool_(std::make_shared<Pool>(dimension)), options_(options) {
+Elaborator::Elaborator(const Library& library, int dimension, const Anchors& anchors)
+    : library_(library), pool_(std::make_shared<Pool>(dimension)), anchors_(anchors) {
   joint_.pool = pool_;
   joint_.dimension = dimension;
 }

@@ -47,7 +47,7 @@ struct Entry {
 
 class Elaborator {
  public:
-  Elaborator(const Library& library, int dimension, const ReadOptions& options);
+  Elaborator(const Library& library, int dimension, const Anchors& anchors);
   void run(Source& spec);
   void finish(ReadResult& result, Source& spec);
 
@@ -100,7 +100,7 @@ class Elaborator {
 
   const Library& library_;
   std::shared_ptr<Pool> pool_;
-  const ReadOptions& options_;
+  const Anchors& anchors_;
   Joint joint_;
   std::map<std::string, Entry> names_;
   std::map<int, Span> bodies_;  // those used, and where first

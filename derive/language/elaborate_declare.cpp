@@ -60,9 +60,9 @@ void Elaborator::declare(Source& source, const DeclaredAst& d) {
 bool Elaborator::resolve_body(Source& source, const DeclaredAst& d, Parameter& p) {
   if (p.kind == ParameterKind::scalar) return true;
   std::string word = d.body.text;
-  const auto anchor = options_.anchors.find(p.name);
+  const auto anchor = anchors_.find(p.name);
   SourceNames names(*this, source);
-  if (anchor != options_.anchors.end()) {
+  if (anchor != anchors_.end()) {
     word = anchor->second;
     p.body = body_of_letter(word);
   } else {

@@ -25,11 +25,8 @@ std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path)
 // What the header says: 2 for planar, 3 for spatial; 2 if it says neither.
 int dimension_of(const SourceFile& file);
 
-struct ReadOptions {
-  // Parameters that are fixed elsewhere than the spec says: {"t", "a"}. For hand derivations that
-  // do so.
-  std::map<std::string, std::string> anchors;
-};
+// Parameters that are fixed elsewhere than the spec says: {"t", "a"}. For hand derivations that do so.
+using Anchors = std::map<std::string, std::string>;
 
 struct ReadResult {
   std::optional<Joint> joint;  // empty if there are errors
@@ -37,8 +34,11 @@ struct ReadResult {
   std::vector<std::shared_ptr<const SourceFile>> included;  // what it brings in, directly or not
   Diagnostics diagnostics;
   std::map<std::string, Value> names;  // every parameter, arm and let, typed
+  Library library;                     // that it was read with
 };
 
-ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library, const ReadOptions& options = {});
+ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library);
+// The same texts into a pool of their own, with these anchors, as far as the joint has the bodies. No file is opened.
+ReadResult read_anchored(const ReadResult& plain, const Anchors& anchors);
 
 }  // namespace cdot::derive

@@ -46,13 +46,13 @@ fs::path SpecsFolder::find(const std::string& spec) const {
                                near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
 }
 
-ReadResult SpecsFolder::read(const fs::path& spec, const ReadOptions& options) const {
+ReadResult SpecsFolder::read(const fs::path& spec) const {
   const std::shared_ptr<const SourceFile> file = load_source(spec);
   const fs::path space = folder_ / name_of_space(dimension_of(*file));
   Library library;
   if (fs::is_directory(space)) library = load_library(space);
   library.merge(load_library(spec.has_parent_path() ? spec.parent_path() : fs::path(".")));
-  return read_joint(file, library, options);
+  return read_joint(file, library);
 }
 
 }  // namespace cdot::derive

@@ -25,7 +25,7 @@ class SpecsFolder {
   std::vector<std::filesystem::path> all() const;
 
   // Reads one spec; the specs beside it are what `include` finds. Diagnostics are in the result.
-  ReadResult read(const std::filesystem::path& spec, const ReadOptions& options = {}) const;
+  ReadResult read(const std::filesystem::path& spec) const;
 
  private:
   std::filesystem::path folder_;
