@@ -1,6 +1,5 @@
-// The derivation of a joint as a good teacher writes it: steps with headings, chains of equal
-// formulas, and the rule that leads from each to the next. One source of steps, one writer for each
-// format.
+// The derivation of a joint as a good teacher writes it: steps with headings, chains of equal formulas, and the rule
+// that leads from each to the next. One source of steps, one writer for each format.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -63,8 +62,7 @@ std::vector<std::vector<Chain>> summarise(const Derivation& derivation);
 // For a terminal or a comment: one or more whole lines.
 std::string chain_text(const Chain& chain, std::size_t page_width);
 
-// C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain/json.cpp
-// gives the schema.
+// C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain/json.cpp gives the schema.
 nlohmann::ordered_json explanation_json(const Derivation& derivation);
 
 }  // namespace cdot::derive

@@ -1,5 +1,4 @@
-// J in the other two forms of velocity in space, and what form (c) has to do with the partial
-// derivative of C.
+// J in the other two forms of velocity in space, and what form (c) has to do with the partial derivative of C.
 #include <algorithm>
 #include <utility>
 
@@ -37,20 +36,17 @@ Chain jacobian_in(const Lecture& lecture, const Part& part, Form form) {
 
 void define_local(const Lecture& lecture, Step& step) {
   step.say(
-      "w' are the components of w along the axes of the body: w = {} w'. So what multiplies w is "
-      "multiplied by A: J_local = J diag(E, A, E, A, ...).",
+      "w' are the components of w along the axes of the body: w = {} w'. So what multiplies w is multiplied by A: "
+      "J_local = J diag(E, A, E, A, ...).",
       {leaf({}, "A")});
   const std::string& a = lecture.joint.bodies[0];
-  step.say("K is the same: with inv_I'_" + a + " = A_" + a + "' inv_I_" + a + " A_" + a +
-           ", the inverse inertia in the body's axes, J_local M'^-1 J_local' = J A A' inv_I A A' "
-           "J' = K, "
-           "since A A' = E.");
+  step.say(
+      "K is the same: with inv_I'_" + a + " = A_" + a + "' inv_I_" + a + " A_" + a +
+      ", the inverse inertia in the body's axes, J_local M'^-1 J_local' = J A A' inv_I A A' J' = K, since A A' = E.");
 }
 
 void define_euler(Step& step) {
-  step.say(
-      "e = (e0, e1, e2, e3) are the Euler parameters of the body, e · e = 1, and w = 2 G e_dot "
-      "with");
+  step.say("e = (e0, e1, e2, e3) are the Euler parameters of the body, e · e = 1, and w = 2 G e_dot with");
   const auto e = [](int k) { return leaf({}, "e" + std::to_string(k)); };
   step.show({leaf({}, "G"),
              {{matrix(4, {negative(e(1)), e(0), negative(e(3)), e(2),  //
@@ -82,10 +78,10 @@ void compare_with_partial(const Lecture& lecture, const Part& part, const Statem
   }
   const Expr along = time_derivative(s.C, lecture.joint, {.stretched = static_cast<int>(body)});
   const Formula extra = product({lecture.notation.of(along), shaped(Shape::transpose, of_body("e", lecture, body))});
-  const std::string where = columns == EulerColumns::where_C_is_zero
-                                ? "J_euler is the partial derivative where C = 0; elsewhere they "
-                                  "agree on e · e_dot = 0 only"
-                                : "J_euler agrees with it on e · e_dot = 0 only";
+  const std::string where =
+      columns == EulerColumns::where_C_is_zero
+          ? "J_euler is the partial derivative where C = 0; elsewhere they agree on e · e_dot = 0 only"
+          : "J_euler agrees with it on e · e_dot = 0 only";
   std::vector<SignedFormula> terms = terms_of(block);
   if (block == number(0)) terms.clear();
   terms.push_back({false, extra});
@@ -104,11 +100,9 @@ void explain_form(Lecture& lecture, const Part& part, Form form) {
   step.show(jacobian_in(lecture, part, form));
   if (local) return;
   step.say(
-      "Is that the partial derivative of C? A(e) is of second degree in e, so along e itself a "
-      "vector s fixed in the body grows by 2 s, which no rotation does. Where e · e = 1, dC/de = "
-      "J_euler + (dC/de e) e', and the last term is nothing to rates that keep e · e = 1, for "
-      "which "
-      "e · e_dot = 0:");
+      "Is that the partial derivative of C? A(e) is of second degree in e, so along e itself a vector s fixed in the "
+      "body grows by 2 s, which no rotation does. Where e · e = 1, dC/de = J_euler + (dC/de e) e', and the last term "
+      "is nothing to rates that keep e · e = 1, for which e · e_dot = 0:");
   for (const Statement& s : part.statements) {
     if (s.kind == RowKind::velocity) {
       step.say("Row `" + s.row->name + "` is written at velocity level: there is no C to differentiate.");

@@ -1,6 +1,5 @@
-// Formulas as a person writes them on paper. Expr keeps one normal form for what is equal; a
-// derivation needs the forms in between ("(w_b × t) · u" before it becomes "-(u × t) w_b"), so
-// these trees keep what they are given.
+// Formulas as a person writes them on paper. Expr keeps one normal form for what is equal; a derivation needs the forms
+// in between ("(w_b × t) · u" before it becomes "-(u × t) w_b"), so these trees keep what they are given.
 #pragma once
 
 #include <optional>
@@ -78,8 +77,7 @@ bool same_terms(const Formula& f, const Formula& g);
 // What a formula without matrices equals.
 Expr value_of(const Formula& f, Pool& pool);
 
-// The name of the component that a product with this world axis takes: "x", "y"; empty for other
-// vectors.
+// The name of the component that a product with this world axis takes: "x", "y"; empty for other vectors.
 std::string world_axis(Expr axis);
 
 // How expressions of a joint are written: with the author's names for lets and points.
@@ -94,8 +92,7 @@ class Notation {
     std::string name;
     Expr position, arm, value;
   };
-  // The points x + arm hidden among a sum's terms: for each term its point, or none; the arm's term
-  // is marked used.
+  // The points x + arm hidden among a sum's terms: for each term its point, or none; the arm's term is marked used.
   struct PointTerms {
     std::vector<const Point*> at;
     std::vector<bool> used;

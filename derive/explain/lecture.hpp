@@ -1,5 +1,4 @@
-// What the sections of an explanation share: the joint's statements with their derivation, and how
-// things are called.
+// What the sections of an explanation share: the joint's statements with their derivation, and how things are called.
 #pragma once
 
 #include "derive/explain/rates.hpp"
@@ -7,8 +6,7 @@
 
 namespace cdot::derive {
 
-// One equation as the author wrote it: a scalar row, or a vector row with its two components kept
-// together.
+// One equation as the author wrote it: a scalar row, or a vector row with its two components kept together.
 struct Statement {
   std::string name;          // "line"; empty if it is the only one
   const Row* row = nullptr;  // null for a coordinate
@@ -45,8 +43,7 @@ Part coordinate_part(const Block& coordinate);
 Formula label(const std::string& letter, const Statement& statement, Expr e = {});
 
 Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& statement);
-// What stands in a statement's row of J for one body: the block of v and the block of w; 0 where
-// nothing does.
+// What stands in a statement's row of J for one body: the block of v and the block of w; 0 where nothing does.
 Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
 Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
 

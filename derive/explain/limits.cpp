@@ -1,5 +1,4 @@
-// What a derivation takes for granted, and where it ends: zero lengths, divisions, roots, angles
-// that wrap.
+// What a derivation takes for granted, and where it ends: zero lengths, divisions, roots, angles that wrap.
 #include <set>
 #include <utility>
 
@@ -82,9 +81,7 @@ void assume(const Joint& joint, Step& step) {
     }
   }
   step.list("A body that cannot move has inverse mass and inverse inertia 0; its terms of K vanish.");
-  step.list(
-      "If all of K vanishes (no body can move), the kernel's guarded factorisation gives no "
-      "impulse.");
+  step.list("If all of K vanishes (no body can move), the kernel's guarded factorisation gives no impulse.");
   if (joint.uses_world) {
     step.list("Something is fixed in the world, which takes any impulse: momentum is not conserved.");
   }

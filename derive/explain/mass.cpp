@@ -42,8 +42,7 @@ Scaled without_scalars(const Notation& notation, Expr e) {
   return scaled ? Scaled{notation.of(e->args[0]), e->args[1]} : Scaled{number(1), e};
 }
 
-// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t)' inv_I_a (ra ×
-// t).
+// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t)' inv_I_a (ra × t).
 void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj, std::vector<SignedFormula>& terms) {
   if (is_zero(wi) || is_zero(wj)) return;
   const Factors f = factors(wi, wj);

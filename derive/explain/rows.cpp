@@ -1,5 +1,4 @@
-// From C to J: the constraint, its derivative, the velocities isolated, the Jacobian read off, and
-// gamma.
+// From C to J: the constraint, its derivative, the velocities isolated, the Jacobian read off, and gamma.
 #include <algorithm>
 #include <utility>
 
@@ -158,16 +157,15 @@ void explain_kept(const Lecture& lecture, Expr product, Step& step) {
   const Notation& notation = lecture.notation;
   const Formula all = cross(leaf(n), notation.of(m));
   step.say(
-      "`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 "
-      "always. Kept are the components along the other two axes of the frame:",
+      "`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 always. Kept are the "
+      "components along the other two axes of the frame:",
       {all, leaf(n), all});
   const std::string rule = "a · (b × c) = (a × b) · c";
   step.show({dot(leaf(z), all), {{dot(leaf(y), notation.of(m)), rule}}});
   step.show({dot(leaf(y), all), {{negative(dot(leaf(z), notation.of(m))), rule}}});
   step.say(
-      "While both vanish {} lies along {}, and {} and {} are as long as {} and stand on each "
-      "other: "
-      "these two rows stay independent wherever the row holds.",
+      "While both vanish {} lies along {}, and {} and {} are as long as {} and stand on each other: these two rows "
+      "stay independent wherever the row holds.",
       {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)), cross(leaf(z), notation.of(m)), notation.of(m)});
 }
 

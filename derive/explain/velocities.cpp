@@ -1,5 +1,4 @@
-// Multiplying out keeps the shape of what it multiplies, so that each term can be recognised in
-// Cdot.
+// Multiplying out keeps the shape of what it multiplies, so that each term can be recognised in Cdot.
 #include "derive/explain/velocities.hpp"
 
 #include <algorithm>
@@ -79,8 +78,7 @@ bool moves_in_space(const Formula& f) {
   return std::any_of(f.args.begin(), f.args.end(), moves_in_space);
 }
 
-// The identity that brings the innermost product with a velocity into the form "coefficient times
-// velocity".
+// The identity that brings the innermost product with a velocity into the form "coefficient times velocity".
 std::string identity_in(const Formula& f, const Distribution& distribution) {
   for (const Formula& arg : f.args) {
     if (is_turning(f) || !distribution.moves(arg) || arg.shape == Shape::leaf) continue;

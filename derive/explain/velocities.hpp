@@ -18,13 +18,11 @@ struct VelocityTerm {
 // A scalar Cdot as a sum of such terms.
 std::vector<VelocityTerm> isolate(const Formula& Cdot, const Joint& joint);
 
-// One body's part of J for a vector row: what stands left of v and of w. In the plane E and S(r),
-// in space E and -S(r).
+// One body's part of J for a vector row: what stands left of v and of w. In the plane E and S(r), in space E and -S(r).
 struct VelocityBlocks {
   Formula v, w;  // 0 where the velocity does not occur
 };
-// J of a vector equation, block by block; nothing if some velocity enters otherwise than by
-// products.
+// J of a vector equation, block by block; nothing if some velocity enters otherwise than by products.
 std::optional<std::vector<VelocityBlocks>> isolate_vector(Expr Cdot, const Joint& joint, const Notation& notation);
 
 // coefficient velocity, as a term is written: t · v_a, (ra × t) w_a.

@@ -107,8 +107,7 @@ void Elaborator::check_bodies(Source& spec) {
   for (int i = 0; i <= last.first; ++i) joint_.bodies.push_back(body_name(i));
 }
 
-// The direction of a vector arises from its length by differentiation, so its name is of use
-// without being written.
+// The direction of a vector arises from its length by differentiation, so its name is of use without being written.
 bool Elaborator::arises_in_derivative(Expr e) const {
   if (e->kind != Kind::unit) return false;
   const Expr length = norm(e->args[0]);

@@ -1,5 +1,4 @@
-// include: another spec's declarations, rows and coordinates, on other bodies and under a prefix
-// where asked for.
+// include: another spec's declarations, rows and coordinates, on other bodies and under a prefix where asked for.
 #include <algorithm>
 
 #include "derive/expression/symbols.hpp"
@@ -110,8 +109,7 @@ void Elaborator::check_given(Source& source, const IncludeAst& item, const Sourc
   }
 }
 
-// A parameter whose meaning is given where the joint is included: a name for that, and nothing that
-// a scene sets.
+// A parameter whose meaning is given where the joint is included: a name for that, and nothing that a scene sets.
 bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
   const auto found = source.given.find(d.name.text);
   if (found == source.given.end()) return false;

@@ -84,9 +84,8 @@ void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
     return;
   }
   d.error(s.left.where, "no side of this cross product is an axis of a frame of a body",
-          "declare `frame f on a` in place of the unit vector and write cross(f.x, ...): the rows "
-          "along f.y and f.z are "
-          "kept");
+          "declare `frame f on a` in place of the unit vector and write cross(f.x, ...): the rows along f.y and f.z "
+          "are kept");
 }
 
 // lhs - rhs, or rhs - lhs for <=.
@@ -187,8 +186,7 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
   joint_.coordinates.push_back({full, v.e, unit, in_spec(source, d.name.where), written(source, s), from, {}});
 }
 
-// A row or the right side of a coordinate as its author wrote it, in one line, with the names that
-// things have here.
+// A row or the right side of a coordinate as its author wrote it, in one line, with the names that things have here.
 std::string Elaborator::written(const Source& source, const StatementAst& s) const {
   std::string out = s.velocity ? "velocity " : "";
   int end = -1;

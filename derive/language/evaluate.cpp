@@ -18,8 +18,7 @@ bool powers_too_large(Expr e) {
          std::any_of(e->exponents.begin(), e->exponents.end(), [](int n) { return std::abs(n) > largest_total_power; });
 }
 
-// Lengths or masses went in and cancelled: an arc over its radius counts as an angle where one is
-// needed.
+// Lengths or masses went in and cancelled: an arc over its radius counts as an angle where one is needed.
 bool is_ratio(const Unit& result, const std::vector<Value>& factors) {
   if (!result.m.is_zero() || !result.kg.is_zero() || !result.rad.is_zero()) return false;
   return std::any_of(factors.begin(), factors.end(), [](const Value& f) {

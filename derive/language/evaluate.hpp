@@ -33,8 +33,7 @@ class Evaluator {
   Evaluator(Pool& pool, Scope& names, Diagnostics& diagnostics, Diagnostics& findings)
       : pool_(pool), names_(names), diagnostics_(diagnostics), findings_(findings), hand_(true) {}
 
-  // Widths that a matrix of so many blocks per row has where its blocks do not tell: 2, 1, 2, 1 for
-  // J.
+  // Widths that a matrix of so many blocks per row has where its blocks do not tell: 2, 1, 2, 1 for J.
   void expect_columns(std::vector<int> widths) { expected_columns_ = std::move(widths); }
 
   Value operator()(const Ast& ast);

@@ -1,5 +1,4 @@
-// Calls of operators: the table's row that fits the arguments, its unit rule, and what to say if
-// none fits.
+// Calls of operators: the table's row that fits the arguments, its unit rule, and what to say if none fits.
 #include <algorithm>
 #include <map>
 
@@ -184,8 +183,7 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
   return result;
 }
 
-// The unit that the table's rule gives, as the unit of a Value; empty if the arguments' units are
-// wrong.
+// The unit that the table's rule gives, as the unit of a Value; empty if the arguments' units are wrong.
 std::optional<Value> Evaluator::unit_of_call(const Operator& o, const std::vector<Value>& a, const Ast& ast) {
   const auto need = [&](std::initializer_list<Unit> allowed, std::string_view what, std::string fix) {
     if (!a[0].unit || std::find(allowed.begin(), allowed.end(), *a[0].unit) != allowed.end()) return true;

@@ -1,5 +1,4 @@
-// The operators of the spec language: one table, read by the reader, by `cdot check --help` and by
-// the tests.
+// The operators of the spec language: one table, read by the reader, by `cdot check --help` and by the tests.
 #pragma once
 
 #include <functional>

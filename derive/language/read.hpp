@@ -1,5 +1,4 @@
-// The reader's front door: the text of a spec in, a Joint and everything there is to say about it
-// out.
+// The reader's front door: the text of a spec in, a Joint and everything there is to say about it out.
 #pragma once
 
 #include <filesystem>

@@ -21,8 +21,7 @@ std::vector<fs::path> SpecsFolder::all() const {
   }
   if (!found) {
     throw NoSuchSpec(
-        fmt::format("no folder {0}/planar or {0}/spatial: run from the folder that holds specs/, "
-                    "or say --specs DIR",
+        fmt::format("no folder {0}/planar or {0}/spatial: run from the folder that holds specs/, or say --specs DIR",
                     folder_.string()));
   }
   std::sort(specs.begin(), specs.end());
@@ -34,8 +33,7 @@ fs::path SpecsFolder::find(const std::string& spec) const {
   std::vector<std::string> names;
   for (const fs::path& known : all()) {
     const std::string name = known.stem().string();
-    // `line`, or `spatial/line` where both spaces have one of that name; the planar one comes
-    // first.
+    // `line`, or `spatial/line` where both spaces have one of that name; the planar one comes first.
     if (name == spec || known.parent_path().filename().string() + "/" + name == spec) return known;
     names.push_back(name);
   }

@@ -1,5 +1,4 @@
-// What an expression of the author amounts to: its type, its unit, the frame of its components, and
-// its Expr.
+// What an expression of the author amounts to: its type, its unit, the frame of its components, and its Expr.
 #pragma once
 
 #include <memory>

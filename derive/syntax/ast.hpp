@@ -1,5 +1,4 @@
-// What the parser makes of a text: trees in which every node knows where it stands. No names are
-// looked up here.
+// What the parser makes of a text: trees in which every node knows where it stands. No names are looked up here.
 #pragma once
 
 #include <map>

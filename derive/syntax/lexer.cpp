@@ -215,8 +215,7 @@ class Lexer {
     if (ascii) reject(begin, "the language has no character " + quote(text_.substr(begin, at_ - begin)));
     else if (valid_)
       reject(begin, "only plain letters can be used here",
-             "names are of a-z, A-Z, 0-9 and _; other letters may stand in comments and "
-             "\"texts\"");
+             "names are of a-z, A-Z, 0-9 and _; other letters may stand in comments and \"texts\"");
     else tokens_.list.push_back({TokenKind::unknown, span(begin, at_), {}});
   }
 

@@ -1,5 +1,4 @@
-// Text of a spec or of a hand derivation as tokens. Lines end statements except inside open
-// brackets.
+// Text of a spec or of a hand derivation as tokens. Lines end statements except inside open brackets.
 #pragma once
 
 #include <string_view>

@@ -249,8 +249,8 @@ class JointParser {
     const std::string near = nearest(t.text, words);
     if (near.empty())
       p_.fail(t.where, "no statement starts with " + quote(t.text),
-              "statements start with point, vector, unit, frame, scalar, let, include, coordinate, "
-              "velocity, source; a row is an equation");
+              "statements start with point, vector, unit, frame, scalar, let, include, coordinate, velocity, source; a "
+              "row is an equation");
     else p_.fail(t.where, "no statement starts with " + quote(t.text), "did you mean " + quote(near) + "?");
     if (p_.at_name() &&
         (near == "point" || near == "vector" || near == "unit" || near == "frame" || near == "scalar" || near == "let"))

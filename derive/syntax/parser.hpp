@@ -1,5 +1,4 @@
-// Tokens to expressions: the part of the grammar that specs and hand derivations share, and the way
-// out of an error.
+// Tokens to expressions: the part of the grammar that specs and hand derivations share, and the way out of an error.
 #pragma once
 
 #include <string>

@@ -110,8 +110,7 @@ Value EntryElaborator::evaluate(const Ast& ast, bool rows_of_J) {
   return {};
 }
 
-// Why the value of `ast` is missing: the last error among the findings since then, or what a name
-// in it rests on.
+// Why the value of `ast` is missing: the last error among the findings since then, or what a name in it rests on.
 std::string EntryElaborator::problem(const Ast& ast, std::size_t since) const {
   for (std::size_t i = findings_.list.size(); i-- > since;) {
     const Diagnostic& d = findings_.list[i];

@@ -1,10 +1,8 @@
-// Hand derivations: published formulas as claims, read into matrices of expressions to be judged by
-// `cdot diff`.
+// Hand derivations: published formulas as claims, read into matrices of expressions to be judged by `cdot diff`.
 //
-// An entry is read twice over: first its text (read_hand), which tells where it fixes directions
-// other than the spec; then, against a joint that was read with these anchors, its formulas
-// (elaborate_entry). Formulas may be wrong in any way: sums of numbers and vectors, sizes that do
-// not fit, units that do not match. None of this is bad input.
+// An entry is read twice over: first its text (read_hand), which tells where it fixes directions other than the spec;
+// then, against a joint that was read with these anchors, its formulas (elaborate_entry). Formulas may be wrong in any
+// way: sums of numbers and vectors, sizes that do not fit, units that do not match. None of this is bad input.
 #pragma once
 
 #include <functional>
@@ -34,8 +32,7 @@ HandFile read_hand(std::shared_ptr<const SourceFile> file);
 struct Generated {
   Matrix C, Cdot, J, K;
 };
-// For these rows and coordinates, by name and in this order; for all rows of the joint if there are
-// no names.
+// For these rows and coordinates, by name and in this order; for all rows of the joint if there are no names.
 using GeneratedRows = std::function<Generated(const std::vector<std::string>& rows)>;
 
 // Another reading of a formula that has no value as it stands.

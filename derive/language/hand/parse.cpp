@@ -204,8 +204,8 @@ class HandParser {
     for (const std::string_view q : quantities) words.emplace_back(q);
     const std::string near = t.kind == TokenKind::name ? nearest(t.text, words) : "";
     p_.fail(t.where, "no item of an entry starts with " + quote(t.text),
-            near.empty() ? "items are C, Cdot, J, K, b, lambda = ...; let, free, rows, assume, "
-                           "update, bound, claim, form, note, source, listed"
+            near.empty() ? "items are C, Cdot, J, K, b, lambda = ...; let, free, rows, assume, update, bound, claim, "
+                           "form, note, source, listed"
                          : "did you mean " + quote(near) + "?");
   }
 
@@ -223,8 +223,7 @@ class HandParser {
     if (e.id.empty() || p_.failed()) return;
     if (empty && e.listed.empty())
       out_.diagnostics.error(e.where, "the entry " + quote(e.id) + " says nothing to be judged",
-                             "give C, Cdot, J, K, b, an update or a claim, or say why not: "
-                             "listed \"...\"");
+                             "give C, Cdot, J, K, b, an update or a claim, or say why not: listed \"...\"");
     if (e.source.empty())
       out_.diagnostics.warning(e.where, "the entry " + quote(e.id) + " has no source",
                                "say where it was published: source \"...\"");

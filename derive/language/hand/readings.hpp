@@ -14,8 +14,7 @@ struct OtherAst {
   std::string column;  // what that is about: "w_b"
 };
 
-// The formula with one velocity as an angular velocity, or the other way round, wherever there is
-// one.
+// The formula with one velocity as an angular velocity, or the other way round, wherever there is one.
 std::vector<OtherAst> with_velocities_exchanged(const Ast& ast);
 
 }  // namespace cdot::derive
