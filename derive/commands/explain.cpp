@@ -40,10 +40,6 @@ constexpr const char* json_schema =
     "Expressions are infix text with + - * / ** and the functions of the specs, as sympy and\n"
     "Python read them. A spec's name that Python reserves gets an underscore at its end.";
 
-Form form_named(const std::string& name) {
-  return name == "local" ? Form::local : name == "euler" ? Form::euler : Form::global;
-}
-
 std::string explanation(const Derivation& derivation, const Options& options) {
   if (options.json) return explanation_json(derivation).dump(2) + "\n";
   const Explanation steps = explain(derivation, form_named(options.form));

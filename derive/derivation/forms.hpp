@@ -3,14 +3,12 @@
 #pragma once
 
 #include <array>
-#include <string_view>
 #include <vector>
 
 #include "derive/derivation/derivation.hpp"
 
 namespace cdot::derive {
 
-std::string_view name_of(Form form);  // "local"
 inline std::size_t columns_per_body(Form form) { return form == Form::euler ? 7 : 6; }
 
 // Members of a body's pose: A(e) row by row (in the plane [c -s; s c]), and e0, e1, e2, e3.

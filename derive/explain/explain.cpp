@@ -147,7 +147,7 @@ Explanation explain(const Derivation& derivation, Form form) {
   Lecture lecture(joint);
   const Part rows = rows_part(lecture, derivation.rows);
   std::vector<Part> coordinates;
-  for (const Block& block : derivation.coordinates) coordinates.push_back(coordinate_part(block));
+  for (const Block& block : derivation.coordinates) coordinates.push_back(coordinate_part(lecture, block));
   introduce(lecture);
   explain_rows(lecture, rows, form);
   std::vector<const Part*> all{&rows};

@@ -13,8 +13,8 @@ Formula of_body(const std::string& letter, const Lecture& lecture, std::size_t b
 }
 
 // The block of w in the other form: M A, or 2 M G.
-Formula turning_block(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body, Form form) {
-  const Formula block = block_of_w(lecture, part, s, body);
+Formula turning_block(const Lecture& lecture, const Statement& s, std::size_t body, Form form) {
+  const Formula& block = s.J[body].w;
   if (block == number(0)) return block;
   if (form == Form::local) return product({block, of_body("A", lecture, body)});
   return product({number(2), block, of_body("G", lecture, body)});
@@ -24,8 +24,8 @@ Chain jacobian_in(const Lecture& lecture, const Part& part, Form form) {
   std::vector<Formula> blocks;
   for (const Statement& s : part.statements) {
     for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
-      blocks.push_back(block_of_v(lecture, part, s, b));
-      blocks.push_back(turning_block(lecture, part, s, b, form));
+      blocks.push_back(s.J[b].v);
+      blocks.push_back(turning_block(lecture, s, b, form));
     }
   }
   const std::string name = "J_" + std::string(name_of(form));
@@ -67,7 +67,7 @@ EulerColumns euler_columns_of(const Lecture& lecture, const Part& part, const St
 
 // dC/de of one body, and where J's columns are just that.
 void compare_with_partial(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body, Step& step) {
-  const Formula block = turning_block(lecture, part, s, body, Form::euler);
+  const Formula block = turning_block(lecture, s, body, Form::euler);
   const EulerColumns columns = euler_columns_of(lecture, part, s, body);
   const Formula C = label("C", s, s.C);
   const Formula name = quotient(leaf({}, "d" + C.name), leaf({}, "de_" + lecture.joint.bodies[body]));

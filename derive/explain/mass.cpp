@@ -75,8 +75,8 @@ class MassProduct {
         add_product(lecture_.notation, body.inv_I, Js.w, Jt.w, terms);
       } else {
         const bool tensor = lecture_.joint.dimension == 3;
-        add_blocks(body.inv_m, block_of_v(lecture_, part_, s, b), block_of_v(lecture_, part_, t, b), false, terms);
-        add_blocks(body.inv_I, block_of_w(lecture_, part_, s, b), block_of_w(lecture_, part_, t, b), tensor, terms);
+        add_blocks(body.inv_m, s.J[b].v, t.J[b].v, false, terms);
+        add_blocks(body.inv_I, s.J[b].w, t.J[b].w, tensor, terms);
       }
     }
     return sum(std::move(terms));

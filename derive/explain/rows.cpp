@@ -81,22 +81,26 @@ const char* turning_by_skew(int dimension) {
   return dimension == 2 ? "w × r = S(r) w, with S(r) = perp(r) as a column" : "w × r = -S(r) w, with S(r) u = r × u";
 }
 
-void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
+// What multiplies v and w of each body in turn, where it is not 0, and that velocity.
+std::vector<std::pair<Formula, Expr>> multiplied_velocities(const Lecture& lecture, const Statement& s) {
+  std::vector<std::pair<Formula, Expr>> all;
+  for (std::size_t b = 0; b < s.J.size(); ++b) {
+    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
+    if (s.J[b].v != number(0)) all.emplace_back(s.J[b].v, body.v);
+    if (s.J[b].w != number(0)) all.emplace_back(s.J[b].w, body.w);
+  }
+  return all;
+}
+
+void isolate_rows_together(Lecture& lecture, const Statement& s, Step& step) {
   std::vector<SignedFormula> terms;
-  const auto add = [&terms](const Formula& block, Expr velocity) {
-    if (block == number(0)) return;
+  for (const auto& [block, velocity] : multiplied_velocities(lecture, s)) {
     for (const SignedFormula& term : terms_of(block)) {
       terms.push_back({term.minus, product({without_identity(term.formula), leaf(velocity)})});
     }
-  };
-  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
-    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
-    add(block_of_v(lecture, part, s, b), body.v);
-    add(block_of_w(lecture, part, s, b), body.w);
   }
   if (!is_zero(s.C_t)) terms.push_back({false, lecture.notation.of(s.C_t)});
-  step.show({label("Cdot", s, Cdot_of(lecture, part, s)),
-             {{sum(std::move(terms)), turning_by_skew(lecture.joint.dimension)}}});
+  step.show({label("Cdot", s, s.Cdot), {{sum(std::move(terms)), turning_by_skew(lecture.joint.dimension)}}});
 }
 
 // Products multiplied out, so that what occurs twice is added up.
@@ -132,15 +136,6 @@ bool turns_twice(const Formula& f) {
   return std::any_of(f.args.begin(), f.args.end(), turns_twice);
 }
 
-void list_columns(const Lecture& lecture, const Part& part, const Statement& s, Step& step) {
-  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
-    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
-    const Formula v = block_of_v(lecture, part, s, b), w = block_of_w(lecture, part, s, b);
-    if (v != number(0)) step.list("{} is multiplied by {}", {leaf(body.v), v});
-    if (w != number(0)) step.list("{} is multiplied by {}", {leaf(body.w), w});
-  }
-}
-
 const char* kept_together(int dimension) {
   return dimension == 2 ? ". Two rows, x and y, kept together as a vector:"
                         : ". Three rows, x, y and z, kept together as a vector:";
@@ -171,12 +166,9 @@ void explain_kept(const Lecture& lecture, Expr product, Step& step) {
 
 }  // namespace
 
-Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s) {
+Formula row_of_J(const Statement& s) {
   std::vector<Formula> blocks;
-  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
-    blocks.push_back(block_of_v(lecture, part, s, b));
-    blocks.push_back(block_of_w(lecture, part, s, b));
-  }
+  for (const VelocityBlocks& of_body : s.J) blocks.insert(blocks.end(), {of_body.v, of_body.w});
   const int columns = static_cast<int>(blocks.size());
   return matrix(columns, std::move(blocks));
 }
@@ -217,8 +209,7 @@ void differentiate(Lecture& lecture, const Part& part, Step& step) {
       step.say("Nothing to differentiate: it is written with velocities.");
       continue;
     }
-    const Expr Cdot = Cdot_of(lecture, part, s);
-    for (Chain& chain : lecture.rates.differentiate(s.C, label("Cdot", s, Cdot))) {
+    for (Chain& chain : lecture.rates.differentiate(s.C, label("Cdot", s, s.Cdot))) {
       step.show(std::move(chain));
     }
   }
@@ -227,7 +218,7 @@ void differentiate(Lecture& lecture, const Part& part, Step& step) {
 void isolate_velocities(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    if (s.vector()) isolate_rows_together(lecture, part, s, step);
+    if (s.vector()) isolate_rows_together(lecture, s, step);
     else isolate_scalar(lecture, part, s, step);
   }
 }
@@ -236,12 +227,14 @@ void read_jacobian(Lecture& lecture, const Part& part, Step& step) {
   std::vector<Formula> all;
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    list_columns(lecture, part, s, step);
+    for (const auto& [block, velocity] : multiplied_velocities(lecture, s)) {
+      step.list("{} is multiplied by {}", {leaf(velocity), block});
+    }
     if (!is_zero(s.C_t)) {
       step.list("without a velocity, so no part of J but dC/dt with the bodies at rest: {}",
                 {lecture.notation.of(s.C_t)});
     }
-    const Formula row = row_of_J(lecture, part, s);
+    const Formula row = row_of_J(s);
     all.insert(all.end(), row.args.begin(), row.args.end());
     if (part.statements.size() == 1) step.show({label("J", s), {{row, ""}}});
   }
@@ -254,14 +247,14 @@ void read_jacobian(Lecture& lecture, const Part& part, Step& step) {
 void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    const Expr Cdot = Cdot_of(lecture, part, s), gamma = -time_derivative(Cdot, lecture.joint);
+    const Expr gamma = -time_derivative(s.Cdot, lecture.joint);
     const Formula name = label("gamma", s, gamma);
     const Formula simplified = lecture.notation.definition(expanded(gamma));
     if (simplified == number(0)) {
       step.show({name, {{simplified, "J does not change"}}});
       continue;
     }
-    for (Chain& chain : lecture.rates.differentiate(Cdot, negative(name))) {
+    for (Chain& chain : lecture.rates.differentiate(s.Cdot, negative(name))) {
       chain.links.resize(1);  // with its names, not with all of them inserted
       const bool shorter = lecture.joint.dimension == 2 && turns_twice(chain.links[0].formula);
       if (chain.left != negative(name) && shorter) {

@@ -44,7 +44,7 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
     const Formula left =
         part.block.name.empty() ? label(velocity ? "Cdot" : "C", s, s.C) : leaf(s.C, "coordinate " + s.name);
     summary.push_back(equation(left, lecture.notation.definition(s.C), note_of(s.kind)));
-    const Formula row = row_of_J(lecture, part, s);
+    const Formula row = row_of_J(s);
     J.insert(J.end(), row.args.begin(), row.args.end());
   }
   if (part.statements.empty()) return summary;
@@ -67,7 +67,7 @@ std::vector<std::vector<Chain>> summarise(const Derivation& derivation) {
     names.push_back(equation(leaf(let.value, let.name), lecture.notation.definition(let.value)));
   }
   all[0].insert(all[0].begin(), names.begin(), names.end());
-  for (const Block& block : derivation.coordinates) all.push_back(summarise(lecture, coordinate_part(block)));
+  for (const Block& block : derivation.coordinates) all.push_back(summarise(lecture, coordinate_part(lecture, block)));
   return all;
 }
 

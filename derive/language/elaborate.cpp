@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "derive/expression/symbols.hpp"
-#include "derive/syntax/parse_joint.hpp"
+#include "derive/syntax/parser.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -1,6 +1,8 @@
 // A joint as the reader hands it on: names, parameters, constraint rows as expressions. No text, no units to check.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +16,12 @@ namespace cdot::derive {
 
 // The forms of velocity that J may be written in (derivation/forms.hpp).
 enum class Form { global, local, euler };
+constexpr std::array<std::string_view, 3> form_names = {"global", "local", "euler"};
+inline std::string_view name_of(Form form) { return form_names[static_cast<std::size_t>(form)]; }
+inline Form form_named(std::string_view name) {  // `global` if there is none of that name
+  const auto found = std::find(form_names.begin(), form_names.end(), name);
+  return found == form_names.end() ? Form::global : static_cast<Form>(found - form_names.begin());
+}
 
 enum class ParameterKind { point, vector, unit, frame, scalar };
 

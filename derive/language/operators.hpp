@@ -37,6 +37,7 @@ struct Operator {
 };
 
 const std::vector<Operator>& operators();
+std::vector<Operator> operators_of_hand_derivations();  // hand/operators.cpp; the last of `operators`
 bool is_operator(std::string_view name);
 std::vector<const Operator*> operators_named(std::string_view name);  // of either space
 // What somebody who wrote `word(...)` may have meant; empty if there is no telling.

@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "derive/language/elaborate.hpp"
-#include "derive/syntax/parse_joint.hpp"
+#include "derive/syntax/parser.hpp"
 
 namespace cdot::derive {
 namespace {

@@ -19,15 +19,11 @@ bool is_control(char c) { return is_ascii(c) && (c < ' ' || c == 0x7F) && c != '
 struct LookAlike {
   std::string_view character, meaning;
 };
-constexpr std::array<LookAlike, 9> look_alikes = {{{"\u2212", "-"},
-                                                   {"\u2013", "-"},
-                                                   {"\u00D7", "*"},
-                                                   {"\u00B7", "*"},
-                                                   {"\u22C5", "*"},
-                                                   {"\u2264", "<="},
-                                                   {"\u2265", ">="},
-                                                   {"\u2032", "'"},
-                                                   {"\u2019", "'"}}};
+// clang-format off
+constexpr std::array<LookAlike, 9> look_alikes = {{
+    {"\u2212", "-"}, {"\u2013", "-"}, {"\u00D7", "*"}, {"\u00B7", "*"}, {"\u22C5", "*"}, {"\u2264", "<="},
+    {"\u2265", ">="}, {"\u2032", "'"}, {"\u2019", "'"}}};
+// clang-format on
 
 class Lexer {
  public:

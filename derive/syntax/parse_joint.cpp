@@ -1,5 +1,4 @@
-#include "derive/syntax/parse_joint.hpp"
-
+// A spec's text to its tree: header, declarations, lets, rows, coordinates.
 #include <algorithm>
 #include <utility>
 
@@ -14,10 +13,10 @@ class JointParser {
       : file_(file), tokens_(tokens), diagnostics_(diagnostics), p_(file, tokens, false, diagnostics) {}
 
   JointAst run() {
-    skip_blank_lines();
+    p_.skip_blank_lines();
     if (!p_.at_word("joint"))
       diagnostics_.error(p_.peek().where, "the header is missing: " + p_.found(), "start with `joint NAME planar`");
-    for (; !p_.at_end(); skip_blank_lines()) {
+    for (; !p_.at_end(); p_.skip_blank_lines()) {
       const std::size_t before = joint_.statements.size();
       statement();
       if (!p_.end_of_statement()) spoil(before);
@@ -27,10 +26,6 @@ class JointParser {
   }
 
  private:
-  void skip_blank_lines() {
-    while (p_.peek().kind == TokenKind::newline) p_.take();
-  }
-
   // A statement that went on wrongly is not to be trusted; but its names are declared, so that
   // their uses are no errors.
   void spoil(std::size_t first) {

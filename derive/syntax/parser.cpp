@@ -14,6 +14,10 @@ const Token& Parser::peek(int ahead) const {
   return tokens_[std::min(at_ + static_cast<std::size_t>(ahead), tokens_.size() - 1)];
 }
 
+void Parser::skip_blank_lines() {
+  while (peek().kind == TokenKind::newline) take();
+}
+
 Token Parser::take() {
   const Token token = peek();
   if (at_ + 1 < tokens_.size()) ++at_;

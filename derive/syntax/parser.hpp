@@ -32,6 +32,7 @@ class Parser {
   // The first error of a statement; what follows it in the same statement is not worth a message.
   void fail(Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
   bool failed() const { return failed_; }
+  void skip_blank_lines();
   void next_statement();  // skips what is left of this one
   // Complains about what is left of this one, and skips it. Whether all was well.
   bool end_of_statement();
@@ -63,5 +64,7 @@ class Parser {
   int depth_ = 0;
   bool failed_ = false;
 };
+
+JointAst parse_joint(const SourceFile& file, const Tokens& tokens, Diagnostics& diagnostics);  // parse_joint.cpp
 
 }  // namespace cdot::derive

@@ -85,9 +85,6 @@ struct HandEntry {
   Span where;
 };
 
-// What `form local` says.
-Form form_of(const HandEntryAst& entry);
-
 // Formulas of an entry. What nobody could evaluate (unknown names) goes into `diagnostics`.
 HandEntry elaborate_entry(const HandEntryAst& entry, const HandFile& file, const ReadResult& joint,
                           const GeneratedRows& generated, Diagnostics& diagnostics);

@@ -22,8 +22,8 @@ class HandParser {
       : out_(out), p_(*out.file, tokens, true, out.diagnostics), text_(out.file->text) {}
 
   void run() {
-    skip_blank_lines();
-    for (; !p_.at_end(); skip_blank_lines()) {
+    p_.skip_blank_lines();
+    for (; !p_.at_end(); p_.skip_blank_lines()) {
       const std::size_t before = out_.entries.empty() ? 0 : entry().items.size();
       statement();
       if (p_.end_of_statement()) continue;
@@ -33,10 +33,6 @@ class HandParser {
   }
 
  private:
-  void skip_blank_lines() {
-    while (p_.peek().kind == TokenKind::newline) p_.take();
-  }
-
   HandEntryAst& entry() { return out_.entries.back(); }
 
   void statement() {
@@ -104,7 +100,7 @@ class HandParser {
     p_.take();
     const Word word = p_.name("global, local or euler");
     entry().form = word.text;
-    if (!p_.failed() && word.text != "global" && word.text != "local" && word.text != "euler")
+    if (!p_.failed() && name_of(form_named(word.text)) != word.text)
       p_.fail(word.where, "a form is global, local or euler, not " + quote(word.text));
   }
 
@@ -249,10 +245,6 @@ class HandParser {
 };
 
 }  // namespace
-
-Form form_of(const HandEntryAst& entry) {
-  return entry.form == "local" ? Form::local : entry.form == "euler" ? Form::euler : Form::global;
-}
 
 HandFile read_hand(std::shared_ptr<const SourceFile> file) {
   HandFile out;
