@@ -6,7 +6,7 @@
 namespace cdot::derive {
 namespace {
 
-// The builders of expressions as the algebra of the rules, for a scalar Cdot: the map e -> c . e is kept as c.
+// The builders of expressions as the algebra of the rules, for a scalar Cdot: c stands for the map e -> c . e.
 class Transposition {
  public:
   using Map = Expr;

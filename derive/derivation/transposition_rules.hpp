@@ -1,8 +1,8 @@
 // The rules that lead from Cdot to J, once each, over an algebra: transposition.cpp computes by them,
-// explain/velocities.cpp writes down what they say. So what is explained is what is computed.
+// explain/velocities.cpp writes them down. The explanation therefore follows the computation.
 //
-// J is read off Cdot by transposition. A term n . (w x r) says how w enters; its transpose (r x n) w says what w is
-// multiplied by. Each rule below is such an identity, so "isolating the velocities" is a walk from Cdot to the leaves.
+// Transposition reads J off Cdot. A term n . (w x r) shows how w enters; its transpose (r x n) . w shows the factor of
+// w. Each rule below is such an identity; "isolating the velocities" is a walk from Cdot to the leaves.
 #pragma once
 
 #include "derive/derivation/derivation.hpp"

@@ -61,7 +61,7 @@ void introduce_bodies(const Joint& joint, Step& step) {
     return;
   }
   step.say(
-      "Vectors are in world axes. What is fixed in a body turns with it, d/dt of a body-fixed vector = w × r; S(r) is "
+      "Vectors are in world axes. A vector r fixed in a body turns with it, d/dt r = w × r; S(r) is "
       "the matrix with S(r) u = r × u.");
   step.list(who +
                 "; of a: centre of mass {} [m], rotation matrix {} (of the Euler parameters {}, a unit quaternion), " +
@@ -73,7 +73,7 @@ void explain_rows(Lecture& lecture, const Part& part, Form form) {
   state_constraint(lecture, part);
   if (part.statements.empty()) return;
   Step& derivative = lecture.section("The time derivative");
-  derivative.say("Velocities follow from C by differentiating it along the motion.");
+  derivative.say("The derivative of C along the motion gives the velocity constraint.");
   differentiate(lecture, part, derivative);
 
   Step& velocities = lecture.section("The velocities isolated");
@@ -87,13 +87,13 @@ void explain_rows(Lecture& lecture, const Part& part, Form form) {
   Step& mass = lecture.section("The effective mass");
   mass.say(
       "K = J M^-1 J', with each body's inv_m and inv_I on the diagonal of M^-1. K lambda = -Cdot gives the impulse "
-      "lambda that makes Cdot vanish, J' lambda what it does to the bodies.");
+      "lambda that makes Cdot vanish, J' lambda the impulse on the bodies.");
   multiply_mass(lecture, part, mass);
 
   Step& gamma = lecture.section("The acceleration level");
   gamma.say(
-      "Once more differentiated, the velocities themselves held fixed: J times the accelerations must equal gamma, "
-      "minus what is left.");
+      "Cdot is differentiated again at constant velocities: J times the accelerations must equal gamma, minus the "
+      "remaining terms.");
   differentiate_again(lecture, part, gamma);
 }
 
@@ -138,7 +138,7 @@ void introduce(Lecture& lecture) {
   for (const Parameter& p : joint.parameters) describe(lecture, p, step);
   for (const Coordinate& c : joint.dropped) {
     step.say("The coordinate " + c.name + " that the included joint " + c.from + " leaves free (`" + c.text +
-             "`) is none here: " + held_text(c) + ".");
+             "`) is constrained here: " + constraint_text(c) + ".");
   }
 }
 

@@ -36,7 +36,7 @@ Chain jacobian_in(const Lecture& lecture, const Part& part, Form form) {
 
 void define_local(const Lecture& lecture, Step& step) {
   step.say(
-      "w' are the components of w along the axes of the body: w = {} w'. So what multiplies w is multiplied by A: "
+      "w' are the components of w along the axes of the body: w = {} w'. So A multiplies the factor of w: "
       "J_local = J diag(E, A, E, A, ...).",
       {leaf({}, "A")});
   const std::string& a = lecture.joint.bodies[0];
@@ -53,7 +53,7 @@ void define_euler(Step& step) {
                           negative(e(2)), e(3), e(0), negative(e(1)),  //
                           negative(e(3)), negative(e(2)), e(1), e(0)}),
                ""}}});
-  step.say("So what multiplies w is multiplied by 2 G: J_euler = J diag(E, 2 G, E, 2 G, ...).");
+  step.say("So 2 G multiplies the factor of w: J_euler = J diag(E, 2 G, E, 2 G, ...).");
 }
 
 EulerColumns euler_columns_of(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
@@ -102,7 +102,7 @@ void explain_form(Lecture& lecture, const Part& part, Form form) {
   step.say(
       "Is that the partial derivative of C? A(e) is of second degree in e, so along e itself a vector s fixed in the "
       "body grows by 2 s, which no rotation does. Where e · e = 1, dC/de = J_euler + (dC/de e) e', and the last term "
-      "is nothing to rates that keep e · e = 1, for which e · e_dot = 0:");
+      "vanishes for rates that preserve e · e = 1, that is e · e_dot = 0:");
   for (const Statement& s : part.statements) {
     if (s.kind == RowKind::velocity) {
       step.say("Row `" + s.row->name + "` is written at velocity level: there is no C to differentiate.");

@@ -76,7 +76,7 @@ class Infix {
     return level == Level::power ? "(" + out + ")" : out;
   }
 
-  // The guards of a kernel are said aside: here the mathematics stands.
+  // The mathematics alone; `guards` lists what a kernel does where it is undefined.
   std::string function_text(Expr e, Level level) {
     if (e->fn == Fn::inverse) {
       const std::string below = print(e->args[0], Level::sum);

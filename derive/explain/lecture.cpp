@@ -6,7 +6,7 @@
 namespace cdot::derive {
 namespace {
 
-// What a vector Cdot keeps when no body moves.
+// The terms of a vector Cdot without velocities: dC/dt with all bodies at rest.
 Expr at_rest(Expr Cdot) {
   std::vector<Term> terms;
   for (const Term& term : terms_of(Cdot)) {

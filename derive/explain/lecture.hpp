@@ -1,4 +1,4 @@
-// What the sections of an explanation share: the joint's statements with their derivation, and how things are called.
+// Shared by the sections of an explanation: the joint's statements with their derivation, and their names.
 #pragma once
 
 #include "derive/explain/rates.hpp"
@@ -6,7 +6,7 @@
 
 namespace cdot::derive {
 
-// One equation as the author wrote it: a scalar row, or a vector row with its two components kept together.
+// One equation as the author wrote it: a scalar row, or a vector row as one vector.
 struct Statement {
   std::string name;          // "line"; empty if it is the only one
   const Row* row = nullptr;  // null for a coordinate

@@ -136,7 +136,7 @@ class MassProduct {
 Expr unscaled(Expr v) { return v->kind == Kind::scale ? v->args[1] : v; }
 std::string spoken(Expr e) { return e->name.empty() ? text(e) : e->name; }
 
-// What the builders used to make K simpler than the product: lengths of unit vectors, right angles.
+// The identities that make K simpler than the product: lengths of unit vectors, right angles.
 std::string identities_used(const Lecture& lecture, const Part& part, const Statement& s, const Statement& t) {
   std::string used;
   if (s.vector() || t.vector()) return "written out in components";

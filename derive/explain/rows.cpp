@@ -11,7 +11,7 @@ void head(Step& step, const Part& part, const Statement& s) {
   if (part.statements.size() > 1) step.say("Row `" + s.name + "`:");
 }
 
-// What multiplies one velocity, summed up from the terms of Cdot.
+// The factor of one velocity, summed up from the terms of Cdot.
 void collect(Lecture& lecture, const std::vector<VelocityTerm>& terms, Expr coefficient, int body, bool spin,
              Step& step) {
   std::vector<SignedFormula> parts;
@@ -63,7 +63,7 @@ void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step
     collect(lecture, terms, row.J[b].w, static_cast<int>(b), true, step);
   }
   const Formula result = isolated(lecture, row);
-  if (same_terms(result, Cdot)) return step.say("They stand alone already.");
+  if (same_terms(result, Cdot)) return step.say("Each velocity stands alone already.");
   step.show({label("Cdot", s, row.Cdot), {{result, ""}}});
 }
 
@@ -81,7 +81,7 @@ const char* turning_by_skew(int dimension) {
   return dimension == 2 ? "w × r = S(r) w, with S(r) = perp(r) as a column" : "w × r = -S(r) w, with S(r) u = r × u";
 }
 
-// What multiplies v and w of each body in turn, where it is not 0, and that velocity.
+// The factors of v and w of each body that are not 0, with that velocity.
 std::vector<std::pair<Formula, Expr>> multiplied_velocities(const Lecture& lecture, const Statement& s) {
   std::vector<std::pair<Formula, Expr>> all;
   for (std::size_t b = 0; b < s.J.size(); ++b) {
@@ -103,7 +103,7 @@ void isolate_rows_together(Lecture& lecture, const Statement& s, Step& step) {
   step.show({label("Cdot", s, s.Cdot), {{sum(std::move(terms)), turning_by_skew(lecture.joint.dimension)}}});
 }
 
-// Products multiplied out, so that what occurs twice is added up.
+// Products multiplied out, so that equal terms add up.
 Expr expanded(Expr e) {
   Pool& pool = *e->pool;
   if (e->kind == Kind::sum) {
@@ -130,18 +130,18 @@ Expr expanded(Expr e) {
   return e;
 }
 
-// Whether w × (w × r) stands in it.
+// True if it contains w × (w × r).
 bool turns_twice(const Formula& f) {
   if (f.shape == Shape::cross && f.args[1].shape == Shape::cross) return true;
   return std::any_of(f.args.begin(), f.args.end(), turns_twice);
 }
 
 const char* kept_together(int dimension) {
-  return dimension == 2 ? ". Two rows, x and y, kept together as a vector:"
-                        : ". Three rows, x, y and z, kept together as a vector:";
+  return dimension == 2 ? ". Two rows, x and y, written as one vector:"
+                        : ". Three rows, x, y and z, written as one vector:";
 }
 
-// Which rows of n × m = 0 are kept, n an axis of a frame: the components along the other two axes.
+// `keep 2` of n × m = 0, n an axis of a frame, selects the components along the other two axes.
 void explain_kept(const Lecture& lecture, Expr product, Step& step) {
   const Pool& pool = *lecture.joint.pool;
   const bool first = pool.axis_of(product->args[0]).triad && product->args[0]->body >= 0;
@@ -152,15 +152,15 @@ void explain_kept(const Lecture& lecture, Expr product, Step& step) {
   const Notation& notation = lecture.notation;
   const Formula all = cross(leaf(n), notation.of(m));
   step.say(
-      "`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 always. Kept are the "
+      "`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 always. It selects the "
       "components along the other two axes of the frame:",
       {all, leaf(n), all});
   const std::string rule = "a · (b × c) = (a × b) · c";
   step.show({dot(leaf(z), all), {{dot(leaf(y), notation.of(m)), rule}}});
   step.show({dot(leaf(y), all), {{negative(dot(leaf(z), notation.of(m))), rule}}});
   step.say(
-      "While both vanish {} lies along {}, and {} and {} are as long as {} and stand on each other: these two rows "
-      "stay independent wherever the row holds.",
+      "While both vanish, {} lies along {}, and {} and {} are as long as {} and orthogonal: these two rows stay "
+      "independent wherever C = 0.",
       {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)), cross(leaf(z), notation.of(m)), notation.of(m)});
 }
 
@@ -189,15 +189,14 @@ void state_constraint(Lecture& lecture, const Part& part) {
     const Formula C = lecture.notation.definition(s.C);
     if (s.kind == RowKind::velocity) {
       step.show({label("Cdot", s, s.C), {{C, ""}}});
-      step.say("It is written at velocity level: it has no position form, and C is reported as 0.");
+      step.say("The row is written at velocity level: it has no position form, and C is 0.");
     } else {
       step.show({label("C", s, s.C), {{C, ""}}});
     }
     const bool last = &s == &part.statements.back() || (&s)[1].row->kept != s.row->kept;
     if (s.row->kept && last) explain_kept(lecture, s.row->kept, step);
     if (s.kind == RowKind::inequality) {
-      step.say("An inequality: {} ≥ 0 must hold, and its impulse may only push C up (lambda ≥ 0).",
-               {label("C", s, s.C)});
+      step.say("An inequality: {} ≥ 0, and its impulse may only push C up (lambda ≥ 0).", {label("C", s, s.C)});
     }
   }
 }
@@ -206,7 +205,7 @@ void differentiate(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
     if (s.kind == RowKind::velocity) {
-      step.say("Nothing to differentiate: it is written with velocities.");
+      step.say("The row contains velocities already: there is nothing to differentiate.");
       continue;
     }
     for (Chain& chain : lecture.rates.differentiate(s.C, label("Cdot", s, s.Cdot))) {

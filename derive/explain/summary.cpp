@@ -1,4 +1,4 @@
-// What a derivation comes to, for the head of a generated file: names, C, J and K, as the lecture writes them.
+// The results of a derivation for the head of a generated file: names, C, J and K, as the lecture writes them.
 #include <algorithm>
 
 #include "derive/explain/lecture.hpp"

@@ -1,4 +1,4 @@
-// What each name means, in which unit and frame, and how what turns with a body follows from its angle.
+// The meaning, unit and frame of each name; components that turn with a body follow from its angle.
 #include "derive/explain/symbols.hpp"
 
 #include <array>

@@ -49,7 +49,7 @@ class ChainText {
   std::string write(const Chain& chain) {
     std::string left = std::string(margin_, ' ') + formula_.write(chain.left);
     indent_ = width(left);
-    // A long left side keeps its line.
+    // A long left side stands in a line of its own.
     if (indent_ > page_width_ / 2) {
       out_ += left + "\n";
       indent_ = margin_ + 2;

@@ -1,4 +1,4 @@
-// Multiplying out keeps the shape of what it multiplies, so that each term can be recognised in Cdot.
+// Multiplying out preserves the shape of each factor, so that a reader recognises each term in Cdot.
 #include "derive/explain/velocities.hpp"
 
 #include <algorithm>
@@ -105,7 +105,7 @@ std::string identity_in(const Formula& f, const Distribution& distribution) {
   return "";
 }
 
-// What stands left of a velocity in a term: a number, scalars, then matrices or columns.
+// The factors left of a velocity in a term: a number, scalars, then matrices or columns.
 struct Left {
   Rational coef{1};
   std::vector<Formula> scalars, matrices;
@@ -175,7 +175,7 @@ class VectorIsolation {
  private:
   using Terms = std::vector<Left>;
 
-  // s u with a scalar s that holds the velocities: u (n · v + c · w) = u n' v + u c' w.
+  // s u with a scalar s that contains the velocities: u (n · v + c · w) = u n' v + u c' w.
   void along(Expr s, const Left& left) {
     const std::vector<JacobianEntry> J = isolate_velocities(s, joint_);
     for (std::size_t b = 0; b < J.size(); ++b) {

@@ -1,5 +1,5 @@
-// From formulas and steps to text, once for all formats: parentheses and the order of parts are decided here; the
-// tables of a format give the signs.
+// From formulas and steps to text, once for all formats: this room decides on parentheses and the order of
+// parts; the tables of a format give the signs.
 #pragma once
 
 #include "derive/explain/explain.hpp"

@@ -1,4 +1,4 @@
-// A joint as the reader hands it on: names, parameters, constraint rows as expressions. No text, no units to check.
+// A joint as the reader returns it: names, parameters, constraint rows as expressions, with all units checked.
 #pragma once
 
 #include <algorithm>
@@ -66,8 +66,8 @@ struct Coordinate {
   Unit unit;
   Span where;
   std::string text;
-  std::string from;                  // the included joint that it came from; empty if written here
-  std::vector<std::string> held_by;  // rows that leave it no freedom (derivation/free_coordinates.hpp)
+  std::string from;                         // the included joint that it came from; empty if written here
+  std::vector<std::string> constrained_by;  // rows that constrain it (derivation/free_coordinates.hpp)
 };
 
 // Folders, namespaces and headers of specs are named so.
@@ -84,7 +84,7 @@ struct Joint {
   std::vector<Let> lets;
   std::vector<Row> rows;
   std::vector<Coordinate> coordinates;
-  std::vector<Coordinate> dropped;         // that an include brought, but rows hold
+  std::vector<Coordinate> dropped;         // from an include, but constrained by rows
   std::shared_ptr<const SourceFile> file;  // for messages of later stages
   bool uses_world = false;  // some parameter is fixed in the world: momentum is not conserved, and need not be
   bool uses_time = false;

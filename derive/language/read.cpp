@@ -56,7 +56,7 @@ ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& lib
 }
 
 ReadResult read_anchored(const ReadResult& plain, const Anchors& anchors) {
-  Anchors possible;  // one on a body that the joint does not have is for the caller to report
+  Anchors possible;  // the caller reports an anchor on a body that the joint lacks
   for (const auto& [name, body] : anchors)
     if (plain.joint && has_body(*plain.joint, body)) possible.emplace(name, body);
   return read(plain.file, plain.library, possible);

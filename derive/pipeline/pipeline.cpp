@@ -18,7 +18,7 @@ void complain(const SourceFile& file, const Diagnostic& diagnostic, Outcome& out
 // Everything that is wrong with it, or what was proved.
 void prove_derivation(const Derivation& derivation, const ProofRecord& record, Outcome& outcome) {
   const Joint& joint = derivation.joint;
-  for (const Diagnostic& held : held_errors(joint)) complain(*joint.file, held, outcome);
+  for (const Diagnostic& held : errors_of_constrained_coordinates(joint)) complain(*joint.file, held, outcome);
   const std::string statement = statement_of(derivation);
   outcome.proofs = record.find(derivation, statement);
   outcome.on_record = !outcome.proofs.empty();

@@ -1,5 +1,5 @@
-// Source text and what is said about it: positions, caret spans, messages. Used by the readers of specs and of hand
-// derivations and by every later stage that has something to say about a line of them.
+// Source text and messages about it, with positions and carets. The readers of specs and hand derivations use it, and
+// every later stage that reports about one of their lines.
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,7 @@ struct Diagnostic {
   std::string fix;         // what to do; may be empty
 };
 
-// All that was found in one file, in the order of the text.
+// All messages about one file, in the order of the text.
 struct Diagnostics {
   std::vector<Diagnostic> list;
   bool has_errors() const;

@@ -9,11 +9,11 @@ namespace {
 
 using Kind = HandItemAst::Kind;
 
-// What an author may have meant by a formula that has no value.
+// A likely reading of a formula that has no value.
 struct OtherAst {
   Ast ast;
   std::string words;   // "with w(b) in place of v(b)"
-  std::string column;  // what that is about: "w_b"
+  std::string column;  // "w_b"
 };
 
 // `node` is a part of `whole`.
@@ -137,7 +137,7 @@ Value EntryElaborator::evaluate(const Ast& ast, bool rows_of_J) {
   return {};
 }
 
-// Why the value of `ast` is missing: the last error among the findings since then, or what a name in it rests on.
+// The reason for a missing value: the last error among the findings since then, or the problem of a name in it.
 std::string EntryElaborator::problem(const Ast& ast, std::size_t since) const {
   for (std::size_t i = findings_.list.size(); i-- > since;) {
     const Diagnostic& d = findings_.list[i];

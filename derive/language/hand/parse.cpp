@@ -39,7 +39,7 @@ class HandParser {
     if (p_.at_word("entry")) return begin_entry();
     if (out_.entries.empty()) {
       p_.fail(p_.peek().where, "an entry must come first: " + p_.found(), "start with entry ID \"title\"");
-      return out_.entries.push_back({});  // so that this is said once
+      return out_.entries.push_back({});  // so that this error occurs once
     }
     if (p_.at_word("source")) return text(entry().source);
     if (p_.at_word("note")) return text(entry().note);
@@ -91,8 +91,8 @@ class HandParser {
 
   void text(std::string& target) {
     const Token keyword = p_.take();
-    const std::string said = p_.string(keyword.text);
-    target += (target.empty() ? "" : " ") + said;
+    const std::string more = p_.string(keyword.text);
+    target += (target.empty() ? "" : " ") + more;
   }
 
   // "form" ( "global" | "local" | "euler" )
@@ -110,7 +110,7 @@ class HandParser {
       if (said->kind == Kind::rows) break;
       if (said->kind == Kind::quantity && said->word.text == p_.peek().text)
         p_.fail(p_.peek().where, quote(p_.peek().text) + " is given twice in this entry",
-                "make two entries of it, or say `rows ...` before what is about other rows", {said->word.where});
+                "write two entries, or `rows ...` before the items about other rows", {said->word.where});
     }
     assigned(item);
   }
@@ -218,11 +218,11 @@ class HandParser {
     const bool empty = std::none_of(e.items.begin(), e.items.end(), says);
     if (e.id.empty() || p_.failed()) return;
     if (empty && e.listed.empty())
-      out_.diagnostics.error(e.where, "the entry " + quote(e.id) + " says nothing to be judged",
-                             "give C, Cdot, J, K, b, an update or a claim, or say why not: listed \"...\"");
+      out_.diagnostics.error(e.where, "the entry " + quote(e.id) + " has nothing to compare",
+                             "give C, Cdot, J, K, b, an update or a claim, or the reason: listed \"...\"");
     if (e.source.empty())
       out_.diagnostics.warning(e.where, "the entry " + quote(e.id) + " has no source",
-                               "say where it was published: source \"...\"");
+                               "name its publication: source \"...\"");
   }
 
   // An item as its author wrote it, in one line.
