@@ -111,7 +111,8 @@ std::string Parser::string(std::string_view after) {
 Ast Parser::expression() {
   if (failed_) return {};
   if (++depth_ > deepest_nesting) {
-    fail(peek().where, "this expression has more than 200 nested levels", "give parts of the expression names with `let`");
+    fail(peek().where, "this expression has more than 200 nested levels",
+         "give parts of the expression names with `let`");
     --depth_;
     return {};
   }

@@ -60,7 +60,8 @@ TEST(Check, ACoordinateThatARowHoldsIsAnError) {
   std::string said;
   const std::string rows = "  pa = pb\n  angle(b) = angle(a)\n  coordinate turn = angle(b) - angle(a)\n";
   EXPECT_FALSE(checked(rows, &said).clean());
-  EXPECT_TRUE(mentions(said, "own.joint:7:14: error: the coordinate turn is not free: the row C2 constrains it")) << said;
+  EXPECT_TRUE(mentions(said, "own.joint:7:14: error: the coordinate turn is not free: the row C2 constrains it"))
+      << said;
   EXPECT_TRUE(mentions(said, "fix: drop the coordinate")) << said;
 }
 
