@@ -83,7 +83,7 @@ TEST(Check, WhatAnIncludeLeavesFreeAndARowHoldsIsDropped) {
     const Coordinate& dropped = derivation.joint.dropped.front();
     EXPECT_EQ(dropped.name, "angle");
     EXPECT_EQ(dropped.from, "revolute");
-    EXPECT_EQ(dropped.held_by, std::vector<std::string>{row});
+    EXPECT_EQ(dropped.constrained_by, std::vector<std::string>{row});
     EXPECT_TRUE(check(read).clean());
   }
   const Derivation free = derive(*folder.read(folder.find("prismatic")).joint);
