@@ -62,10 +62,10 @@ TEST(Check, ACoordinateThatARowHoldsIsAnError) {
   EXPECT_FALSE(checked(rows, &said).clean());
   EXPECT_TRUE(mentions(said, "own.joint:7:14: error: the coordinate turn is not free: the row C2 constrains it"))
       << said;
-  EXPECT_TRUE(mentions(said, "fix: drop the coordinate")) << said;
+  EXPECT_TRUE(mentions(said, "fix: remove the coordinate")) << said;
 }
 
-// A limit holds nothing: what it limits is still free below it.
+// A limit constrains no coordinate: below the limit it is free.
 TEST(Check, AnInequalityHoldsNoCoordinate) {
   EXPECT_TRUE(checked("  norm(pa - pb) <= 2 [m]\n  coordinate length = norm(pa - pb)\n").clean());
 }
