@@ -162,7 +162,7 @@ void find_absent_bodies(const Subject& subject, Findings& findings) {
 
 // A coordinate that equations hold is not free: a motor on it would fight them.
 void find_held_coordinates(const Subject& subject, Findings& findings) {
-  for (const Diagnostic& said : held_errors(subject.joint)) {
+  for (const Diagnostic& said : errors_of_constrained_coordinates(subject.joint)) {
     findings.push_back({Level::error, "held", said.where, said.also, said.message, said.fix});
   }
 }

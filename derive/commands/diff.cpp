@@ -105,7 +105,7 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FileVerdict, complaints, text, unreadable, co
 namespace {
 
 FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Options& options) {
-  DiffReport report = judge(pair.hand, pair.spec, folder);
+  DiffReport report = judge(pair.hand, folder.read(pair.spec));
   if (!pair.entry.empty()) {
     std::erase_if(report.judgements, [&](const Judgement& j) { return j.id != pair.entry; });
   }

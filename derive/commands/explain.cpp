@@ -40,13 +40,9 @@ constexpr const char* json_schema =
     "Expressions are infix text with + - * / ** and the functions of the specs, as sympy and\n"
     "Python read them. A spec's name that Python reserves gets an underscore at its end.";
 
-Form form_named(const std::string& name) {
-  return name == "local" ? Form::local : name == "euler" ? Form::euler : Form::global;
-}
-
-std::string explanation(const Joint& joint, const Options& options) {
-  if (options.json) return explanation_json(joint).dump(2) + "\n";
-  const Explanation steps = explain(joint, form_named(options.form));
+std::string explanation(const Derivation& derivation, const Options& options) {
+  if (options.json) return explanation_json(derivation).dump(2) + "\n";
+  const Explanation steps = explain(derivation, form_named(options.form));
   if (options.format == "html") return explanation_html(steps);
   if (options.format == "latex") return explanation_latex(steps);
   return explanation_text(steps);
@@ -63,7 +59,7 @@ int run(const Options& options) {
                "form\n");
     return 2;
   }
-  const std::string text = explanation(derive(*read.joint).joint, options);
+  const std::string text = explanation(derive(*read.joint), options);
   if (options.output.empty()) {
     std::cout << text;
     return std::cout.flush() ? 0 : 2;

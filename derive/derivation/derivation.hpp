@@ -1,4 +1,4 @@
-// What is derived from a joint: C, Cdot, J, K, gamma and the geometric stiffness, as expressions over vectors.
+// The derivation of a joint: C, Cdot, J, K, gamma and the geometric stiffness, as expressions over vectors.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ struct BodySymbols {
 };
 BodySymbols body_symbols(const Joint& joint, int body);
 
-// One body's part of a row of J: what multiplies v and what multiplies w.
+// One body's part of a row of J: the factors of v and of w.
 struct JacobianEntry {
   Expr v;  // vector
   Expr w;  // scalar in the plane, vector in space
@@ -60,9 +60,9 @@ struct Block {
   std::vector<Block> variants;
 };
 
-// A joint and all that kernels are made of, derived once: the same object is proved and emitted.
+// A joint and all parts of its kernels, derived once: the same object is proved, planned, printed and explained.
 struct Derivation {
-  Joint joint;                     // without the coordinates that an include brought and rows hold
+  Joint joint;                     // without coordinates that an include brought and rows constrain
   Block rows;                      // refers to rows of `joint`: a Derivation moves, but has no copies
   std::vector<Block> coordinates;  // in the order of those of `joint`
 
@@ -75,7 +75,7 @@ struct NotLinear : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What moves; by default everything.
+// The moving part; by default everything moves.
 struct Moving {
   int immovable = -1;  // this body stands still
   Expr only = {};      // nothing moves but this leaf: one term of the product rule

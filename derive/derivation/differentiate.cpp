@@ -112,7 +112,7 @@ Derivation derive(Joint joint) {
   Derivation d(std::move(joint));
   d.rows = derive_rows(d.joint);
   for (const Coordinate& c : d.joint.coordinates) d.coordinates.push_back(derive_coordinate(d.joint, c));
-  drop_held_coordinates(d);
+  drop_constrained_coordinates(d);
   d.rows.variants = variants(d.joint, [&](int immovable) { return derive_rows(d.joint, immovable); });
   for (std::size_t i = 0; i < d.coordinates.size(); ++i) {
     d.coordinates[i].variants =

@@ -28,15 +28,6 @@ bool is_small_multiple(Expr x, Expr y) {
 
 }  // namespace
 
-std::string_view name_of(Form form) {
-  switch (form) {
-    case Form::global: return "global";
-    case Form::local: return "local";
-    case Form::euler: return "euler";
-  }
-  return "";
-}
-
 std::vector<std::vector<Expr>> rotation_matrix(const Joint& joint, int body) {
   const auto of = [&](const std::string& name) { return member(joint, body, name); };
   if (joint.dimension == 2) return {{of("c"), -of("s")}, {of("s"), of("c")}};

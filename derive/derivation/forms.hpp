@@ -3,14 +3,12 @@
 #pragma once
 
 #include <array>
-#include <string_view>
 #include <vector>
 
 #include "derive/derivation/derivation.hpp"
 
 namespace cdot::derive {
 
-std::string_view name_of(Form form);  // "local"
 inline std::size_t columns_per_body(Form form) { return form == Form::euler ? 7 : 6; }
 
 // Members of a body's pose: A(e) row by row (in the plane [c -s; s c]), and e0, e1, e2, e3.
@@ -25,8 +23,8 @@ std::vector<Expr> columns_in(Form form, const std::vector<Expr>& global, const J
 // written, dC/de = J_c + (dC/de . e) e^T wherever e . e = 1; the second part is nothing to rates with e . de/dt = 0.
 enum class EulerColumns {
   partial_derivative,  // dC/de . e = 0: J_c is dC/de
-  where_C_is_zero,     // dC/de . e = n C: J_c is dC/de where the constraint holds
-  tangent              // J_c de/dt = dC/de de/dt for rates that keep e . e = 1 only
+  where_C_is_zero,     // dC/de . e = n C: J_c is dC/de where C = 0
+  tangent              // J_c de/dt = dC/de de/dt only for rates that preserve e . e = 1
 };
 // For one body's columns in a row that has a C.
 EulerColumns euler_columns(const ScalarRow& row, const Joint& joint, int body);

@@ -7,7 +7,7 @@
 namespace cdot::derive {
 namespace {
 
-std::vector<ScalarRow> rows_that_hold(const Block& block) {
+std::vector<ScalarRow> constraining_rows(const Block& block) {
   std::vector<ScalarRow> rows;
   for (const ScalarRow& row : block.rows) {
     if (row.kind != RowKind::inequality) rows.push_back(row);
@@ -31,8 +31,8 @@ std::vector<std::string> last_depends_on(const std::vector<ScalarRow>& rows) {
 
 }  // namespace
 
-void drop_held_coordinates(Derivation& derivation) {
-  std::vector<ScalarRow> rows = rows_that_hold(derivation.rows);
+void drop_constrained_coordinates(Derivation& derivation) {
+  std::vector<ScalarRow> rows = constraining_rows(derivation.rows);
   std::vector<Coordinate> coordinates = std::move(derivation.joint.coordinates);
   std::vector<Block> blocks = std::move(derivation.coordinates);
   derivation.joint.coordinates.clear();
@@ -40,9 +40,9 @@ void drop_held_coordinates(Derivation& derivation) {
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     Coordinate& c = coordinates[i];
     rows.push_back(blocks[i].rows.front());
-    c.held_by = last_depends_on(rows);
+    c.constrained_by = last_depends_on(rows);
     rows.pop_back();
-    if (!c.held_by.empty() && !c.from.empty()) {
+    if (!c.constrained_by.empty() && !c.from.empty()) {
       derivation.joint.dropped.push_back(std::move(c));
       continue;
     }
@@ -51,22 +51,23 @@ void drop_held_coordinates(Derivation& derivation) {
   }
 }
 
-std::vector<Diagnostic> held_errors(const Joint& joint) {
+std::vector<Diagnostic> errors_of_constrained_coordinates(const Joint& joint) {
   std::vector<Diagnostic> errors;
   for (const Coordinate& c : joint.coordinates) {
-    if (c.held_by.empty()) continue;
+    if (c.constrained_by.empty()) continue;
     errors.push_back({Severity::error,
                       c.where,
                       {},
-                      "the coordinate " + c.name + " is not free: " + held_text(c),
-                      "drop the coordinate, or the row that holds it"});
+                      "the coordinate " + c.name + " is not free: " + constraint_text(c),
+                      "remove the coordinate, or the row that constrains it"});
   }
   return errors;
 }
 
-std::string held_text(const Coordinate& held) {
-  const bool several = held.held_by.size() > 1;
-  return (several ? "the rows " : "the row ") + listed(held.held_by) + (several ? " hold it" : " holds it");
+std::string constraint_text(const Coordinate& constrained) {
+  const bool several = constrained.constrained_by.size() > 1;
+  return (several ? "the rows " : "the row ") + listed(constrained.constrained_by) +
+         (several ? " constrain it" : " constrains it");
 }
 
 }  // namespace cdot::derive

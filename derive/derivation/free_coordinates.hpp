@@ -1,19 +1,20 @@
-// Coordinates that a joint does not leave free, because its own rows hold them: a revolute's angle in a weld. Only what
-// has been differentiated tells; rows that an include brings do not know of those that stand beside it.
+// Constrained coordinates: the joint's own rows leave them no freedom, as a weld does with the angle of its revolute.
+// Only the derivatives show it: an included joint knows none of the rows beside it.
 #pragma once
 
 #include "derive/derivation/derivation.hpp"
 
 namespace cdot::derive {
 
-// Fills in `held_by` of the coordinates whose row of J is a combination of the equality and velocity rows, and moves
-// those that came with an include to `dropped`. An inequality holds nothing: a limit may stand beside a coordinate.
-void drop_held_coordinates(Derivation& derivation);
+// Fills in `constrained_by` of the coordinates whose row of J is a combination of the equality and velocity rows, and
+// moves those that came with an include to `dropped`. An inequality constrains no coordinate: a limit may stand beside
+// it.
+void drop_constrained_coordinates(Derivation& derivation);
 
-// The coordinates that the spec itself declares and its rows hold, as errors.
-std::vector<Diagnostic> held_errors(const Joint& joint);
+// Errors about constrained coordinates that the spec itself declares.
+std::vector<Diagnostic> errors_of_constrained_coordinates(const Joint& joint);
 
-// "the row angle holds it"
-std::string held_text(const Coordinate& held);
+// "the row angle constrains it"
+std::string constraint_text(const Coordinate& constrained);
 
 }  // namespace cdot::derive

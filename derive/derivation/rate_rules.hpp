@@ -1,5 +1,5 @@
-// The rules of d/dt, once each, over an algebra: time_derivative.cpp computes by them, explain/rates.cpp writes down
-// what they say. So what is explained is what is computed.
+// The rules of d/dt, once each, over an algebra: time_derivative.cpp computes by them, explain/rates.cpp writes them
+// down. The explanation therefore follows the computation.
 #pragma once
 
 #include <stdexcept>
@@ -141,7 +141,7 @@ class RateRules {
     return s_dot * operand(u) + operand(s) * u_dot;
   }
 
-  // (w x r)_dot = w x r_dot, w itself held fixed.
+  // (w x r)_dot = w x r_dot, w itself constant.
   Value turned_again(Expr w, Expr r) {
     algebra_.rule("s_dot = w × s again");
     return cross(operand(w), is_fixed(r) ? turned(r) : rate(r));

@@ -1,27 +1,28 @@
-// From Cdot to J: the coefficients of the velocities.
-//
-// J is read off Cdot by transposition. A term n . (w x r) says how w enters; its transpose (r x n) w says what w is
-// multiplied by. Each rule below is such an identity, so "isolating the velocities" is a walk from Cdot to the leaves.
+// From Cdot to J: the coefficients of the velocities, simplified node by node.
 #include <map>
 
-#include "derive/derivation/derivation.hpp"
+#include "derive/derivation/transposition_rules.hpp"
 
 namespace cdot::derive {
 namespace {
 
-// Walks from an expression that is linear in the velocities to v and w, carrying what each node is multiplied by.
+// The builders of expressions as the algebra of the rules, for a scalar Cdot: c stands for the map e -> c . e.
 class Transposition {
  public:
-  explicit Transposition(Expr root) : order_(topological(std::span(&root, 1))) {
-    for (const Expr e : order_) {
+  using Map = Expr;
+
+  explicit Transposition(Expr root) {
+    const std::vector<Expr> order = topological(std::span(&root, 1));
+    for (const Expr e : order) {
       bool moving = e->kind == Kind::symbol && (e->role == Role::velocity || e->role == Role::spin);
-      for (const Expr arg : e->args) moving = moving || moving_.at(&*arg);
+      for (const Expr arg : e->args) moving = moving || moves(arg);
       moving_.emplace(&*e, moving);
     }
     factor_.emplace(&*root, root->pool->number(1));
-    for (auto e = order_.rbegin(); e != order_.rend(); ++e) {
+    // A node passes on what all that contain it have passed to it.
+    for (auto e = order.rbegin(); e != order.rend(); ++e) {
       const auto found = factor_.find(&**e);
-      if (found != factor_.end() && moving_.at(&**e)) pass_on(*e, found->second);
+      if (found != factor_.end() && moves(*e)) TranspositionRules(*this).of(*e, found->second);
     }
   }
 
@@ -31,66 +32,21 @@ class Transposition {
     return velocity->vector ? zero_vector(*velocity->pool) : velocity->pool->number(0);
   }
 
+  bool moves(Expr e) const { return moving_.at(&*e); }
+  void pass(Expr e, Expr c) {
+    const auto [at, fresh] = factor_.emplace(&*e, c);
+    if (!fresh) at->second = at->second + c;
+  }
+  Expr scaled(Expr c, Rational k) const { return k * c; }
+  Expr after_factor(Expr c, Expr s) const { return c * s; }
+  Expr after_column(Expr c, Expr u) const { return dot(c, u); }
+  Expr after_row(Expr c, Expr u) const { return c * u; }
+  Expr after_cross(Expr c, Expr u) const { return cross(c, u); }   // c . (u x v) = (c x u) . v
+  Expr before_cross(Expr c, Expr v) const { return cross(v, c); }  // c . (u x v) = (v x c) . u
+  Expr after_perp(Expr c) const { return -perp(c); }               // c . perp(u) = -perp(c) . u
+  Expr after_tensor(Expr c, Expr T) const { return apply(T, c); }  // c . (T u) = (T c) . u, T being symmetric
+
  private:
-  bool moving(Expr e) const { return moving_.at(&*e); }
-
-  void add(Expr e, Expr factor) {
-    if (!moving(e)) return;
-    const auto [at, fresh] = factor_.emplace(&*e, factor);
-    if (!fresh) at->second = at->second + factor;
-  }
-
-  void pass_on(Expr e, Expr c) {
-    switch (e->kind) {
-      case Kind::symbol: return;
-      case Kind::sum:
-        for (std::size_t i = 0; i < e->args.size(); ++i) add(e->args[i], e->coefs[i] * c);
-        return;
-      case Kind::product: return pass_on_product(e, c);
-      case Kind::scale:  // c . (s u) = (c . u) s
-        require(!(moving(e->args[0]) && moving(e->args[1])));
-        add(e->args[0], dot(c, e->args[1]));
-        add(e->args[1], e->args[0] * c);
-        return;
-      case Kind::dot:
-        require(!(moving(e->args[0]) && moving(e->args[1])));
-        add(e->args[0], c * e->args[1]);
-        add(e->args[1], c * e->args[0]);
-        return;
-      case Kind::cross: require(!(moving(e->args[0]) && moving(e->args[1]))); return pass_on_cross(e, c);
-      case Kind::tensor:  // c . (T u) = (T c) . u
-        return add(e->args[1], apply(e->args[0], c));
-      case Kind::perp:  // c . perp(u) = -perp(c) . u
-        return add(e->args[0], -perp(c));
-      default: require(false);
-    }
-  }
-
-  void pass_on_cross(Expr e, Expr c) {
-    const Expr u = e->args[0], v = e->args[1];
-    if (e->vector) {  // c . (u x v) = u . (v x c) = v . (c x u)
-      if (moving(u)) add(u, cross(v, c));
-      if (moving(v)) add(v, cross(c, u));
-    } else {  // u x v = u . (-perp v) = perp(u) . v
-      if (moving(u)) add(u, -(c * perp(v)));
-      if (moving(v)) add(v, c * perp(u));
-    }
-  }
-
-  void pass_on_product(Expr e, Expr c) {
-    int found = 0;
-    for (std::size_t i = 0; i < e->args.size(); ++i) {
-      if (!moving(e->args[i])) continue;
-      require(++found == 1 && e->exponents[i] == 1);
-      add(e->args[i], c * without_factor(e, i));
-    }
-  }
-
-  static void require(bool linear) {
-    if (!linear) throw NotLinear("the row is not linear in the velocities");
-  }
-
-  std::vector<Expr> order_;
   std::map<const Node*, bool> moving_;
   std::map<const Node*, Expr> factor_;
 };

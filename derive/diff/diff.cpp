@@ -30,14 +30,13 @@ std::string_view name_of(Agreement agreement) {
   return "";
 }
 
-DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path& spec, const SpecsFolder& folder) {
+DiffReport judge(const std::filesystem::path& hand, const ReadResult& plain) {
   const HandFile file = read_hand(load_source(hand));
   DiffReport report{file.file, {}, file.diagnostics};
-  const ReadResult plain = folder.read(spec);
   if (!plain.joint) throw NoSuchSpec(render(*plain.file, plain.diagnostics));
   for (const HandEntryAst& ast : file.entries) {
     // Every entry has a pool of its own, so that the names one gives never show in another.
-    ReadResult read = folder.read(spec, {.anchors = ast.anchors});
+    ReadResult read = read_anchored(plain, ast.anchors);
     if (!read.joint) {
       report.diagnostics.error(
           ast.where, "with what this entry assumes, the spec cannot be read: " + render(*read.file, read.diagnostics));

@@ -45,8 +45,8 @@ struct DiffReport {
   Diagnostics diagnostics;  // entries that cannot be read
 };
 
-// Judges every entry of a .hand file against the spec beside it (`spec`).
-DiffReport judge(const std::filesystem::path& hand, const std::filesystem::path& spec, const SpecsFolder& folder);
+// Judges every entry of a .hand file against the spec beside it, as it was read.
+DiffReport judge(const std::filesystem::path& hand, const ReadResult& spec);
 
 std::string to_text(const DiffReport& report, bool all);  // `all`: also what agrees, in a line each
 std::string to_json(const DiffReport& report);

@@ -222,7 +222,7 @@ Entry read_entry(const HandEntryAst& ast, const HandFile& file, const ReadResult
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
     if (!ast.immovable.empty() && ast.immovable.front() == joint.bodies[b]) entry.immovable = static_cast<int>(b);
   }
-  if (joint.dimension == 3) entry.form = form_of(ast);
+  if (joint.dimension == 3) entry.form = form_named(ast.form);
   entry.block = derive_rows(joint, entry.immovable);
   for (const Coordinate& c : joint.coordinates) {
     entry.coordinates.push_back(derive_coordinate(joint, c, entry.immovable));

@@ -54,20 +54,17 @@ void introduce_bodies(const Joint& joint, Step& step) {
   const std::string rates = "their rates {} [m/s] and {} [rad/s], inverse mass {} [1/kg], ";
   if (joint.dimension == 2) {
     step.say(
-        "Vectors are in world axes; × is the cross product of the plane, "
-        "w × r = w perp(r), perp(r) = (-r.y, r.x).");
+        "Vectors are in world axes; × is the cross product of the plane, w × r = w perp(r), perp(r) = (-r.y, r.x).");
     step.list(
         who + "; of a: centre of mass {} [m], angle {} [rad], " + rates + "inverse inertia {} [1/(kg m^2)]" + others,
         {leaf(a.x), leaf(a.theta), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
     return;
   }
   step.say(
-      "Vectors are in world axes. What is fixed in a body turns with it, d/dt of a body-fixed "
-      "vector "
-      "= w × r; S(r) is the matrix with S(r) u = r × u.");
+      "Vectors are in world axes. A vector r fixed in a body turns with it, d/dt r = w × r; S(r) is "
+      "the matrix with S(r) u = r × u.");
   step.list(who +
-                "; of a: centre of mass {} [m], rotation matrix {} (of the Euler parameters {}, a "
-                "unit quaternion), " +
+                "; of a: centre of mass {} [m], rotation matrix {} (of the Euler parameters {}, a unit quaternion), " +
                 rates + "inverse inertia {} [1/(kg m^2)], a symmetric tensor in world axes" + others,
             {leaf(a.x), leaf({}, "A_a"), leaf({}, "e_a"), leaf(a.v), leaf(a.w), leaf(a.inv_m), leaf(a.inv_I)});
 }
@@ -76,7 +73,7 @@ void explain_rows(Lecture& lecture, const Part& part, Form form) {
   state_constraint(lecture, part);
   if (part.statements.empty()) return;
   Step& derivative = lecture.section("The time derivative");
-  derivative.say("Velocities follow from C by differentiating it along the motion.");
+  derivative.say("The derivative of C along the motion gives the velocity constraint.");
   differentiate(lecture, part, derivative);
 
   Step& velocities = lecture.section("The velocities isolated");
@@ -89,15 +86,14 @@ void explain_rows(Lecture& lecture, const Part& part, Form form) {
 
   Step& mass = lecture.section("The effective mass");
   mass.say(
-      "K = J M^-1 J', with each body's inv_m and inv_I on the diagonal of M^-1. "
-      "K lambda = -Cdot gives the impulse lambda that makes Cdot vanish, J' lambda what it "
-      "does to the bodies.");
+      "K = J M^-1 J', with each body's inv_m and inv_I on the diagonal of M^-1. K lambda = -Cdot gives the impulse "
+      "lambda that makes Cdot vanish, J' lambda the impulse on the bodies.");
   multiply_mass(lecture, part, mass);
 
   Step& gamma = lecture.section("The acceleration level");
   gamma.say(
-      "Once more differentiated, the velocities themselves held fixed: J times the "
-      "accelerations must equal gamma, minus what is left.");
+      "Cdot is differentiated again at constant velocities: J times the accelerations must equal gamma, minus the "
+      "remaining terms.");
   differentiate_again(lecture, part, gamma);
 }
 
@@ -142,15 +138,16 @@ void introduce(Lecture& lecture) {
   for (const Parameter& p : joint.parameters) describe(lecture, p, step);
   for (const Coordinate& c : joint.dropped) {
     step.say("The coordinate " + c.name + " that the included joint " + c.from + " leaves free (`" + c.text +
-             "`) is none here: " + held_text(c) + ".");
+             "`) is constrained here: " + constraint_text(c) + ".");
   }
 }
 
-Explanation explain(const Joint& joint, Form form) {
+Explanation explain(const Derivation& derivation, Form form) {
+  const Joint& joint = derivation.joint;
   Lecture lecture(joint);
-  const Part rows = rows_part(joint, lecture.notation);
+  const Part rows = rows_part(lecture, derivation.rows);
   std::vector<Part> coordinates;
-  for (const Coordinate& c : joint.coordinates) coordinates.push_back(coordinate_part(joint, c));
+  for (const Block& block : derivation.coordinates) coordinates.push_back(coordinate_part(lecture, block));
   introduce(lecture);
   explain_rows(lecture, rows, form);
   std::vector<const Part*> all{&rows};

@@ -1,6 +1,5 @@
-// The derivation of a joint as a good teacher writes it: steps with headings, chains of equal
-// formulas, and the rule that leads from each to the next. One source of steps, one writer for each
-// format.
+// The derivation of a joint as a good teacher writes it: steps with headings, chains of equal formulas, and the rule
+// that leads from each to the next. One source of steps, one writer for each format.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -52,19 +51,18 @@ struct Explanation {
 };
 
 // In space J by w in world axes, and in another form of velocity besides if that is asked for.
-Explanation explain(const Joint& joint, Form form = Form::global);
+Explanation explain(const Derivation& derivation, Form form = Form::global);
 
 std::string explanation_text(const Explanation& explanation);
 std::string explanation_html(const Explanation& explanation);   // one file, no links to elsewhere
 std::string explanation_latex(const Explanation& explanation);  // an article that needs amsmath only
 
 // The names, C, J and K of the joint, then of each of its coordinates, without the way to them.
-std::vector<std::vector<Chain>> summarise(const Joint& joint);
+std::vector<std::vector<Chain>> summarise(const Derivation& derivation);
 // For a terminal or a comment: one or more whole lines.
 std::string chain_text(const Chain& chain, std::size_t page_width);
 
-// C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain/json.cpp
-// gives the schema.
-nlohmann::ordered_json explanation_json(const Joint& joint);
+// C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain/json.cpp gives the schema.
+nlohmann::ordered_json explanation_json(const Derivation& derivation);
 
 }  // namespace cdot::derive

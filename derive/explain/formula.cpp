@@ -1,4 +1,4 @@
-// Building written formulas, by hand and from expressions. How they look is decided by the writers.
+// Builds written formulas, by hand and from expressions. write.cpp decides how they look.
 #include "derive/explain/formula.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
-// Formulas as a person writes them on paper. Expr keeps one normal form for what is equal; a
-// derivation needs the forms in between ("(w_b × t) · u" before it becomes "-(u × t) w_b"), so
-// these trees keep what they are given.
+// Formulas as a person writes them on paper. Equal expressions share one normal form in Expr; a derivation also needs
+// the forms in between: "(w_b × t) · u" before it becomes "-(u × t) w_b". These trees therefore simplify nothing.
 #pragma once
 
 #include <optional>
@@ -72,14 +71,13 @@ Formula times(Rational magnitude, Formula f);
 
 // Terms with a plus sign first, else in their order.
 std::vector<SignedFormula> positive_first(std::vector<SignedFormula> terms);
-// Whether two formulas have the same terms, in whatever order.
+// True if two formulas have the same terms, in any order.
 bool same_terms(const Formula& f, const Formula& g);
 
-// What a formula without matrices equals.
+// The value of a formula without matrices.
 Expr value_of(const Formula& f, Pool& pool);
 
-// The name of the component that a product with this world axis takes: "x", "y"; empty for other
-// vectors.
+// The name of the component that a product with this world axis takes: "x", "y"; empty for other vectors.
 std::string world_axis(Expr axis);
 
 // How expressions of a joint are written: with the author's names for lets and points.
@@ -94,8 +92,7 @@ class Notation {
     std::string name;
     Expr position, arm, value;
   };
-  // The points x + arm hidden among a sum's terms: for each term its point, or none; the arm's term
-  // is marked used.
+  // The points x + arm hidden among a sum's terms: for each term its point, or none; the arm's term is marked used.
   struct PointTerms {
     std::vector<const Point*> at;
     std::vector<bool> used;

@@ -1,6 +1,7 @@
 // The derivation as one page that needs nothing else: MathML, which browsers set themselves, and a
 // style sheet for light and dark.
 #include <map>
+#include <utility>
 
 #include "derive/explain/write.hpp"
 
@@ -44,75 +45,33 @@ std::string greek(const std::string& letter) {
   return found == letters.end() ? letter : found->second;
 }
 
-std::string row(const std::string& inner) { return "<mrow>" + inner + "</mrow>"; }
-std::string sign_of(const std::string& s) { return "<mo>" + s + "</mo>"; }
-std::string fence(const std::string& s) { return "<mo stretchy=\"true\" fence=\"true\">" + s + "</mo>"; }
+std::string name(const Formula& leaf, const std::vector<std::string>& bodies) {
+  const SpelledName s = spell(leaf.name, bodies);
+  const bool vector = leaf.leaf && leaf.leaf->vector;
+  std::string base =
+      filled(vector ? "<mi mathvariant=\"normal\" class=\"vector\">#1</mi>" : "<mi>#1</mi>", escaped(greek(s.letter)));
+  if (s.dots > 0) base = filled("<mover accent=\"true\">#1<mo>#2</mo></mover>", base, s.dots == 1 ? "˙" : "¨");
+  const std::string index = "<mtext>" + escaped(s.index) + "</mtext>";
+  if (s.inverse) return filled("<msubsup>#1#2<mrow><mo>−</mo><mn>1</mn></mrow></msubsup>", base, index);
+  return s.index.empty() ? base : filled("<msub>#1#2</msub>", base, index);
+}
 
-class MathML : public FormulaWriter {
- public:
-  explicit MathML(const std::vector<std::string>& bodies) : bodies_(bodies) {}
-
- protected:
-  std::string name(const Formula& leaf) const override {
-    const SpelledName s = spell(leaf.name, bodies_);
-    std::string base = identifier(greek(s.letter), leaf.leaf && leaf.leaf->vector);
-    if (s.dots > 0) {
-      base = "<mover accent=\"true\">" + base + sign_of(s.dots == 1 ? "˙" : "¨") + "</mover>";
-    }
-    const std::string index = "<mtext>" + escaped(s.index) + "</mtext>";
-    const std::string minus_one = row(sign_of("−") + "<mn>1</mn>");
-    if (s.inverse) return "<msubsup>" + base + index + minus_one + "</msubsup>";
-    return s.index.empty() ? base : "<msub>" + base + index + "</msub>";
-  }
-  std::string number(Rational value) const override {
-    const auto whole = [](std::int64_t n) { return "<mn>" + std::to_string(n) + "</mn>"; };
-    if (value.is_integer()) return whole(value.num());
-    return fraction(whole(value.num()), whole(value.den()));
-  }
-  std::string sign(bool minus, bool first) const override { return minus ? sign_of("−") : first ? "" : sign_of("+"); }
-  std::string between(Shape shape) const override {
-    if (shape == Shape::product) return "<mspace width=\"0.17em\" />";
-    return sign_of(shape == Shape::dot ? "·" : "×");
-  }
-  std::string fraction(const std::string& above, const std::string& below) const override {
-    return "<mfrac>" + row(above) + row(below) + "</mfrac>";
-  }
-  std::string power(const std::string& base, int exponent) const override {
-    const std::string magnitude = "<mn>" + std::to_string(std::abs(exponent)) + "</mn>";
-    return "<msup>" + row(base) + (exponent < 0 ? row(sign_of("−") + magnitude) : magnitude) + "</msup>";
-  }
-  std::string call(const std::string& f, const std::vector<std::string>& args) const override {
-    std::string inner;
-    for (std::size_t i = 0; i < args.size(); ++i) inner += (i ? sign_of(",") : "") + args[i];
-    return row("<mi mathvariant=\"normal\">" + f + "</mi>" + sign_of("&#8289;") + parentheses(inner));
-  }
-  std::string norm(const std::string& arg) const override { return row(fence("|") + arg + fence("|")); }
-  std::string component(const std::string& arg, const std::string& axis) const override {
-    return "<msub>" + row(arg) + "<mi>" + axis + "</mi></msub>";
-  }
-  std::string transpose(const std::string& arg) const override {
-    return "<msup>" + row(arg) + "<mi mathvariant=\"normal\">T</mi></msup>";
-  }
-  std::string identity() const override { return "<mi mathvariant=\"normal\">E</mi>"; }
-  std::string matrix(int columns, const std::vector<std::string>& entries) const override {
-    std::string rows;
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      const std::size_t column = i % static_cast<std::size_t>(columns);
-      if (column == 0) rows += i == 0 ? "<mtr>" : "</mtr><mtr>";
-      rows += "<mtd>" + entries[i] + "</mtd>";
-    }
-    return row(fence("[") + "<mtable class=\"matrix\">" + rows + "</mtr></mtable>" + fence("]"));
-  }
-  std::string parentheses(const std::string& inner) const override { return row(fence("(") + inner + fence(")")); }
-
- private:
-  static std::string identifier(const std::string& letter, bool vector) {
-    if (vector) return "<mi mathvariant=\"normal\" class=\"vector\">" + escaped(letter) + "</mi>";
-    return "<mi>" + escaped(letter) + "</mi>";
-  }
-
-  const std::vector<std::string>& bodies_;
-};
+#define FENCE(sign) "<mo stretchy=\"true\" fence=\"true\">" sign "</mo>"
+// clang-format off
+const FormulaStyle mathml = {
+    .name = name, .opening_minus = "<mo>−</mo>", .minus = "<mo>−</mo>", .plus = "<mo>+</mo>",
+    .product = "<mspace width=\"0.17em\" />", .dot = "<mo>·</mo>", .cross = "<mo>×</mo>", .comma = "<mo>,</mo>",
+    .integer = "<mn>#1</mn>", .negative = "<mrow><mo>−</mo>#1</mrow>",
+    .fraction = "<mfrac><mrow>#1</mrow><mrow>#2</mrow></mfrac>", .power = "<msup><mrow>#1</mrow>#2</msup>",
+    .call = "<mrow><mi mathvariant=\"normal\">#1</mi><mo>&#8289;</mo>"
+            "<mrow>" FENCE("(") "#2" FENCE(")") "</mrow></mrow>",
+    .norm = "<mrow>" FENCE("|") "#1" FENCE("|") "</mrow>", .component = "<msub><mrow>#1</mrow><mi>#2</mi></msub>",
+    .transpose = "<msup><mrow>#1</mrow><mi mathvariant=\"normal\">T</mi></msup>",
+    .identity = "<mi mathvariant=\"normal\">E</mi>", .parentheses = "<mrow>" FENCE("(") "#1" FENCE(")") "</mrow>",
+    .matrix = "<mrow>" FENCE("[") "<mtable class=\"matrix\"><mtr>#1</mtr></mtable>" FENCE("]") "</mrow>",
+    .entry = "<mtd>#1</mtd>", .next_entry = "", .next_row = "</mtr><mtr>"};
+// clang-format on
+#undef FENCE
 
 constexpr const char* style = R"(
 :root {
@@ -152,67 +111,34 @@ mi.vector { font-weight: bold; }
 .matrix mtd { padding: .15em .5em; }
 )";
 
-std::string math(const std::string& inner) { return "<math>" + row(inner) + "</math>"; }
+std::string head(const std::string& plain_title) {
+  const std::string title = escaped(plain_title);
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
+         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
+         title + "</title>\n<style>" + style + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n";
+}
 
-std::string chain_html(const Chain& chain, const MathML& formula) {
-  std::string out = "<div class=\"chain\"><table>\n";
-  for (std::size_t i = 0; i < chain.links.size(); ++i) {
-    const Link& link = chain.links[i];
-    out += "<tr><td class=\"left\">" + (i == 0 ? math(formula.write(chain.left)) : "") + "</td><td>" +
-           math(sign_of("=") + formula.write(link.formula)) + "</td><td class=\"rule\">" + escaped(link.rule) +
+constexpr std::string_view math = "<math><mrow>#1</mrow></math>";
+
+std::string item(const std::string& words, bool bullet) {
+  return filled(bullet ? "<li>#1</li>\n" : "<p>#1</p>\n", words);
+}
+
+std::string chain(const Chain& chain, const FormulaWriter& formula) {
+  std::string out = "<div class=\"chain\"><table>\n", left = filled(math, formula.write(chain.left));
+  for (const Link& link : chain.links) {
+    out += "<tr><td class=\"left\">" + std::exchange(left, "") + "</td><td>" +
+           filled(math, "<mo>=</mo>" + formula.write(link.formula)) + "</td><td class=\"rule\">" + escaped(link.rule) +
            "</td></tr>\n";
   }
   return out + "</table></div>\n";
 }
 
-class Page {
- public:
-  explicit Page(const Explanation& explanation) : formula_(explanation.bodies) {
-    const std::string title = escaped(explanation.title);
-    out_ =
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\" />\n"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\" />\n<title>" +
-        title + "</title>\n<style>" + style + "</style>\n</head>\n<body>\n<h1>" + title + "</h1>\n";
-    int number = 0;
-    for (const Step& step : explanation.steps) {
-      out_ += "<h2>" + std::to_string(++number) + ". " + escaped(step.heading) + "</h2>\n";
-      for (const Item& item : step.items) add(item);
-      close_list();
-    }
-    out_ += "</body>\n</html>\n";
-  }
-
-  const std::string& text() const { return out_; }
-
- private:
-  void add(const Item& item) {
-    if (item.kind != Item::Kind::bullet) close_list();
-    if (item.kind == Item::Kind::chain) {
-      out_ += chain_html(item.chain, formula_);
-      return;
-    }
-    const std::string words = fill(item.words, prose, [this](const Formula& f) { return math(formula_.write(f)); });
-    if (item.kind == Item::Kind::paragraph) {
-      out_ += "<p>" + words + "</p>\n";
-      return;
-    }
-    if (!in_list_) out_ += "<ul>\n";
-    in_list_ = true;
-    out_ += "<li>" + words + "</li>\n";
-  }
-
-  void close_list() {
-    if (in_list_) out_ += "</ul>\n";
-    in_list_ = false;
-  }
-
-  MathML formula_;
-  std::string out_;
-  bool in_list_ = false;
-};
-
 }  // namespace
 
-std::string explanation_html(const Explanation& explanation) { return Page(explanation).text(); }
+std::string explanation_html(const Explanation& explanation) {
+  return written(explanation, {mathml, head, "</body>\n</html>\n", "<h2>#1. #2</h2>\n", "<ul>\n", "</ul>\n", math,
+                               escaped, prose, item, chain});
+}
 
 }  // namespace cdot::derive

@@ -76,7 +76,7 @@ class Infix {
     return level == Level::power ? "(" + out + ")" : out;
   }
 
-  // The guards of a kernel are said aside: here the mathematics stands.
+  // The mathematics alone; `guards` lists what a kernel does where it is undefined.
   std::string function_text(Expr e, Level level) {
     if (e->fn == Fn::inverse) {
       const std::string below = print(e->args[0], Level::sum);
@@ -149,19 +149,20 @@ void add_block(Json& out, Infix& infix, const Block& block) {
 
 }  // namespace
 
-nlohmann::ordered_json explanation_json(const Joint& joint) {
+nlohmann::ordered_json explanation_json(const Derivation& derivation) {
+  const Joint& joint = derivation.joint;
   Infix infix(joint);
   Json rows, coordinates = Json::array();
   rows["rows"] = Json::array();
-  const Block block = derive_rows(joint);
-  for (const ScalarRow& row : block.rows) {
+  for (const ScalarRow& row : derivation.rows.rows) {
     rows["rows"].push_back(
         {{"name", row.name}, {"kind", kind_name(row.kind)}, {"text", row.row->text}, {"unit", text(row.row->unit)}});
   }
-  add_block(rows, infix, block);
-  for (const Coordinate& c : joint.coordinates) {
+  add_block(rows, infix, derivation.rows);
+  for (std::size_t i = 0; i < joint.coordinates.size(); ++i) {
+    const Coordinate& c = joint.coordinates[i];
     Json out{{"name", c.name}, {"text", c.text}, {"unit", text(c.unit)}};
-    add_block(out, infix, derive_coordinate(joint, c));
+    add_block(out, infix, derivation.coordinates[i]);
     coordinates.push_back(std::move(out));
   }
   Json all{{"format", 1},

@@ -55,60 +55,25 @@ std::string letter_of(const std::string& letter, bool vector) {
   return letter.size() == 1 ? letter : "\\mathit{" + escaped(letter) + "}";
 }
 
-class Latex : public FormulaWriter {
- public:
-  explicit Latex(const std::vector<std::string>& bodies) : bodies_(bodies) {}
+std::string name(const Formula& leaf, const std::vector<std::string>& bodies) {
+  const SpelledName s = spell(leaf.name, bodies);
+  std::string out = letter_of(s.letter, leaf.leaf && leaf.leaf->vector);
+  if (s.dots > 0) out = (s.dots == 1 ? "\\dot{" : "\\ddot{") + out + "}";
+  const bool word = s.index.size() > 1;
+  if (!s.index.empty()) out += word ? "_{\\text{" + escaped(s.index) + "}}" : "_{" + s.index + "}";
+  return s.inverse ? out + "^{-1}" : out;
+}
 
- protected:
-  std::string name(const Formula& leaf) const override {
-    const SpelledName s = spell(leaf.name, bodies_);
-    std::string out = letter_of(s.letter, leaf.leaf && leaf.leaf->vector);
-    if (s.dots > 0) out = (s.dots == 1 ? "\\dot{" : "\\ddot{") + out + "}";
-    const bool word = s.index.size() > 1;
-    if (!s.index.empty()) out += word ? "_{\\text{" + escaped(s.index) + "}}" : "_{" + s.index + "}";
-    return s.inverse ? out + "^{-1}" : out;
-  }
-  std::string number(Rational value) const override {
-    if (value.is_integer()) return value.text();
-    return fraction(std::to_string(value.num()), std::to_string(value.den()));
-  }
-  std::string sign(bool minus, bool first) const override {
-    return first ? (minus ? "-" : "") : (minus ? " - " : " + ");
-  }
-  std::string between(Shape shape) const override {
-    return shape == Shape::dot ? " \\cdot " : shape == Shape::cross ? " \\times " : "\\, ";
-  }
-  std::string fraction(const std::string& above, const std::string& below) const override {
-    return "\\frac{" + above + "}{" + below + "}";
-  }
-  std::string power(const std::string& base, int exponent) const override {
-    return "{" + base + "}^{" + std::to_string(exponent) + "}";
-  }
-  std::string call(const std::string& f, const std::vector<std::string>& args) const override {
-    std::string inner;
-    for (std::size_t i = 0; i < args.size(); ++i) inner += (i ? ", " : "") + args[i];
-    return "\\operatorname{" + f + "}" + parentheses(inner);
-  }
-  std::string norm(const std::string& arg) const override { return "\\left\\lvert " + arg + " \\right\\rvert"; }
-  std::string component(const std::string& arg, const std::string& axis) const override {
-    return "{" + arg + "}_{" + axis + "}";
-  }
-  std::string transpose(const std::string& arg) const override { return "{" + arg + "}^{\\mathsf T}"; }
-  std::string identity() const override { return "E"; }
-  std::string matrix(int columns, const std::vector<std::string>& entries) const override {
-    std::string form, body;
-    for (int i = 0; i < columns; ++i) form += i == 0 ? "c" : "|c";
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      if (i > 0) body += i % static_cast<std::size_t>(columns) == 0 ? " \\\\ " : " & ";
-      body += entries[i];
-    }
-    return "\\left[\\begin{array}{" + form + "} " + body + " \\end{array}\\right]";
-  }
-  std::string parentheses(const std::string& inner) const override { return "\\left(" + inner + "\\right)"; }
-
- private:
-  const std::vector<std::string>& bodies_;
-};
+// clang-format off
+const FormulaStyle style = {
+    .name = name, .opening_minus = "-", .minus = " - ", .plus = " + ",
+    .product = "\\, ", .dot = " \\cdot ", .cross = " \\times ", .comma = ", ",
+    .integer = "#1", .negative = "-#1", .fraction = "\\frac{#1}{#2}", .power = "{#1}^{#2}",
+    .call = "\\operatorname{#1}\\left(#2\\right)", .norm = "\\left\\lvert #1 \\right\\rvert",
+    .component = "{#1}_{#2}", .transpose = "{#1}^{\\mathsf T}", .identity = "E", .parentheses = "\\left(#1\\right)",
+    .matrix = "\\left[\\begin{array}{#2} #1 \\end{array}\\right]",
+    .entry = "#1", .next_entry = " & ", .next_row = " \\\\ "};
+// clang-format on
 
 // About how wide a formula is set: commands count as one sign.
 std::size_t set_width(const std::string& latex) {
@@ -132,7 +97,7 @@ std::vector<std::string> rule_lines(const std::string& rules) {
   return lines;
 }
 
-std::string chain_latex(const Chain& chain, const Latex& formula) {
+std::string chain(const Chain& chain, const FormulaWriter& formula) {
   std::string out = "\\begin{align*}\n  " + formula.write(chain.left);
   for (std::size_t i = 0; i < chain.links.size(); ++i) {
     const Link& link = chain.links[i];
@@ -154,32 +119,19 @@ std::string chain_latex(const Chain& chain, const Latex& formula) {
   return out + "\n\\end{align*}\n";
 }
 
+std::string head(const std::string& title) {
+  return "\\documentclass[a4paper]{article}\n\\usepackage{amsmath}\n\\allowdisplaybreaks\n"
+         "\\setlength{\\parindent}{0pt}\n\\title{" +
+         escaped(title) + "}\n\\author{}\n\\date{}\n\\begin{document}\n\\maketitle\n";
+}
+
+std::string item(const std::string& words, bool bullet) { return filled(bullet ? "\\item #1\n" : "\n#1\n\n", words); }
+
 }  // namespace
 
 std::string explanation_latex(const Explanation& explanation) {
-  const Latex formula(explanation.bodies);
-  std::string out =
-      "\\documentclass[a4paper]{article}\n\\usepackage{amsmath}\n\\allowdisplaybreaks\n"
-      "\\setlength{\\parindent}{0pt}\n\\title{" +
-      escaped(explanation.title) + "}\n\\author{}\n\\date{}\n\\begin{document}\n\\maketitle\n";
-  for (const Step& step : explanation.steps) {
-    out += "\n\\section{" + escaped(step.heading) + "}\n";
-    bool in_list = false;
-    for (const Item& item : step.items) {
-      const bool bullet = item.kind == Item::Kind::bullet;
-      if (bullet != in_list) out += bullet ? "\\begin{itemize}\n" : "\\end{itemize}\n";
-      in_list = bullet;
-      if (item.kind == Item::Kind::chain) {
-        out += chain_latex(item.chain, formula);
-        continue;
-      }
-      out += (bullet ? "\\item " : "\n") +
-             fill(item.words, prose, [&formula](const Formula& f) { return "$" + formula.write(f) + "$"; }) +
-             (bullet ? "\n" : "\n\n");
-    }
-    if (in_list) out += "\\end{itemize}\n";
-  }
-  return out + "\\end{document}\n";
+  return written(explanation, {style, head, "\\end{document}\n", "\n\\section{#2}\n", "\\begin{itemize}\n",
+                               "\\end{itemize}\n", "$#1$", escaped, prose, item, chain});
 }
 
 }  // namespace cdot::derive

@@ -6,13 +6,7 @@
 namespace cdot::derive {
 namespace {
 
-Expr left_side(const ScalarRow& row) { return row.kind == RowKind::velocity ? row.Cdot : row.C; }
-
-Statement scalar_statement(const ScalarRow& row, std::size_t index) {
-  return {row.name, row.row, row.kind, left_side(row), index, row.C_t, {}};
-}
-
-// What a vector Cdot keeps when no body moves.
+// The terms of a vector Cdot without velocities: dC/dt with all bodies at rest.
 Expr at_rest(Expr Cdot) {
   std::vector<Term> terms;
   for (const Term& term : terms_of(Cdot)) {
@@ -33,6 +27,13 @@ Formula row_of(const Notation& notation, Expr e) {
   return term.coef.sign() < 0 ? negative(std::move(row)) : row;
 }
 
+Statement scalar_statement(const Notation& notation, const ScalarRow& row, std::size_t index) {
+  Statement s{row.name, row.row,  row.kind, row.kind == RowKind::velocity ? row.Cdot : row.C,
+              index,    row.Cdot, row.C_t,  {}};
+  for (const JacobianEntry& entry : row.J) s.J.push_back({row_of(notation, entry.v), row_of(notation, entry.w)});
+  return s;
+}
+
 }  // namespace
 
 Step& Lecture::section(std::string heading) {
@@ -40,29 +41,28 @@ Step& Lecture::section(std::string heading) {
   return out.steps.back();
 }
 
-Part rows_part(const Joint& joint, const Notation& notation) {
-  Part part{derive_rows(joint), {}};
-  const std::vector<ScalarRow>& rows = part.block.rows;
+Part rows_part(const Lecture& lecture, const Block& block) {
+  const Joint& joint = lecture.joint;
+  const std::vector<ScalarRow>& rows = block.rows;
+  Part part{block, {}};
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Row& row = *rows[i].row;
     const bool vector = row.C->vector;
     const Expr Cdot = row.kind == RowKind::velocity ? row.C : time_derivative(row.C, joint);
-    const auto entries = vector ? isolate_vector(Cdot, joint, notation) : std::nullopt;
+    const auto entries = vector ? isolate_vector(Cdot, joint, lecture.notation) : std::nullopt;
     if (!entries) {
-      part.statements.push_back(scalar_statement(rows[i], i));
+      part.statements.push_back(scalar_statement(lecture.notation, rows[i], i));
       continue;
     }
-    part.statements.push_back({row.name, &row, row.kind, row.C, i, at_rest(Cdot), *entries});
+    part.statements.push_back({row.name, &row, row.kind, row.C, i, Cdot, at_rest(Cdot), *entries});
     i += static_cast<std::size_t>(joint.dimension) - 1;  // its other components
   }
   if (part.statements.size() == 1) part.statements[0].name.clear();
   return part;
 }
 
-Part coordinate_part(const Joint& joint, const Coordinate& coordinate) {
-  Part part{derive_coordinate(joint, coordinate), {}};
-  part.statements.push_back(scalar_statement(part.block.rows[0], 0));
-  return part;
+Part coordinate_part(const Lecture& lecture, const Block& coordinate) {
+  return {coordinate, {scalar_statement(lecture.notation, coordinate.rows[0], 0)}};
 }
 
 Formula label(const std::string& letter, const Statement& statement, Expr e) {
@@ -73,21 +73,6 @@ Formula label(const std::string& letter, const Statement& statement, Expr e) {
   // A row without a name of its own is called C1: its J is J_1.
   const bool numbered = name.size() > 1 && name[0] == 'C' && name[1] >= '0' && name[1] <= '9';
   return leaf(e, name.empty() ? letter : letter + "_" + (numbered ? name.substr(1) : name));
-}
-
-Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& s) {
-  if (!s.vector()) return part.block.rows[s.first].Cdot;
-  return s.kind == RowKind::velocity ? s.C : time_derivative(s.C, lecture.joint);
-}
-
-Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
-  if (s.vector()) return s.entries[body].v;
-  return row_of(lecture.notation, part.block.rows[s.first].J[body].v);
-}
-
-Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body) {
-  if (s.vector()) return s.entries[body].w;
-  return row_of(lecture.notation, part.block.rows[s.first].J[body].w);
 }
 
 }  // namespace cdot::derive

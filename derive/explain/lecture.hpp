@@ -1,5 +1,4 @@
-// What the sections of an explanation share: the joint's statements with their derivation, and how
-// things are called.
+// Shared by the sections of an explanation: the joint's statements with their derivation, and their names.
 #pragma once
 
 #include "derive/explain/rates.hpp"
@@ -7,23 +6,22 @@
 
 namespace cdot::derive {
 
-// One equation as the author wrote it: a scalar row, or a vector row with its two components kept
-// together.
+// One equation as the author wrote it: a scalar row, or a vector row as one vector.
 struct Statement {
   std::string name;          // "line"; empty if it is the only one
   const Row* row = nullptr;  // null for a coordinate
   RowKind kind = RowKind::equality;
-  Expr C;                               // scalar or vector; a velocity row: its velocity expression
-  std::size_t first = 0;                // its first scalar row in the block
-  Expr C_t;                             // dC/dt with the bodies at rest
-  std::vector<VelocityBlocks> entries;  // J of a vector row, by body
+  Expr C;                         // scalar or vector; a velocity row: its velocity expression
+  std::size_t first = 0;          // its first scalar row in the block
+  Expr Cdot, C_t;                 // as C; dC/dt with the bodies at rest
+  std::vector<VelocityBlocks> J;  // by body
 
   bool vector() const { return C->vector; }
 };
 
 // The rows of the joint, or a coordinate.
 struct Part {
-  Block block;
+  const Block& block;
   std::vector<Statement> statements;
 };
 
@@ -38,17 +36,11 @@ struct Lecture {
   Step& section(std::string heading);
 };
 
-Part rows_part(const Joint& joint, const Notation& notation);
-Part coordinate_part(const Joint& joint, const Coordinate& coordinate);
+Part rows_part(const Lecture& lecture, const Block& rows);
+Part coordinate_part(const Lecture& lecture, const Block& coordinate);
 
 // "C", or "C_line" where there are several; e is what it equals, if that is an expression.
 Formula label(const std::string& letter, const Statement& statement, Expr e = {});
-
-Expr Cdot_of(const Lecture& lecture, const Part& part, const Statement& statement);
-// What stands in a statement's row of J for one body: the block of v and the block of w; 0 where
-// nothing does.
-Formula block_of_v(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
-Formula block_of_w(const Lecture& lecture, const Part& part, const Statement& s, std::size_t body);
 
 // The sections, in order.
 void introduce(Lecture& lecture);
@@ -59,7 +51,7 @@ void read_jacobian(Lecture& lecture, const Part& part, Step& step);
 // J in another form of velocity, in space; for the rows also whether form (c) is dC/de.
 void explain_form(Lecture& lecture, const Part& part, Form form);
 void show_form(const Lecture& lecture, const Part& part, Form form, Step& step);
-Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s);
+Formula row_of_J(const Statement& s);
 // K entry by entry: scalar rows simplified, vector rows in blocks.
 void summarise_mass(const Lecture& lecture, const Part& part, std::vector<Chain>& chains);
 void multiply_mass(Lecture& lecture, const Part& part, Step& step);

@@ -1,5 +1,4 @@
-// What a derivation takes for granted, and where it ends: zero lengths, divisions, roots, angles
-// that wrap.
+// The assumptions of a derivation and its limits: zero lengths, divisions, roots, angles that wrap.
 #include <set>
 #include <utility>
 
@@ -82,11 +81,9 @@ void assume(const Joint& joint, Step& step) {
     }
   }
   step.list("A body that cannot move has inverse mass and inverse inertia 0; its terms of K vanish.");
-  step.list(
-      "If all of K vanishes (no body can move), the kernel's guarded factorisation gives no "
-      "impulse.");
+  step.list("If K = 0 (no body can move), the guarded factorisation of the kernel gives no impulse.");
   if (joint.uses_world) {
-    step.list("Something is fixed in the world, which takes any impulse: momentum is not conserved.");
+    step.list("A part is fixed in the world, which takes any impulse: the joint does not conserve momentum.");
   }
 }
 
@@ -95,7 +92,7 @@ void assume(const Joint& joint, Step& step) {
 void state_limits(Lecture& lecture, const std::vector<const Part*>& parts) {
   Limits limits(lecture);
   for (const Part* part : parts) find_all(*part, limits);
-  Step& step = lecture.section("What was assumed, and where it ends");
+  Step& step = lecture.section("Assumptions and limits");
   assume(lecture.joint, step);
   for (Item& item : limits.limits.items) step.items.push_back(std::move(item));
 }

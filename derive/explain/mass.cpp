@@ -42,8 +42,7 @@ Scaled without_scalars(const Notation& notation, Expr e) {
   return scaled ? Scaled{notation.of(e->args[0]), e->args[1]} : Scaled{number(1), e};
 }
 
-// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t)' inv_I_a (ra ×
-// t).
+// inv_I_a (ra × t)^2 in the plane; in space, where the inertia is a tensor, (ra × t)' inv_I_a (ra × t).
 void add_product(const Notation& notation, Expr inverse, Expr wi, Expr wj, std::vector<SignedFormula>& terms) {
   if (is_zero(wi) || is_zero(wj)) return;
   const Factors f = factors(wi, wj);
@@ -76,8 +75,8 @@ class MassProduct {
         add_product(lecture_.notation, body.inv_I, Js.w, Jt.w, terms);
       } else {
         const bool tensor = lecture_.joint.dimension == 3;
-        add_blocks(body.inv_m, block_of_v(lecture_, part_, s, b), block_of_v(lecture_, part_, t, b), false, terms);
-        add_blocks(body.inv_I, block_of_w(lecture_, part_, s, b), block_of_w(lecture_, part_, t, b), tensor, terms);
+        add_blocks(body.inv_m, s.J[b].v, t.J[b].v, false, terms);
+        add_blocks(body.inv_I, s.J[b].w, t.J[b].w, tensor, terms);
       }
     }
     return sum(std::move(terms));
@@ -137,7 +136,7 @@ class MassProduct {
 Expr unscaled(Expr v) { return v->kind == Kind::scale ? v->args[1] : v; }
 std::string spoken(Expr e) { return e->name.empty() ? text(e) : e->name; }
 
-// What the builders used to make K simpler than the product: lengths of unit vectors, right angles.
+// The identities that make K simpler than the product: lengths of unit vectors, right angles.
 std::string identities_used(const Lecture& lecture, const Part& part, const Statement& s, const Statement& t) {
   std::string used;
   if (s.vector() || t.vector()) return "written out in components";

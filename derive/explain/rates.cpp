@@ -120,14 +120,6 @@ Rates::Written Rates::times(Expr factor, const Written& rate) const {
 
 namespace {
 
-using Written = Rates::Written;
-
-template <class Build>
-Written both(const Written& a, const Written& b, Build build) {
-  if (!a.formula || !b.formula) return {};
-  return {build(*a.formula, *b.formula)};
-}
-
 // The name of the world's axis that f is; empty for others.
 std::string axis_in(const Formula& f) {
   if (f.shape == Shape::leaf) return world_axis(f.leaf);
@@ -137,28 +129,10 @@ std::string axis_in(const Formula& f) {
 
 }  // namespace
 
-Written operator+(const Written& a, const Written& b) {
-  if (!a.formula || !b.formula) return a.formula ? a : b;
-  return {sum({{false, *a.formula}, {false, *b.formula}})};
+Formula Rates::Written::along_axis_or_dot(const Formula& f, const Formula& g) {
+  if (const std::string axis = axis_in(f); !axis.empty()) return component(g, axis);
+  if (const std::string axis = axis_in(g); !axis.empty()) return component(f, axis);
+  return derive::dot(f, g);
 }
-Written operator-(const Written& a) { return a.formula ? Written{negative(*a.formula)} : a; }
-Written operator-(const Written& a, const Written& b) { return a + -b; }
-Written operator*(const Written& a, const Written& b) {
-  return both(a, b, [](const Formula& f, const Formula& g) { return product({f, g}); });
-}
-Written operator/(const Written& a, const Written& b) { return both(a, b, quotient); }
-Written cross(const Written& a, const Written& b) {
-  return both(a, b, [](const Formula& f, const Formula& g) { return cross(f, g); });
-}
-// The component along an axis of the world is written u.x.
-Written dot(const Written& a, const Written& b) {
-  return both(a, b, [](const Formula& f, const Formula& g) {
-    if (const std::string axis = axis_in(f); !axis.empty()) return component(g, axis);
-    if (const std::string axis = axis_in(g); !axis.empty()) return component(f, axis);
-    return dot(f, g);
-  });
-}
-Written perp(const Written& a) { return a.formula ? Written{shaped(Shape::perp, *a.formula)} : a; }
-Written pow(const Written& a, int exponent) { return a.formula ? Written{power(*a.formula, exponent)} : a; }
 
 }  // namespace cdot::derive

@@ -23,6 +23,33 @@ class Rates {
   // The algebra of the rules: a formula as they write it, none where it is zero.
   struct Written {
     std::optional<Formula> formula;
+
+    friend bool is_zero(const Written& a) { return !a.formula; }
+    friend Written operator+(const Written& a, const Written& b) {
+      if (!a.formula || !b.formula) return a.formula ? a : b;
+      return {sum({{false, *a.formula}, {false, *b.formula}})};
+    }
+    friend Written operator-(const Written& a) { return a.formula ? Written{negative(*a.formula)} : a; }
+    friend Written operator-(const Written& a, const Written& b) { return a + -b; }
+    friend Written operator*(const Written& a, const Written& b) {
+      return both(a, b, [](const Formula& f, const Formula& g) { return product({f, g}); });
+    }
+    friend Written operator/(const Written& a, const Written& b) { return both(a, b, quotient); }
+    friend Written cross(const Written& a, const Written& b) {
+      return both(a, b, [](const Formula& f, const Formula& g) { return derive::cross(f, g); });
+    }
+    friend Written dot(const Written& a, const Written& b) { return both(a, b, along_axis_or_dot); }
+    friend Written perp(const Written& a) { return a.formula ? Written{shaped(Shape::perp, *a.formula)} : a; }
+    friend Written pow(const Written& a, int exponent) { return a.formula ? Written{power(*a.formula, exponent)} : a; }
+
+   private:
+    template <class Build>
+    static Written both(const Written& a, const Written& b, Build build) {
+      if (!a.formula || !b.formula) return {};
+      return {build(*a.formula, *b.formula)};
+    }
+    // The component along an axis of the world is written u.x.
+    static Formula along_axis_or_dot(const Formula& f, const Formula& g);
   };
   using Value = Written;
   Written operand(Expr e) const { return {notation_.of(e)}; }
@@ -49,16 +76,5 @@ class Rates {
   std::vector<std::string> rules_;
   std::vector<Chain> chains_;
 };
-
-inline bool is_zero(const Rates::Written& a) { return !a.formula; }
-Rates::Written operator+(const Rates::Written& a, const Rates::Written& b);
-Rates::Written operator-(const Rates::Written& a);
-Rates::Written operator-(const Rates::Written& a, const Rates::Written& b);
-Rates::Written operator*(const Rates::Written& a, const Rates::Written& b);
-Rates::Written operator/(const Rates::Written& a, const Rates::Written& b);
-Rates::Written dot(const Rates::Written& a, const Rates::Written& b);
-Rates::Written cross(const Rates::Written& a, const Rates::Written& b);
-Rates::Written perp(const Rates::Written& a);
-Rates::Written pow(const Rates::Written& a, int exponent);
 
 }  // namespace cdot::derive

@@ -1,5 +1,4 @@
-// From C to J: the constraint, its derivative, the velocities isolated, the Jacobian read off, and
-// gamma.
+// From C to J: the constraint, its derivative, the velocities isolated, the Jacobian read off, and gamma.
 #include <algorithm>
 #include <utility>
 
@@ -12,7 +11,7 @@ void head(Step& step, const Part& part, const Statement& s) {
   if (part.statements.size() > 1) step.say("Row `" + s.name + "`:");
 }
 
-// What multiplies one velocity, summed up from the terms of Cdot.
+// The factor of one velocity, summed up from the terms of Cdot.
 void collect(Lecture& lecture, const std::vector<VelocityTerm>& terms, Expr coefficient, int body, bool spin,
              Step& step) {
   std::vector<SignedFormula> parts;
@@ -64,7 +63,7 @@ void isolate_scalar(Lecture& lecture, const Part& part, const Statement& s, Step
     collect(lecture, terms, row.J[b].w, static_cast<int>(b), true, step);
   }
   const Formula result = isolated(lecture, row);
-  if (same_terms(result, Cdot)) return step.say("They stand alone already.");
+  if (same_terms(result, Cdot)) return step.say("Each velocity stands alone already.");
   step.show({label("Cdot", s, row.Cdot), {{result, ""}}});
 }
 
@@ -82,25 +81,29 @@ const char* turning_by_skew(int dimension) {
   return dimension == 2 ? "w × r = S(r) w, with S(r) = perp(r) as a column" : "w × r = -S(r) w, with S(r) u = r × u";
 }
 
-void isolate_rows_together(Lecture& lecture, const Part& part, const Statement& s, Step& step) {
+// The factors of v and w of each body that are not 0, with that velocity.
+std::vector<std::pair<Formula, Expr>> multiplied_velocities(const Lecture& lecture, const Statement& s) {
+  std::vector<std::pair<Formula, Expr>> all;
+  for (std::size_t b = 0; b < s.J.size(); ++b) {
+    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
+    if (s.J[b].v != number(0)) all.emplace_back(s.J[b].v, body.v);
+    if (s.J[b].w != number(0)) all.emplace_back(s.J[b].w, body.w);
+  }
+  return all;
+}
+
+void isolate_rows_together(Lecture& lecture, const Statement& s, Step& step) {
   std::vector<SignedFormula> terms;
-  const auto add = [&terms](const Formula& block, Expr velocity) {
-    if (block == number(0)) return;
+  for (const auto& [block, velocity] : multiplied_velocities(lecture, s)) {
     for (const SignedFormula& term : terms_of(block)) {
       terms.push_back({term.minus, product({without_identity(term.formula), leaf(velocity)})});
     }
-  };
-  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
-    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
-    add(block_of_v(lecture, part, s, b), body.v);
-    add(block_of_w(lecture, part, s, b), body.w);
   }
   if (!is_zero(s.C_t)) terms.push_back({false, lecture.notation.of(s.C_t)});
-  step.show({label("Cdot", s, Cdot_of(lecture, part, s)),
-             {{sum(std::move(terms)), turning_by_skew(lecture.joint.dimension)}}});
+  step.show({label("Cdot", s, s.Cdot), {{sum(std::move(terms)), turning_by_skew(lecture.joint.dimension)}}});
 }
 
-// Products multiplied out, so that what occurs twice is added up.
+// Products multiplied out, so that equal terms add up.
 Expr expanded(Expr e) {
   Pool& pool = *e->pool;
   if (e->kind == Kind::sum) {
@@ -127,27 +130,18 @@ Expr expanded(Expr e) {
   return e;
 }
 
-// Whether w × (w × r) stands in it.
+// True if it contains w × (w × r).
 bool turns_twice(const Formula& f) {
   if (f.shape == Shape::cross && f.args[1].shape == Shape::cross) return true;
   return std::any_of(f.args.begin(), f.args.end(), turns_twice);
 }
 
-void list_columns(const Lecture& lecture, const Part& part, const Statement& s, Step& step) {
-  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
-    const BodySymbols body = body_symbols(lecture.joint, static_cast<int>(b));
-    const Formula v = block_of_v(lecture, part, s, b), w = block_of_w(lecture, part, s, b);
-    if (v != number(0)) step.list("{} is multiplied by {}", {leaf(body.v), v});
-    if (w != number(0)) step.list("{} is multiplied by {}", {leaf(body.w), w});
-  }
-}
-
 const char* kept_together(int dimension) {
-  return dimension == 2 ? ". Two rows, x and y, kept together as a vector:"
-                        : ". Three rows, x, y and z, kept together as a vector:";
+  return dimension == 2 ? ". Two rows, x and y, written as one vector:"
+                        : ". Three rows, x, y and z, written as one vector:";
 }
 
-// Which rows of n × m = 0 are kept, n an axis of a frame: the components along the other two axes.
+// `keep 2` of n × m = 0, n an axis of a frame, selects the components along the other two axes.
 void explain_kept(const Lecture& lecture, Expr product, Step& step) {
   const Pool& pool = *lecture.joint.pool;
   const bool first = pool.axis_of(product->args[0]).triad && product->args[0]->body >= 0;
@@ -158,27 +152,23 @@ void explain_kept(const Lecture& lecture, Expr product, Step& step) {
   const Notation& notation = lecture.notation;
   const Formula all = cross(leaf(n), notation.of(m));
   step.say(
-      "`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 "
-      "always. Kept are the components along the other two axes of the frame:",
+      "`keep 2`: of the three rows of {} = 0 only two are independent, since {} · ({}) = 0 always. It selects the "
+      "components along the other two axes of the frame:",
       {all, leaf(n), all});
   const std::string rule = "a · (b × c) = (a × b) · c";
   step.show({dot(leaf(z), all), {{dot(leaf(y), notation.of(m)), rule}}});
   step.show({dot(leaf(y), all), {{negative(dot(leaf(z), notation.of(m))), rule}}});
   step.say(
-      "While both vanish {} lies along {}, and {} and {} are as long as {} and stand on each "
-      "other: "
-      "these two rows stay independent wherever the row holds.",
+      "While both vanish, {} lies along {}, and {} and {} are as long as {} and orthogonal: these two rows stay "
+      "independent wherever C = 0.",
       {notation.of(m), leaf(n), cross(leaf(y), notation.of(m)), cross(leaf(z), notation.of(m)), notation.of(m)});
 }
 
 }  // namespace
 
-Formula row_of_J(const Lecture& lecture, const Part& part, const Statement& s) {
+Formula row_of_J(const Statement& s) {
   std::vector<Formula> blocks;
-  for (std::size_t b = 0; b < lecture.joint.bodies.size(); ++b) {
-    blocks.push_back(block_of_v(lecture, part, s, b));
-    blocks.push_back(block_of_w(lecture, part, s, b));
-  }
+  for (const VelocityBlocks& of_body : s.J) blocks.insert(blocks.end(), {of_body.v, of_body.w});
   const int columns = static_cast<int>(blocks.size());
   return matrix(columns, std::move(blocks));
 }
@@ -199,15 +189,14 @@ void state_constraint(Lecture& lecture, const Part& part) {
     const Formula C = lecture.notation.definition(s.C);
     if (s.kind == RowKind::velocity) {
       step.show({label("Cdot", s, s.C), {{C, ""}}});
-      step.say("It is written at velocity level: it has no position form, and C is reported as 0.");
+      step.say("The row is written at velocity level: it has no position form, and C is 0.");
     } else {
       step.show({label("C", s, s.C), {{C, ""}}});
     }
     const bool last = &s == &part.statements.back() || (&s)[1].row->kept != s.row->kept;
     if (s.row->kept && last) explain_kept(lecture, s.row->kept, step);
     if (s.kind == RowKind::inequality) {
-      step.say("An inequality: {} ≥ 0 must hold, and its impulse may only push C up (lambda ≥ 0).",
-               {label("C", s, s.C)});
+      step.say("An inequality: {} ≥ 0, and its impulse may only push C up (lambda ≥ 0).", {label("C", s, s.C)});
     }
   }
 }
@@ -216,11 +205,10 @@ void differentiate(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
     if (s.kind == RowKind::velocity) {
-      step.say("Nothing to differentiate: it is written with velocities.");
+      step.say("The row contains velocities already: there is nothing to differentiate.");
       continue;
     }
-    const Expr Cdot = Cdot_of(lecture, part, s);
-    for (Chain& chain : lecture.rates.differentiate(s.C, label("Cdot", s, Cdot))) {
+    for (Chain& chain : lecture.rates.differentiate(s.C, label("Cdot", s, s.Cdot))) {
       step.show(std::move(chain));
     }
   }
@@ -229,7 +217,7 @@ void differentiate(Lecture& lecture, const Part& part, Step& step) {
 void isolate_velocities(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    if (s.vector()) isolate_rows_together(lecture, part, s, step);
+    if (s.vector()) isolate_rows_together(lecture, s, step);
     else isolate_scalar(lecture, part, s, step);
   }
 }
@@ -238,12 +226,14 @@ void read_jacobian(Lecture& lecture, const Part& part, Step& step) {
   std::vector<Formula> all;
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    list_columns(lecture, part, s, step);
+    for (const auto& [block, velocity] : multiplied_velocities(lecture, s)) {
+      step.list("{} is multiplied by {}", {leaf(velocity), block});
+    }
     if (!is_zero(s.C_t)) {
       step.list("without a velocity, so no part of J but dC/dt with the bodies at rest: {}",
                 {lecture.notation.of(s.C_t)});
     }
-    const Formula row = row_of_J(lecture, part, s);
+    const Formula row = row_of_J(s);
     all.insert(all.end(), row.args.begin(), row.args.end());
     if (part.statements.size() == 1) step.show({label("J", s), {{row, ""}}});
   }
@@ -256,14 +246,14 @@ void read_jacobian(Lecture& lecture, const Part& part, Step& step) {
 void differentiate_again(Lecture& lecture, const Part& part, Step& step) {
   for (const Statement& s : part.statements) {
     head(step, part, s);
-    const Expr Cdot = Cdot_of(lecture, part, s), gamma = -time_derivative(Cdot, lecture.joint);
+    const Expr gamma = -time_derivative(s.Cdot, lecture.joint);
     const Formula name = label("gamma", s, gamma);
     const Formula simplified = lecture.notation.definition(expanded(gamma));
     if (simplified == number(0)) {
       step.show({name, {{simplified, "J does not change"}}});
       continue;
     }
-    for (Chain& chain : lecture.rates.differentiate(Cdot, negative(name))) {
+    for (Chain& chain : lecture.rates.differentiate(s.Cdot, negative(name))) {
       chain.links.resize(1);  // with its names, not with all of them inserted
       const bool shorter = lecture.joint.dimension == 2 && turns_twice(chain.links[0].formula);
       if (chain.left != negative(name) && shorter) {

@@ -1,5 +1,4 @@
-// What a derivation comes to, for the head of a generated file: names, C, J and K, as the lecture
-// writes them.
+// The results of a derivation for the head of a generated file: names, C, J and K, as the lecture writes them.
 #include <algorithm>
 
 #include "derive/explain/lecture.hpp"
@@ -45,7 +44,7 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
     const Formula left =
         part.block.name.empty() ? label(velocity ? "Cdot" : "C", s, s.C) : leaf(s.C, "coordinate " + s.name);
     summary.push_back(equation(left, lecture.notation.definition(s.C), note_of(s.kind)));
-    const Formula row = row_of_J(lecture, part, s);
+    const Formula row = row_of_J(s);
     J.insert(J.end(), row.args.begin(), row.args.end());
   }
   if (part.statements.empty()) return summary;
@@ -60,17 +59,15 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
 
 }  // namespace
 
-std::vector<std::vector<Chain>> summarise(const Joint& joint) {
-  const Lecture lecture(joint);
-  std::vector<std::vector<Chain>> all = {summarise(lecture, rows_part(joint, lecture.notation))};
+std::vector<std::vector<Chain>> summarise(const Derivation& derivation) {
+  const Lecture lecture(derivation.joint);
+  std::vector<std::vector<Chain>> all = {summarise(lecture, rows_part(lecture, derivation.rows))};
   std::vector<Chain> names;
-  for (const Let& let : joint.lets) {
+  for (const Let& let : derivation.joint.lets) {
     names.push_back(equation(leaf(let.value, let.name), lecture.notation.definition(let.value)));
   }
   all[0].insert(all[0].begin(), names.begin(), names.end());
-  for (const Coordinate& c : joint.coordinates) {
-    all.push_back(summarise(lecture, coordinate_part(joint, c)));
-  }
+  for (const Block& block : derivation.coordinates) all.push_back(summarise(lecture, coordinate_part(lecture, block)));
   return all;
 }
 

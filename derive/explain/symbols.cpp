@@ -1,5 +1,4 @@
-// What each name means, in which unit and frame, and how what turns with a body follows from its
-// angle.
+// The meaning, unit and frame of each name; components that turn with a body follow from its angle.
 #include "derive/explain/symbols.hpp"
 
 #include <array>
@@ -142,8 +141,7 @@ void ExplainedSymbols::add_parameter(const Joint& joint, const Parameter& p) {
   if (!p.axes.empty()) frames_.push_back({{"name", p.name}, {"axes", triad}});
 }
 
-// The names of the numbers that are given: components in the world, or in the frame of the body it
-// is fixed in.
+// The names of the numbers that are given: components in the world, or in the frame of the body it is fixed in.
 std::vector<std::string> ExplainedSymbols::add_direction(const Joint& joint, const Parameter& p,
                                                          const std::string& leaf, Doc doc) {
   std::vector<std::string> given;

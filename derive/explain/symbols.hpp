@@ -1,5 +1,4 @@
-// The names that other programs see: one for every component that an expression may contain, with
-// what it means.
+// The names that other programs see: one for every component that an expression may contain, with what it means.
 #pragma once
 
 #include <map>

@@ -1,5 +1,4 @@
-// The derivation for a terminal: one equation a line, the rule behind it, long sums broken between
-// terms.
+// The derivation for a terminal: one equation a line, the rule behind it, long sums broken between terms.
 #include <algorithm>
 
 #include "derive/explain/write.hpp"
@@ -10,42 +9,14 @@ namespace {
 constexpr std::size_t text_width = 100;
 constexpr std::size_t rule_column = 64;
 
-class TextFormula : public FormulaWriter {
- protected:
-  std::string name(const Formula& leaf) const override { return leaf.name; }
-  std::string number(Rational value) const override { return value.text(); }
-  std::string sign(bool minus, bool first) const override {
-    return first ? (minus ? "-" : "") : (minus ? " - " : " + ");
-  }
-  std::string between(Shape shape) const override {
-    return shape == Shape::dot ? " · " : shape == Shape::cross ? " × " : " ";
-  }
-  std::string fraction(const std::string& above, const std::string& below) const override {
-    return above + "/" + below;
-  }
-  bool fraction_encloses() const override { return false; }
-  std::string power(const std::string& base, int exponent) const override {
-    return base + "^" + std::to_string(exponent);
-  }
-  std::string call(const std::string& f, const std::vector<std::string>& args) const override {
-    std::string out = f + "(";
-    for (std::size_t i = 0; i < args.size(); ++i) out += (i ? ", " : "") + args[i];
-    return out + ")";
-  }
-  std::string norm(const std::string& arg) const override { return "|" + arg + "|"; }
-  std::string component(const std::string& arg, const std::string& axis) const override { return arg + "." + axis; }
-  std::string transpose(const std::string& arg) const override { return arg + "'"; }
-  std::string identity() const override { return "E"; }
-  std::string matrix(int columns, const std::vector<std::string>& entries) const override {
-    std::string out = "[ ";
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-      if (i > 0) out += i % static_cast<std::size_t>(columns) == 0 ? " ; " : " | ";
-      out += entries[i];
-    }
-    return out + " ]";
-  }
-  std::string parentheses(const std::string& inner) const override { return "(" + inner + ")"; }
-};
+// clang-format off
+const FormulaStyle style = {
+    .name = [](const Formula& leaf, const std::vector<std::string>&) { return leaf.name; },
+    .opening_minus = "-", .minus = " - ", .plus = " + ", .product = " ", .dot = " · ", .cross = " × ", .comma = ", ",
+    .integer = "#1", .negative = "-#1", .fraction = "#1/#2", .power = "#1^#2", .call = "#1(#2)", .norm = "|#1|",
+    .component = "#1.#2", .transpose = "#1'", .identity = "E", .parentheses = "(#1)",
+    .matrix = "[ #1 ]", .entry = "#1", .next_entry = " | ", .next_row = " ; ", .fraction_encloses = false};
+// clang-format on
 
 std::size_t width(const std::string& s) {
   return static_cast<std::size_t>(
@@ -78,7 +49,7 @@ class ChainText {
   std::string write(const Chain& chain) {
     std::string left = std::string(margin_, ' ') + formula_.write(chain.left);
     indent_ = width(left);
-    // A long left side keeps its line.
+    // A long left side stands in a line of its own.
     if (indent_ > page_width_ / 2) {
       out_ += left + "\n";
       indent_ = margin_ + 2;
@@ -114,8 +85,7 @@ class ChainText {
     else write_entries(f);
   }
 
-  // An entry a line where a row is too long for one: | before each but a row's first, ; before a
-  // new row.
+  // An entry a line where a row is too long for one: | before each but a row's first, ; before a new row.
   void write_entries(const Formula& f) {
     for (std::size_t i = 0; i < f.args.size(); ++i) {
       if (i > 0) finish_line();
@@ -169,32 +139,27 @@ class ChainText {
     line_.clear();
   }
 
-  TextFormula formula_;
+  FormulaWriter formula_{style};
   std::string out_, line_;
   std::size_t margin_, page_width_, indent_ = 0;
 };
 
-std::string item_text(const Item& item) {
-  if (item.kind == Item::Kind::chain) return ChainText(4, text_width).write(item.chain);
-  const TextFormula formula;
-  const std::string words = fill(
-      item.words, [](const std::string& s) { return s; }, [&formula](const Formula& f) { return formula.write(f); });
-  if (item.kind == Item::Kind::bullet) return "  - " + wrapped(words, 4) + "\n";
-  return "  " + wrapped(words, 2) + "\n";
+std::string head(const std::string& title) { return title + "\n" + std::string(width(title), '=') + "\n"; }
+
+std::string plain(const std::string& words) { return words; }
+
+std::string item(const std::string& words, bool bullet) {
+  return bullet ? "  - " + wrapped(words, 4) + "\n" : "  " + wrapped(words, 2) + "\n";
 }
+
+std::string chain(const Chain& chain, const FormulaWriter&) { return ChainText(4, text_width).write(chain); }
 
 }  // namespace
 
 std::string chain_text(const Chain& chain, std::size_t page_width) { return ChainText(0, page_width).write(chain); }
 
 std::string explanation_text(const Explanation& explanation) {
-  std::string out = explanation.title + "\n" + std::string(width(explanation.title), '=') + "\n";
-  int number = 0;
-  for (const Step& step : explanation.steps) {
-    out += "\n" + std::to_string(++number) + ". " + step.heading + "\n";
-    for (const Item& item : step.items) out += item_text(item);
-  }
-  return out;
+  return written(explanation, {style, head, "", "\n#1. #2\n", "", "", "#1", plain, plain, item, chain});
 }
 
 }  // namespace cdot::derive

@@ -1,9 +1,10 @@
-// Multiplying out keeps the shape of what it multiplies, so that each term can be recognised in
-// Cdot.
+// Multiplying out preserves the shape of each factor, so that a reader recognises each term in Cdot.
 #include "derive/explain/velocities.hpp"
 
 #include <algorithm>
 #include <utility>
+
+#include "derive/derivation/transposition_rules.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -77,8 +78,7 @@ bool moves_in_space(const Formula& f) {
   return std::any_of(f.args.begin(), f.args.end(), moves_in_space);
 }
 
-// The identity that brings the innermost product with a velocity into the form "coefficient times
-// velocity".
+// The identity that brings the innermost product with a velocity into the form "coefficient times velocity".
 std::string identity_in(const Formula& f, const Distribution& distribution) {
   for (const Formula& arg : f.args) {
     if (is_turning(f) || !distribution.moves(arg) || arg.shape == Shape::leaf) continue;
@@ -105,20 +105,26 @@ std::string identity_in(const Formula& f, const Distribution& distribution) {
   return "";
 }
 
-// What stands left of a velocity in a term: a number, scalars, then matrices or columns.
+// The factors left of a velocity in a term: a number, scalars, then matrices or columns.
 struct Left {
   Rational coef{1};
   std::vector<Formula> scalars, matrices;
+  Expr column = {};  // the last matrix, where it is a column that a scalar multiplies
 
-  Left times(Rational c) const { return {coef * c, scalars, matrices}; }
+  Left times(Rational c) const {
+    Left left = *this;
+    left.coef = coef * c;
+    return left;
+  }
   Left with_scalar(Formula f) const {
     Left left = *this;
     left.scalars.push_back(std::move(f));
     return left;
   }
-  Left with_matrix(Formula f) const {
+  Left with_matrix(Formula f, Expr as_column = {}) const {
     Left left = *this;
     left.matrices.push_back(std::move(f));
+    left.column = as_column;
     return left;
   }
   bool same_but_coef(const Left& other) const { return scalars == other.scalars && matrices == other.matrices; }
@@ -132,31 +138,32 @@ struct Left {
   }
 };
 
-// From a vector Cdot to its velocities, carrying what stands left of each.
+// Matrices and columns as the algebra of the rules, for a vector Cdot: written, not simplified.
 class VectorIsolation {
  public:
+  using Map = Left;
+
   VectorIsolation(const Joint& joint, const Notation& notation)
       : joint_(joint), notation_(notation), v_(joint.bodies.size()), w_(joint.bodies.size()) {}
 
-  void walk(Expr e, const Left& left) {
-    if (!depends_on_velocity(e)) return;
-    switch (e->kind) {
-      case Kind::symbol: return add(e->role == Role::spin ? w_ : v_, e->body, left);
-      case Kind::sum:
-        for (std::size_t i = 0; i < e->args.size(); ++i) walk(e->args[i], left.times(e->coefs[i]));
-        return;
-      case Kind::scale:
-        if (!depends_on_velocity(e->args[0])) return walk(e->args[1], left.with_scalar(notation_.of(e->args[0])));
-        if (!depends_on_velocity(e->args[1])) return along(e->args[0], left, e->args[1]);
-        break;
-      case Kind::cross:  // u × v = S(u) v = -S(v) u
-        if (!depends_on_velocity(e->args[0]))
-          return walk(e->args[1], left.with_matrix(shaped(Shape::skew, notation_.of(e->args[0]))));
-        return walk(e->args[0], left.times(-1).with_matrix(shaped(Shape::skew, notation_.of(e->args[1]))));
-      default: break;
-    }
-    complete_ = false;
+  bool moves(Expr e) const { return depends_on_velocity(e); }
+  void pass(Expr e, const Left& left) {
+    if (!e->vector) return along(e, left);
+    if (e->kind == Kind::symbol) return add(e->role == Role::spin ? w_ : v_, e->body, left);
+    TranspositionRules(*this).of(e, left);
   }
+  Left scaled(const Left& left, Rational k) const { return left.times(k); }
+  Left after_factor(const Left& left, Expr s) const { return left.with_scalar(notation_.of(s)); }
+  Left after_column(const Left& left, Expr u) const { return left.with_matrix(notation_.of(u), u); }
+  Left after_row(const Left& left, Expr u) const {
+    const Term n = split_coefficient(u);
+    return left.times(n.coef).with_matrix(shaped(Shape::transpose, notation_.of(n.e)));
+  }
+  Left after_cross(const Left& left, Expr u) const { return left.with_matrix(shaped(Shape::skew, notation_.of(u))); }
+  // u x v = S(u) v = -S(v) u
+  Left before_cross(const Left& left, Expr v) const { return after_cross(left.times(-1), v); }
+  Left after_perp(const Left& left) { return complete_ = false, left; }
+  Left after_tensor(const Left& left, Expr) { return complete_ = false, left; }
 
   std::optional<std::vector<VelocityBlocks>> blocks() const {
     if (!complete_) return {};
@@ -168,27 +175,25 @@ class VectorIsolation {
  private:
   using Terms = std::vector<Left>;
 
-  // s u with a scalar s that holds the velocities: u (n · v + c · w) = u n' v + u c' w.
-  void along(Expr s, const Left& left, Expr u) {
+  // s u with a scalar s that contains the velocities: u (n · v + c · w) = u n' v + u c' w.
+  void along(Expr s, const Left& left) {
     const std::vector<JacobianEntry> J = isolate_velocities(s, joint_);
     for (std::size_t b = 0; b < J.size(); ++b) {
       const int body = static_cast<int>(b);
-      if (!is_zero(J[b].v)) add_row(v_, body, left.with_matrix(notation_.of(u)), J[b].v);
-      if (is_zero(J[b].w)) continue;
-      if (J[b].w->vector) {
-        add_row(w_, body, left.with_matrix(notation_.of(u)), J[b].w);
+      const auto& [v, w] = J[b];
+      if (!is_zero(v)) add(v_, body, after_row(left, v));
+      if (is_zero(w)) continue;
+      if (w->vector) {
+        add(w_, body, after_row(left, w));
         continue;
       }
-      const Term c = split_coefficient(J[b].w);
-      Left column = left.times(c.coef).with_matrix(u->kind == Kind::perp ? shaped(Shape::skew, notation_.of(u->args[0]))
-                                                                         : notation_.of(u));
+      const Term c = split_coefficient(w);
+      Left column = left.times(c.coef);
+      if (left.column->kind == Kind::perp) {  // w perp(r) = S(r) w
+        column.matrices.back() = shaped(Shape::skew, notation_.of(left.column->args[0]));
+      }
       add(w_, body, is_one(c.e) ? column : column.with_scalar(notation_.of(c.e)));
     }
-  }
-
-  void add_row(std::vector<Terms>& terms, int body, const Left& left, Expr row) {
-    const Term n = split_coefficient(row);
-    add(terms, body, left.times(n.coef).with_matrix(shaped(Shape::transpose, notation_.of(n.e))));
   }
 
   static void add(std::vector<Terms>& terms, int body, const Left& left) {
@@ -242,7 +247,7 @@ std::vector<VelocityTerm> isolate(const Formula& Cdot, const Joint& joint) {
 
 std::optional<std::vector<VelocityBlocks>> isolate_vector(Expr Cdot, const Joint& joint, const Notation& notation) {
   VectorIsolation isolation(joint, notation);
-  isolation.walk(Cdot, {});
+  if (isolation.moves(Cdot)) isolation.pass(Cdot, {});
   return isolation.blocks();
 }
 

@@ -1,7 +1,8 @@
-// Precedence of written formulas, and names taken apart.
+// Precedence of written formulas, names taken apart, and the parts of a document in their order.
 #include "derive/explain/write.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace cdot::derive {
 
@@ -33,13 +34,28 @@ SpelledName spell(const std::string& name, const std::vector<std::string>& bodie
   return s;
 }
 
+std::string filled(std::string_view pattern, std::string_view first, std::string_view second) {
+  std::string out;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const std::string_view part = pattern.substr(i, 2);
+    if (part != "#1" && part != "#2") {
+      out += pattern[i];
+      continue;
+    }
+    out += part == "#1" ? first : second;
+    ++i;
+  }
+  return out;
+}
+
 std::vector<std::string> FormulaWriter::pieces(const Formula& f) const {
   if (f.shape != Shape::sum) return {write(f)};
   std::vector<std::string> out;
   for (std::size_t i = 0; i < f.args.size(); ++i) {
-    out.push_back(sign(f.minus[i], i == 0) + write(f.args[i], !f.minus[i] ? Place::term
-                                                              : i == 0    ? Place::opening_minus
-                                                                          : Place::negated));
+    const bool first = i == 0, minus = f.minus[i];
+    const std::string_view sign = minus ? (first ? style_.opening_minus : style_.minus) : first ? "" : style_.plus;
+    const Place place = !minus ? Place::term : first ? Place::opening_minus : Place::negated;
+    out.push_back(std::string(sign) + write(f.args[i], place));
   }
   return out;
 }
@@ -55,7 +71,7 @@ bool FormulaWriter::needs_parentheses(const Formula& f, Place place) const {
              (place == Place::opening_minus && f.shape == Shape::cross);
     }
     case Shape::product: return place >= Place::operand;
-    case Shape::quotient: return fraction_encloses() ? place == Place::base : place >= Place::factor;
+    case Shape::quotient: return style_.fraction_encloses ? place == Place::base : place >= Place::factor;
     case Shape::power:
     case Shape::transpose:
     case Shape::number: return place == Place::base && (f.shape != Shape::number || !f.number.is_integer());
@@ -64,56 +80,99 @@ bool FormulaWriter::needs_parentheses(const Formula& f, Place place) const {
 }
 
 std::string FormulaWriter::write(const Formula& f, Place place) const {
-  return needs_parentheses(f, place) ? parentheses(bare(f)) : bare(f);
+  return needs_parentheses(f, place) ? filled(style_.parentheses, bare(f)) : bare(f);
 }
 
-std::string FormulaWriter::joined(const Formula& f, Place inner) const {
+std::string FormulaWriter::joined(const Formula& f, std::string_view between, Place inner) const {
   std::string out;
-  for (std::size_t i = 0; i < f.args.size(); ++i) {
-    out += (i == 0 ? "" : between(f.shape)) + write(f.args[i], inner);
-  }
+  for (const Formula& arg : f.args) out += (&arg == &f.args[0] ? "" : std::string(between)) + write(arg, inner);
   return out;
 }
 
+std::string FormulaWriter::integer(std::int64_t n) const { return filled(style_.integer, std::to_string(n)); }
+
 std::string FormulaWriter::fraction_of(const Formula& f) const {
-  const bool enclosed = fraction_encloses();
   const Formula& below = f.args[1];
-  return fraction(write(f.args[0], enclosed ? Place::whole : Place::factor),
-                  write(below, enclosed                      ? Place::whole
-                               : below.shape == Shape::power ? Place::factor
-                                                             : Place::base));
+  if (style_.fraction_encloses) return filled(style_.fraction, write(f.args[0]), write(below));
+  return filled(style_.fraction, write(f.args[0], Place::factor),
+                write(below, below.shape == Shape::power ? Place::factor : Place::base));
+}
+
+std::string FormulaWriter::matrix_of(const Formula& f) const {
+  const auto columns = static_cast<std::size_t>(f.columns);
+  std::string entries, form;
+  for (std::size_t i = 0; i < columns; ++i) form += i == 0 ? "c" : "|c";
+  for (std::size_t i = 0; i < f.args.size(); ++i) {
+    if (i > 0) entries += i % columns == 0 ? style_.next_row : style_.next_entry;
+    entries += filled(style_.entry, write(f.args[i]));
+  }
+  return filled(style_.matrix, entries, form);
 }
 
 std::string FormulaWriter::bare(const Formula& f) const {
-  std::vector<std::string> args;
+  const auto call = [this](std::string_view function, const std::string& args) {
+    return filled(style_.call, function, args);
+  };
   switch (f.shape) {
-    case Shape::leaf: return name(f);
-    case Shape::number: return number(f.number);
+    case Shape::leaf: return style_.name(f, bodies_);
+    case Shape::number:
+      if (f.number.is_integer()) return integer(f.number.num());
+      return filled(style_.fraction, integer(f.number.num()), integer(f.number.den()));
     case Shape::sum: {
       std::string out;
       for (const std::string& piece : pieces(f)) out += piece;
       return out;
     }
-    case Shape::product: return joined(f, Place::factor);
-    case Shape::dot:
-    case Shape::cross: return joined(f, Place::operand);
+    case Shape::product: return joined(f, style_.product, Place::factor);
+    case Shape::dot: return joined(f, style_.dot, Place::operand);
+    case Shape::cross: return joined(f, style_.cross, Place::operand);
     case Shape::quotient: return fraction_of(f);
-    case Shape::power: return power(write(f.args[0], Place::base), f.exponent);
-    case Shape::norm: return norm(write(f.args[0]));
-    case Shape::component: return component(write(f.args[0], Place::base), f.name);
-    case Shape::transpose: return transpose(write(f.args[0], Place::base));
-    case Shape::identity: return identity();
-    case Shape::perp: return call("perp", {write(f.args[0])});
-    case Shape::unit: return call("unit", {write(f.args[0])});
-    case Shape::skew: return call("S", {write(f.args[0])});
-    case Shape::call:
-      for (const Formula& arg : f.args) args.push_back(write(arg));
-      return call(f.name, args);
-    case Shape::matrix:
-      for (const Formula& arg : f.args) args.push_back(write(arg));
-      return matrix(f.columns, args);
+    case Shape::power: {
+      const std::string magnitude = integer(std::abs(f.exponent));
+      return filled(style_.power, write(f.args[0], Place::base),
+                    f.exponent < 0 ? filled(style_.negative, magnitude) : magnitude);
+    }
+    case Shape::norm: return filled(style_.norm, write(f.args[0]));
+    case Shape::component: return filled(style_.component, write(f.args[0], Place::base), f.name);
+    case Shape::transpose: return filled(style_.transpose, write(f.args[0], Place::base));
+    case Shape::identity: return std::string(style_.identity);
+    case Shape::perp: return call("perp", write(f.args[0]));
+    case Shape::unit: return call("unit", write(f.args[0]));
+    case Shape::skew: return call("S", write(f.args[0]));
+    case Shape::call: return call(f.name, joined(f, style_.comma, Place::whole));
+    case Shape::matrix: return matrix_of(f);
   }
   return "";
+}
+
+std::string written(const Explanation& explanation, const Format& format) {
+  const FormulaWriter formula(format.formula, explanation.bodies);
+  // The words with each {} replaced by its formula.
+  const auto words = [&](const Words& w) {
+    std::string out;
+    std::size_t at = 0;
+    for (const Formula& f : w.formulas) {
+      const std::size_t next = w.text.find("{}", at);
+      out += format.prose(w.text.substr(at, next - at)) + filled(format.inline_formula, formula.write(f));
+      at = next + 2;
+    }
+    return out + format.prose(w.text.substr(at));
+  };
+  std::string out = format.head(explanation.title);
+  int number = 0;
+  for (const Step& step : explanation.steps) {
+    out += filled(format.section, std::to_string(++number), format.escaped(step.heading));
+    bool in_list = false;
+    for (const Item& item : step.items) {
+      const bool bullet = item.kind == Item::Kind::bullet;
+      if (bullet != in_list) out += bullet ? format.list_begin : format.list_end;
+      in_list = bullet;
+      const bool chain = item.kind == Item::Kind::chain;
+      out += chain ? format.chain(item.chain, formula) : format.item(words(item.words), bullet);
+    }
+    if (in_list) out += format.list_end;
+  }
+  return out += format.foot;
 }
 
 }  // namespace cdot::derive

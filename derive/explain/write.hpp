@@ -1,5 +1,5 @@
-// From formulas to text, once for all formats: where parentheses stand is decided here, what the
-// signs look like by each format.
+// From formulas and steps to text, once for all formats: this room decides on parentheses and the order of
+// parts; the tables of a format give the signs.
 #pragma once
 
 #include "derive/explain/explain.hpp"
@@ -15,52 +15,52 @@ struct SpelledName {
 };
 SpelledName spell(const std::string& name, const std::vector<std::string>& bodies);
 
+// How a format writes formulas; #1 and #2 stand for the parts.
+struct FormulaStyle {
+  std::string (*name)(const Formula& leaf, const std::vector<std::string>& bodies);
+  std::string_view opening_minus, minus, plus, product, dot, cross, comma;  // between parts
+  std::string_view integer, negative, fraction, power, call, norm, component, transpose, identity, parentheses;
+  std::string_view matrix, entry, next_entry, next_row;  // #2 of a matrix: its columns as "c|c|c"
+  bool fraction_encloses = true;                         // its parts need no parentheses
+};
+
 class FormulaWriter {
  public:
-  virtual ~FormulaWriter() = default;
+  explicit FormulaWriter(const FormulaStyle& style, std::vector<std::string> bodies = {})
+      : style_(style), bodies_(std::move(bodies)) {}
 
   std::string write(const Formula& f) const { return write(f, Place::whole); }
   // A sum as one piece a term, signs included; anything else as one piece.
   std::vector<std::string> pieces(const Formula& f) const;
-
- protected:
-  virtual std::string name(const Formula& leaf) const = 0;
-  virtual std::string number(Rational value) const = 0;
-  virtual std::string sign(bool minus, bool first) const = 0;
-  virtual std::string between(Shape shape) const = 0;  // what joins factors, dot and cross
-  virtual std::string fraction(const std::string& above, const std::string& below) const = 0;
-  virtual bool fraction_encloses() const { return true; }  // its parts need no parentheses
-  virtual std::string power(const std::string& base, int exponent) const = 0;
-  virtual std::string call(const std::string& function, const std::vector<std::string>& args) const = 0;
-  virtual std::string norm(const std::string& arg) const = 0;
-  virtual std::string component(const std::string& arg, const std::string& axis) const = 0;
-  virtual std::string transpose(const std::string& arg) const = 0;
-  virtual std::string identity() const = 0;
-  virtual std::string matrix(int columns, const std::vector<std::string>& entries) const = 0;
-  virtual std::string parentheses(const std::string& inner) const = 0;
 
  private:
   enum class Place { whole, term, negated, opening_minus, factor, operand, base };
 
   std::string write(const Formula& f, Place place) const;
   std::string bare(const Formula& f) const;
+  std::string integer(std::int64_t n) const;
   std::string fraction_of(const Formula& f) const;
+  std::string matrix_of(const Formula& f) const;
   bool needs_parentheses(const Formula& f, Place place) const;
-  std::string joined(const Formula& f, Place inner) const;
+  std::string joined(const Formula& f, std::string_view between, Place inner) const;
+
+  const FormulaStyle& style_;
+  std::vector<std::string> bodies_;
 };
 
-// The words with each {} replaced by what `formula` writes, and the rest by what `plain` makes of
-// it.
-template <class Plain, class Written>
-std::string fill(const Words& words, Plain plain, Written formula) {
-  std::string out;
-  std::size_t at = 0;
-  for (const Formula& f : words.formulas) {
-    const std::size_t next = words.text.find("{}", at);
-    out += plain(words.text.substr(at, next - at)) + formula(f);
-    at = next + 2;
-  }
-  return out + plain(words.text.substr(at));
-}
+// How a format writes the rest.
+struct Format {
+  const FormulaStyle& formula;
+  std::string (*head)(const std::string& title);
+  std::string_view foot, section, list_begin, list_end;        // #1, #2 of a section: number and heading
+  std::string_view inline_formula;                             // in words
+  std::string (*escaped)(const std::string& text);             // headings
+  std::string (*prose)(const std::string& words);              // with `code` between backticks
+  std::string (*item)(const std::string& words, bool bullet);  // in a line of its own
+  std::string (*chain)(const Chain& chain, const FormulaWriter& formula);
+};
+std::string written(const Explanation& explanation, const Format& format);
+
+std::string filled(std::string_view pattern, std::string_view first, std::string_view second = {});
 
 }  // namespace cdot::derive

@@ -9,10 +9,10 @@ namespace cdot::derive {
 
 std::vector<std::string> describe(const Kernel& kernel) {
   constexpr std::size_t width = 96;  // beside the marks of a comment
-  const Joint& joint = *kernel.joint;
+  const Joint& joint = kernel.derivation->joint;
   std::vector<std::string> lines = {joint.name + ": " + joint.title};
   if (!joint.source.empty()) lines.push_back("Source: " + joint.source);
-  for (const std::vector<Chain>& part : summarise(joint)) {
+  for (const std::vector<Chain>& part : summarise(*kernel.derivation)) {
     lines.push_back("");
     for (const Chain& chain : part) {
       std::istringstream text(chain_text(chain, width));

@@ -7,7 +7,7 @@
 namespace cdot::derive {
 
 GeneratedJoint print(const Kernel& kernel) {
-  const Joint& joint = *kernel.joint;
+  const Joint& joint = kernel.derivation->joint;
   return {name_of_space(joint.dimension), joint.name, emit_kernel(kernel), ledger_of(kernel)};
 }
 

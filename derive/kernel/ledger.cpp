@@ -50,7 +50,7 @@ Count cost_from_poses(const Joint& joint, std::string_view quantity, const std::
 
 std::vector<LedgerRow> ledger_of(const Kernel& kernel) {
   std::vector<LedgerRow> rows;
-  const Joint& joint = *kernel.joint;
+  const Joint& joint = kernel.derivation->joint;
   add_quantities(joint, *kernel.rows.block, "rows", rows);
   add_functions(joint, kernel.rows, "rows", rows);
   for (const KernelBlock& coordinate : kernel.coordinates) {

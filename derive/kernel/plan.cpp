@@ -346,7 +346,7 @@ void simplify_functions(KernelBlock& block) {
 Kernel plan(const Derivation& derivation) {
   const Joint& joint = derivation.joint;
   Kernel kernel;
-  kernel.joint = &joint;
+  kernel.derivation = &derivation;
   kernel.rows = plan_block(joint, derivation.rows, joint.name);
   for (const Block& coordinate : derivation.coordinates) {
     kernel.coordinates.push_back(plan_block(joint, coordinate, coordinate.name));

@@ -41,7 +41,7 @@ struct DefaultValue {
 };
 
 struct Kernel {
-  const Joint* joint = nullptr;  // it and every block: of the derivation
+  const Derivation* derivation = nullptr;  // every block is one of its blocks
   KernelBlock rows;
   std::vector<KernelBlock> coordinates;
   std::vector<DefaultValue> defaults;

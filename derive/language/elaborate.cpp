@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "derive/expression/symbols.hpp"
-#include "derive/syntax/parse_joint.hpp"
+#include "derive/syntax/parser.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -34,8 +34,8 @@ void parse_source(Source& source) {
       source.declared_anywhere.emplace(s.declared.name.text, s.declared.name.where);
 }
 
-Elaborator::Elaborator(const Library& library, int dimension, const ReadOptions& options)
-    : library_(library), pool_(std::make_shared<Pool>(dimension)), options_(options) {
+Elaborator::Elaborator(const Library& library, int dimension, const Anchors& anchors)
+    : library_(library), pool_(std::make_shared<Pool>(dimension)), anchors_(anchors) {
   joint_.pool = pool_;
   joint_.dimension = dimension;
 }
@@ -63,16 +63,17 @@ void Elaborator::run(Source& spec) {
   spec.including = {spec.ast.name.text};
   statements(spec);
   if (is_word_of_cpp(joint_.name))
-    spec.diagnostics.error(spec.ast.name.where, quote(joint_.name) + " is a word of C++, in which kernels are written",
+    spec.diagnostics.error(spec.ast.name.where,
+                           quote(joint_.name) + " is a C++ keyword: the generated kernel cannot use it",
                            "choose another name");
   if (!spec.ast.name.text.empty() && !valid_name_of_file(*spec.file, spec.ast.name.text))
     spec.diagnostics.warning(spec.ast.name.where, "the file is not named after its joint " + quote(spec.ast.name.text),
                              "name it " + spec.ast.name.text + ".joint");
   check_bodies(spec);
-  // Coordinates alone are enough: effects hold what a scene wants held.
+  // Coordinates alone are enough: a scene may add a row by an effect.
   if (joint_.rows.empty() && joint_.coordinates.empty() && !spec.diagnostics.has_errors())
-    spec.diagnostics.error(spec.ast.name.where, "the joint has neither a row nor a coordinate: it is of no use",
-                           "write an equation, such as pa = pb");
+    spec.diagnostics.error(spec.ast.name.where, "the joint has neither a row nor a coordinate: it constrains nothing",
+                           "add a row, such as pa = pb, or a coordinate");
   warn_unused(spec);
 }
 
@@ -107,8 +108,7 @@ void Elaborator::check_bodies(Source& spec) {
   for (int i = 0; i <= last.first; ++i) joint_.bodies.push_back(body_name(i));
 }
 
-// The direction of a vector arises from its length by differentiation, so its name is of use
-// without being written.
+// The direction of a vector arises from its length by differentiation, so a row may use its name without writing it.
 bool Elaborator::arises_in_derivative(Expr e) const {
   if (e->kind != Kind::unit) return false;
   const Expr length = norm(e->args[0]);

@@ -1,5 +1,5 @@
-// A spec's tree to a Joint: names and bodies resolved, includes taken over, types and units
-// checked. Internal to the reader; language/read.hpp is the front door.
+// A spec's tree to a Joint: resolves names, bodies and includes, checks types and units. Internal to the reader;
+// language/read.hpp is its interface.
 #pragma once
 
 #include <map>
@@ -15,7 +15,7 @@
 
 namespace cdot::derive {
 
-// What a parameter of an included joint is in the joint that includes it.
+// The value that an including joint gives to a parameter of the included one.
 struct Given {
   Value value;
   std::string text;
@@ -29,11 +29,11 @@ struct Source {
   JointAst ast;
   std::string prefix;                  // of the names that it brings in
   std::vector<int> bodies;             // what its a, b, ... are here; empty: the same
-  std::map<std::string, Given> given;  // its parameters that are none of the joint
+  std::map<std::string, Given> given;  // its parameters that the including joint gives
   std::optional<Span> include;         // where the spec includes it; empty: it is the spec
   std::vector<std::string> including;  // the files on the way to it
   Diagnostics diagnostics;
-  bool clashed = false;  // with names of the spec: what follows from that is not worth a message
+  bool clashed = false;  // with names of the spec; errors that follow from that are not reported
   std::map<std::string, Span> declared_anywhere;  // also further down
 };
 
@@ -47,7 +47,7 @@ struct Entry {
 
 class Elaborator {
  public:
-  Elaborator(const Library& library, int dimension, const ReadOptions& options);
+  Elaborator(const Library& library, int dimension, const Anchors& anchors);
   void run(Source& spec);
   void finish(ReadResult& result, Source& spec);
 
@@ -55,7 +55,7 @@ class Elaborator {
   friend class SourceNames;
 
   void statements(Source& source);
-  // language/elaborate_include.cpp
+  // elaborate_include.cpp
   void include(Source& source, const IncludeAst& item);
   bool includable(Source& source, const IncludeAst& item);
   bool same_space(Source& source, const IncludeAst& item, const Source& inner);
@@ -64,7 +64,7 @@ class Elaborator {
   void check_given(Source& source, const IncludeAst& item, const Source& inner);
   bool take_given(Source& source, const DeclaredAst& d);
   void report_included(Source& source, const IncludeAst& item, const Source& inner);
-  // language/elaborate_declare.cpp
+  // elaborate_declare.cpp
   void declare(Source& source, const DeclaredAst& d);
   bool resolve_body(Source& source, const DeclaredAst& d, Parameter& p);
   bool resolve_unit(Source& source, const DeclaredAst& d, const Value& given, Parameter& p);
@@ -79,7 +79,7 @@ class Elaborator {
   std::string vector_of_component(const std::string& name) const;
   bool name_is_free(Source& source, const Word& word, const std::string& full);
   void enter(Source& source, const std::string& full, std::string kind, Value value, Span where);
-  // language/elaborate_row.cpp
+  // elaborate_row.cpp
   void row(Source& source, const StatementAst& s);
   std::optional<Value> constraint(Source& source, const StatementAst& s);
   void add_row(Source& source, const StatementAst& s, Row row);
@@ -88,7 +88,7 @@ class Elaborator {
   void coordinate(Source& source, const StatementAst& s);
   bool free_of_velocity(Source& source, const Ast& ast, const Value& value, std::string_view place);
   std::string written(const Source& source, const StatementAst& s) const;
-  // checks at the end
+  // Checks at the end.
   void check_bodies(Source& spec);
   void warn_unused(Source& spec);
   bool arises_in_derivative(Expr e) const;
@@ -100,10 +100,10 @@ class Elaborator {
 
   const Library& library_;
   std::shared_ptr<Pool> pool_;
-  const ReadOptions& options_;
+  const Anchors& anchors_;
   Joint joint_;
   std::map<std::string, Entry> names_;
-  std::map<int, Span> bodies_;  // those used, and where first
+  std::map<int, Span> bodies_;  // used bodies, and their first place
   std::map<std::string, Span> row_names_, coordinate_names_;
   Diagnostics* spec_diagnostics_ = nullptr;
   std::vector<Span> parameters_where_;
@@ -131,7 +131,7 @@ class SourceNames final : public Scope {
 bool depends_on_role(Expr e, Role role);
 bool depends_on_bodies(Expr e);
 
-// Reads and parses; what is wrong goes into the source's diagnostics.
+// Lexes and parses; errors go into the source's diagnostics.
 void parse_source(Source& source);
 
 }  // namespace cdot::derive

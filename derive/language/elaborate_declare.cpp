@@ -1,4 +1,4 @@
-// Parameters and lets: what they stand for, their defaults, and whether their names are free.
+// Parameters and lets: their values and defaults; a name may be declared once.
 #include <algorithm>
 #include <array>
 
@@ -24,7 +24,7 @@ bool is_reserved(const std::string& name) {
   return std::find(words.begin(), words.end(), name) != words.end();
 }
 
-// An Expr that is the same however a default reaches it.
+// True unless both includes give a default and these differ.
 bool same_default(Expr a, Expr b) { return !a || !b || a == b; }
 
 }  // namespace
@@ -60,9 +60,9 @@ void Elaborator::declare(Source& source, const DeclaredAst& d) {
 bool Elaborator::resolve_body(Source& source, const DeclaredAst& d, Parameter& p) {
   if (p.kind == ParameterKind::scalar) return true;
   std::string word = d.body.text;
-  const auto anchor = options_.anchors.find(p.name);
+  const auto anchor = anchors_.find(p.name);
   SourceNames names(*this, source);
-  if (anchor != options_.anchors.end()) {
+  if (anchor != anchors_.end()) {
     word = anchor->second;
     p.body = body_of_letter(word);
   } else {
@@ -94,7 +94,7 @@ Value Elaborator::default_value(Source& source, const DeclaredAst& d) {
   return v;
 }
 
-// Brings the default into the declared kind; complains where that is impossible.
+// Brings the default into the declared kind; reports an error where that is impossible.
 bool Elaborator::default_fits(Source& source, const DeclaredAst& d, Value& given) {
   if (!d.value) return true;
   if (given.type == Type::poison) return false;
@@ -111,7 +111,7 @@ bool Elaborator::default_fits(Source& source, const DeclaredAst& d, Value& given
   if (!is(wanted)) {
     source.diagnostics.error(d.value->where,
                              "the default of the " + d.kind + " " + quote(d.name.text) + " must be " +
-                                 std::string(in_words(wanted)) + ", here is " + std::string(in_words(given.type)),
+                                 std::string(in_words(wanted)) + ", not " + std::string(in_words(given.type)),
                              wanted == Type::point && is(Type::vector) ? "add it to a point, such as x(a) + ..." : "");
     return false;
   }
@@ -122,7 +122,7 @@ bool Elaborator::default_fits(Source& source, const DeclaredAst& d, Value& given
   }
   if (d.kind != "unit" && d.kind != "frame") return true;
   if (given.unit && *given.unit != Unit{}) {
-    source.diagnostics.error(d.value->where, "a direction has no unit, here is one in " + spoken(*given.unit),
+    source.diagnostics.error(d.value->where, "a direction has no unit, but the default is in " + spoken(*given.unit),
                              "write unit(...)");
     return false;
   }
@@ -134,7 +134,8 @@ bool Elaborator::resolve_unit(Source& source, const DeclaredAst& d, const Value&
   if (d.unit && (d.kind == "unit" || d.kind == "frame" || d.unit->degrees != 0)) {
     source.diagnostics.error(
         d.unit->where,
-        d.unit->degrees != 0 ? "quantities are kept in radians" : "a " + d.kind + " is a direction, without a unit",
+        d.unit->degrees != 0 ? "angles are stored in radians, not in degrees"
+                             : "a " + d.kind + " is a direction, without a unit",
         d.unit->degrees != 0 ? "write [rad]; a default may be 90 [deg]" : "remove the unit, or declare a vector");
     return false;
   }
@@ -206,7 +207,7 @@ bool Elaborator::build_frame(Source& source, const DeclaredAst& d, Role role, Pa
   return true;
 }
 
-// The leaf behind a parameter, and what its name means in expressions.
+// The leaf behind a parameter, and the value of its name in expressions.
 bool Elaborator::build_symbol(Source& source, const DeclaredAst& d, Parameter& p, Value& value) {
   const Role role = p.body < 0 ? Role::world_vector : Role::body_vector;
   if (p.kind == ParameterKind::frame) return build_frame(source, d, role, p, value);
@@ -276,16 +277,16 @@ bool Elaborator::name_is_free(Source& source, const Word& word, const std::strin
     if (o.where != Operator::Where::hand)
       return say(" is the operator " + std::string(o.signature), "choose another name");
   }
-  if (is_word_of_cpp(full)) return say(" is a word of C++, in which kernels are written", "choose another name");
+  if (is_word_of_cpp(full)) return say(" is a C++ keyword: the generated kernel cannot use it", "choose another name");
   if (const std::string vector = vector_of_component(full); !vector.empty())
     return say(" is the name of a component of " + quote(vector), "choose another name");
-  if (is_symbol_of_tool(full)) return say(" is a name that the tool needs", "choose another name");
+  if (is_symbol_of_tool(full)) return say(" is a name that generated code uses", "choose another name");
   const auto known = names_.find(full);
   if (known == names_.end()) return true;
   const std::string fix = source.include ? "include it under a prefix: include ... as left" : "choose another name";
   error(source, word.where,
         known->second.kind == "arm"                ? quote(full) + " is already the arm of a point"
-        : source.include || known->second.included ? quote(full) + " means something else in what is included"
+        : source.include || known->second.included ? quote(full) + " has another meaning in the included joint"
                                                    : quote(full) + " is declared twice",
         fix, {known->second.where});
   return false;

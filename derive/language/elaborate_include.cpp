@@ -1,5 +1,4 @@
-// include: another spec's declarations, rows and coordinates, on other bodies and under a prefix
-// where asked for.
+// include: another spec's declarations, rows and coordinates, on other bodies and under a prefix where asked for.
 #include <algorithm>
 
 #include "derive/expression/symbols.hpp"
@@ -39,12 +38,12 @@ bool Elaborator::includable(Source& source, const IncludeAst& item) {
   if (std::find(way.begin(), way.end(), name) != way.end()) {
     std::string circle;
     for (const std::string& step : way) circle += step + " includes ";
-    error(source, item.joint.where, "includes go in a circle: " + circle + name, "remove one of them");
+    error(source, item.joint.where, "includes form a cycle: " + circle + name, "remove one of these includes");
     return false;
   }
   if (++include_count_ > most_includes) {
     if (include_count_ == most_includes + 1)
-      d.error(item.joint.where, "more than 64 includes, counting those of the included joints");
+      d.error(item.joint.where, "the joint has more than 64 includes, counting those of the included joints");
     return false;
   }
   if (library_.contains(name)) return true;
@@ -110,8 +109,7 @@ void Elaborator::check_given(Source& source, const IncludeAst& item, const Sourc
   }
 }
 
-// A parameter whose meaning is given where the joint is included: a name for that, and nothing that
-// a scene sets.
+// The including joint gives this parameter a value: it becomes a name for that value, and a scene cannot set it.
 bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
   const auto found = source.given.find(d.name.text);
   if (found == source.given.end()) return false;
@@ -133,7 +131,7 @@ bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
   }
   if (d.unit && !same_unit(scalar(Expr(), d.unit->unit), value)) {
     error(source, d.name.where,
-          quote(d.name.text) + " is in " + spoken(d.unit->unit) + ", what is given for it in " + spoken(*value.unit));
+          quote(d.name.text) + " is in " + spoken(d.unit->unit) + ", its given value in " + spoken(*value.unit));
     return true;
   }
   if (d.kind == "unit" && !value.e->unit_length) value.e = unit(value.e);
@@ -143,7 +141,7 @@ bool Elaborator::take_given(Source& source, const DeclaredAst& d) {
   return true;
 }
 
-// Mistakes inside the included file are told once, with their place.
+// Reports the first error inside the included file, with its place.
 void Elaborator::report_included(Source& source, const IncludeAst& item, const Source& inner) {
   const auto& list = inner.diagnostics.list;
   const auto first =
@@ -152,8 +150,8 @@ void Elaborator::report_included(Source& source, const IncludeAst& item, const S
   const SourceFile& file = *inner.file;
   const int at = first->where.begin;
   source.diagnostics.error(item.joint.where,
-                           "the included joint has a mistake: " + file.path + ":" + std::to_string(file.line(at)) +
-                               ":" + std::to_string(file.column(at)) + ": " + first->message,
+                           "the included joint has an error: " + file.path + ":" + std::to_string(file.line(at)) + ":" +
+                               std::to_string(file.column(at)) + ": " + first->message,
                            first->fix);
 }
 

@@ -1,4 +1,4 @@
-// Rows and coordinates: what must hold, and what stays free.
+// Rows and coordinates: the constraints, and the scalars that stay free.
 #include <algorithm>
 
 #include "derive/expression/symbols.hpp"
@@ -7,7 +7,7 @@
 namespace cdot::derive {
 namespace {
 
-// The part of an expression that brings in a velocity: a call of v or w.
+// The part of an expression that is a velocity: a call of v or w.
 const Ast* velocity_in(const Ast& ast) {
   if (ast.kind == Ast::Kind::call && (ast.text == "v" || ast.text == "w")) return &ast;
   for (const Ast& a : ast.args)
@@ -21,7 +21,7 @@ bool Elaborator::free_of_velocity(Source& source, const Ast& ast, const Value& v
   if (!value.e || !depends_on_velocity(value.e)) return true;
   const Ast* part = velocity_in(ast);
   source.diagnostics.error(
-      part ? part->where : ast.where, "a velocity occurs in " + std::string(place),
+      part ? part->where : ast.where, "a velocity stands in " + std::string(place),
       place == "a row" ? "mark the row: velocity ... = ..." : "velocities may occur in `velocity` rows only");
   return false;
 }
@@ -56,9 +56,9 @@ void Elaborator::add_row(Source& source, const StatementAst& s, Row row) {
   joint_.rows.push_back(std::move(row));
 }
 
-// n x m = 0 says that m is parallel to n: two conditions in three components. With n = f.x an axis
-// of a frame, what is kept are the components along its other axes, f.z . (f.x x m) = f.y . m and
-// -f.y . (f.x x m) = f.z . m, which stay independent as long as the row holds.
+// n x m = 0 makes m parallel to n: two conditions in three components. With n = f.x an axis of a frame, `keep 2`
+// selects the components along its other axes: f.z . (f.x x m) = f.y . m and -f.y . (f.x x m) = f.z . m. These stay
+// independent as long as the row holds.
 void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
   Diagnostics& d = source.diagnostics;
   const Term term = split_coefficient(whole.C);
@@ -66,7 +66,7 @@ void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
     return d.error(s.keep.where, "`keep` takes 2 of the three rows of a cross product",
                    "write cross(f.x, u) = 0 keep 2, or the independent rows themselves");
   if (term.e->kind != Kind::cross)
-    return d.error(s.left.where, "there is no telling which rows of this are independent",
+    return d.error(s.left.where, "the independent rows of this equation are unknown",
                    "`keep 2` is for cross(n, m) = 0; else write the independent rows themselves");
   for (const int side : {0, 1}) {
     const Expr n = term.e->args[static_cast<std::size_t>(side)];
@@ -84,9 +84,8 @@ void Elaborator::keep(Source& source, const StatementAst& s, const Row& whole) {
     return;
   }
   d.error(s.left.where, "no side of this cross product is an axis of a frame of a body",
-          "declare `frame f on a` in place of the unit vector and write cross(f.x, ...): the rows "
-          "along f.y and f.z are "
-          "kept");
+          "declare `frame f on a` in place of the unit vector and write cross(f.x, ...): the rows along f.y and f.z "
+          "are kept");
 }
 
 // lhs - rhs, or rhs - lhs for <=.
@@ -112,7 +111,7 @@ std::optional<Value> Elaborator::constraint(Source& source, const StatementAst& 
     return {};
   }
   if (s.relation != "=" && (left.type != Type::scalar || right.type != Type::scalar)) {
-    d.error(s.relation_where, quote(s.relation) + " compares numbers, here are vectors",
+    d.error(s.relation_where, quote(s.relation) + " compares numbers, not vectors",
             "compare a component with dot(u, n), or a length with norm(u)", {s.left.where, s.right.where});
     return {};
   }
@@ -126,21 +125,22 @@ std::optional<Value> Elaborator::constraint(Source& source, const StatementAst& 
 bool Elaborator::row_makes_sense(Source& source, const StatementAst& s, const Value& C) {
   Diagnostics& d = source.diagnostics;
   if (is_zero(C.e)) {
-    d.error(s.where, "both sides are always equal: the row constrains nothing", "remove it");
+    d.error(s.where, "the row is redundant: both sides are always equal", "remove it");
     return false;
   }
   if (!depends_on_bodies(C.e)) {
-    d.error(s.where, "no body occurs in this row: it holds always or never", "rows say where bodies may be");
+    d.error(s.where, "the row contains no body, so it constrains nothing",
+            "write a row that contains the position or orientation of a body");
     return false;
   }
   if (s.velocity && s.relation != "=") {
-    d.error(s.relation_where, "an inequality of velocities is not supported",
-            "state the inequality for positions, or the velocity row with =");
+    d.error(s.relation_where, "inequalities between velocities are not supported",
+            "write an inequality of positions, or a velocity row with =");
     return false;
   }
   if (s.velocity && !depends_on_velocity(C.e)) {
-    d.error(s.where, "no velocity occurs in this `velocity` row",
-            "remove the word `velocity`: the row is one of positions");
+    d.error(s.where, "this `velocity` row contains no velocity",
+            "remove the word `velocity`: this is a position constraint");
     return false;
   }
   if (!s.velocity) {
@@ -157,18 +157,17 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
   const std::string full = source.prefix + d.name.text;
   if (d.broken || !d.value) return;
   if (is_word_of_cpp(full) || is_member_of_kernels(full) || full == joint_.name)
-    return error(source, d.name.where, quote(full) + " is the name of something else in the kernel that is generated",
+    return error(source, d.name.where, quote(full) + " is already a name of the generated kernel",
                  "choose another name");
   const Value v = evaluate(source, *d.value);
   if (v.type == Type::poison) return;
   if (v.type != Type::scalar)
-    return source.diagnostics.error(d.value->where,
-                                    "a coordinate is a number, here is " + std::string(in_words(v.type)),
+    return source.diagnostics.error(d.value->where, "a coordinate is a number, not " + std::string(in_words(v.type)),
                                     "take a component, such as dot(u, t), or a length, norm(u)");
   if (!free_of_velocity(source, *d.value, v, "a coordinate")) return;
   if (!depends_on_bodies(v.e))
-    return source.diagnostics.error(d.value->where, "no body occurs in this coordinate",
-                                    "a coordinate tells where bodies are");
+    return source.diagnostics.error(d.value->where, "the coordinate contains no body",
+                                    "write a scalar that contains the position or orientation of a body");
   if (d.unit && !same_unit(scalar(Expr(), d.unit->unit), v))
     return source.diagnostics.error(d.value->where,
                                     "the coordinate is in " + spoken(*v.unit) + ", not in " + spoken(d.unit->unit), "",
@@ -187,8 +186,7 @@ void Elaborator::coordinate(Source& source, const StatementAst& s) {
   joint_.coordinates.push_back({full, v.e, unit, in_spec(source, d.name.where), written(source, s), from, {}});
 }
 
-// A row or the right side of a coordinate as its author wrote it, in one line, with the names that
-// things have here.
+// A row or the right side of a coordinate as its author wrote it, in one line, with the names that things have here.
 std::string Elaborator::written(const Source& source, const StatementAst& s) const {
   std::string out = s.velocity ? "velocity " : "";
   int end = -1;

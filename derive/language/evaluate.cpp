@@ -18,8 +18,7 @@ bool powers_too_large(Expr e) {
          std::any_of(e->exponents.begin(), e->exponents.end(), [](int n) { return std::abs(n) > largest_total_power; });
 }
 
-// Lengths or masses went in and cancelled: an arc over its radius counts as an angle where one is
-// needed.
+// Lengths or masses went in and cancelled: an arc over its radius counts as an angle where one is needed.
 bool is_ratio(const Unit& result, const std::vector<Value>& factors) {
   if (!result.m.is_zero() || !result.kg.is_zero() || !result.rad.is_zero()) return false;
   return std::any_of(factors.begin(), factors.end(), [](const Value& f) {
@@ -55,7 +54,7 @@ Value Evaluator::operator()(const Ast& ast) {
   try {
     return evaluate(ast);
   } catch (const NumberTooLarge&) {
-    return error(ast.where, "a number in here becomes too large for exact arithmetic",
+    return error(ast.where, "a number in this expression exceeds exact 64-bit arithmetic",
                  "use smaller numbers, or a scalar parameter");
   }
 }
@@ -123,7 +122,7 @@ Value Evaluator::unknown(const Ast& ast, bool called) {
   return {};
 }
 
-// What may stand in sums and products. A hand derivation does not tell points from vectors.
+// Operands of sums and products. In a hand derivation a point is a vector.
 Value Evaluator::plain(const Ast& ast, std::string_view use) {
   Value v = (*this)(ast);
   if (hand_ && v.type == Type::point) v = vector(v.e, v.unit);
@@ -184,7 +183,7 @@ Value Evaluator::add(const std::vector<Value>& terms, const std::string& signs, 
   return total;
 }
 
-// The type of total +- next; total becomes it.
+// Gives `total` the type of total +- next.
 bool Evaluator::add_types(Value& total, const Value& next, char sign, Span part, Span first) {
   const auto both = [&](Type a, Type b) { return total.type == a && next.type == b; };
   const bool minus = sign == '-';
@@ -249,7 +248,7 @@ Value Evaluator::scaled(const std::vector<Value>& factors, const Ast& ast) {
     if (f.type == Type::vector && divide)
       return error(where, "nothing can be divided by a vector", "divide by its length, norm(u)");
     if (f.type == Type::vector && direction)
-      return error(where, "a product of two vectors", "write dot(u, v) or cross(u, v)", {first_vector});
+      return error(where, "the product of two vectors is ambiguous", "write dot(u, v) or cross(u, v)", {first_vector});
     if (divide && is_zero(f.e)) return error(where, "division by zero");
     if (!f.unit) result.unit.reset();
     if (f.unit && result.unit) result.unit = divide ? *result.unit / *f.unit : *result.unit * *f.unit;
@@ -264,7 +263,7 @@ Value Evaluator::scaled(const std::vector<Value>& factors, const Ast& ast) {
   result.ratio = result.unit && is_ratio(*result.unit, factors);
   result.e = cdot::derive::product(pool_, numbers, powers);
   if (powers_too_large(split_coefficient(result.e).e))
-    return error(ast.where, "a power beyond 1000", "such a formula cannot be meant");
+    return error(ast.where, "the exponent of a factor exceeds 1000", "simplify the formula");
   if (!direction) return result;
   result.type = Type::vector;
   result.e = result.e * direction->e;
@@ -293,7 +292,7 @@ Value Evaluator::power(const Ast& ast) {
   const bool large = inner->kind == Kind::product && power != 0 &&
                      std::any_of(inner->exponents.begin(), inner->exponents.end(),
                                  [&](int k) { return std::abs(k) > largest_total_power / std::abs(power); });
-  if (large) return error(ast.where, "a power beyond 1000", "such a formula cannot be meant");
+  if (large) return error(ast.where, "the exponent of a factor exceeds 1000", "simplify the formula");
   Value result = scalar(pow(base.e, power));
   result.ratio = base.ratio;
   result.unit.reset();

@@ -10,7 +10,7 @@
 
 namespace cdot::derive {
 
-// What the evaluator asks of the place where an expression stands.
+// The names that an expression may use where it stands.
 class Scope {
  public:
   virtual ~Scope() = default;
@@ -28,19 +28,18 @@ class Evaluator {
   Evaluator(Pool& pool, Scope& names, Diagnostics& diagnostics)
       : pool_(pool), names_(names), diagnostics_(diagnostics), findings_(diagnostics) {}
   // For a hand derivation: matrices may occur, points are vectors, radians and numbers are one.
-  // What cannot be evaluated goes into `findings` (as an error) and so do units that do not match
-  // (as a warning); only unknown names are bad input.
+  // `findings` takes parts without a value (errors) and units that do not match (warnings); only unknown names are bad
+  // input.
   Evaluator(Pool& pool, Scope& names, Diagnostics& diagnostics, Diagnostics& findings)
       : pool_(pool), names_(names), diagnostics_(diagnostics), findings_(findings), hand_(true) {}
 
-  // Widths that a matrix of so many blocks per row has where its blocks do not tell: 2, 1, 2, 1 for
-  // J.
+  // Widths of the blocks of a matrix where the blocks leave them open: 2, 1, 2, 1 for J.
   void expect_columns(std::vector<int> widths) { expected_columns_ = std::move(widths); }
 
   Value operator()(const Ast& ast);
 
-  // Adds `terms` with `signs` ('+' or '-'); `parts` are the trees they came from. `relation` is
-  // what the message says about the last one: "adds", "equates".
+  // Adds `terms` with `signs` ('+' or '-'); `parts` are their places. `relation` is the verb of an error message:
+  // "adds", "equates".
   Value add(const std::vector<Value>& terms, const std::string& signs, const std::vector<Span>& parts,
             std::string_view relation = {});
 

@@ -1,5 +1,4 @@
-// Calls of operators: the table's row that fits the arguments, its unit rule, and what to say if
-// none fits.
+// Calls of operators: the table's row that fits the arguments, its unit rule, and the error if none fits.
 #include <algorithm>
 #include <map>
 
@@ -52,7 +51,7 @@ std::string signatures(const std::vector<const Operator*>& candidates) {
 
 std::string given_in_words(const Value& v) {
   if (v.type == Type::body && v.body < 0) return "the world";
-  if (v.type == Type::point && !v.anchored) return "one that was computed and belongs to no body";
+  if (v.type == Type::point && !v.anchored) return "a computed point, which belongs to no body";
   return std::string(in_words(v.type));
 }
 
@@ -93,7 +92,7 @@ std::vector<const Operator*> Evaluator::operators_here(const std::string& name) 
   return here;
 }
 
-// An operator of the other space only.
+// The error for an operator of the other space.
 Value Evaluator::elsewhere(const Ast& ast) {
   const bool plane = pool_.dimension() == 2;
   static const std::map<std::string_view, std::string_view> instead = {
@@ -116,7 +115,7 @@ Value Evaluator::call(const Ast& ast) {
   if (candidates.empty()) return is_operator(ast.text) ? elsewhere(ast) : unknown(ast, true);
   if (!hand_ && candidates[0]->where == Operator::Where::hand)
     return error(ast.where, quote(ast.text) + " is for .hand files only",
-                 "a spec says where things are; masses are the solver's business");
+                 "a spec contains positions and velocities only; the solver knows the masses");
   if (poisoned) return {};
   for (const Operator* o : candidates)
     if (fits(*o, arguments, hand_)) return apply(*o, arguments, ast);
@@ -134,8 +133,8 @@ Value Evaluator::wrong_arguments(const std::vector<Value>& arguments, const Ast&
                            (candidates.back()->takes.size() != candidates[0]->takes.size()
                                 ? " or " + std::to_string(candidates.back()->takes.size())
                                 : "") +
-                           (candidates.back()->takes.size() == 1 ? " argument" : " arguments") +
-                           (arguments.size() == 1 ? ", here is " : ", here are ") + std::to_string(arguments.size()),
+                           (candidates.back()->takes.size() == 1 ? " argument" : " arguments") + ", not " +
+                           std::to_string(arguments.size()),
                        help);
     return {};
   }
@@ -184,8 +183,7 @@ Value Evaluator::apply(const Operator& o, const std::vector<Value>& arguments, c
   return result;
 }
 
-// The unit that the table's rule gives, as the unit of a Value; empty if the arguments' units are
-// wrong.
+// The unit that the table's rule gives, as the unit of a Value; empty if the arguments' units are wrong.
 std::optional<Value> Evaluator::unit_of_call(const Operator& o, const std::vector<Value>& a, const Ast& ast) {
   const auto need = [&](std::initializer_list<Unit> allowed, std::string_view what, std::string fix) {
     if (!a[0].unit || std::find(allowed.begin(), allowed.end(), *a[0].unit) != allowed.end()) return true;

@@ -1,6 +1,8 @@
-// A joint as the reader hands it on: names, parameters, constraint rows as expressions. No text, no units to check.
+// A joint as the reader returns it: names, parameters, constraint rows as expressions, with all units checked.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +16,12 @@ namespace cdot::derive {
 
 // The forms of velocity that J may be written in (derivation/forms.hpp).
 enum class Form { global, local, euler };
+constexpr std::array<std::string_view, 3> form_names = {"global", "local", "euler"};
+inline std::string_view name_of(Form form) { return form_names[static_cast<std::size_t>(form)]; }
+inline Form form_named(std::string_view name) {  // `global` if there is none of that name
+  const auto found = std::find(form_names.begin(), form_names.end(), name);
+  return found == form_names.end() ? Form::global : static_cast<Form>(found - form_names.begin());
+}
 
 enum class ParameterKind { point, vector, unit, frame, scalar };
 
@@ -58,8 +66,8 @@ struct Coordinate {
   Unit unit;
   Span where;
   std::string text;
-  std::string from;                  // the included joint that it came from; empty if written here
-  std::vector<std::string> held_by;  // rows that leave it no freedom (derivation/free_coordinates.hpp)
+  std::string from;                         // the included joint that it came from; empty if written here
+  std::vector<std::string> constrained_by;  // rows that constrain it (derivation/free_coordinates.hpp)
 };
 
 // Folders, namespaces and headers of specs are named so.
@@ -76,7 +84,7 @@ struct Joint {
   std::vector<Let> lets;
   std::vector<Row> rows;
   std::vector<Coordinate> coordinates;
-  std::vector<Coordinate> dropped;         // that an include brought, but rows hold
+  std::vector<Coordinate> dropped;         // from an include, but constrained by rows
   std::shared_ptr<const SourceFile> file;  // for messages of later stages
   bool uses_world = false;  // some parameter is fixed in the world: momentum is not conserved, and need not be
   bool uses_time = false;

@@ -8,7 +8,6 @@
 #include "derive/expression/components.hpp"
 #include "derive/expression/functions.hpp"
 #include "derive/expression/symbols.hpp"
-#include "derive/language/hand/operators.hpp"
 #include "derive/syntax/source.hpp"
 
 namespace cdot::derive {
@@ -132,19 +131,6 @@ const std::vector<Operator> of_vectors = {
     {"w", "w(a)", {body_ | world_}, {UnitNeed::any, Gives::spin}, build_spin, "the angular velocity of a body",
      velocity},
 };
-const std::vector<Operator> of_hand_derivations = {
-    {"m", "m(a)", {body_}, {UnitNeed::any, Gives::mass}, build_mass, "the mass of a body", hand},
-    {"I", "I(a)", {body_}, {UnitNeed::any, Gives::inertia}, build_inertia, "the moment of inertia of a body", hand},
-    {"skew", "skew(r)", {vector_}, kept, build_skew, "the matrix with skew(r) w = w x r", hand},
-    {"S", "S(r)", {vector_}, kept, build_skew, "the same as skew(r)", hand},
-    {"inverse", "inverse(M)", {matrix_}, to_number, build_inverse, "the inverse of a square matrix", hand},
-    {"R", "R(a)", {body_}, to_number, build_rotation, "the rotation matrix of a body", hand},
-    {"e", "e(a)", {body_}, to_number, build_euler_parameters, "the Euler parameters of a body, a column of four", hand,
-     Space::spatial},
-    {"edot", "edot(a)", {body_}, to_number, build_euler_rates, "their rates", hand, Space::spatial},
-    {"G", "G(a)", {body_}, to_number, build_matrix_of_rates, "the 3 x 4 matrix with w(a) = 2 G(a) edot(a)", hand,
-     Space::spatial},
-};
 // clang-format on
 
 Operator operator_of(const Function& f) {
@@ -162,7 +148,7 @@ std::vector<Operator> all_operators() {
   for (const Function& f : functions) {
     if (!f.signature.empty()) all.push_back(operator_of(f));
   }
-  all.insert(all.end(), of_hand_derivations.begin(), of_hand_derivations.end());
+  for (Operator& o : operators_of_hand_derivations()) all.push_back(std::move(o));
   return all;
 }
 
@@ -183,33 +169,16 @@ std::vector<const Operator*> operators_named(std::string_view name) {
 }
 
 std::string suggested_operator(std::string_view word) {
-  static const std::map<std::string, std::string> other_words = {{"length", "norm(u)"},
-                                                                 {"magnitude", "norm(u)"},
-                                                                 {"len", "norm(u)"},
-                                                                 {"distance", "norm(p - q)"},
-                                                                 {"dist", "norm(p - q)"},
-                                                                 {"normalize", "unit(u)"},
-                                                                 {"normalise", "unit(u)"},
-                                                                 {"normalized", "unit(u)"},
-                                                                 {"direction", "unit(u)"},
-                                                                 {"position", "x(a)"},
-                                                                 {"center", "x(a)"},
-                                                                 {"centre", "x(a)"},
-                                                                 {"velocity", "v(a)"},
-                                                                 {"omega", "w(a)"},
-                                                                 {"orientation", "angle(a)"},
-                                                                 {"theta", "angle(a)"},
-                                                                 {"rotation", "angle(a)"},
-                                                                 {"perpendicular", "perp(u)"},
-                                                                 {"skew", "perp(u)"},
-                                                                 {"inner", "dot(u, v)"},
-                                                                 {"asin", "atan2(y, x)"},
-                                                                 {"acos", "atan2(y, x)"},
-                                                                 {"atan", "atan2(y, x)"},
-                                                                 {"pow", "s^2"},
-                                                                 {"power", "s^2"},
-                                                                 {"ln", "log(s)"},
-                                                                 {"fabs", "abs(s)"}};
+  // clang-format off
+  static const std::map<std::string, std::string> other_words = {
+      {"length", "norm(u)"}, {"magnitude", "norm(u)"}, {"len", "norm(u)"}, {"distance", "norm(p - q)"},
+      {"dist", "norm(p - q)"}, {"normalize", "unit(u)"}, {"normalise", "unit(u)"}, {"normalized", "unit(u)"},
+      {"direction", "unit(u)"}, {"position", "x(a)"}, {"center", "x(a)"}, {"centre", "x(a)"}, {"velocity", "v(a)"},
+      {"omega", "w(a)"}, {"orientation", "angle(a)"}, {"theta", "angle(a)"}, {"rotation", "angle(a)"},
+      {"perpendicular", "perp(u)"}, {"skew", "perp(u)"}, {"inner", "dot(u, v)"}, {"asin", "atan2(y, x)"},
+      {"acos", "atan2(y, x)"}, {"atan", "atan2(y, x)"}, {"pow", "s^2"}, {"power", "s^2"}, {"ln", "log(s)"},
+      {"fabs", "abs(s)"}};
+  // clang-format on
   std::vector<std::string> candidates;
   for (const Operator& o : operators()) candidates.emplace_back(o.name);
   for (const auto& [other, meaning] : other_words) candidates.push_back(other);

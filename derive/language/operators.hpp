@@ -1,5 +1,4 @@
-// The operators of the spec language: one table, read by the reader, by `cdot check --help` and by
-// the tests.
+// The operators of the spec language: one table, read by the reader, by `cdot check --help` and by the tests.
 #pragma once
 
 #include <functional>
@@ -13,7 +12,7 @@
 
 namespace cdot::derive {
 
-// What an operator may be applied to; several bits where it takes several.
+// The types that an operator takes; one bit each.
 enum Takes : unsigned {
   number_ = 1,
   vector_ = 2,
@@ -38,9 +37,10 @@ struct Operator {
 };
 
 const std::vector<Operator>& operators();
+std::vector<Operator> operators_of_hand_derivations();  // hand/operators.cpp; the last of `operators`
 bool is_operator(std::string_view name);
 std::vector<const Operator*> operators_named(std::string_view name);  // of either space
-// What somebody who wrote `word(...)` may have meant; empty if there is no telling.
+// The operator nearest to the unknown `word(...)`; empty if none is near.
 std::string suggested_operator(std::string_view word);
 std::string operators_help();
 

@@ -6,13 +6,26 @@
 #include <stdexcept>
 
 #include "derive/language/elaborate.hpp"
-#include "derive/syntax/parse_joint.hpp"
+#include "derive/syntax/parser.hpp"
 
 namespace cdot::derive {
 namespace {
 
 bool has_body(const Joint& joint, const std::string& body) {
   return body == "world" || std::find(joint.bodies.begin(), joint.bodies.end(), body) != joint.bodies.end();
+}
+
+ReadResult read(std::shared_ptr<const SourceFile> file, const Library& library, const Anchors& anchors) {
+  ReadResult result;
+  result.file = file;
+  result.library = library;
+  Source spec;
+  spec.file = std::move(file);
+  parse_source(spec);
+  Elaborator elaborator(library, spec.ast.dimension == "spatial" ? 3 : 2, anchors);
+  elaborator.run(spec);
+  elaborator.finish(result, spec);
+  return result;
 }
 
 }  // namespace
@@ -38,24 +51,15 @@ int dimension_of(const SourceFile& file) {
   return parse_joint(file, tokens, unheard).dimension == "spatial" ? 3 : 2;
 }
 
-ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library, const ReadOptions& options) {
-  if (!options.anchors.empty()) {
-    // An anchor on a body that the joint does not have is for the caller to report.
-    const ReadResult plain = read_joint(file, library);
-    ReadOptions possible;
-    for (const auto& [name, body] : options.anchors)
-      if (plain.joint && has_body(*plain.joint, body)) possible.anchors.emplace(name, body);
-    if (possible.anchors.size() != options.anchors.size()) return read_joint(std::move(file), library, possible);
-  }
-  ReadResult result;
-  result.file = file;
-  Source spec;
-  spec.file = std::move(file);
-  parse_source(spec);
-  Elaborator elaborator(library, spec.ast.dimension == "spatial" ? 3 : 2, options);
-  elaborator.run(spec);
-  elaborator.finish(result, spec);
-  return result;
+ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library) {
+  return read(std::move(file), library, {});
+}
+
+ReadResult read_anchored(const ReadResult& plain, const Anchors& anchors) {
+  Anchors possible;  // the caller reports an anchor on a body that the joint lacks
+  for (const auto& [name, body] : anchors)
+    if (plain.joint && has_body(*plain.joint, body)) possible.emplace(name, body);
+  return read(plain.file, plain.library, possible);
 }
 
 }  // namespace cdot::derive

@@ -1,5 +1,4 @@
-// The reader's front door: the text of a spec in, a Joint and everything there is to say about it
-// out.
+// The reader: the text of a spec in, a Joint and all messages about it out.
 #pragma once
 
 #include <filesystem>
@@ -19,26 +18,26 @@ namespace cdot::derive {
 using Library = std::map<std::string, std::shared_ptr<const SourceFile>>;
 Library load_library(const std::filesystem::path& folder);  // every *.joint in it
 
-// The whole file; throws std::runtime_error that says why, if it cannot be read.
+// The whole file; throws std::runtime_error with the cause if it cannot be read.
 std::shared_ptr<const SourceFile> load_source(const std::filesystem::path& path);
 
-// What the header says: 2 for planar, 3 for spatial; 2 if it says neither.
+// 2 for a planar header, 3 for a spatial one; 2 if the header is missing.
 int dimension_of(const SourceFile& file);
 
-struct ReadOptions {
-  // Parameters that are fixed elsewhere than the spec says: {"t", "a"}. For hand derivations that
-  // do so.
-  std::map<std::string, std::string> anchors;
-};
+// Parameters that a hand derivation fixes in another body than the spec: {"t", "a"}.
+using Anchors = std::map<std::string, std::string>;
 
 struct ReadResult {
   std::optional<Joint> joint;  // empty if there are errors
   std::shared_ptr<const SourceFile> file;
-  std::vector<std::shared_ptr<const SourceFile>> included;  // what it brings in, directly or not
+  std::vector<std::shared_ptr<const SourceFile>> included;  // files that it includes, directly or not
   Diagnostics diagnostics;
   std::map<std::string, Value> names;  // every parameter, arm and let, typed
+  Library library;                     // that it was read with
 };
 
-ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library, const ReadOptions& options = {});
+ReadResult read_joint(std::shared_ptr<const SourceFile> file, const Library& library);
+// The same texts into a pool of their own, with these anchors, as far as the joint has the bodies. No file is opened.
+ReadResult read_anchored(const ReadResult& plain, const Anchors& anchors);
 
 }  // namespace cdot::derive

@@ -21,8 +21,7 @@ std::vector<fs::path> SpecsFolder::all() const {
   }
   if (!found) {
     throw NoSuchSpec(
-        fmt::format("no folder {0}/planar or {0}/spatial: run from the folder that holds specs/, "
-                    "or say --specs DIR",
+        fmt::format("no folder {0}/planar or {0}/spatial: run from the folder that holds specs/, or say --specs DIR",
                     folder_.string()));
   }
   std::sort(specs.begin(), specs.end());
@@ -34,8 +33,7 @@ fs::path SpecsFolder::find(const std::string& spec) const {
   std::vector<std::string> names;
   for (const fs::path& known : all()) {
     const std::string name = known.stem().string();
-    // `line`, or `spatial/line` where both spaces have one of that name; the planar one comes
-    // first.
+    // `line`, or `spatial/line` where both spaces have one of that name; the planar one comes first.
     if (name == spec || known.parent_path().filename().string() + "/" + name == spec) return known;
     names.push_back(name);
   }
@@ -46,13 +44,13 @@ fs::path SpecsFolder::find(const std::string& spec) const {
                                near.empty() ? "" : fmt::format("; did you mean `{}`?", near)));
 }
 
-ReadResult SpecsFolder::read(const fs::path& spec, const ReadOptions& options) const {
+ReadResult SpecsFolder::read(const fs::path& spec) const {
   const std::shared_ptr<const SourceFile> file = load_source(spec);
   const fs::path space = folder_ / name_of_space(dimension_of(*file));
   Library library;
   if (fs::is_directory(space)) library = load_library(space);
   library.merge(load_library(spec.has_parent_path() ? spec.parent_path() : fs::path(".")));
-  return read_joint(file, library, options);
+  return read_joint(file, library);
 }
 
 }  // namespace cdot::derive

@@ -1,4 +1,4 @@
-// Where specs are found: how every command turns what the user typed into files.
+// The folder of specs: from the words of a command line to files.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +9,7 @@
 
 namespace cdot::derive {
 
-// Raised for a spec that is not there; says what was tried and the likely fix.
+// Thrown for a missing spec; its text lists the tried paths and the likely fix.
 struct NoSuchSpec : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -25,7 +25,7 @@ class SpecsFolder {
   std::vector<std::filesystem::path> all() const;
 
   // Reads one spec; the specs beside it are what `include` finds. Diagnostics are in the result.
-  ReadResult read(const std::filesystem::path& spec, const ReadOptions& options = {}) const;
+  ReadResult read(const std::filesystem::path& spec) const;
 
  private:
   std::filesystem::path folder_;

@@ -1,5 +1,4 @@
-// What an expression of the author amounts to: its type, its unit, the frame of its components, and
-// its Expr.
+// The value of an author's expression: its type, its unit, the frame of its components, and its Expr.
 #pragma once
 
 #include <memory>
@@ -13,7 +12,7 @@
 
 namespace cdot::derive {
 
-// `poison` stands for what went wrong and was reported; whatever is made of it is poison too.
+// `poison` is the value of an expression with a reported error; an expression that contains it is poison, too.
 enum class Type { poison, scalar, vector, point, body, frame, matrix };
 
 struct Value {
@@ -29,9 +28,9 @@ struct Value {
   bool anchored = false;     // point that is known to be fixed in `body`
   std::vector<Expr> along;   // vector whose components are those along a frame: that frame's axes
   std::shared_ptr<const Matrix> matrix;
-  // What a matrix in space means in vectors, if that is known: r of skew(r), n of the row n', the leaf of a tensor.
+  // The vector form of a matrix in space, if known: r of skew(r), n of the row n', the leaf of a tensor.
   Expr skew, row, tensor;
-  bool inverted = false;  // matrix: what is meant is its inverse (an inertia tensor, whose inverse has the leaves)
+  bool inverted = false;  // matrix: the value is its inverse (an inertia tensor, whose inverse has the leaves)
 };
 
 inline Value scalar(Expr e, std::optional<Unit> unit = Unit{}) {
@@ -59,7 +58,7 @@ Value skew_of(Expr r);
 
 std::string_view in_words(Type type);  // "a number", "a vector", ...
 
-// Whether two values may be added or compared; if radians are numbers, a rad and 1 are one.
+// True if two values may be added or compared; if radians are numbers, rad and 1 are one unit.
 bool same_unit(const Value& a, const Value& b, bool radians_are_numbers = false);
 
 }  // namespace cdot::derive

@@ -18,7 +18,7 @@ void complain(const SourceFile& file, const Diagnostic& diagnostic, Outcome& out
 // Everything that is wrong with it, or what was proved.
 void prove_derivation(const Derivation& derivation, const ProofRecord& record, Outcome& outcome) {
   const Joint& joint = derivation.joint;
-  for (const Diagnostic& held : held_errors(joint)) complain(*joint.file, held, outcome);
+  for (const Diagnostic& held : errors_of_constrained_coordinates(joint)) complain(*joint.file, held, outcome);
   const std::string statement = statement_of(derivation);
   outcome.proofs = record.find(derivation, statement);
   outcome.on_record = !outcome.proofs.empty();
@@ -45,10 +45,10 @@ void prove_derivation(const Derivation& derivation, const ProofRecord& record, O
 }
 
 // The cost of the published derivations beside it, as far as they are right.
-void judge_hand(const fs::path& spec, const SpecsFolder& folder, Outcome& outcome) {
+void judge_hand(const fs::path& spec, const ReadResult& read, Outcome& outcome) {
   const fs::path hand = fs::path(spec).replace_extension(".hand");
   if (!fs::exists(hand)) return;
-  const DiffReport report = judge(hand, spec, folder);
+  const DiffReport report = judge(hand, read);
   outcome.complaints += render(*report.file, report.diagnostics);
   for (const Judgement& j : report.judgements) {
     outcome.hand_costs.insert(outcome.hand_costs.end(), j.costs.begin(), j.costs.end());
@@ -69,7 +69,7 @@ Outcome derive_spec(const fs::path& spec, const SpecsFolder& folder, const Proof
   const Kernel planned = plan(derivation);    // one program a function
   const Kernel kernel = simplified(planned);  // common terms and factors shared
   outcome.joint = print(kernel);              // C++ and what it costs
-  judge_hand(spec, folder, outcome);
+  judge_hand(spec, read, outcome);
   return outcome;
 }
 

@@ -1,4 +1,12 @@
 // One spec from text to kernel.
+//
+// Each result is made once and handed on:
+//   text         read from its file once a run; an entry of a .hand file elaborates the same text again, into a pool
+//                of its own, so that the names of one entry never show in another
+//   derivation   made once: the object that is proved is the one that is planned, printed and described
+//   expressions  interned by the Pool of the joint; a memo by node lives as long as one walk (time_derivative,
+//                Transposition, Components)
+//   proofs       the only cache that outlives a run: generated/proofs.csv, by content (proof_record.hpp)
 #pragma once
 
 #include <string>

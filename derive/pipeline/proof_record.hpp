@@ -1,5 +1,5 @@
 // generated/proofs.csv: what is proved of every spec, by content. `cdot derive` writes it, and skips a proof that it
-// finds there; nothing else is ever cached: reading, deriving, planning and printing are done anew on every run.
+// finds there. pipeline.hpp says what else is kept, and for how long.
 //
 // A row names a statement: a hash of the derivation itself, that is, of every expression of C, Cdot, J, K, gamma and
 // the stiffness, of the rows, the coordinates and the variants, with all that the proof knows of their leaves, and of

@@ -1,5 +1,4 @@
-// What the parser makes of a text: trees in which every node knows where it stands. No names are
-// looked up here.
+// The syntax tree: every node has its place in the text. The parser looks up no names.
 #pragma once
 
 #include <map>
@@ -68,7 +67,7 @@ struct IncludeAst {
   Span where;
 };
 
-// One statement of a spec. `include` and declarations hold one item each: the parser splits lists.
+// One statement of a spec. `include` and declarations have one item each: the parser splits lists.
 struct StatementAst {
   enum class Kind { include, declare, let, row, coordinate };
   Kind kind = Kind::row;

@@ -15,19 +15,15 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_ascii(char c) { return static_cast<unsigned char>(c) < 0x80; }
 bool is_control(char c) { return is_ascii(c) && (c < ' ' || c == 0x7F) && c != '\t' && c != '\n' && c != '\r'; }
 
-// Characters that a word processor puts in place of those of the language.
+// Characters that word processors write in place of those of the language.
 struct LookAlike {
   std::string_view character, meaning;
 };
-constexpr std::array<LookAlike, 9> look_alikes = {{{"\u2212", "-"},
-                                                   {"\u2013", "-"},
-                                                   {"\u00D7", "*"},
-                                                   {"\u00B7", "*"},
-                                                   {"\u22C5", "*"},
-                                                   {"\u2264", "<="},
-                                                   {"\u2265", ">="},
-                                                   {"\u2032", "'"},
-                                                   {"\u2019", "'"}}};
+// clang-format off
+constexpr std::array<LookAlike, 9> look_alikes = {{
+    {"\u2212", "-"}, {"\u2013", "-"}, {"\u00D7", "*"}, {"\u00B7", "*"}, {"\u22C5", "*"}, {"\u2264", "<="},
+    {"\u2265", ">="}, {"\u2032", "'"}, {"\u2019", "'"}}};
+// clang-format on
 
 class Lexer {
  public:
@@ -45,15 +41,16 @@ class Lexer {
   }
 
  private:
-  // Whether the bytes are worth reading; what is not UTF-8 is told once.
+  // True if the bytes are a text; reports only the first byte that is not UTF-8.
   bool is_text() {
     if (text_.size() > largest_file) {
-      diagnostics_.error({0, 0}, "the file is larger than 1 MiB", "is this the right file?");
+      diagnostics_.error({0, 0}, "the file has " + std::to_string(text_.size()) + " bytes; at most 1 MiB is read",
+                         "is this the right file?");
       return false;
     }
     const std::size_t nul = text_.find('\0');
     if (nul != std::string_view::npos) {
-      diagnostics_.error(span(nul, nul + 1), "not a text: here is a NUL byte",
+      diagnostics_.error(span(nul, nul + 1), "this file is not a text: it has a NUL byte",
                          "save the file as UTF-8; is this the right file?");
       return false;
     }
@@ -61,11 +58,10 @@ class Lexer {
     for (std::size_t i = 0; i < text_.size();) {
       const int length = utf8_length(text_, i);
       const std::size_t end = i + static_cast<std::size_t>(length > 0 ? length : 1);
-      if (length == 0 && valid_)
-        diagnostics_.error(span(i, end), "here is a byte that is not UTF-8", "save the file as UTF-8");
+      if (length == 0 && valid_) diagnostics_.error(span(i, end), "this byte is not UTF-8", "save the file as UTF-8");
       valid_ = valid_ && length > 0;
       if (is_control(text_[i]) && !control)
-        diagnostics_.error(span(i, end), "a control character in the text", "remove it");
+        diagnostics_.error(span(i, end), "the text has a control character", "remove it");
       control |= is_control(text_[i]);
       i = end;
     }
@@ -76,7 +72,7 @@ class Lexer {
     const char c = text_[at_];
     if (c == '\n') return newline();
     if (c == ' ' || c == '\t' || c == '\r') return void(++at_);
-    if (is_control(c)) return void(++at_);  // told by is_text
+    if (is_control(c)) return void(++at_);  // is_text reported it
     if (c == '#') return comment();
     if (c == '"') return string();
     if (is_letter(c)) return name();
@@ -87,12 +83,12 @@ class Lexer {
   }
 
   void newline() {
-    if (depth_ > 0 && statement_follows(at_ + 1)) depth_ = 0;  // the parser tells what is open
+    if (depth_ > 0 && statement_follows(at_ + 1)) depth_ = 0;  // the parser reports the open bracket
     if (depth_ == 0) add(TokenKind::newline, at_, at_ + 1);
     ++at_;
   }
 
-  // Whether the next line opens a statement, so that a bracket left open does not swallow it.
+  // True if the next line opens a statement: an open bracket must not swallow it.
   bool statement_follows(std::size_t i) const {
     while (i < text_.size() && (text_[i] == ' ' || text_[i] == '\t')) ++i;
     std::size_t end = i;
@@ -115,7 +111,7 @@ class Lexer {
     Token token{TokenKind::string, span(begin, at_), text_.substr(begin + 1, at_ - begin - 1)};
     if (at_ < text_.size() && text_[at_] == '"') token.where = span(begin, ++at_);
     else
-      diagnostics_.error(span(begin, begin + 1), "the text that starts here has no end",
+      diagnostics_.error(span(begin, begin + 1), "the text in quotes has no closing quote",
                          "close it with \" on the same line");
     tokens_.list.push_back(token);
   }
@@ -125,7 +121,7 @@ class Lexer {
     while (at_ < text_.size() && (is_letter(text_[at_]) || is_digit(text_[at_]))) ++at_;
     if (at_ - begin > longest_name)
       diagnostics_.error(span(begin, at_),
-                         "a name of " + std::to_string(at_ - begin) + " characters; at most 64 are allowed");
+                         "the name has " + std::to_string(at_ - begin) + " characters; at most 64 are allowed");
     const bool opens = tokens_.list.empty() || tokens_.list.back().kind == TokenKind::newline;
     add(TokenKind::name, begin, begin + std::min(at_ - begin, longest_name));
     if (hand_ && opens && tokens_.list.back().text == "entry") id();
@@ -173,7 +169,7 @@ class Lexer {
     if (rest.starts_with('.'))
       reject(begin, "this is not a number", "digits must stand on both sides of the point, as in 1.0");
     else
-      reject(begin, "neither a number nor a name",
+      reject(begin, "this is neither a number nor a name",
              "names do not start with a digit; a product is " + digits + "*" + rest + ", and 2 m is 2 [m]");
   }
 
@@ -212,15 +208,14 @@ class Lexer {
     const bool ascii = is_ascii(text_[at_]);
     do ++at_;
     while (at_ < text_.size() && !known(text_[at_]) && is_ascii(text_[at_]) == ascii);
-    if (ascii) reject(begin, "the language has no character " + quote(text_.substr(begin, at_ - begin)));
+    if (ascii) reject(begin, "the language does not use the character " + quote(text_.substr(begin, at_ - begin)));
     else if (valid_)
-      reject(begin, "only plain letters can be used here",
-             "names are of a-z, A-Z, 0-9 and _; other letters may stand in comments and "
-             "\"texts\"");
+      reject(begin, "only ASCII letters are allowed here",
+             "names consist of a-z, A-Z, 0-9 and _; other letters may stand in comments and \"texts\"");
     else tokens_.list.push_back({TokenKind::unknown, span(begin, at_), {}});
   }
 
-  // What was read since `begin` is no token.
+  // The characters since `begin` are no token.
   void reject(std::size_t begin, std::string message, std::string fix = {}) {
     const Span where = span(begin, at_);
     diagnostics_.error(where, std::move(message), std::move(fix));

@@ -1,5 +1,4 @@
-// Text of a spec or of a hand derivation as tokens. Lines end statements except inside open
-// brackets.
+// Text of a spec or of a hand derivation as tokens. Lines end statements except inside open brackets.
 #pragma once
 
 #include <string_view>
@@ -9,7 +8,7 @@
 
 namespace cdot::derive {
 
-// `unknown`: what is no token and was reported as such.
+// `unknown`: characters that are no token; the lexer has reported them.
 enum class TokenKind { name, number, string, symbol, unknown, newline, end };
 
 struct Token {
@@ -21,7 +20,7 @@ struct Token {
 struct Tokens {
   std::vector<Token> list;     // ends with newline and end
   std::vector<Span> comments;  // of whole lines
-  bool readable = true;        // otherwise not a text, or too large; said so
+  bool readable = true;        // false if it is not a text, or too large; the lexer has reported it
 };
 
 Tokens lex(const SourceFile& file, bool hand, Diagnostics& diagnostics);

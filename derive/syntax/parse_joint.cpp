@@ -1,5 +1,4 @@
-#include "derive/syntax/parse_joint.hpp"
-
+// A spec's text to its tree: header, declarations, lets, rows, coordinates.
 #include <algorithm>
 #include <utility>
 
@@ -14,10 +13,10 @@ class JointParser {
       : file_(file), tokens_(tokens), diagnostics_(diagnostics), p_(file, tokens, false, diagnostics) {}
 
   JointAst run() {
-    skip_blank_lines();
+    p_.skip_blank_lines();
     if (!p_.at_word("joint"))
       diagnostics_.error(p_.peek().where, "the header is missing: " + p_.found(), "start with `joint NAME planar`");
-    for (; !p_.at_end(); skip_blank_lines()) {
+    for (; !p_.at_end(); p_.skip_blank_lines()) {
       const std::size_t before = joint_.statements.size();
       statement();
       if (!p_.end_of_statement()) spoil(before);
@@ -27,12 +26,7 @@ class JointParser {
   }
 
  private:
-  void skip_blank_lines() {
-    while (p_.peek().kind == TokenKind::newline) p_.take();
-  }
-
-  // A statement that went on wrongly is not to be trusted; but its names are declared, so that
-  // their uses are no errors.
+  // A statement with an error is not used; its names are declared, so that their uses are no errors.
   void spoil(std::size_t first) {
     auto& all = joint_.statements;
     for (std::size_t i = first; i < all.size(); ++i) all[i].declared.broken = true;
@@ -42,7 +36,7 @@ class JointParser {
 
   void statement() {
     const bool declares = p_.at_name(1);
-    if (p_.peek().kind == TokenKind::string) return once(joint_.title, "what the joint does", "");
+    if (p_.peek().kind == TokenKind::string) return once(joint_.title, "the title of the joint", "");
     if (p_.at_word("joint") && declares) return header();
     if (p_.at_word("source") && !p_.at_symbol("=", 1)) {
       p_.take();
@@ -70,7 +64,7 @@ class JointParser {
   void header() {
     const Token word = p_.take();
     if (!joint_.name.text.empty())
-      p_.fail(word.where, "a second header; a file holds one joint", "", {joint_.name.where});
+      p_.fail(word.where, "the file has a second header; a file contains one joint", "", {joint_.name.where});
     const Word name = p_.name("the name of the joint");
     if (joint_.name.text.empty()) joint_.name = name;
     if (p_.failed()) return;
@@ -85,7 +79,7 @@ class JointParser {
   void once(std::string& target, std::string_view what, std::string_view keyword) {
     const Token t = p_.peek();
     const std::string text = keyword.empty() ? std::string(p_.take().text) : p_.string(keyword);
-    if (!target.empty()) p_.fail(t.where, std::string(what) + " is said twice", "join the two texts into one");
+    if (!target.empty()) p_.fail(t.where, std::string(what) + " is given twice", "join the two texts into one");
     target = text;
   }
 
@@ -112,7 +106,8 @@ class JointParser {
   void argument(IncludeAst& include) {
     if (!p_.at_symbol("=", 1)) {
       const Word body = p_.name("a body");
-      if (!include.given.empty() && !p_.failed()) p_.fail(body.where, "a body after a parameter", "bodies stand first");
+      if (!include.given.empty() && !p_.failed())
+        p_.fail(body.where, "a body stands after a parameter", "bodies stand first");
       return include.bodies.push_back(body);
     }
     DeclaredAst given;
@@ -146,7 +141,7 @@ class JointParser {
     if (p_.failed()) return;
     if (!p_.at_word("on"))
       return p_.fail(p_.at_end_of_statement() ? d.name.where : p_.peek().where,
-                     "where is " + quote(d.name.text) + " fixed? `on` and a body are missing",
+                     "the body of " + quote(d.name.text) + " is missing: `on` and a body must follow",
                      "write " + d.kind + " " + d.name.text + " on a (or b, ..., or world)");
     p_.take();
     d.body = p_.name("the body");
@@ -205,7 +200,7 @@ class JointParser {
     s.right = p_.expression();
     keep(s);
     if (!p_.failed() && (p_.at_symbol("=") || p_.at_symbol("<=") || p_.at_symbol(">=")))
-      p_.fail(p_.peek().where, "a row has one relation, here is a second", "write two rows", {s.relation_where});
+      p_.fail(p_.peek().where, "a row has one relation, not two", "write two rows", {s.relation_where});
     finish(s);
   }
 
@@ -215,7 +210,7 @@ class JointParser {
     p_.take();
     const Token t = p_.peek();
     if (t.kind != TokenKind::number)
-      return p_.fail(t.where, "how many rows? a number is missing after `keep`: " + p_.found(), "write keep 2");
+      return p_.fail(t.where, "the number of rows is missing after `keep`: " + p_.found(), "write keep 2");
     p_.take();
     s.keep = {std::string(t.text), t.where};
   }
@@ -232,11 +227,11 @@ class JointParser {
     else if (p_.at_symbol("<") || p_.at_symbol(">"))
       p_.fail(t.where, quote(t.text) + " is not a relation of this language", "write " + std::string(t.text) + "=");
     else if (p_.at_symbol("+=") || p_.at_symbol("-="))
-      p_.fail(t.where, quote(t.text) + " changes something; a row says what holds", "write =");
+      p_.fail(t.where, quote(t.text) + " assigns a value; a row is an equation", "write =");
     else if (p_.at_symbol(")") || p_.at_symbol("]"))
       p_.fail(t.where, quote(t.text) + " closes nothing", "remove it, or open it before");
     else if (p_.at_end_of_statement())
-      p_.fail(s.left.where, "a row is an equation, and this has no `=`",
+      p_.fail(s.left.where, "this row has no `=`, `<=` or `>=`",
               "write ... = 0; to give a part a name: let NAME = ...");
     else if (p_.at_name() || p_.peek().kind == TokenKind::number || p_.at_symbol("("))
       p_.fail(t.where, "an operator is missing before " + quote(t.text), "write * for a product");
@@ -249,15 +244,15 @@ class JointParser {
     const std::string near = nearest(t.text, words);
     if (near.empty())
       p_.fail(t.where, "no statement starts with " + quote(t.text),
-              "statements start with point, vector, unit, frame, scalar, let, include, coordinate, "
-              "velocity, source; a row is an equation");
+              "statements start with point, vector, unit, frame, scalar, let, include, coordinate, velocity, source; a "
+              "row is an equation");
     else p_.fail(t.where, "no statement starts with " + quote(t.text), "did you mean " + quote(near) + "?");
     if (p_.at_name() &&
         (near == "point" || near == "vector" || near == "unit" || near == "frame" || near == "scalar" || near == "let"))
       declare_broken(near, p_.peek());
   }
 
-  // Declares the name of a statement that went wrong, so that its uses are no errors of their own.
+  // Declares the name of a statement with an error, so that its uses are no errors of their own.
   void declare_broken(const std::string& kind, const Token& name) {
     StatementAst s = begin(kind == "let" ? StatementAst::Kind::let : StatementAst::Kind::declare);
     s.declared.kind = kind;

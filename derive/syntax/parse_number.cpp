@@ -48,19 +48,12 @@ const std::array<NamedUnit, 7> known_units = {{{"m", {.m = 1}, 0},
                                                {"deg", {.rad = 1}, 1}}};
 
 std::string unit_fix(std::string_view word) {
-  static const std::array<std::pair<std::string_view, std::string_view>, 13> others = {{{"cm", "0.01 m"},
-                                                                                        {"mm", "0.001 m"},
-                                                                                        {"km", "1000 m"},
-                                                                                        {"g", "0.001 kg"},
-                                                                                        {"ms", "0.001 s"},
-                                                                                        {"Hz", "1/s"},
-                                                                                        {"hz", "1/s"},
-                                                                                        {"meter", "m"},
-                                                                                        {"metre", "m"},
-                                                                                        {"second", "s"},
-                                                                                        {"radians", "rad"},
-                                                                                        {"degrees", "deg"},
-                                                                                        {"Nm", "N*m"}}};
+  // clang-format off
+  static const std::array<std::pair<std::string_view, std::string_view>, 13> others = {{
+      {"cm", "0.01 m"}, {"mm", "0.001 m"}, {"km", "1000 m"}, {"g", "0.001 kg"}, {"ms", "0.001 s"}, {"Hz", "1/s"},
+      {"hz", "1/s"}, {"meter", "m"}, {"metre", "m"}, {"second", "s"}, {"radians", "rad"}, {"degrees", "deg"},
+      {"Nm", "N*m"}}};
+  // clang-format on
   for (const auto& [name, meaning] : others)
     if (name == word) return "in the language's units that is " + std::string(meaning);
   std::vector<std::string> names;

@@ -14,6 +14,10 @@ const Token& Parser::peek(int ahead) const {
   return tokens_[std::min(at_ + static_cast<std::size_t>(ahead), tokens_.size() - 1)];
 }
 
+void Parser::skip_blank_lines() {
+  while (peek().kind == TokenKind::newline) take();
+}
+
 Token Parser::take() {
   const Token token = peek();
   if (at_ + 1 < tokens_.size()) ++at_;
@@ -44,7 +48,7 @@ bool Parser::expect(std::string_view symbol, std::string_view where) {
 }
 
 void Parser::fail(Span where, std::string message, std::string fix, std::vector<Span> also) {
-  // What is no token was reported by the lexer.
+  // The lexer has reported characters that are no token.
   const bool reported = peek().kind == TokenKind::unknown;
   if (!failed_ && !reported) diagnostics_.error(where, std::move(message), std::move(fix), std::move(also));
   failed_ = true;
@@ -65,7 +69,7 @@ bool Parser::end_of_statement() {
     else if (at_symbol(")") || at_symbol("]"))
       fail(t.where, quote(t.text) + " closes nothing", "remove it, or open it before");
     else
-      fail(t.where, "the statement should end here, but there is " + quote(t.text),
+      fail(t.where, "the statement must end before " + quote(t.text),
            t.text == ";" ? "a statement ends with its line" : "");
   }
   const bool good = !failed_;
@@ -107,7 +111,8 @@ std::string Parser::string(std::string_view after) {
 Ast Parser::expression() {
   if (failed_) return {};
   if (++depth_ > deepest_nesting) {
-    fail(peek().where, "brackets are nested too deeply here", "give parts of the expression names with `let`");
+    fail(peek().where, "this expression has more than 200 nested levels",
+         "give parts of the expression names with `let`");
     --depth_;
     return {};
   }
@@ -155,7 +160,7 @@ Ast Parser::sign() {
 // power = postfix [ "^" sign ]
 Ast Parser::power() {
   if (++depth_ > deepest_nesting) {
-    fail(peek().where, "powers are nested too deeply here");
+    fail(peek().where, "this expression has more than 200 nested levels");
     --depth_;
     return {};
   }
@@ -185,7 +190,7 @@ Ast Parser::postfix() {
     outer.where = {result.where.begin, peek(-1).where.end};
     outer.args.push_back(std::move(result));
     result = std::move(outer);
-    if (++length > 20) fail(result.where, "too many components of components");
+    if (++length > 20) fail(result.where, "more than 20 components of components are nested here");
   }
   return failed_ ? Ast{} : std::move(result);
 }
@@ -210,8 +215,8 @@ Ast Parser::nothing_here() {
   if (t.kind == TokenKind::string) fail(t.where, "a text in quotes cannot stand in an expression");
   else if (at_symbol("["))
     fail(t.where, "square brackets stand behind a number, for its unit, as in 2 [m]", "use round brackets to group");
-  else if (at_symbol("+")) fail(t.where, "a sign + is not written", "remove it");
-  else if (at_symbol("-")) fail(t.where, "two signs in a row", "put the negative part into round brackets");
+  else if (at_symbol("+")) fail(t.where, "a leading + is not allowed", "remove it");
+  else if (at_symbol("-")) fail(t.where, "two signs stand in a row", "put the negative part into round brackets");
   else fail(t.where, "a number, a name or a bracket is missing: " + found());
   return {};
 }
@@ -232,7 +237,7 @@ Ast Parser::brackets() {
   Ast inner = expression();
   if (!failed_ && !at_symbol(")")) {
     if (at_symbol(","))
-      fail(peek().where, "a comma between round brackets without an operator before them",
+      fail(peek().where, "a comma stands between round brackets without an operator before them",
            "a vector is written with perp, unit vectors or a parameter, not as (x, y)");
     else not_closed(open, ")");
   }

@@ -1,5 +1,4 @@
-// Tokens to expressions: the part of the grammar that specs and hand derivations share, and the way
-// out of an error.
+// Tokens to expressions: the part of the grammar that specs and hand derivations share, and the recovery from an error.
 #pragma once
 
 #include <string>
@@ -30,11 +29,12 @@ class Parser {
   bool accept(std::string_view symbol);
   bool expect(std::string_view symbol, std::string_view where);
 
-  // The first error of a statement; what follows it in the same statement is not worth a message.
+  // The first error of a statement; later errors of the same statement are not reported.
   void fail(Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
   bool failed() const { return failed_; }
-  void next_statement();  // skips what is left of this one
-  // Complains about what is left of this one, and skips it. Whether all was well.
+  void skip_blank_lines();
+  void next_statement();  // skips the rest of this one
+  // Reports the rest of this statement, if there is any, and skips it. True if the statement had no error.
   bool end_of_statement();
 
   int position() const { return static_cast<int>(at_); }
@@ -64,5 +64,7 @@ class Parser {
   int depth_ = 0;
   bool failed_ = false;
 };
+
+JointAst parse_joint(const SourceFile& file, const Tokens& tokens, Diagnostics& diagnostics);  // parse_joint.cpp
 
 }  // namespace cdot::derive

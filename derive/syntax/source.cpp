@@ -9,9 +9,9 @@
 namespace cdot::derive {
 namespace {
 
-constexpr int max_errors = 50;  // a file with more is not the file that was meant
+constexpr int max_errors = 50;  // a file with more is most likely the wrong file
 
-// A long line is shown such that the column of the first mark is in sight.
+// The visible part of a long line contains the first mark.
 constexpr text::Look look{
     96, "...", "\uFFFD", '~', true, [](int columns, int begin, int) {
       return columns <= look.columns ? 0 : std::clamp(begin - look.columns / 3, 0, columns - look.columns);

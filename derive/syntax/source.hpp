@@ -1,6 +1,5 @@
-// Source text and what is said about it: positions, caret spans, messages. Used by the readers of
-// specs and of hand derivations and by every later stage that has something to say about a line of
-// them.
+// Source text and messages about it, with positions and carets. The readers of specs and hand derivations use it, and
+// every later stage that reports about one of their lines.
 #pragma once
 
 #include <cstddef>
@@ -40,7 +39,7 @@ struct Diagnostic {
   std::string fix;         // what to do; may be empty
 };
 
-// All that was found in one file, in the order of the text.
+// All messages about one file, in the order of the text.
 struct Diagnostics {
   std::vector<Diagnostic> list;
   bool has_errors() const;
@@ -49,8 +48,7 @@ struct Diagnostics {
   void warning(Span where, std::string message, std::string fix = {}, std::vector<Span> also = {});
 };
 
-// For a terminal or a log: long lines are shortened around the caret, control and invalid bytes are
-// shown safely.
+// For a terminal or a log: long lines are shortened around the caret, control and invalid bytes are shown safely.
 //   specs/planar/line.joint:7:3: error: adds metres to radians
 //     7 |   dot(t, u) + angle(a) = 0
 //       |   ^~~~~~~~~   ~~~~~~~~

@@ -2,13 +2,40 @@
 #include <algorithm>
 
 #include "derive/language/hand/names.hpp"
-#include "derive/language/hand/readings.hpp"
 #include "derive/syntax/lexer.hpp"
 
 namespace cdot::derive {
 namespace {
 
 using Kind = HandItemAst::Kind;
+
+// A likely reading of a formula that has no value.
+struct OtherAst {
+  Ast ast;
+  std::string words;   // "with w(b) in place of v(b)"
+  std::string column;  // "w_b"
+};
+
+// `node` is a part of `whole`.
+void exchange(Ast& whole, Ast& node, std::vector<OtherAst>& found) {
+  const bool velocity = node.text == "v" || node.text == "w";
+  if (node.kind == Ast::Kind::call && velocity && node.args.size() == 1) {
+    const std::string written = node.text, of = "(" + node.args[0].text + ")";
+    node.text = written == "v" ? "w" : "v";
+    found.push_back(
+        {whole, "with " + node.text + of + " in place of " + written + of, node.text + "_" + node.args[0].text});
+    node.text = written;
+  }
+  for (Ast& arg : node.args) exchange(whole, arg, found);
+}
+
+// The formula with one velocity as an angular velocity, or the other way round, wherever there is one.
+std::vector<OtherAst> with_velocities_exchanged(const Ast& ast) {
+  std::vector<OtherAst> found;
+  Ast whole = ast;
+  exchange(whole, whole, found);
+  return found;
+}
 
 class EntryElaborator {
  public:
@@ -27,7 +54,7 @@ class EntryElaborator {
     entry_.listed = ast.listed;
     entry_.anchors = ast.anchors;
     entry_.immovable = ast.immovable;
-    entry_.form = form_of(ast);
+    entry_.form = form_named(ast.form);
     entry_.where = ast.where;
   }
 
@@ -110,8 +137,7 @@ Value EntryElaborator::evaluate(const Ast& ast, bool rows_of_J) {
   return {};
 }
 
-// Why the value of `ast` is missing: the last error among the findings since then, or what a name
-// in it rests on.
+// The reason for a missing value: the last error among the findings since then, or the problem of a name in it.
 std::string EntryElaborator::problem(const Ast& ast, std::size_t since) const {
   for (std::size_t i = findings_.list.size(); i-- > since;) {
     const Diagnostic& d = findings_.list[i];

@@ -8,7 +8,7 @@ namespace {
 
 constexpr int largest_side = 64;
 
-// Whether the size is only fixed by the place: the literal 0 and multiples of E.
+// True if only the place fixes the size: for the literal 0 and multiples of E.
 bool any_size(const Value& v) { return v.zero || (v.type == Type::matrix && v.matrix->any_size()); }
 
 // A value of any size, at that size.
@@ -37,7 +37,7 @@ Matrix scaled_by(const Matrix& m, Expr factor) {
   return r;
 }
 
-// In space, so that what a person writes in matrices stays as readable as what is derived in vectors.
+// In space, so that matrices of a hand derivation print as vectors, like the generated formulas.
 Value row_of(Expr n) {
   Value v = of_matrix(transposed(column_of(n)));
   v.row = n;
@@ -273,7 +273,7 @@ Value Evaluator::matrix(const Ast& ast) {
                    "", {ast.args[0].where});
     append_rows(m, row, columns);
     if (m.rows > largest_side || m.columns > largest_side)
-      return error(ast.where, "a matrix with more than 64 rows or columns");
+      return error(ast.where, "the matrix has more than 64 rows or columns");
   }
   return of_matrix(std::move(m));
 }

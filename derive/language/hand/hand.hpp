@@ -1,10 +1,8 @@
-// Hand derivations: published formulas as claims, read into matrices of expressions to be judged by
-// `cdot diff`.
+// Hand derivations: published formulas as claims, read into matrices of expressions to be judged by `cdot diff`.
 //
-// An entry is read twice over: first its text (read_hand), which tells where it fixes directions
-// other than the spec; then, against a joint that was read with these anchors, its formulas
-// (elaborate_entry). Formulas may be wrong in any way: sums of numbers and vectors, sizes that do
-// not fit, units that do not match. None of this is bad input.
+// An entry is read in two steps: first its text (read_hand), which tells where it fixes directions other than the spec;
+// then, against a joint that was read with these anchors, its formulas (elaborate_entry). Formulas may be wrong in any
+// way: sums of numbers and vectors, sizes that do not fit, units that do not match. None of this is bad input.
 #pragma once
 
 #include <functional>
@@ -29,13 +27,12 @@ struct HandFile {
 
 HandFile read_hand(std::shared_ptr<const SourceFile> file);
 
-// What Cdot derives for some rows of the joint; for `C`, `Cdot`, `J`, `K` in formulas of an entry
-// that does not define them itself. C and Cdot are columns, J has three columns per body.
+// The generated C, Cdot, J and K of some rows, for formulas of an entry that does not define them.
+// C and Cdot are columns, J has three columns per body.
 struct Generated {
   Matrix C, Cdot, J, K;
 };
-// For these rows and coordinates, by name and in this order; for all rows of the joint if there are
-// no names.
+// For these rows and coordinates, by name and in this order; for all rows of the joint if there are no names.
 using GeneratedRows = std::function<Generated(const std::vector<std::string>& rows)>;
 
 // Another reading of a formula that has no value as it stands.
@@ -50,10 +47,10 @@ struct HandItem {
   enum class Target { velocity, spin, position, angle };
   Kind kind = Kind::quantity;
   std::string what;             // quantity: C, Cdot, J, K or b; claim: one of these or `update`
-  std::optional<Matrix> value;  // empty: see `problem`; claim: the left side; update: what is added, sign included
+  std::optional<Matrix> value;  // empty: see `problem`; claim: the left side; update: the added term with its sign
   std::optional<Matrix> right;  // claim: the right side
   Expr expression, right_expression;  // the same, where the author wrote a number or a vector
-  std::string problem;                // why there is no value, in a sentence
+  std::string problem;                // the reason for a missing value, in a sentence
   std::vector<HandReading> readings;  // if there is none
   Target target = Target::velocity;   // update
   int body = -1;                      // update
@@ -62,7 +59,7 @@ struct HandItem {
   std::string text;  // as written
 };
 
-// What an entry says about the same rows.
+// The items of an entry about the same rows.
 struct HandPart {
   std::vector<std::string> rows;  // names of rows and coordinates; empty: all rows of the joint
   std::vector<HandItem> items;
@@ -88,10 +85,7 @@ struct HandEntry {
   Span where;
 };
 
-// What `form local` says.
-Form form_of(const HandEntryAst& entry);
-
-// Formulas of an entry. What nobody could evaluate (unknown names) goes into `diagnostics`.
+// The formulas of an entry. Unknown names go into `diagnostics`.
 HandEntry elaborate_entry(const HandEntryAst& entry, const HandFile& file, const ReadResult& joint,
                           const GeneratedRows& generated, Diagnostics& diagnostics);
 

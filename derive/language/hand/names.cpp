@@ -24,7 +24,7 @@ void HandNames::begin_part(std::vector<std::string> rows) {
 bool HandNames::is_free(const Word& name, Diagnostics& diagnostics) const {
   const bool of_spec = read_.names.contains(name.text);
   if (!of_spec && !own_.contains(name.text) && !is_special(name.text) && !is_symbol_of_tool(name.text)) return true;
-  diagnostics.error(name.where, quote(name.text) + (of_spec ? " is a name of the spec" : " has a meaning") + " already",
+  diagnostics.error(name.where, quote(name.text) + (of_spec ? " is already a name of the spec" : " is already defined"),
                     "choose another name");
   return false;
 }
@@ -36,7 +36,7 @@ const Value* HandNames::find(const std::string& name) {
   return is_special(name) ? &(said_[name] = quantity(name)) : nullptr;
 }
 
-// What the entry does not say itself.
+// A quantity that the entry does not define itself.
 Value HandNames::quantity(const std::string& name) {
   if (name == "E") return of_matrix({0, 0, {read_.joint->pool->number(1)}});
   if (!generated_now_) generated_now_ = generated_(rows_);

@@ -1,5 +1,5 @@
-// What names mean in the formulas of a hand derivation: lets and free symbols of its own, names of the spec, and
-// C, Cdot, J, K, lambda and E.
+// The names in the formulas of a hand derivation: its lets and free symbols, names of the spec, and C, Cdot, J, K,
+// lambda and E.
 #pragma once
 
 #include "derive/language/evaluate.hpp"
@@ -12,10 +12,10 @@ class HandNames final : public Scope {
   HandNames(const HandEntryAst& ast, const HandFile& file, const ReadResult& read, const GeneratedRows& generated)
       : ast_(ast), file_(file), read_(read), generated_(generated) {}
 
-  // From here on C, J and so on are those of these rows, unless the entry says its own.
+  // From here on C, J and so on belong to these rows, unless the entry defines them.
   void begin_part(std::vector<std::string> rows);
   void say(const std::string& quantity, const Value& value) { said_[quantity] = value; }
-  // Whether the entry may give the name a meaning; if not, says so.
+  // True if the entry may define the name; otherwise reports an error.
   bool is_free(const Word& name, Diagnostics& diagnostics) const;
   void define(const std::string& name, const Value& value) { own_[name] = value; }
 

@@ -22,8 +22,8 @@ class HandParser {
       : out_(out), p_(*out.file, tokens, true, out.diagnostics), text_(out.file->text) {}
 
   void run() {
-    skip_blank_lines();
-    for (; !p_.at_end(); skip_blank_lines()) {
+    p_.skip_blank_lines();
+    for (; !p_.at_end(); p_.skip_blank_lines()) {
       const std::size_t before = out_.entries.empty() ? 0 : entry().items.size();
       statement();
       if (p_.end_of_statement()) continue;
@@ -33,17 +33,13 @@ class HandParser {
   }
 
  private:
-  void skip_blank_lines() {
-    while (p_.peek().kind == TokenKind::newline) p_.take();
-  }
-
   HandEntryAst& entry() { return out_.entries.back(); }
 
   void statement() {
     if (p_.at_word("entry")) return begin_entry();
     if (out_.entries.empty()) {
       p_.fail(p_.peek().where, "an entry must come first: " + p_.found(), "start with entry ID \"title\"");
-      return out_.entries.push_back({});  // so that this is said once
+      return out_.entries.push_back({});  // so that this error occurs once
     }
     if (p_.at_word("source")) return text(entry().source);
     if (p_.at_word("note")) return text(entry().note);
@@ -95,8 +91,8 @@ class HandParser {
 
   void text(std::string& target) {
     const Token keyword = p_.take();
-    const std::string said = p_.string(keyword.text);
-    target += (target.empty() ? "" : " ") + said;
+    const std::string more = p_.string(keyword.text);
+    target += (target.empty() ? "" : " ") + more;
   }
 
   // "form" ( "global" | "local" | "euler" )
@@ -104,7 +100,7 @@ class HandParser {
     p_.take();
     const Word word = p_.name("global, local or euler");
     entry().form = word.text;
-    if (!p_.failed() && word.text != "global" && word.text != "local" && word.text != "euler")
+    if (!p_.failed() && name_of(form_named(word.text)) != word.text)
       p_.fail(word.where, "a form is global, local or euler, not " + quote(word.text));
   }
 
@@ -114,7 +110,7 @@ class HandParser {
       if (said->kind == Kind::rows) break;
       if (said->kind == Kind::quantity && said->word.text == p_.peek().text)
         p_.fail(p_.peek().where, quote(p_.peek().text) + " is given twice in this entry",
-                "make two entries of it, or say `rows ...` before what is about other rows", {said->word.where});
+                "write two entries, or `rows ...` before the items about other rows", {said->word.where});
     }
     assigned(item);
   }
@@ -204,8 +200,8 @@ class HandParser {
     for (const std::string_view q : quantities) words.emplace_back(q);
     const std::string near = t.kind == TokenKind::name ? nearest(t.text, words) : "";
     p_.fail(t.where, "no item of an entry starts with " + quote(t.text),
-            near.empty() ? "items are C, Cdot, J, K, b, lambda = ...; let, free, rows, assume, "
-                           "update, bound, claim, form, note, source, listed"
+            near.empty() ? "items are C, Cdot, J, K, b, lambda = ...; let, free, rows, assume, update, bound, claim, "
+                           "form, note, source, listed"
                          : "did you mean " + quote(near) + "?");
   }
 
@@ -222,12 +218,11 @@ class HandParser {
     const bool empty = std::none_of(e.items.begin(), e.items.end(), says);
     if (e.id.empty() || p_.failed()) return;
     if (empty && e.listed.empty())
-      out_.diagnostics.error(e.where, "the entry " + quote(e.id) + " says nothing to be judged",
-                             "give C, Cdot, J, K, b, an update or a claim, or say why not: "
-                             "listed \"...\"");
+      out_.diagnostics.error(e.where, "the entry " + quote(e.id) + " has nothing to compare",
+                             "give C, Cdot, J, K, b, an update or a claim, or the reason: listed \"...\"");
     if (e.source.empty())
       out_.diagnostics.warning(e.where, "the entry " + quote(e.id) + " has no source",
-                               "say where it was published: source \"...\"");
+                               "name its publication: source \"...\"");
   }
 
   // An item as its author wrote it, in one line.
@@ -250,10 +245,6 @@ class HandParser {
 };
 
 }  // namespace
-
-Form form_of(const HandEntryAst& entry) {
-  return entry.form == "local" ? Form::local : entry.form == "euler" ? Form::euler : Form::global;
-}
 
 HandFile read_hand(std::shared_ptr<const SourceFile> file) {
   HandFile out;

@@ -60,11 +60,12 @@ TEST(Check, ACoordinateThatARowHoldsIsAnError) {
   std::string said;
   const std::string rows = "  pa = pb\n  angle(b) = angle(a)\n  coordinate turn = angle(b) - angle(a)\n";
   EXPECT_FALSE(checked(rows, &said).clean());
-  EXPECT_TRUE(mentions(said, "own.joint:7:14: error: the coordinate turn is not free: the row C2 holds it")) << said;
-  EXPECT_TRUE(mentions(said, "fix: drop the coordinate")) << said;
+  EXPECT_TRUE(mentions(said, "own.joint:7:14: error: the coordinate turn is not free: the row C2 constrains it"))
+      << said;
+  EXPECT_TRUE(mentions(said, "fix: remove the coordinate")) << said;
 }
 
-// A limit holds nothing: what it limits is still free below it.
+// A limit constrains no coordinate: below the limit it is free.
 TEST(Check, AnInequalityHoldsNoCoordinate) {
   EXPECT_TRUE(checked("  norm(pa - pb) <= 2 [m]\n  coordinate length = norm(pa - pb)\n").clean());
 }
@@ -82,7 +83,7 @@ TEST(Check, WhatAnIncludeLeavesFreeAndARowHoldsIsDropped) {
     const Coordinate& dropped = derivation.joint.dropped.front();
     EXPECT_EQ(dropped.name, "angle");
     EXPECT_EQ(dropped.from, "revolute");
-    EXPECT_EQ(dropped.held_by, std::vector<std::string>{row});
+    EXPECT_EQ(dropped.constrained_by, std::vector<std::string>{row});
     EXPECT_TRUE(check(read).clean());
   }
   const Derivation free = derive(*folder.read(folder.find("prismatic")).joint);

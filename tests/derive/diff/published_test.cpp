@@ -24,7 +24,7 @@ const std::vector<Judgement>& published() {
       fs::path hand = spec;
       hand.replace_extension(".hand");
       if (!fs::exists(hand)) continue;
-      const derive::DiffReport report = judge(hand, spec, folder);
+      const derive::DiffReport report = judge(hand, folder.read(spec));
       EXPECT_FALSE(report.diagnostics.has_errors()) << render(*report.file, report.diagnostics);
       judgements.insert(judgements.end(), report.judgements.begin(), report.judgements.end());
     }

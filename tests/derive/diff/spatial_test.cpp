@@ -32,7 +32,7 @@ Judgement judged_beside(const std::string& spec, const std::string& items) {
   std::ofstream(folder / "own.joint") << spec;
   std::ofstream(folder / "own.hand") << "entry X-1 \"own\"\n  source \"own\"\n" << items;
   const derive::DiffReport report =
-      judge(folder / "own.hand", folder / "own.joint", derive::SpecsFolder(specs_folder()));
+      judge(folder / "own.hand", derive::SpecsFolder(specs_folder()).read(folder / "own.joint"));
   fs::remove_all(folder);
   EXPECT_FALSE(report.diagnostics.has_errors()) << render(*report.file, report.diagnostics);
   std::printf("%s\n", to_text(report, true).c_str());

@@ -23,7 +23,7 @@ fs::path write_hand(const std::string& joint, const std::string& items) {
 derive::Judgement judged(const std::string& joint, const std::string& items) {
   const derive::SpecsFolder folder(specs_folder());
   const fs::path hand = write_hand(joint, items);
-  const derive::DiffReport report = judge(hand, folder.find(joint), folder);
+  const derive::DiffReport report = judge(hand, folder.read(folder.find(joint)));
   fs::remove_all(hand.parent_path());
   EXPECT_FALSE(report.diagnostics.has_errors()) << render(*report.file, report.diagnostics);
   if (report.judgements.size() != 1) {

@@ -68,9 +68,9 @@ Values values_for(const Joint& joint, const Explanation& explanation, std::uint6
   return world_values(joint, random_sample(joint, leaves_shown(joint, explanation), seed));
 }
 
-Told check(const Joint& joint, const Explanation& explanation) {
+Told check(const Derivation& derivation, const Explanation& explanation) {
   Told told;
-  const Block rows = derive_rows(joint);
+  const Joint& joint = derivation.joint;
   for (const std::uint64_t seed : {1, 2, 3}) {
     const Values values = values_for(joint, explanation, seed);
     for (const Step& step : explanation.steps) {
@@ -78,7 +78,7 @@ Told check(const Joint& joint, const Explanation& explanation) {
         if (item.kind != Item::Kind::chain) continue;
         check_chain(step.heading, item.chain, values, told);
         if (item.chain.left.name == "J") {
-          check_J(item.chain.links[0].formula, joint, rows, values, told);
+          check_J(item.chain.links[0].formula, joint, derivation.rows, values, told);
         }
       }
     }
@@ -98,8 +98,8 @@ std::string content(const std::string& path) {
 TEST(Explain, EveryEquationOfTheCatalogueIsTrue) {
   int equations = 0;
   for (const std::string& name : spec_names()) {
-    const Joint joint = read_spec(name);
-    const Told told = check(joint, explain(joint));
+    const Derivation derivation = read_spec(name);
+    const Told told = check(derivation, explain(derivation));
     EXPECT_EQ(told.wrong, "") << name;
     EXPECT_GT(told.equations, 0) << name;
     equations += told.equations;
@@ -109,17 +109,17 @@ TEST(Explain, EveryEquationOfTheCatalogueIsTrue) {
 
 TEST(Explain, EveryEquationOfUnusualJointsIsTrue) {
   for (const auto& [name, text] : unusual_specs()) {
-    const Joint joint = read_text(name, text);
-    const Told told = check(joint, explain(joint));
-    EXPECT_EQ(told.wrong, "") << name << "\n" << explanation_text(explain(joint));
+    const Derivation derivation = read_text(name, text);
+    const Told told = check(derivation, explain(derivation));
+    EXPECT_EQ(told.wrong, "") << name << "\n" << explanation_text(explain(derivation));
     EXPECT_GT(told.equations, 0) << name;
   }
 }
 
 // The check can fail: a sign flipped anywhere in a derivation is found.
 TEST(Explain, AFlippedSignIsFound) {
-  const Joint joint = read_spec("line");
-  const Explanation right = explain(joint);
+  const Derivation derivation = read_spec("line");
+  const Explanation right = explain(derivation);
   int flipped = 0, found = 0;
   for (std::size_t s = 0; s < right.steps.size(); ++s) {
     for (std::size_t i = 0; i < right.steps[s].items.size(); ++i) {
@@ -130,7 +130,7 @@ TEST(Explain, AFlippedSignIsFound) {
       f = f.shape == Shape::matrix ? matrix(f.columns, {negative(f.args[0]), f.args[1], f.args[2], f.args[3]})
                                    : negative(f);
       ++flipped;
-      if (!check(joint, wrong).wrong.empty()) ++found;
+      if (!check(derivation, wrong).wrong.empty()) ++found;
     }
   }
   EXPECT_GT(flipped, 15);

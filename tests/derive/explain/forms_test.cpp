@@ -12,10 +12,10 @@ using namespace cdot::derive;
 namespace {
 
 struct Shown {
-  Joint joint;
+  const Joint& joint;
   Form form;
   Explanation explanation;
-  Block block;
+  const Block& block;
   Sample sample;
   Values values;
 };
@@ -29,9 +29,9 @@ Values with_orientations(const Joint& joint, const Sample& sample) {
   return values;
 }
 
-Shown shown(const Joint& joint, Form form, std::uint64_t seed) {
-  Shown s{joint, form, explain(joint, form), {}, {}, {}};
-  s.block = derive_rows(s.joint);  // refers to its rows
+Shown shown(const Derivation& derivation, Form form, std::uint64_t seed) {
+  const Joint& joint = derivation.joint;
+  Shown s{joint, form, explain(derivation, form), derivation.rows, {}, {}};
   std::vector<Expr> leaves = leaves_shown(joint, s.explanation);
   for (const ScalarRow& row : s.block.rows) leaves.insert(leaves.end(), {row.C, row.Cdot});
   s.sample = random_sample(joint, leaves, seed);
@@ -103,31 +103,31 @@ int check_partial_derivatives(const Shown& s) {
   return checked;
 }
 
-std::vector<Joint> spatial_joints() {
-  std::vector<Joint> joints;
+std::vector<Derivation> spatial_joints() {
+  std::vector<Derivation> all;
   for (const auto& [name, text] : unusual_specs()) {
-    if (Joint joint = read_text(name, text); joint.dimension == 3) joints.push_back(std::move(joint));
+    if (Derivation d = read_text(name, text); d.joint.dimension == 3) all.push_back(std::move(d));
   }
   for (const std::string& name : spec_names()) {
     if (!name.starts_with("spatial/")) continue;
-    if (Joint joint = read_spec(name); !joint.rows.empty()) joints.push_back(std::move(joint));
+    if (Derivation d = read_spec(name); !d.joint.rows.empty()) all.push_back(std::move(d));
   }
-  return joints;
+  return all;
 }
 
 }  // namespace
 
 TEST(ExplainForms, EachTimesItsVelocitiesIsCdot) {
-  for (const Joint& joint : spatial_joints()) {
+  for (const Derivation& derivation : spatial_joints()) {
     for (const Form form : {Form::local, Form::euler}) {
-      const Shown s = shown(joint, form, 5);
+      const Shown s = shown(derivation, form, 5);
       const Chain* chain = find_chain(s.explanation, "J_" + std::string(name_of(form)));
-      ASSERT_NE(chain, nullptr) << joint.name;
+      ASSERT_NE(chain, nullptr) << s.joint.name;
       const std::vector<double> Jv = blocks_times(chain->links[0].formula, velocities(s), s.values);
-      ASSERT_EQ(Jv.size(), s.block.rows.size()) << joint.name;
+      ASSERT_EQ(Jv.size(), s.block.rows.size()) << s.joint.name;
       for (std::size_t i = 0; i < Jv.size(); ++i) {
         const double Cdot = evaluate(s.block.rows[i].Cdot, s.values) - evaluate(s.block.rows[i].C_t, s.values);
-        EXPECT_NEAR(Jv[i], Cdot, 1e-9 * (1 + std::fabs(Cdot))) << joint.name;
+        EXPECT_NEAR(Jv[i], Cdot, 1e-9 * (1 + std::fabs(Cdot))) << s.joint.name;
       }
     }
   }
@@ -135,8 +135,8 @@ TEST(ExplainForms, EachTimesItsVelocitiesIsCdot) {
 
 TEST(ExplainForms, WhatIsSaidAboutThePartialDerivativeIsTrue) {
   int checked = 0;
-  for (const Joint& joint : spatial_joints()) {
-    checked += check_partial_derivatives(shown(joint, Form::euler, 6));
+  for (const Derivation& derivation : spatial_joints()) {
+    checked += check_partial_derivatives(shown(derivation, Form::euler, 6));
   }
   std::cout << checked << " derivatives by Euler parameters checked\n";
   EXPECT_GT(checked, 50);
@@ -145,7 +145,8 @@ TEST(ExplainForms, WhatIsSaidAboutThePartialDerivativeIsTrue) {
 TEST(ExplainForms, AWrongPartialDerivativeIsFound) {
   const auto specs = unusual_specs();
   const auto hinge = std::find_if(specs.begin(), specs.end(), [](const auto& s) { return s.first == "hinge"; });
-  const Shown s = shown(read_text(hinge->first, hinge->second), Form::euler, 6);
+  const Derivation derivation = read_text(hinge->first, hinge->second);
+  const Shown s = shown(derivation, Form::euler, 6);
   const std::string text = explanation_text(s.explanation);
   EXPECT_NE(text.find("dC_pin/de_a = -2 S(ra) G_a + 2 ra e_a'"), std::string::npos) << text;
   EXPECT_NE(text.find("agrees with it on e · e_dot = 0 only"), std::string::npos) << text;

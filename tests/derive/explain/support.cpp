@@ -56,9 +56,9 @@ std::vector<std::pair<std::string, std::string>> unusual_specs() {
            "  d = dot(n, d) * n\n"}};
 }
 
-Joint read_text(const std::string& name, const std::string& text) {
+Derivation read_text(const std::string& name, const std::string& text) {
   const auto file = std::make_shared<SourceFile>(name + ".joint", text);
   const ReadResult read = read_joint(file, {});
   if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
-  return *read.joint;
+  return derive(*read.joint);
 }

@@ -26,14 +26,14 @@ inline std::string flat(std::string name) {
   return name;
 }
 
-inline cdot::derive::Joint read_spec(const std::string& name) {
+inline cdot::derive::Derivation read_spec(const std::string& name) {
   const cdot::derive::SpecsFolder folder(CDOT_SOURCE_DIR "/specs");
   const cdot::derive::ReadResult read = folder.read(folder.find(name));
   if (!read.joint) throw std::runtime_error(render(*read.file, read.diagnostics));
-  return cdot::derive::derive(*read.joint).joint;
+  return cdot::derive::derive(*read.joint);
 }
 
 // Further joints that use what the catalogue does not: angles between directions, functions,
 // velocity rows, roots.
 std::vector<std::pair<std::string, std::string>> unusual_specs();
-cdot::derive::Joint read_text(const std::string& name, const std::string& text);
+cdot::derive::Derivation read_text(const std::string& name, const std::string& text);

@@ -19,7 +19,7 @@ std::unique_ptr<Read> read(const std::string& body) {
   const Library library = library_of(CDOT_SOURCE_DIR "/tests/derive/language/parts");
   r->file = read_hand(std::make_shared<SourceFile>("slider.hand", "entry PRI-1.a \"title\"\n source \"s\"\n" + body));
   const HandEntryAst& ast = r->file.entries.at(0);
-  r->joint = read_joint(library.at("slider"), library, {ast.anchors});
+  r->joint = read_anchored(read_joint(library.at("slider"), library), ast.anchors);
   r->entry = elaborate_entry(ast, r->file, r->joint, stand_in(r->joint), r->diagnostics);
   EXPECT_FALSE(r->file.diagnostics.has_errors()) << render(*r->file.file, r->file.diagnostics);
   EXPECT_FALSE(r->diagnostics.has_errors()) << render(*r->file.file, r->diagnostics);

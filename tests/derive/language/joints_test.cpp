@@ -11,9 +11,9 @@ const Library& parts() {
   return library;
 }
 
-ReadResult read_body(const std::string& body, const ReadOptions& options = {}) {
+ReadResult read_body(const std::string& body, const Anchors& anchors = {}) {
   const auto file = std::make_shared<SourceFile>("j.joint", "joint j planar\n" + body);
-  ReadResult r = read_joint(file, parts(), options);
+  ReadResult r = read_anchored(read_joint(file, parts()), anchors);
   EXPECT_TRUE(r.joint) << render(*r.file, r.diagnostics);
   return r;
 }
@@ -99,9 +99,9 @@ TEST(Joints, GiveAPointWithItsArm) {
 }
 
 TEST(Joints, CanBeAnchoredElsewhere) {
-  const ReadResult r = read_body(" include line\n", {{{"t", "a"}}});
+  const ReadResult r = read_body(" include line\n", {{"t", "a"}});
   EXPECT_EQ(r.joint->parameters[2].symbol->body, 0);
-  const ReadResult world = read_body(" include line\n", {{{"t", "world"}}});
+  const ReadResult world = read_body(" include line\n", {{"t", "world"}});
   EXPECT_EQ(world.joint->parameters[2].symbol->role, Role::world_vector);
   EXPECT_TRUE(world.joint->uses_world);
 }

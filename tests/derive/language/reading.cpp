@@ -39,9 +39,10 @@ GeneratedRows stand_in(const ReadResult& read) {
 std::string messages_about_hand(const std::shared_ptr<const SourceFile>& hand,
                                 const std::shared_ptr<const SourceFile>& joint, const Library& library) {
   HandFile file = read_hand(hand);
+  const ReadResult plain = read_joint(joint, library);
   std::string out, about_formulas;
   for (const HandEntryAst& ast : file.entries) {
-    const ReadResult read = read_joint(joint, library, {ast.anchors});
+    const ReadResult read = read_anchored(plain, ast.anchors);
     if (!read.joint) return render(*read.file, read.diagnostics);
     const HandEntry entry = elaborate_entry(ast, file, read, stand_in(read), file.diagnostics);
     for (const Diagnostic& d : entry.remarks) about_formulas += render(*hand, d);
