@@ -24,8 +24,7 @@ std::string kind_of(LawId id) {
   }
 }
 
-// What a broken law says; a law about the derivation itself is named, for it is no fault of the
-// spec.
+// What a broken law says; a law about the derivation itself is named, for it is no fault of the spec.
 void take_over(const Proved& proved, Findings& findings) {
   for (const Law& law : proved.proof.laws) {
     if (!is_broken(law)) continue;

@@ -1,7 +1,6 @@
-// Where K is singular. By Cauchy-Binet det K is a sum over choices of columns of J of (minor of
-// J)^2 times the inverse masses of the columns: no term is negative, so K is singular exactly where
-// the terms of every product of inverse masses vanish, and never where one of them is a sum of
-// squares that cannot vanish.
+// Where K is singular. By Cauchy-Binet det K is a sum over choices of columns of J of (minor of J)^2 times the inverse
+// masses of the columns: no term is negative, so K is singular exactly where the terms of every product of inverse
+// masses vanish, and never where one of them is a sum of squares that cannot vanish.
 #include "derive/check/mass.hpp"
 
 #include <algorithm>
@@ -15,8 +14,7 @@
 namespace cdot::derive {
 namespace {
 
-// With more minors than the first, formulas become too long for algebra: then numbers at the random
-// poses decide.
+// With more minors than the first, formulas become too long for algebra: then numbers at the random poses decide.
 constexpr double most_minors_by_algebra = 250, most_minors = 20000;
 
 // Powers of the inverse masses: m of the first body, its I, m of the second, ...
@@ -302,8 +300,7 @@ class MassCheck {
   const Joint& joint_;
   Findings& findings_;
   Algebra names_;
-  // Inertia counts as a number here also in space: a tensor that is positive definite changes no
-  // rank.
+  // Inertia counts as a number here also in space: a tensor that is positive definite changes no rank.
   std::size_t linear_ = static_cast<std::size_t>(joint_.dimension);
   std::size_t width_ = columns_per_body(joint_.dimension);
   bool by_algebra_ = true;

@@ -15,13 +15,11 @@ double determinant(const std::vector<std::vector<double>>& J, const std::vector<
 // n over k.
 double number_of_choices(std::size_t n, std::size_t k);
 
-// All even powers with positive factors, and a constant: never zero. A number other than zero is
-// one.
+// All even powers with positive factors, and a constant: never zero. A number other than zero is one.
 bool is_positive(const ex& expanded, const std::vector<ex>& symbols);
 
-// For sums of squares that all have to vanish, each by the factors one of which has to (empty: no
-// words are known): "where ratio = 0 and cross(ra, n) = 0". What is zero where something else in
-// the list is goes without saying.
+// For sums of squares that all have to vanish, each by the factors one of which has to (empty: no words are known):
+// "where ratio = 0 and cross(ra, n) = 0". What is zero where something else in the list is goes without saying.
 std::string where_all_vanish(const std::vector<std::vector<std::string>>& factors);
 
 // Who has to be able to move and to turn.

@@ -6,8 +6,7 @@
 
 namespace cdot::derive {
 
-// What a part looks at: the joint, what was derived from it, and random poses, some of them with C
-// = 0.
+// What a part looks at: the joint, what was derived from it, and random poses, some of them with C = 0.
 struct Subject {
   const Joint& joint;
   const Block& block;

@@ -68,14 +68,14 @@ bool find_vanishing(const Subject& subject, Findings& findings) {
     if (row.kind == RowKind::velocity || !vanishes_on_constraint(subject, i)) continue;
     found = true;
     const std::string better = better_form(row.C, subject.joint);
-    findings.push_back({Level::error,
-                        "vanishing",
-                        row.row->where,
-                        {},
-                        row.name + ": J vanishes where C = 0: C only touches zero, so that no impulse can hold it "
-                                   "there (K is 0)",
-                        better.empty() ? "write the row so that C changes its sign where it is met"
-                                       : "write `" + better + "`, which changes its sign where it is met"});
+    findings.push_back(
+        {Level::error,
+         "vanishing",
+         row.row->where,
+         {},
+         row.name + ": J vanishes where C = 0: C only touches zero, so that no impulse can hold it there (K is 0)",
+         better.empty() ? "write the row so that C changes its sign where it is met"
+                        : "write `" + better + "`, which changes its sign where it is met"});
   }
   return found;
 }
@@ -111,13 +111,13 @@ void find_dependent_on_constraint(const Subject& subject, Findings& findings) {
     if (!(weak.rest < negligible)) return;
     row = std::max(row, weak.row);
   }
-  findings.push_back({Level::error,
-                      "dependent",
-                      rows[row].row->where,
-                      {},
-                      rows[row].name + ": where C = 0, its row of J is a combination of the rows "
-                                       "before it, though not elsewhere",
-                      "drop the row, or say what it should hold by other means"});
+  findings.push_back(
+      {Level::error,
+       "dependent",
+       rows[row].row->where,
+       {},
+       rows[row].name + ": where C = 0, its row of J is a combination of the rows before it, though not elsewhere",
+       "drop the row, or say what it should hold by other means"});
 }
 
 void find_unreachable(const Subject& subject, Findings& findings) {

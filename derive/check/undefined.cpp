@@ -1,5 +1,5 @@
-// Where formulas are undefined, and what the kernel does there: the guards of runtime/include/cdot/kernel.hpp,
-// said in the spec's own names. What is undefined wherever C = 0 is an error.
+// Where formulas are undefined, and what the kernel does there: the guards of runtime/include/cdot/kernel.hpp, said in
+// the spec's own names. What is undefined wherever C = 0 is an error.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>

@@ -129,8 +129,7 @@ Run check_command(CLI::App& command) {
                    "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
   add_processes_option(command, options->processes);
   command.footer(
-      "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where "
-      "the joint\n"
+      "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where the joint\n"
       "is singular or undefined and what the kernel does there.\n"
       "Exit status: 0 nothing but notes; 1 problems; 2 a spec cannot be read.\n\n"
       "Operators\n" +

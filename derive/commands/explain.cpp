@@ -1,5 +1,4 @@
-// `cdot explain`: the derivation of one spec, for a person as text, HTML or LaTeX, for a program as
-// JSON.
+// `cdot explain`: the derivation of one spec, for a person as text, HTML or LaTeX, for a program as JSON.
 #include "derive/explain/explain.hpp"
 
 #include <CLI/CLI.hpp>
@@ -58,9 +57,7 @@ int run(const Options& options) {
   std::cerr << render(*read.file, read.diagnostics);
   if (!read.joint) return 2;
   if (read.joint->dimension == 2 && options.form != "global") {
-    fmt::print(stderr,
-               "cdot explain: --form is for spatial joints: in the plane w is one number, in every "
-               "form\n");
+    fmt::print(stderr, "cdot explain: --form is for spatial joints: in the plane w is one number, in every form\n");
     return 2;
   }
   const std::string text = explanation(derive(*read.joint).joint, options);

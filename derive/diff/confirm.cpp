@@ -197,8 +197,7 @@ std::string Confirm::claim(Expr left, Expr right) const {
     most = std::max(most, std::abs(value(left, sample) - value(right, sample)));
   const Sample& first = poses_.samples().front();
   return fmt::format(
-      "both sides at {} poses: they differ by up to {:.2g}; at the first {:.4g} stands where "
-      "{:.4g} belongs",
+      "both sides at {} poses: they differ by up to {:.2g}; at the first {:.4g} stands where {:.4g} belongs",
       poses_.samples().size(), most, value(left, first), value(right, first));
 }
 
@@ -231,9 +230,8 @@ std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const M
     }
   }
   return fmt::format(
-      "; where the constraint holds, the rows of the smaller are combinations of those of the "
-      "larger, "
-      "off by {} at {} poses",
+      "; where the constraint holds, the rows of the smaller are combinations of those of the larger, off by {} at {} "
+      "poses",
       small(off), poses.samples().size());
 }
 

@@ -1,5 +1,5 @@
-// Confirms differences by numbers at random poses: central differences of C, impulses applied, both
-// sides evaluated. None of it uses what is derived, but to say how far that is off.
+// Confirms differences by numbers at random poses: central differences of C, impulses applied, both sides evaluated.
+// None of it uses what is derived, but to say how far that is off.
 #pragma once
 
 #include <functional>
@@ -15,8 +15,8 @@ namespace cdot::derive {
 // One number per column of J.
 using Motion = std::vector<double>;
 
-// The change of C along a motion of the bodies and of time, by central differences; of a velocity
-// row, its value there less that at rest.
+// The change of C along a motion of the bodies and of time, by central differences; of a velocity row, its value there
+// less that at rest.
 double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample, const Motion& motion, double time);
 
 class Confirm {
@@ -47,8 +47,7 @@ class Confirm {
   std::string positions_after(const std::vector<ScalarRow>& rows, const Change& change) const;
   // For an impulse of any size: its work along motions that the rows allow.
   std::string work(const std::vector<ScalarRow>& rows, const Change& change) const;
-  // While C rises by itself: the impulse of an equation pulls it back, that of an inequality does
-  // not act.
+  // While C rises by itself: the impulse of an equation pulls it back, that of an inequality does not act.
   std::string bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const;
 
  private:

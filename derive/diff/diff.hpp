@@ -1,6 +1,6 @@
-// The verdict on published derivations: what each claims against what is derived, entry by entry.
-// Every verdict is computed: exact arithmetic modulo a prime decides equality, doubles where it cannot, and what
-// differs is confirmed by finite differences.
+// The verdict on published derivations: what each claims against what is derived, entry by entry. Every verdict is
+// computed: exact arithmetic modulo a prime decides equality, doubles where it cannot, and what differs is confirmed by
+// finite differences.
 #pragma once
 
 #include <string>

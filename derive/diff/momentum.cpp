@@ -1,5 +1,5 @@
-// A published Jacobian judged alone: moving all bodies together must not be felt by a joint that
-// has nothing to do with the world, whatever C was.
+// A published Jacobian judged alone: moving all bodies together must not be felt by a joint that has nothing to do with
+// the world, whatever C was.
 #include <fmt/format.h>
 
 #include "derive/diff/entry.hpp"
@@ -8,8 +8,8 @@
 namespace cdot::derive {
 namespace {
 
-// What multiplies the column of each rate of turning in J_w: nothing in the plane, axes in space;
-// J_w = 1/2 J_e G^T for those of Euler parameters.
+// What multiplies the column of each rate of turning in J_w: nothing in the plane, axes in space; J_w = 1/2 J_e G^T for
+// those of Euler parameters.
 std::vector<Expr> turns_of_columns(const Entry& entry, int body) {
   Pool& pool = entry.pool();
   if (entry.joint.dimension == 2) return {pool.number(1)};
@@ -43,8 +43,7 @@ void note_momentum(Entry& entry, const std::vector<std::string>& rows, const cha
 
 }  // namespace
 
-// Judged where C = 0: a vector row in world axes turns with the bodies, and is zero only there
-// after it.
+// Judged where C = 0: a vector row in world axes turns with the bodies, and is zero only there after it.
 void judge_momentum(Entry& entry, const Part& part, const Matrix& J) {
   if (entry.joint.uses_world || entry.immovable >= 0) return;
   Pool& pool = entry.pool();

@@ -34,8 +34,7 @@ Poses::Poses(const Joint& joint, std::vector<Expr> expressions) : joint_(&joint)
   }
 }
 
-// Rotations vanish also where one turns by pi; from almost the same orientations the next solution
-// is that without.
+// Rotations vanish also where one turns by pi; from almost the same orientations the next solution is that without.
 Poses Poses::aligned() const {
   if (joint_->dimension == 2) return *this;
   Poses poses = *this;
@@ -53,8 +52,7 @@ Poses Poses::aligned() const {
   return poses;
 }
 
-// A symbol that an entry declares free stays positive, unless what the entry assumes does not let
-// it.
+// A symbol that an entry declares free stays positive, unless what the entry assumes does not let it.
 Poses Poses::where(const std::vector<Expr>& equations) const {
   Poses moved = *this;
   moved.samples_.clear();

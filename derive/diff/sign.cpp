@@ -1,5 +1,5 @@
-// The sign of C is the author's choice, row by row: the one is taken with which the fewest entries
-// of C, Cdot, J and b differ over the whole entry, and in them the fewest terms.
+// The sign of C is the author's choice, row by row: the one is taken with which the fewest entries of C, Cdot, J and b
+// differ over the whole entry, and in them the fewest terms.
 #include <algorithm>
 
 #include "derive/diff/entry.hpp"

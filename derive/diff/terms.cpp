@@ -28,8 +28,7 @@ class Expansion {
     for (const Let& let : joint.lets) lets_of_spec_.insert(let.name);
   }
 
-  // The name of the root itself is always opened. What has too many terms for a person to read
-  // stays as it is.
+  // The name of the root itself is always opened. What has too many terms for a person to read stays as it is.
   Terms of(Expr e) {
     constexpr std::size_t most_terms = 40;
     const auto known = known_.find(&*e);

@@ -1,5 +1,4 @@
-// Two expressions taken apart, so that what they have in common cancels: into terms, and terms into
-// factors.
+// Two expressions taken apart, so that what they have in common cancels: into terms, and terms into factors.
 #pragma once
 
 #include <vector>

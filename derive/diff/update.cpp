@@ -1,5 +1,5 @@
-// Update rules: what a source adds to velocities or positions, against M^-1 J^T lambda with the
-// right impulse; and the bounds of the impulse.
+// Update rules: what a source adds to velocities or positions, against M^-1 J^T lambda with the right impulse; and the
+// bounds of the impulse.
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -71,8 +71,8 @@ bool same_direction(const Confirm::Change& change, const Poses& poses) {
   return true;
 }
 
-// The impulse that the changes are compared with: a symbol where the source's is, or else what
-// makes Cdot vanish (positions: C).
+// The impulse that the changes are compared with: a symbol where the source's is, or else what makes Cdot vanish
+// (positions: C).
 std::vector<Expr> impulse(Pool& pool, const Part& part, UpdateLevel level) {
   const std::size_t n = part.rows.size();
   std::vector<Expr> lambda;
@@ -165,8 +165,7 @@ void judge_bound(Entry& entry, const Part& part, const HandItem& item) {
   const Place place{"update", "", "", {}, {}, &entry.joint};
   if (inequality) {
     add_plain(entry, item, place, "missing term",
-              "the impulse has to stay >= 0: an inequality may push C up, never pull it back; "
-              "without that the row "
+              "the impulse has to stay >= 0: an inequality may push C up, never pull it back; without that the row "
               "also stops bodies that are already on their way back",
               confirmed);
   } else {

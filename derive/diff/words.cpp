@@ -145,8 +145,7 @@ std::optional<Explained> single_source(const Place& place, Expr difference, cons
   return std::nullopt;
 }
 
-// All that is left over of the published side is what is left over of the generated one, but for a
-// factor.
+// All that is left over of the published side is what is left over of the generated one, but for a factor.
 std::optional<Explained> by_factor(const Leftover& left, Expr has, Expr lacks, const Poses& poses) {
   if (left.hand.size() != left.generated.size()) return std::nullopt;
   for (const Term& theirs : left.generated) {

@@ -1,5 +1,4 @@
-// Names what is wrong with a published expression: its kind, and a sentence that says why the right
-// one is right.
+// Names what is wrong with a published expression: its kind, and a sentence that says why the right one is right.
 #pragma once
 
 #include <string>
@@ -31,8 +30,8 @@ Difference describe_difference(const Place& place, Expr hand, Expr generated, co
 // The axis that the spec calls f.x is a leaf f_x.
 std::string in_names_of_spec(std::string text, const Joint& joint);
 
-// A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty
-// if none is found. `constraints`: the rows of C.
+// A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty if none is found.
+// `constraints`: the rows of C.
 std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand, Expr generated,
                               const Poses& poses);
 

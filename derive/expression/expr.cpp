@@ -23,8 +23,8 @@ std::string key_of(const Node& n) {
   return key;
 }
 
-// Where a leaf stands among others: differences of positions come first (they cancel what is large and common),
-// then what turns with a body; masses before inertias; the rest by name.
+// Where a leaf stands among others: differences of positions come first (they cancel what is large and common), then
+// what turns with a body; masses before inertias; the rest by name.
 int rank(const Node& n) {
   switch (n.role) {
     case Role::constant: return 0;

@@ -1,9 +1,9 @@
 // The generator's own expressions: interned nodes over scalars and vectors, in an order that depends on names only.
 //
 // Every stage after the reader works on these. Equal expressions are the same node, so comparing is one pointer
-// comparison and shared work is shared by construction. The builders below apply the identities that hold whatever
-// the operands are (dot(t, t) = 1 for a unit vector, dot(perp u, v) = cross(u, v), ...) and nothing else.
-// A name given by the author (`let u = ...`) sticks to the node, and sums do not flatten through it.
+// comparison and shared work is shared by construction. The builders below apply the identities that hold whatever the
+// operands are (dot(t, t) = 1 for a unit vector, dot(perp u, v) = cross(u, v), ...) and nothing else. A name given by
+// the author (`let u = ...`) sticks to the node, and sums do not flatten through it.
 #pragma once
 
 #include <array>

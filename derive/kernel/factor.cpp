@@ -1,5 +1,5 @@
-// K lambda = rhs solved in advance: K = L D L^T and the two substitutions, unrolled, without what
-// is zero at every pose.
+// K lambda = rhs solved in advance: K = L D L^T and the two substitutions, unrolled, without what is zero at every
+// pose.
 #include "derive/kernel/factor.hpp"
 
 #include "derive/expression/components.hpp"

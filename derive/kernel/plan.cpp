@@ -128,8 +128,8 @@ class BlockPlanner {
     add("jacobian", "C and J", outputs);
   }
 
-  // K in the form that the derivation simplified it to, reading what J has stored. If that form
-  // needs something that J does not hold, the plain sum over J's entries is used.
+  // K in the form that the derivation simplified it to, reading what J has stored. If that form needs something that J
+  // does not hold, the plain sum over J's entries is used.
   void add_effective_mass() {
     Components components;
     std::map<const Node*, Expr> held;
@@ -172,8 +172,8 @@ class BlockPlanner {
     return inverse_mass_times(column, [&](std::size_t c) { return stored(row, c); });
   }
 
-  // Row `column` of M^-1 times a column of numbers: 1/m for what moves the centre, 1/I or the
-  // tensor I^-1 for what turns.
+  // Row `column` of M^-1 times a column of numbers: 1/m for what moves the centre, 1/I or the tensor I^-1 for what
+  // turns.
   template <class Numbers>
   Expr inverse_mass_times(std::size_t column, Numbers numbers) const {
     const BodySymbols body = body_symbols(joint_, static_cast<int>(column / width_));

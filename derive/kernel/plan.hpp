@@ -1,5 +1,5 @@
-// A kernel as programs: every function of the contract (runtime/include/cdot/kernel.hpp) as a program, before
-// it becomes text.
+// A kernel as programs: every function of the contract (runtime/include/cdot/kernel.hpp) as a program, before it
+// becomes text.
 #pragma once
 
 #include <string>
@@ -51,9 +51,8 @@ Kernel plan(const Derivation& derivation);
 // Common terms and factors shared in every function; of two ways, the cheaper one.
 Kernel simplified(Kernel kernel);
 
-// Everything written out in components and read from poses and parameters: arms become c l_x - s
-// l_y, in space xx l_x + xy l_y + xz l_z. Shared by the kernel, the ledger and the hand
-// derivations, so that all are counted alike.
+// Everything written out in components and read from poses and parameters: arms become c l_x - s l_y, in space xx l_x +
+// xy l_y + xz l_z. Shared by the kernel, the ledger and the hand derivations, so that all are counted alike.
 class PoseInputs {
  public:
   explicit PoseInputs(const Joint& joint);
@@ -68,8 +67,7 @@ class PoseInputs {
 // The default of a parameter that has one, in the frame that it is fixed in.
 DefaultValue plan_default(const Joint& joint, int index);
 
-// The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space
-// "f_x_x" to "f_z_z".
+// The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space "f_x_x" to "f_z_z".
 std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter);
 // How a kernel reads a parameter's numbers: symbols, in the same order.
 std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter);

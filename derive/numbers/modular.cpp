@@ -12,8 +12,8 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-// A generic pose. Angles and scalars are small whole numbers, so that sums of them can be
-// recognised in the argument of a sine.
+// A generic pose. Angles and scalars are small whole numbers, so that sums of them can be recognised in the argument of
+// a sine.
 class Pose final : public Arithmetic<Modular> {
  public:
   explicit Pose(std::uint64_t seed) : point_(seed) {}
@@ -121,8 +121,8 @@ std::optional<Rows> jacobian_at(std::span<const std::vector<Expr>> rows, std::ui
   return J;
 }
 
-// A combination of rows that vanishes: its last coefficient is 1 and stands at the row that depends
-// on the earlier ones.
+// A combination of rows that vanishes: its last coefficient is 1 and stands at the row that depends on the earlier
+// ones.
 struct Combination {
   std::size_t row;
   std::vector<Modular> coefs;

@@ -1,7 +1,6 @@
-// Exact ranks: a Jacobian evaluated at random poses modulo the prime p = 2^61 - 1. Full rank there
-// is full rank over the rationals. Modulo this p, -1 is no square and half of all numbers are, so
-// roots and signs can be chosen as among the reals (the root that is a square itself), and the
-// rotations form a group in which angles add.
+// Exact ranks: a Jacobian evaluated at random poses modulo the prime p = 2^61 - 1. Full rank there is full rank over
+// the rationals. Modulo this p, -1 is no square and half of all numbers are, so roots and signs can be chosen as among
+// the reals (the root that is a square itself), and the rotations form a group in which angles add.
 #pragma once
 
 #include <cstdint>
@@ -55,9 +54,8 @@ Nullity difference_modulo_prime(Expr a, Expr b);
 struct GenericRank {
   int rank = 0;
   int poses = 0;  // that were tried; 0: no pose was found at which everything is defined
-  // For each superfluous row: coefficients, one per row, of a combination of the rows of J that
-  // vanishes at every pose; empty if the coefficients depend on the pose. In order of the rows; the
-  // last nonzero coefficient is 1.
+  // For each superfluous row: coefficients, one per row, of a combination of the rows of J that vanishes at every pose;
+  // empty if the coefficients depend on the pose. In order of the rows; the last nonzero coefficient is 1.
   struct Dependence {
     int row = 0;          // that depends on earlier ones
     std::vector<int> on;  // the earlier rows with a nonzero coefficient

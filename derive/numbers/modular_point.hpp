@@ -1,5 +1,5 @@
-// The elementary functions at one random point modulo the prime: random values that obey the laws
-// which formulas rely on. Apart from what is evaluated there: our own expressions, or GiNaC's.
+// The elementary functions at one random point modulo the prime: random values that obey the laws which formulas rely
+// on. Apart from what is evaluated there: our own expressions, or GiNaC's.
 #pragma once
 
 #include <span>
@@ -18,8 +18,8 @@ struct Rotation {
 Rotation operator*(Rotation a, Rotation b);
 Rotation pow(Rotation r, std::int64_t exponent);
 
-// Sines of small whole numbers and their sums obey the addition theorems, exponentials theirs;
-// other arguments get a random value each.
+// Sines of small whole numbers and their sums obey the addition theorems, exponentials theirs; other arguments get a
+// random value each.
 class ModularPoint {
  public:
   explicit ModularPoint(std::uint64_t seed);

@@ -8,8 +8,7 @@
 namespace cdot::derive {
 namespace {
 
-// x of A x = b by Gaussian elimination; A is symmetric, positive and, by a little on its diagonal,
-// regular.
+// x of A x = b by Gaussian elimination; A is symmetric, positive and, by a little on its diagonal, regular.
 std::vector<double> solve(Gradients A, std::vector<double> b) {
   const std::size_t n = b.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -26,8 +25,8 @@ std::vector<double> solve(Gradients A, std::vector<double> b) {
   return b;
 }
 
-// All that an equation may move: bodies, or also scalars, vectors and triads that are fixed somewhere.
-// Directions and orientations are turned, so that they keep their length.
+// All that an equation may move: bodies, or also scalars, vectors and triads that are fixed somewhere. Directions and
+// orientations are turned, so that they keep their length.
 class Variables {
  public:
   Variables(const Joint& joint, const Sample& sample, bool only_bodies) : dimension_(joint.dimension) {

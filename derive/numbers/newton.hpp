@@ -11,8 +11,7 @@ namespace cdot::derive {
 // A row per equation, a column per unknown.
 using Gradients = std::vector<std::vector<double>>;
 
-// The shortest dx with values + G dx = 0: dx = -G^T (G G^T + little)^-1 values. Dependent rows do
-// no harm.
+// The shortest dx with values + G dx = 0: dx = -G^T (G G^T + little)^-1 values. Dependent rows do no harm.
 std::vector<double> shortest_step(const Gradients& G, const std::vector<double>& values);
 
 std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample);

@@ -1,5 +1,5 @@
-// Expressions as numbers: one walk from leaves to roots for any kind of number (doubles here, a
-// finite field, symbols of GiNaC and long decimals elsewhere), and random poses to try formulas at.
+// Expressions as numbers: one walk from leaves to roots for any kind of number (doubles here, a finite field, symbols
+// of GiNaC and long decimals elsewhere), and random poses to try formulas at.
 #pragma once
 
 #include <array>
@@ -179,8 +179,8 @@ class Evaluation {
 // Values of leaves by name; a vector leaf `t` is read as `t_x`, `t_y`, `t_z`. `pi` and the world's axes are known.
 using Values = std::map<std::string, double>;
 
-// In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is the x axis.
-// Throws std::out_of_range with the name of a leaf that has no value.
+// In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is the x axis. Throws std::out_of_range
+// with the name of a leaf that has no value.
 class Numbers {
  public:
   explicit Numbers(Values values);

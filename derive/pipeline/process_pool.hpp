@@ -19,8 +19,8 @@ struct Tasks {
   std::function<void(std::size_t, const Answer&)> take;  // here; one by one in the order of `names`
 };
 
-// At most `processes` at once, which die with this one. Tells on stderr how far it is, if that is a terminal;
-// otherwise only which task was slow.
+// At most `processes` at once, which die with this one. Tells on stderr how far it is, if that is a terminal; otherwise
+// only which task was slow.
 void in_processes(const Tasks& tasks, int processes);
 
 // One for each core that this process may use.

@@ -8,9 +8,9 @@
 // proof and changes no line; a changed rule of differentiation costs the proofs of just those specs whose expressions
 // it changes.
 //
-// Only a mistake in the prover could make a row false. CI therefore proves all specs anew and compares the file
-// (`cdot derive --check --fresh`, the test generated_is_current). After a change in proof/, `cdot derive --fresh`
-// writes what the new prover says.
+// Only a mistake in the prover could make a row false. CI therefore proves all specs anew and compares the file (`cdot
+// derive --check --fresh`, the test generated_is_current). After a change in proof/, `cdot derive --fresh` writes what
+// the new prover says.
 #pragma once
 
 #include <map>

@@ -64,8 +64,7 @@ class StatementPrinter {
 
   bool is_zero(int op) const { return at(op).kind == OpKind::number && at(op).value.is_zero(); }
 
-  // What a nameless quantity of this output is called after: "K21" for "K[1]", "wb" for "J.wb",
-  // "g1" for "g[0]".
+  // What a nameless quantity of this output is called after: "K21" for "K[1]", "wb" for "J.wb", "g1" for "g[0]".
   static std::string plain(const std::string& output) {
     const std::size_t open = output.find('[');
     if (output.compare(0, 2, "J.") == 0) return output.substr(2);
@@ -78,8 +77,7 @@ class StatementPrinter {
     return fmt::format("{}{}{}", output[0], row + 1, i - row * (row + 1) / 2 + 1);
   }
 
-  // ia_ra_x_t for I_a^-1 (ra x t): products with a body's inverse mass or inertia are called after
-  // both.
+  // ia_ra_x_t for I_a^-1 (ra x t): products with a body's inverse mass or inertia are called after both.
   std::string natural_name(const Operation& o) const {
     if (o.kind != OpKind::product || o.args.size() != 2) return "";
     if (o.exponents[0] != 1 || o.exponents[1] != 1) return "";

@@ -1,5 +1,4 @@
-// A function of a kernel as a flat list of scalar operations by index: the form that passes rewrite
-// and printers read.
+// A function of a kernel as a flat list of scalar operations by index: the form that passes rewrite and printers read.
 #pragma once
 
 #include <map>
@@ -35,17 +34,16 @@ struct Program {
   std::vector<Output> outputs;
 };
 
-// The term that a sum opens with: the first positive one; without one, the first with a number that
-// takes the minus sign, -2 x; else the first, negated, -x, which costs an operation.
+// The term that a sum opens with: the first positive one; without one, the first with a number that takes the minus
+// sign, -2 x; else the first, negated, -x, which costs an operation.
 struct Lead {
   std::size_t term = 0;
   bool negated = false;
 };
 Lead lead_of(const Program& program, const Operation& sum);
 
-// Operations by kind. A power x^n is n - 1 products; a subtraction or negation counts as an
-// addition; the guarded inverse is a division and a comparison, a guarded pivot another product
-// besides.
+// Operations by kind. A power x^n is n - 1 products; a subtraction or negation counts as an addition; the guarded
+// inverse is a division and a comparison, a guarded pivot another product besides.
 struct Count {
   int add = 0, multiply = 0, divide = 0, root = 0, compare = 0, call = 0;
 
@@ -62,8 +60,7 @@ struct NamedExpr {
 // The program that computes `outputs`, shared work shared, nothing else done.
 Program assemble(const std::vector<NamedExpr>& outputs);
 
-// The cheapest of what the passes find: common pairs of terms and of factors shared, common factors
-// taken out.
+// The cheapest of what the passes find: common pairs of terms and of factors shared, common factors taken out.
 Program simplify(const Program& program);
 
 // Only operations that an output needs count.

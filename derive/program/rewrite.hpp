@@ -12,8 +12,8 @@ namespace cdot::derive {
 // How often an operation is used by needed operations and outputs.
 std::vector<int> use_counts(const Program& program);
 
-// Copies the needed operations; `rewrite` may build something else in the place of an operation (its operands, in
-// terms of the new program, are given), or say nullopt to keep it.
+// Copies the needed operations; `rewrite` may build something else in the place of an operation (its operands, in terms
+// of the new program, are given), or say nullopt to keep it.
 using Rewrite =
     std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index, const std::vector<int>& new_index)>;
 Program rewritten(const Program& program, const Rewrite& rewrite);

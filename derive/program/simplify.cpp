@@ -152,8 +152,8 @@ Program flatten_sums(const Program& program) {
       });
 }
 
-// u + r = x_a - x_b where u = x_a - x_b - r: what was taken away and is added again costs an operation and digits.
-// The sum, and which of its terms is a sum as well.
+// u + r = x_a - x_b where u = x_a - x_b - r: what was taken away and is added again costs an operation and digits. The
+// sum, and which of its terms is a sum as well.
 using Cancelling = std::pair<std::size_t, std::size_t>;
 std::optional<Cancelling> find_cancelling(const Program& program) {
   const std::vector<int> uses = use_counts(program);

@@ -1,5 +1,5 @@
-// GiNaC's view of a joint's expressions, and a decision whether one of them vanishes. Nothing that
-// includes this header hands GiNaC's text on: its order of terms changes from run to run.
+// GiNaC's view of a joint's expressions, and a decision whether one of them vanishes. Nothing that includes this header
+// hands GiNaC's text on: its order of terms changes from run to run.
 #pragma once
 
 #include <optional>
@@ -47,8 +47,7 @@ class Algebra final : public Arithmetic<ex> {
   bool vanishes(const ex& e) { return is_zero(e) <= Zero::shown; }
   // A pose at which it is not zero, in the joint's names, and how much it is there; empty if none was found.
   std::string witness(const ex& e);
-  // Reduced by the same relations: a numerator as a polynomial, zero where e is; the second one
-  // without what cancels.
+  // Reduced by the same relations: a numerator as a polynomial, zero where e is; the second one without what cancels.
   std::optional<ex> numerator(const ex& e);
   std::optional<ex> reduced_numerator(const ex& e);
   ex other_coordinates(const ex& polynomial);
@@ -63,8 +62,7 @@ class Algebra final : public Arithmetic<ex> {
   ex call(Fn fn, std::span<const ex> args) override;
 
  private:
-  // A symbol that stands for a compound, with the relation that it obeys; it may contain earlier
-  // ones.
+  // A symbol that stands for a compound, with the relation that it obeys; it may contain earlier ones.
   struct Atom {
     enum class Kind { square, inverse } kind;  // symbol^2 = operand; symbol operand = 1
     GiNaC::realsymbol symbol;                  // kept as what it is: a copy as plain `symbol` would be another one
@@ -94,8 +92,8 @@ class Algebra final : public Arithmetic<ex> {
   std::string difference_at(const ex& e, std::uint64_t seed);
   Nullity nullity_of(const ex& e) const;
 
-  // What one test, and all tests together, may take, in factors of terms that are multiplied. Every
-  // test that is given up halves what the next may take: it is likely to be as long.
+  // What one test, and all tests together, may take, in factors of terms that are multiplied. Every test that is given
+  // up halves what the next may take: it is likely to be as long.
   static constexpr std::int64_t most_work = 500000, least_work = most_work / 64;
   static constexpr std::int64_t most_work_in_all = 6 * most_work;
   struct TooLong : std::runtime_error {

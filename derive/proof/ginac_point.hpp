@@ -1,5 +1,5 @@
-// GiNaC's expressions at one random point modulo a prime: what decides, up to a vanishing
-// probability, where algebra would take too long, and what sorts terms in the same way on every run.
+// GiNaC's expressions at one random point modulo a prime: what decides, up to a vanishing probability, where algebra
+// would take too long, and what sorts terms in the same way on every run.
 #pragma once
 
 #include <map>

@@ -1,5 +1,5 @@
-// Polynomials multiplied out and reduced by the relations of their symbols, with every product of
-// two terms counted: what would take too long is given up, at the same place on every machine.
+// Polynomials multiplied out and reduced by the relations of their symbols, with every product of two terms counted:
+// what would take too long is given up, at the same place on every machine.
 #include <algorithm>
 
 #include "derive/proof/ginac.hpp"
@@ -36,8 +36,8 @@ void Algebra::spend(std::size_t work) {
   left_in_all_ -= count;
 }
 
-// The operands of a sum or product in an order that does not depend on the run, as GiNaC's does; nor
-// does the sign of a factor, (x - y) or (y - x), count.
+// The operands of a sum or product in an order that does not depend on the run, as GiNaC's does; nor does the sign of a
+// factor, (x - y) or (y - x), count.
 GiNaC::exvector Algebra::ordered(const ex& e) {
   std::vector<std::pair<std::int64_t, ex>> keyed;
   for (const ex& part : e) keyed.emplace_back(std::abs(fingerprint(part).centred()), part);
@@ -98,8 +98,7 @@ ex Algebra::expanded(const ex& e) {
   return result.expand();
 }
 
-// Powers of `symbol` from two on are replaced by means of symbol^2 = square. The polynomial must be
-// expanded.
+// Powers of `symbol` from two on are replaced by means of symbol^2 = square. The polynomial must be expanded.
 ex Algebra::square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square) {
   const int degree = polynomial.degree(symbol);
   if (degree < 2) return polynomial;
@@ -153,8 +152,7 @@ ex Algebra::without_inverses(const ex& polynomial) {
   return p;
 }
 
-// The same polynomial by the other of two coordinates on a circle: t^2 = 1 - s^2 where s^2 = 1 -
-// t^2 was used.
+// The same polynomial by the other of two coordinates on a circle: t^2 = 1 - s^2 where s^2 = 1 - t^2 was used.
 ex Algebra::other_coordinates(const ex& polynomial) try {
   ex p = polynomial;
   for (const Atom& atom : atoms_) {

@@ -1,5 +1,4 @@
-// GiNaC's polynomials as text, in an order that depends on names only: they become our own
-// expressions first.
+// GiNaC's polynomials as text, in an order that depends on names only: they become our own expressions first.
 #include <algorithm>
 #include <set>
 

@@ -1,6 +1,5 @@
-// The decision whether something vanishes: compounds (roots, quotients, sines) become symbols with
-// the relation that they obey; a polynomial in symbols is reduced by the relations, last symbol
-// first.
+// The decision whether something vanishes: compounds (roots, quotients, sines) become symbols with the relation that
+// they obey; a polynomial in symbols is reduced by the relations, last symbol first.
 #include <algorithm>
 #include <fmt/format.h>
 #include <stdexcept>
@@ -138,8 +137,7 @@ ex Algebra::root_of(const ex& base) {
   return symbol;
 }
 
-// cos or sin of an angle, of a sum of angles by the addition theorems; c^2 + s^2 = 1 for the angle
-// of each term.
+// cos or sin of an angle, of a sum of angles by the addition theorems; c^2 + s^2 = 1 for the angle of each term.
 ex Algebra::turned(bool cosine, const ex& angle) {
   const ex angle_sum = reduced(angle);
   ex c = 1, s = 0;
@@ -186,8 +184,8 @@ std::optional<ex> Algebra::reduced_numerator(const ex& e) try {
   return std::nullopt;
 }
 
-// A change of variables that keeps polynomials short: where the joint speaks of u = x_a + ra - x_b
-// - rb, u takes the place of x_a, so that |u|^2 has two terms and not twenty.
+// A change of variables that keeps polynomials short: where the joint speaks of u = x_a + ra - x_b - rb, u takes the
+// place of x_a, so that |u|^2 has two terms and not twenty.
 void Algebra::shorten(Expr root) {
   for (const Expr u : topological(std::span(&root, 1))) {
     if (!u->vector || u->kind != Kind::sum) continue;
@@ -206,8 +204,7 @@ void Algebra::shorten(Expr root) {
   }
 }
 
-// Makes `compound` a variable in place of x, if it contains x times a number. A variable without a
-// name is not shown.
+// Makes `compound` a variable in place of x, if it contains x times a number. A variable without a name is not shown.
 bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) {
   if (change_.contains(x)) return false;
   const ex now = compound.subs(change_, GiNaC::subs_options::no_pattern).expand();

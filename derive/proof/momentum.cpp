@@ -9,8 +9,7 @@
 namespace cdot::derive {
 namespace {
 
-// What a row of J makes of all bodies moving as one: of a unit velocity, and of a unit spin about
-// the origin.
+// What a row of J makes of all bodies moving as one: of a unit velocity, and of a unit spin about the origin.
 struct Felt {
   Expr translation;  // sum of J_v, a vector
   Expr rotation;     // sum of J_w + x cross J_v, since v = w cross x; in space a vector
@@ -25,8 +24,8 @@ Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
   return felt;
 }
 
-// Where C = 0, a centre of mass that stands in C with a number as its factor is a function of
-// everything else: substituting it is how `pa = pb` says that the two points are one.
+// Where C = 0, a centre of mass that stands in C with a number as its factor is a function of everything else:
+// substituting it is how `pa = pb` says that the two points are one.
 GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
   GiNaC::exmap solved;
   const auto put = [&](const ex& C) {
@@ -68,8 +67,8 @@ class Momentum {
   }
   bool translation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.translation)); }
   bool rotation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.rotation)); }
-  // A vector C that turns with the bodies, dC/dt = w x C, is felt by its components along the axes e
-  // of the world, e . (w x C) = w . (C x e), and that only where C is not zero.
+  // A vector C that turns with the bodies, dC/dt = w x C, is felt by its components along the axes e of the world, e .
+  // (w x C) = w . (C x e), and that only where C is not zero.
   bool turns_with_the_bodies(const ScalarRow& row, const Felt& felt) {
     if (row.component < 0 || row.kind != RowKind::equality) return false;
     const Expr axis = world_axes(*joint_.pool)[static_cast<std::size_t>(row.component)];
@@ -194,8 +193,7 @@ Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const F
   std::vector<std::string> parts;
   for (const Expr term : guilty) parts.push_back(said(term, joint));
   if (terms.size() > 1) law.text += "; it is the doing of " + listed(parts);
-  law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is "
-                       "fixed in the world"
+  law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is fixed in the world"
                      : "use differences of points, or say which point is fixed in the world";
   law.parts = spans_of(guilty, joint, where, rotation);
   return law;

@@ -1,5 +1,4 @@
-// The laws, one function each: what is derived, and what GiNaC makes of the same C, must differ by
-// nothing.
+// The laws, one function each: what is derived, and what GiNaC makes of the same C, must differ by nothing.
 #include "derive/proof/prove.hpp"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// The laws that every derivation has to obey, proved by GiNaC and exactly, independently of our own
-// derivative.
+// The laws that every derivation has to obey, proved by GiNaC and exactly, independently of our own derivative.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,4 @@
-// Expressions in the words of the spec, and where those words stand in it: for messages of proofs
-// and checks.
+// Expressions in the words of the spec, and where those words stand in it: for messages of proofs and checks.
 #pragma once
 
 #include <set>
@@ -11,8 +10,7 @@
 
 namespace cdot::derive {
 
-// As the author would write it: by its own name if it has one, else with angle(a) for theta_a, x(a)
-// for x_a.
+// As the author would write it: by its own name if it has one, else with angle(a) for theta_a, x(a) for x_a.
 std::string said(Expr e, const Joint& joint);
 
 // The equation that holds u at zero: `pa = pb` if u is pa - pb, else `u = 0`.
