@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "derive/commands/commands.hpp"
-#include "derive/pipeline/packing.hpp"
 #include "derive/pipeline/pipeline.hpp"
 #include "derive/pipeline/process_pool.hpp"
 
@@ -70,13 +69,7 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
   std::vector<LedgerRow> hand_costs;
   std::vector<ProofRow> proofs;
   std::size_t on_record = 0;
-  Tasks tasks;
-  for (const fs::path& path : paths) tasks.names.push_back(path.string());
-  tasks.order = dearest_first(paths, options.output);
-  tasks.run = [&](std::size_t i) { return packed(derive_spec(paths[i], folder, record)); };
-  tasks.take = [&](std::size_t i, const Answer& answer) {
-    if (!answer.failure.empty()) return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
-    const auto outcome = unpacked<Outcome>(answer.result);
+  const auto take = [&](const Outcome& outcome) {
     fmt::print(stderr, "{}", outcome.complaints);
     fmt::print("{}", outcome.said);
     if (!outcome.proved) return;
@@ -85,7 +78,9 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
     hand_costs.insert(hand_costs.end(), outcome.hand_costs.begin(), outcome.hand_costs.end());
     proofs.insert(proofs.end(), outcome.proofs.begin(), outcome.proofs.end());
   };
-  in_processes(tasks, options.processes);
+  in_processes(
+      {paths.begin(), paths.end()}, dearest_first(paths, options.output), options.processes,
+      [&](std::size_t i) { return derive_spec(paths[i], folder, record); }, take);
   if (on_record > 0) {
     fmt::print(stderr, "{} of {} specs are proved by the record {} (--fresh: prove all again)\n", on_record,
                paths.size(), record_file.string());
@@ -210,18 +205,18 @@ Run derive_command(CLI::App& command) {
                      "Specs, by path or by name; all of the specs folder if none is given. With some given, DIR "
                      "holds\njust these afterwards, so it should not be the folder of all");
   command.add_option("-o,--output", options->output, "Folder to write to")->type_name("DIR")->capture_default_str();
-  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
   command.add_flag("--check", options->check,
                    "Write nothing; exit 1 unless DIR has exactly the files that would be written");
   command.add_flag("--fresh", options->fresh, "Prove everything anew, on record or not");
-  add_processes_option(command, options->processes);
+  add_shared_options(command, options->specs_folder, options->processes);
   command.footer(
       "DIR/proofs.csv records what is proved, by content: a proof is done again where the derivation differs from the "
       "record.");
   return [options] { return run(*options); };
 }
 
-void add_processes_option(CLI::App& command, int& processes) {
+void add_shared_options(CLI::App& command, std::string& specs_folder, int& processes) {
+  command.add_option("--specs", specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
   command.add_option("-j,--jobs", processes, "Specs at once, each in a process of its own")
       ->type_name("N")
       ->check(CLI::PositiveNumber)

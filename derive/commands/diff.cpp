@@ -7,7 +7,6 @@
 #include <iostream>
 
 #include "derive/commands/commands.hpp"
-#include "derive/pipeline/packing.hpp"
 #include "derive/pipeline/process_pool.hpp"
 
 namespace cdot::derive {
@@ -90,17 +89,13 @@ std::vector<Pairing> pairs_of(const std::vector<std::string>& words, const Specs
   return pairs;
 }
 
-}  // namespace
-
 // Of one .hand file.
 struct FileVerdict {
   std::string complaints, text;  // for stderr and stdout
   bool unreadable = false;
   std::array<int, 4> counts = {};  // by Agreement
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(FileVerdict, complaints, text, unreadable, counts)
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FileVerdict, complaints, text, unreadable, counts)
-
-namespace {
 
 FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Options& options) {
   DiffReport report = judge(pair.hand, pair.spec, folder);
@@ -119,35 +114,23 @@ FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Opt
 int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
   const std::vector<Pairing> pairs = pairs_of(options.what, folder);
-  std::vector<std::string> entries;
-  bool unreadable = false;
-  int counts[4] = {};
-  Tasks tasks;
-  for (const Pairing& pair : pairs) tasks.names.push_back(pair.hand.string());
-  tasks.run = [&](std::size_t i) { return packed(verdict_on(pairs[i], folder, options)); };
-  tasks.take = [&](std::size_t i, const Answer& answer) {
-    if (!answer.failure.empty()) {
-      unreadable = true;
-      return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
-    }
-    const auto verdict = unpacked<FileVerdict>(answer.result);
-    unreadable = unreadable || verdict.unreadable;
-    for (std::size_t k = 0; k < 4; ++k) counts[k] += verdict.counts[k];
+  std::vector<std::string> names, entries;
+  for (const Pairing& pair : pairs) names.push_back(pair.hand.string());
+  FileVerdict total;
+  const auto take = [&](const FileVerdict& verdict) {
+    total.unreadable = total.unreadable || verdict.unreadable;
+    for (std::size_t k = 0; k < total.counts.size(); ++k) total.counts[k] += verdict.counts[k];
     std::cerr << verdict.complaints;
-    if (options.json) {
-      entries.push_back(verdict.text);
-    } else {
-      std::cout << verdict.text << std::flush;
-    }
+    if (options.json) entries.push_back(verdict.text);
+    else std::cout << verdict.text << std::flush;
   };
-  in_processes(tasks, options.processes);
-  if (options.json) {
-    std::cout << joined_json(entries);
-  } else {
-    fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", counts[0],
-               counts[1], counts[2], counts[3]);
-  }
-  return unreadable ? 2 : counts[2] > 0 ? 1 : 0;
+  const int failed = in_processes(
+      names, {}, options.processes, [&](std::size_t i) { return verdict_on(pairs[i], folder, options); }, take);
+  if (options.json) std::cout << joined_json(entries);
+  else
+    fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", total.counts[0],
+               total.counts[1], total.counts[2], total.counts[3]);
+  return failed > 0 || total.unreadable ? 2 : total.counts[2] > 0 ? 1 : 0;
 }
 
 }  // namespace
@@ -158,13 +141,12 @@ Run diff_command(CLI::App& command) {
       "SPEC", options->what,
       "Specs by name or path (their .hand beside them), .hand files, or ids of entries (LIN-4); all if none\n"
       "is given");
-  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
   command.add_flag("--all", options->all, "Also entries that agree (always shown for named specs)");
   command.add_flag("--json", options->json,
                    "An array with, per entry: id, joint, title, source, verdict (agrees, agrees-if, differs, listed),\n"
                    "condition (of agrees-if; the reason of listed), remarks, and items: what, row, column, kind,\n"
                    "generated, hand, difference, sentence, confirmed (by which numbers)");
-  add_processes_option(command, options->processes);
+  add_shared_options(command, options->specs_folder, options->processes);
   command.footer("Exit status: 0 nothing differs; 1 something does; 2 bad usage or input.");
   return [options] { return run(*options); };
 }

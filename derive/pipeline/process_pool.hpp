@@ -1,7 +1,9 @@
 // Tasks in several processes at once: GiNaC keeps its state in globals, so threads are out of the question.
 #pragma once
 
+#include <fmt/format.h>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,26 @@ struct Tasks {
 // At most `processes` at once, which die with this one. Tells on stderr how far it is, if that is a terminal; otherwise
 // only which task was slow.
 void in_processes(const Tasks& tasks, int processes);
+
+// The same for results of any type with a JSON form, which travel as MessagePack: there texts need not be UTF-8.
+// Says on stderr which tasks failed; returns how many.
+template <class Run, class Take>
+int in_processes(std::vector<std::string> names, std::vector<std::size_t> order, int processes, Run run, Take take) {
+  using Json = nlohmann::json;
+  int failed = 0;
+  Tasks tasks{std::move(names), std::move(order), {}, {}};
+  tasks.run = [&](std::size_t i) {
+    const std::vector<std::uint8_t> bytes = Json::to_msgpack(run(i));
+    return std::string(bytes.begin(), bytes.end());
+  };
+  tasks.take = [&](std::size_t i, const Answer& answer) {
+    if (answer.failure.empty()) return take(Json::from_msgpack(answer.result).get<decltype(run(i))>());
+    ++failed;
+    fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
+  };
+  in_processes(tasks, processes);
+  return failed;
+}
 
 // One for each core that this process may use.
 int usual_processes();
