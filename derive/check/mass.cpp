@@ -224,7 +224,7 @@ class MassCheck {
       if (!c.never_zero) recognise(c);
       return;
     }
-    const std::optional<ex> numerator = names_.reduced_numerator(c.value);
+    const std::optional<ex> numerator = names_.numerator(c.value, true);
     const auto positive = [&](const ex& p) { return is_positive(p, names_.symbols_in(p)); };
     if (numerator && (positive(*numerator) || positive(names_.other_coordinates(*numerator)))) {
       c.never_zero = true;

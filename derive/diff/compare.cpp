@@ -191,7 +191,8 @@ void judge_Cdot(Entry& entry, const Part& part, const HandItem& item) {
     place.sources = contributions(entry, Cdot.row(r), Cdot.sign(r), [](const ScalarRow& row) { return row.Cdot; });
   };
   Cdot.compare(part.generated.Cdot, one_column, sign, describe, [&](int r, int c, Expr generated, Expr published) {
-    return entry.confirm().rate(Cdot.row(r), sign(r, c), generated, published);
+    const auto rate = [&](const Sample& sample) { return sign(r, c) * entry.confirm().rate(Cdot.row(r), sample); };
+    return entry.confirm().against(rate, generated, published);
   });
 }
 
@@ -211,7 +212,11 @@ void judge_J(Entry& entry, const Part& part, const HandItem& item) {
       part.generated.J, groups_of_velocities(entry.joint, entry.form, part.generated.J.columns),
       [&](int r, int) { return J.sign(r); }, describe,
       [&](int r, int c, Expr generated, Expr published) {
-        return entry.confirm().entry_of_J(J.row(r), J.sign(r), static_cast<std::size_t>(c), generated, published);
+        const Confirm confirm = entry.confirm();
+        const auto slope = [&](const Sample& sample) {
+          return J.sign(r) * confirm.columns(J.row(r), sample)[static_cast<std::size_t>(c)];
+        };
+        return confirm.against(slope, generated, published);
       });
   if (item.value->columns == part.generated.J.columns) judge_momentum(entry, part, *item.value);
 }
@@ -223,7 +228,9 @@ void judge_K(Entry& entry, const Part& part, const HandItem& item) {
       part.generated.K, groups_of_rows(entry, part, part.generated.K.columns), sign,
       [&](Place& place, int, int c) { place.column = name_of_row(part, c); },
       [&](int r, int c, Expr generated, Expr published) {
-        return entry.confirm().entry_of_K(K.row(r), K.row(c), sign(r, c), generated, published);
+        const Confirm confirm = entry.confirm();
+        const auto mass = [&](const Sample& sample) { return sign(r, c) * confirm.mass(K.row(r), K.row(c), sample); };
+        return confirm.against(mass, generated, published);
       });
 }
 

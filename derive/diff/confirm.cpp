@@ -156,25 +156,12 @@ std::string Confirm::against(const Measure& measured, Expr generated, Expr publi
   return worst("central differences of C", poses_, error(generated), error(published));
 }
 
-std::string Confirm::entry_of_J(const ScalarRow& row, double sign, std::size_t column, Expr generated,
-                                Expr published) const {
-  return against([&](const Sample& sample) { return sign * in_form(gradient(row, sample), sample)[column]; }, generated,
-                 published);
+double Confirm::mass(const ScalarRow& row, const ScalarRow& other, const Sample& sample) const {
+  return inner(gradient(row, sample), times_inverse_mass(sample, gradient(other, sample)));
 }
 
-std::string Confirm::entry_of_K(const ScalarRow& row, const ScalarRow& other, double sign, Expr generated,
-                                Expr published) const {
-  const auto measured = [&](const Sample& sample) {
-    return sign * inner(gradient(row, sample), times_inverse_mass(sample, gradient(other, sample)));
-  };
-  return against(measured, generated, published);
-}
-
-std::string Confirm::rate(const ScalarRow& row, double sign, Expr generated, Expr published) const {
-  const auto measured = [&](const Sample& sample) {
-    return sign * rate_along(joint_, row, sample, velocity(sample), 1);
-  };
-  return against(measured, generated, published);
+double Confirm::rate(const ScalarRow& row, const Sample& sample) const {
+  return rate_along(joint_, row, sample, velocity(sample), 1);
 }
 
 std::string Confirm::value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated, Expr published) const {
@@ -204,7 +191,7 @@ std::string Confirm::claim(Expr left, Expr right) const {
 std::string Confirm::reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const {
   double off = 0;
   for (const Sample& sample : poses_.samples()) {
-    const double truth = sign * rate_along(joint_, row, sample, velocity(sample), 1);
+    const double truth = sign * rate(row, sample);
     off = std::max(off, std::abs(value(read, sample) - truth) / (1 + std::abs(truth)));
   }
   return fmt::format("no value as published; {} it is off by {} from central differences of C at {} poses", words,
@@ -235,45 +222,36 @@ std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const M
       small(off), poses.samples().size());
 }
 
-std::string Confirm::after(const std::string& how, const Change& change, const Remaining& left) const {
+double Confirm::work(const std::vector<ScalarRow>& rows, const Motion& added, const Sample& sample) const {
+  Gradients J;
+  Motion rates;
+  for (const ScalarRow& row : rows) {
+    J.push_back(gradient(row, sample));
+    rates.push_back(inner(J.back(), velocity(sample)));
+  }
+  return inner(times_mass(sample, added), sum_of(velocity(sample), shortest_step(J, rates)));
+}
+
+std::string Confirm::after(UpdateLevel level, const std::vector<ScalarRow>& rows, const Change& change) const {
+  static const char* const how[] = {
+      // in the order of UpdateLevel
+      "Cdot after the update, by central differences of C,", "C after the update, by central differences along it,",
+      "work of the impulse along motions that C allows, which has to be 0,"};
+  const auto left = [&](const Motion& added, const Sample& sample) {
+    if (level == UpdateLevel::any_impulse) return work(rows, added, sample);
+    double most = 0;
+    for (const ScalarRow& row : rows) {
+      const double rest = level == UpdateLevel::positions
+                              ? value(row.C, sample) + rate_along(joint_, row, sample, added, 0)
+                              : rate_along(joint_, row, sample, sum_of(velocity(sample), added), 1);
+      most = std::max(most, std::abs(rest));
+    }
+    return most;
+  };
   const auto remaining = [&](const std::vector<Expr>& columns) {
     return [&](const Sample& sample) { return left(values_at(joint_, columns, sample), sample); };
   };
-  return worst(how, poses_, remaining(change.generated), remaining(change.published));
-}
-
-std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows, const Change& change) const {
-  return after("Cdot after the update, by central differences of C,", change,
-               [&](const Motion& added, const Sample& sample) {
-                 const Motion velocities = sum_of(velocity(sample), added);
-                 double most = 0;
-                 for (const ScalarRow& row : rows)
-                   most = std::max(most, std::abs(rate_along(joint_, row, sample, velocities, 1)));
-                 return most;
-               });
-}
-
-std::string Confirm::positions_after(const std::vector<ScalarRow>& rows, const Change& change) const {
-  return after("C after the update, by central differences along it,", change,
-               [&](const Motion& step, const Sample& sample) {
-                 double most = 0;
-                 for (const ScalarRow& row : rows)
-                   most = std::max(most, std::abs(value(row.C, sample) + rate_along(joint_, row, sample, step, 0)));
-                 return most;
-               });
-}
-
-std::string Confirm::work(const std::vector<ScalarRow>& rows, const Change& change) const {
-  return after("work of the impulse along motions that C allows, which has to be 0,", change,
-               [&](const Motion& added, const Sample& sample) {
-                 Gradients J;
-                 Motion rates;
-                 for (const ScalarRow& row : rows) {
-                   J.push_back(gradient(row, sample));
-                   rates.push_back(inner(J.back(), velocity(sample)));
-                 }
-                 return inner(times_mass(sample, added), sum_of(velocity(sample), shortest_step(J, rates)));
-               });
+  return worst(how[static_cast<int>(level)], poses_, remaining(change.generated), remaining(change.published));
 }
 
 std::string Confirm::bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const {

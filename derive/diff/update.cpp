@@ -4,15 +4,12 @@
 #include <fmt/format.h>
 
 #include "derive/diff/entry.hpp"
+#include "derive/numbers/elimination.hpp"
 
 namespace cdot::derive {
 namespace {
 
 using Target = HandItem::Target;
-
-// An update of velocities or positions with the impulse spelled out, or with an impulse of any size, of which only the
-// direction M^-1 J^T can be judged.
-enum class UpdateLevel { velocities, positions, any_impulse };
 
 bool is_linear(Target t) { return t == Target::velocity || t == Target::position; }
 bool is_position_level(Target t) { return t == Target::position || t == Target::angle; }
@@ -23,24 +20,14 @@ bool contains_multiplier(const HandItem& item) {
                      [](Expr e) { return e->kind == Kind::symbol && e->role == Role::multiplier; });
 }
 
-// K^-1 b by elimination.
+// K^-1 b
 std::vector<Expr> solved(const Matrix& K, std::vector<Expr> b) {
-  const int n = K.rows;
-  std::vector<Expr> A = K.entries;
-  const auto at = [&](int i, int j) -> Expr& { return A[static_cast<std::size_t>(i * n + j)]; };
-  const auto rhs = [&](int i) -> Expr& { return b[static_cast<std::size_t>(i)]; };
-  for (int k = 0; k < n; ++k) {
-    for (int i = k + 1; i < n; ++i) {
-      const Expr factor = at(i, k) / at(k, k);
-      for (int j = k; j < n; ++j) at(i, j) = at(i, j) - factor * at(k, j);
-      rhs(i) = rhs(i) - factor * rhs(k);
-    }
+  std::vector<std::vector<Expr>> rows;
+  for (int i = 0; i < K.rows; ++i) {
+    const auto first = K.entries.begin() + i * K.columns;
+    rows.emplace_back(first, first + K.columns);
   }
-  for (int i = n; i-- > 0;) {
-    for (int j = i + 1; j < n; ++j) rhs(i) = rhs(i) - at(i, j) * rhs(j);
-    rhs(i) = rhs(i) / at(i, i);
-  }
-  return b;
+  return solved(std::move(rows), std::move(b), [](Expr a, Expr pivot) { return a / pivot; });
 }
 
 // M^-1 J^T lambda, column by column.
@@ -60,7 +47,7 @@ std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& r
 }
 
 // All columns are the same multiple of what is generated.
-bool same_direction(const Confirm::Change& change, const Poses& poses) {
+bool same_direction(const Change& change, const Poses& poses) {
   for (std::size_t i = 0; i < change.generated.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (!poses.equal(change.published[i] * change.generated[j], change.published[j] * change.generated[i])) {
@@ -106,15 +93,6 @@ std::vector<Expr> turned_to_fit(std::vector<Expr> generated, const std::vector<E
   return generated;
 }
 
-std::string confirmation(const Confirm& confirm, const Part& part, UpdateLevel level, const Confirm::Change& change) {
-  switch (level) {
-    case UpdateLevel::any_impulse: return confirm.work(part.rows, change);
-    case UpdateLevel::positions: return confirm.positions_after(part.rows, change);
-    case UpdateLevel::velocities: return confirm.velocities_after(part.rows, change);
-  }
-  return "";
-}
-
 }  // namespace
 
 void judge_updates(Entry& entry, const Part& part) {
@@ -124,7 +102,7 @@ void judge_updates(Entry& entry, const Part& part) {
   }
   if (updates.empty()) return;
   const UpdateLevel level = level_of(updates);
-  Confirm::Change change{changes_by(entry.joint, part.rows, impulse(entry.pool(), part, level)), {}};
+  Change change{changes_by(entry.joint, part.rows, impulse(entry.pool(), part, level)), {}};
   change.published.assign(change.generated.size(), entry.pool().number(0));
   std::vector<const HandItem*> said_by(change.generated.size(), updates[0]);
   const int dimension = entry.joint.dimension;
@@ -145,7 +123,7 @@ void judge_updates(Entry& entry, const Part& part) {
       groups_of_velocities(entry.joint, Form::global, columns, level == UpdateLevel::positions);
   std::string confirmed;
   compare(entry, {published, generated, {Group{}}, groups}, [&](int, int c) {
-    if (confirmed.empty()) confirmed = confirmation(entry.confirm(), part, level, change);
+    if (confirmed.empty()) confirmed = entry.confirm().after(level, part.rows, change);
     const std::string column = column_name(entry.joint, Form::global, c, level == UpdateLevel::positions);
     const Place place{"update", "", column, {}, {}, &entry.joint};
     Difference d = describe_difference(place, published.at(0, c), generated.at(0, c), entry.poses());

@@ -1,8 +1,6 @@
 // From expressions to GiNaC's, over either set of coordinates, and the chain rule over them.
 #include "derive/proof/ginac.hpp"
 
-#include "derive/proof/ginac_functions.hpp"
-
 namespace cdot::derive {
 
 Algebra::Algebra(const Joint& joint, Route route, int immovable)
@@ -50,11 +48,11 @@ EulerParameters<ex> rates_of(const EulerParameters<ex>& e, const ex& w_x, const 
   return product(EulerParameters<ex>{0, w_x / 2, w_y / 2, w_z / 2}, e);
 }
 
+}  // namespace
+
 ex derivative(const ex& e, const ex& symbol) {
   return is_a<GiNaC::symbol>(symbol) ? e.diff(ex_to<GiNaC::symbol>(symbol)) : 0;
 }
-
-}  // namespace
 
 EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {
   const bool fresh = !leaves_.contains(name + "0");

@@ -47,9 +47,8 @@ class Algebra final : public Arithmetic<ex> {
   bool vanishes(const ex& e) { return is_zero(e) <= Zero::shown; }
   // A pose at which it is not zero, in the joint's names, and how much it is there; empty if none was found.
   std::string witness(const ex& e);
-  // Reduced by the same relations: a numerator as a polynomial, zero where e is; the second one without what cancels.
-  std::optional<ex> numerator(const ex& e);
-  std::optional<ex> reduced_numerator(const ex& e);
+  // Reduced by the same relations: a numerator as a polynomial, zero where e is; perhaps without what cancels.
+  std::optional<ex> numerator(const ex& e, bool cancelled = false);
   ex other_coordinates(const ex& polynomial);
   // The factors of such a numerator, in the joint's names: "u_x", "ratio".
   std::vector<std::string> factors_of(const ex& polynomial) const;
@@ -108,9 +107,8 @@ class Algebra final : public Arithmetic<ex> {
   ex expanded(const ex& e);
   ex square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square);
   ex inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand);
-  ex inverse_cancelled(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand);
-  ex reduced(const ex& polynomial);
-  ex without_inverses(const ex& polynomial);
+  ex without_common_factors(ex polynomial);
+  ex reduced(const ex& polynomial, bool without_inverses = false);
 
   const Joint& joint_;
   Route route_;
@@ -129,6 +127,9 @@ class Algebra final : public Arithmetic<ex> {
   PointValues prints_{1, PointValues::Roots::of_all};  // of every symbol, by when it came up
   Evaluation<ex> evaluation_;
 };
+
+// Zero by a velocity that is zero, as of an immovable body.
+ex derivative(const ex& e, const ex& symbol);
 
 // e or -e, so that its first term by name is positive: what is zero where e is, in one form.
 Expr with_leading_sign(Expr e);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "derive/numbers/modular_point.hpp"
-#include "derive/proof/ginac_names.hpp"
+#include "derive/proof/ginac_functions.hpp"
 
 namespace cdot::derive {
 

@@ -123,31 +123,24 @@ ex Algebra::inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, c
 }
 
 // Where the terms with symbol = 1/operand are multiples of the operand, both go.
-ex Algebra::inverse_cancelled(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
-  ex out = polynomial;
-  for (int k = polynomial.degree(symbol); k > 0; --k) {
-    ex quotient;
-    const ex factor = out.coeff(symbol, k);
-    spend(weight_of(out) + size_of(factor) * weight_of(operand));
-    if (factor.is_zero() || !divide(factor, operand, quotient)) continue;
-    out = expanded(out - factor * pow(symbol, k) + quotient * pow(symbol, k - 1));
-  }
-  return out;
-}
-
-ex Algebra::reduced(const ex& polynomial) {
-  ex p = expanded(polynomial);
+ex Algebra::without_common_factors(ex p) {
   for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    if (atom->kind == Atom::Kind::square) p = square_reduced(p, atom->symbol, atom->operand);
+    for (int k = atom->kind == Atom::Kind::inverse ? p.degree(atom->symbol) : 0; k > 0; --k) {
+      ex quotient;
+      const ex factor = p.coeff(atom->symbol, k);
+      spend(weight_of(p) + size_of(factor) * weight_of(atom->operand));
+      if (factor.is_zero() || !divide(factor, atom->operand, quotient)) continue;
+      p = expanded(p - factor * pow(atom->symbol, k) + quotient * pow(atom->symbol, k - 1));
+    }
   }
   return p;
 }
 
-ex Algebra::without_inverses(const ex& polynomial) {
+ex Algebra::reduced(const ex& polynomial, bool without_inverses) {
   ex p = expanded(polynomial);
   for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    p = atom->kind == Atom::Kind::square ? square_reduced(p, atom->symbol, atom->operand)
-                                         : inverse_removed(p, atom->symbol, atom->operand);
+    if (atom->kind == Atom::Kind::square) p = square_reduced(p, atom->symbol, atom->operand);
+    else if (without_inverses) p = inverse_removed(p, atom->symbol, atom->operand);
   }
   return p;
 }

@@ -3,7 +3,6 @@
 #include <set>
 
 #include "derive/proof/ginac.hpp"
-#include "derive/proof/ginac_functions.hpp"
 
 namespace cdot::derive {
 

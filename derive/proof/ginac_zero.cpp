@@ -128,7 +128,7 @@ ex Algebra::root_of(const ex& base) {
     if (other.is_equal(operand)) return symbol;
   }
   for (const auto& [other, symbol] : roots_) {
-    if (without_inverses(operand - other).is_zero()) return symbol;
+    if (reduced(operand - other, true).is_zero()) return symbol;
   }
   const GiNaC::realsymbol symbol = fresh_symbol();
   atoms_.push_back({Atom::Kind::square, symbol, operand});
@@ -173,17 +173,6 @@ ex Algebra::turned(bool cosine, const ex& angle) {
   return reduced(cosine ? c : s);
 }
 
-std::optional<ex> Algebra::reduced_numerator(const ex& e) try {
-  left_for_test_ = std::min(allowance_, left_in_all_);
-  ex p = reduced(atomised(e));
-  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    if (atom->kind == Atom::Kind::inverse) p = inverse_cancelled(p, atom->symbol, atom->operand);
-  }
-  return without_inverses(p);
-} catch (const std::exception&) {
-  return std::nullopt;
-}
-
 // A change of variables that keeps polynomials short: where the joint speaks of u = x_a + ra - x_b - rb, u takes the
 // place of x_a, so that |u|^2 has two terms and not twenty.
 void Algebra::shorten(Expr root) {
@@ -221,9 +210,11 @@ bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) 
   return true;
 }
 
-std::optional<ex> Algebra::numerator(const ex& e) try {
+std::optional<ex> Algebra::numerator(const ex& e, bool cancelled) try {
   left_for_test_ = std::min(allowance_, left_in_all_);
-  return without_inverses(atomised(e));
+  ex p = atomised(e);
+  if (cancelled) p = without_common_factors(reduced(p));
+  return reduced(p, true);
 } catch (const std::exception&) {  // too long; or GiNaC's own complaints, say of a pole
   return std::nullopt;
 }

@@ -1,9 +1,9 @@
-#include "derive/proof/momentum.hpp"
-
+// The law of momentum, and which terms of a row break it.
 #include <algorithm>
 #include <bit>
 #include <set>
 
+#include "derive/proof/laws.hpp"
 #include "derive/proof/words.hpp"
 
 namespace cdot::derive {
@@ -158,11 +158,6 @@ std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joi
   return words;
 }
 
-std::vector<Span> spans_of(const std::vector<Expr>& terms, const Joint& joint, Span where, bool rotation) {
-  if (!joint.file) return {};
-  return occurrences(*joint.file, where, spellings(terms, joint, rotation));
-}
-
 std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, const Joint& joint) {
   const char* const changes = row.kind == RowKind::velocity ? " gives " : " changes C by ";
   if (rotation) {
@@ -173,8 +168,8 @@ std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, cons
          said(felt.translation, joint) + " per metre";
 }
 
-Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt, bool rotation,
-           Momentum& momentum) {
+void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt, bool rotation,
+          Momentum& momentum) {
   Expr written;
   Span where;
   for (const Coordinate& c : joint.coordinates) {
@@ -188,34 +183,31 @@ Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const F
     felt_by_term.push_back(felt_by(isolate_velocities(velocity ? term : time_derivative(term, joint), joint), joint));
   }
   const std::vector<Expr> guilty = momentum.breaking_terms(terms, felt_by_term);
-  Law law{LawId::momentum, Verdict::fails, {}, {}, row.row, {}};
+  law.verdict = Verdict::fails;
+  law.row = row.row;
   law.text = sentence(row, felt, rotation, joint);
   std::vector<std::string> parts;
   for (const Expr term : guilty) parts.push_back(said(term, joint));
   if (terms.size() > 1) law.text += "; it is the doing of " + listed(parts);
   law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is fixed in the world"
                      : "use differences of points, or say which point is fixed in the world";
-  law.parts = spans_of(guilty, joint, where, rotation);
-  return law;
+  if (joint.file) law.parts = occurrences(*joint.file, where, spellings(guilty, joint, rotation));
 }
 
 }  // namespace
 
-Law conserves_momentum(const Joint& joint, const Block& block, Algebra& names) {
-  Law law{LawId::momentum, Verdict::does_not_apply, {}, {}, nullptr, {}};
-  if (joint.uses_world || block.immovable >= 0) return law;
+void conserves_momentum(Law& law, const Joint& joint, const Block& block, Algebra& names) {
+  law.verdict = Verdict::does_not_apply;
+  if (joint.uses_world || block.immovable >= 0) return;
   Momentum momentum(joint, names);
   for (const ScalarRow& row : block.rows) {
     const Felt felt = felt_by(row.J, joint);
-    if (!momentum.translation_vanishes(felt)) {
-      return broken(joint, block, row, felt, false, momentum);
-    }
+    if (!momentum.translation_vanishes(felt)) return fail(law, joint, block, row, felt, false, momentum);
     if (!momentum.turns_with_the_bodies(row, felt) && !momentum.rotation_vanishes(felt))
-      return broken(joint, block, row, felt, true, momentum);
+      return fail(law, joint, block, row, felt, true, momentum);
   }
   law.verdict = momentum.proved() ? Verdict::holds : Verdict::shown;
   if (momentum.only_on_constraint()) law.text = "where C = 0";
-  return law;
 }
 
 }  // namespace cdot::derive
