@@ -11,16 +11,8 @@ namespace {
 void take_over(const Diagnostics& diagnostics, Findings& findings) {
   for (const Diagnostic& d : diagnostics.list) {
     const bool error = d.severity == Severity::error;
-    findings.push_back(
-        {error ? Level::error : Level::warning, error ? "unreadable" : "reader", d.where, d.also, d.message, d.fix});
-  }
-}
-
-std::string kind_of(LawId id) {
-  switch (id) {
-    case LawId::momentum: return "momentum";
-    case LawId::rank: return "dependent";
-    default: return "law";
+    findings.add(error ? Level::error : Level::warning, error ? "unreadable" : "reader", d.where, d.message, d.fix);
+    findings.back().also = d.also;
   }
 }
 
@@ -28,18 +20,11 @@ std::string kind_of(LawId id) {
 void take_over(const Proved& proved, Findings& findings) {
   for (const Law& law : proved.proof.laws) {
     if (!is_broken(law)) continue;
-    const std::string kind = kind_of(law.id);
-    Finding finding{Level::error,
-                    kind,
-                    law.row != nullptr ? law.row->where : proved.where,
-                    law.parts,
-                    kind == "law" ? fmt::format("{}: {}", name_of(law.id), law.text) : law.text,
-                    law.fix};
-    if (!finding.also.empty()) {
-      finding.where = finding.also.front();
-      finding.also.erase(finding.also.begin());
-    }
-    findings.push_back(std::move(finding));
+    const std::string kind = law.id == LawId::momentum ? "momentum" : law.id == LawId::rank ? "dependent" : "law";
+    const Span row = law.row != nullptr ? law.row->where : proved.where;
+    findings.add(Level::error, kind, law.parts.empty() ? row : law.parts.front(),
+                 kind == "law" ? fmt::format("{}: {}", name_of(law.id), law.text) : law.text, law.fix);
+    if (!law.parts.empty()) findings.back().also.assign(law.parts.begin() + 1, law.parts.end());
   }
 }
 
@@ -71,14 +56,10 @@ CheckReport check(const ReadResult& read) {
     check_undefined(subject, report.findings);
     check_mass(subject, report.findings);
   } catch (const NotLinear& e) {
-    report.findings.push_back({Level::error,
-                               "linear",
-                               joint.rows.front().where,
-                               {},
-                               e.what(),
-                               "a velocity row is a sum of velocities times what does not contain them"});
+    report.findings.add(Level::error, "linear", joint.rows.front().where, e.what(),
+                        "a velocity row is a sum of velocities times what does not contain them");
   } catch (const NumberTooLarge& e) {
-    report.findings.push_back({Level::error, "number", joint.rows.front().where, {}, e.what(), ""});
+    report.findings.add(Level::error, "number", joint.rows.front().where, e.what());
   }
   std::stable_sort(report.findings.begin(), report.findings.end(), [](const Finding& a, const Finding& b) {
     if (a.where.begin != b.where.begin) return a.where.begin < b.where.begin;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "derive/language/read.hpp"
@@ -23,10 +24,16 @@ struct Finding {
   std::string message, fix;
 };
 
+struct Findings : std::vector<Finding> {
+  void add(Level level, std::string kind, Span where, std::string message, std::string fix = {}) {
+    push_back({level, std::move(kind), where, {}, std::move(message), std::move(fix)});
+  }
+};
+
 struct CheckReport {
   bool readable = true;
-  std::vector<Finding> findings;  // in the order of the text; errors first where they stand at one place
-  std::vector<Proved> proofs;     // of the rows and of each coordinate
+  Findings findings;           // in the order of the text; errors first where they stand at one place
+  std::vector<Proved> proofs;  // of the rows and of each coordinate
 
   bool clean() const;  // nothing but notes
 };

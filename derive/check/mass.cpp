@@ -247,9 +247,7 @@ class MassCheck {
     return out;
   }
 
-  static bool any_never_zero(const Choice& choice) {
-    return std::any_of(choice.begin(), choice.end(), [](const Coefficient* c) { return c->never_zero; });
-  }
+  static bool any_never_zero(const Choice& choice) { return std::ranges::any_of(choice, &Coefficient::never_zero); }
 
   static std::string all_zero(const Choice& choice) {
     std::vector<std::vector<std::string>> factors;
@@ -266,10 +264,6 @@ class MassCheck {
     return way;
   }
 
-  static bool includes(const std::set<std::string>& all, const std::set<std::string>& some) {
-    return std::includes(all.begin(), all.end(), some.begin(), some.end());
-  }
-
   void report_all() {
     const Choice all = chosen([](std::size_t) { return true; });
     if (!any_never_zero(all)) return add("K is singular " + all_zero(all));
@@ -278,7 +272,8 @@ class MassCheck {
       const Way way = way_of(c->monomial);
       const bool least = std::none_of(all.begin(), all.end(), [&](const Coefficient* other) {
         const Way less = way_of(other->monomial);
-        return other->never_zero && less != way && includes(way.move, less.move) && includes(way.turn, less.turn);
+        return other->never_zero && less != way && std::ranges::includes(way.move, less.move) &&
+               std::ranges::includes(way.turn, less.turn);
       });
       const bool known = std::find(ways.begin(), ways.end(), way) != ways.end();
       if (c->never_zero && least && !known) ways.push_back(way);
@@ -293,7 +288,7 @@ class MassCheck {
   }
 
   void add(std::string message) {
-    findings_.push_back({Level::note, "singular", joint_.rows.front().where, {}, std::move(message), ""});
+    findings_.add(Level::note, "singular", joint_.rows.front().where, std::move(message));
   }
 
   const Subject& subject_;
@@ -313,12 +308,8 @@ class MassCheck {
 void check_mass(const Subject& subject, Findings& findings) try {
   MassCheck(subject, findings).run();
 } catch (const GiNaC::pole_error&) {
-  findings.push_back({Level::note,
-                      "singular",
-                      subject.joint.rows.front().where,
-                      {},
-                      "where K is singular was not looked into: J divides by zero",
-                      ""});
+  findings.add(Level::note, "singular", subject.joint.rows.front().where,
+               "where K is singular was not looked into: J divides by zero");
 }
 
 }  // namespace cdot::derive

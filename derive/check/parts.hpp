@@ -21,7 +21,6 @@ std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& bl
 // Where a coordinate stands.
 Span place_of(const Block& coordinate, const Joint& joint);
 
-using Findings = std::vector<Finding>;
 void check_rows(const Subject& subject,
                 Findings& findings);                               // vanishing, dependent, without bodies
 void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots, directions, angles

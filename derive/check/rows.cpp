@@ -68,14 +68,11 @@ bool find_vanishing(const Subject& subject, Findings& findings) {
     if (row.kind == RowKind::velocity || !vanishes_on_constraint(subject, i)) continue;
     found = true;
     const std::string better = better_form(row.C, subject.joint);
-    findings.push_back(
-        {Level::error,
-         "vanishing",
-         row.row->where,
-         {},
-         row.name + ": J vanishes where C = 0: C only touches zero, so that no impulse can hold it there (K is 0)",
-         better.empty() ? "write the row so that C changes its sign where it is met"
-                        : "write `" + better + "`, which changes its sign where it is met"});
+    findings.add(
+        Level::error, "vanishing", row.row->where,
+        row.name + ": J vanishes where C = 0: C only touches zero, so that no impulse can hold it there (K is 0)",
+        better.empty() ? "write the row so that C changes its sign where it is met"
+                       : "write `" + better + "`, which changes its sign where it is met");
   }
   return found;
 }
@@ -111,26 +108,20 @@ void find_dependent_on_constraint(const Subject& subject, Findings& findings) {
     if (!(weak.rest < negligible)) return;
     row = std::max(row, weak.row);
   }
-  findings.push_back(
-      {Level::error,
-       "dependent",
-       rows[row].row->where,
-       {},
-       rows[row].name + ": where C = 0, its row of J is a combination of the rows before it, though not elsewhere",
-       "drop the row, or say what it should hold by other means"});
+  findings.add(
+      Level::error, "dependent", rows[row].row->where,
+      rows[row].name + ": where C = 0, its row of J is a combination of the rows before it, though not elsewhere",
+      "drop the row, or say what it should hold by other means");
 }
 
 void find_unreachable(const Subject& subject, Findings& findings) {
   const bool any = std::any_of(subject.block.rows.begin(), subject.block.rows.end(),
                                [](const ScalarRow& r) { return r.kind != RowKind::velocity; });
   if (!any || !subject.on_constraint.empty()) return;
-  findings.push_back(
-      {Level::warning,
-       "unreachable",
-       subject.block.rows.front().row->where,
-       {},
-       "no pose with C = 0 was found from " + std::to_string(subject.anywhere.size()) + " random poses and parameters",
-       "make sure that the rows can be met together"});
+  findings.add(
+      Level::warning, "unreachable", subject.block.rows.front().row->where,
+      "no pose with C = 0 was found from " + std::to_string(subject.anywhere.size()) + " random poses and parameters",
+      "make sure that the rows can be met together");
 }
 
 bool is_in(const Block& block, std::size_t row, std::size_t body) {
@@ -149,14 +140,10 @@ void find_absent_bodies(const Subject& subject, Findings& findings) {
     }
     if (without.empty()) continue;
     const bool all = without.size() == rows;
-    findings.push_back(
-        {all ? Level::warning : Level::note,
-         "absent",
-         joint.rows.front().where,
-         {},
-         "the velocity of " + joint.bodies[b] +
-             (all ? " is in no row: the joint does not hold it" : " is not in " + listed(without, " nor in ")),
-         all ? "leave the body out, or use it in a row" : ""});
+    findings.add(all ? Level::warning : Level::note, "absent", joint.rows.front().where,
+                 "the velocity of " + joint.bodies[b] +
+                     (all ? " is in no row: the joint does not hold it" : " is not in " + listed(without, " nor in ")),
+                 all ? "leave the body out, or use it in a row" : "");
   }
 }
 

@@ -90,7 +90,7 @@ class Undefined {
   }
 
   void add(Level level, std::string message, std::string fix = {}) {
-    findings_.push_back({level, "undefined", where_, {}, std::move(message), std::move(fix)});
+    findings_.add(level, "undefined", where_, std::move(message), std::move(fix));
   }
 
   const Subject& subject_;
