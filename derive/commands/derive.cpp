@@ -133,37 +133,38 @@ std::string first_difference(const std::string& old_text, const std::string& new
   }
 }
 
+bool is_in(const Files& files, const std::string& name, const std::string& content) {
+  const auto at = files.find(name);
+  return at != files.end() && at->second == content;
+}
+
 int compare(const Files& wanted, const fs::path& root, const std::string& command) {
   const Files found = present(root);
   int differences = 0;
   for (const auto& [name, content] : wanted) {
-    const auto at = found.find(name);
-    if (at != found.end() && at->second == content) continue;
+    if (is_in(found, name, content)) continue;
     ++differences;
-    fmt::print("  {}: {}\n{}", (root / name).string(), at == found.end() ? "missing" : "differs",
-               at == found.end() ? "" : first_difference(at->second, content));
+    const bool differs = found.contains(name);
+    fmt::print("  {}: {}\n{}", (root / name).string(), differs ? "differs" : "missing",
+               differs ? first_difference(found.at(name), content) : "");
   }
   for (const auto& [name, content] : found) {
     if (wanted.contains(name)) continue;
     ++differences;
     fmt::print("  {}: no spec makes it\n", (root / name).string());
   }
-  if (differences == 0) {
-    fmt::print("{} is current: {} files\n", root.string(), wanted.size());
-    return 0;
-  }
-  fmt::print("{} is not current: {} of {} files. To mend it: {}\n", root.string(), differences, wanted.size(), command);
-  return 1;
+  if (differences == 0) fmt::print("{} is current: {} files\n", root.string(), wanted.size());
+  else
+    fmt::print("{} is not current: {} of {} files. To mend it: {}\n", root.string(), differences, wanted.size(),
+               command);
+  return differences == 0 ? 0 : 1;
 }
 
 void write(const Files& wanted, const fs::path& root) {
   const Files found = present(root);
   int written = 0, removed = 0;
   for (const auto& [name, content] : wanted) {
-    const auto at = found.find(name);
-    if (at != found.end() && at->second == content) continue;
-    write_file(root / name, content);
-    ++written;
+    if (!is_in(found, name, content)) write_file(root / name, content), ++written;
   }
   for (const auto& [name, content] : found) {
     if (!wanted.contains(name)) fs::remove(root / name), ++removed;

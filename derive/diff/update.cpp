@@ -15,9 +15,7 @@ bool is_linear(Target t) { return t == Target::velocity || t == Target::position
 bool is_position_level(Target t) { return t == Target::position || t == Target::angle; }
 
 bool contains_multiplier(const HandItem& item) {
-  const std::vector<Expr> nodes = topological(item.value->entries);
-  return std::any_of(nodes.begin(), nodes.end(),
-                     [](Expr e) { return e->kind == Kind::symbol && e->role == Role::multiplier; });
+  return std::ranges::any_of(leaves_of(item.value->entries), [](Expr e) { return e->role == Role::multiplier; });
 }
 
 // K^-1 b

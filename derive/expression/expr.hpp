@@ -192,6 +192,8 @@ Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements, KeepNam
 
 // Every node that e depends on, operands before users, in an order fixed by structure.
 std::vector<Expr> topological(std::span<const Expr> roots);
+// Every leaf of them, in the order of their names.
+std::vector<Expr> leaves_of(std::span<const Expr> expressions);
 bool depends_on_velocity(Expr e);
 
 // Infix text in the spec language's notation; a named node prints as its name unless it is e itself.

@@ -9,25 +9,11 @@
 namespace cdot::derive {
 namespace {
 
-const char* text(RowKind kind) {
-  switch (kind) {
-    case RowKind::equality: return "equality";
-    case RowKind::inequality: return "inequality";
-    case RowKind::velocity: return "velocity";
-  }
-  return "";
-}
-
-const char* text(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::point: return "point";
-    case ParameterKind::vector: return "vector";
-    case ParameterKind::unit: return "unit";
-    case ParameterKind::frame: return "frame";
-    case ParameterKind::scalar: return "scalar";
-  }
-  return "";
-}
+// In the order of RowKind and of ParameterKind.
+constexpr const char* row_kinds[] = {"equality", "inequality", "velocity"};
+constexpr const char* parameter_kinds[] = {"point", "vector", "unit", "frame", "scalar"};
+const char* text(RowKind kind) { return row_kinds[static_cast<int>(kind)]; }
+const char* text(ParameterKind kind) { return parameter_kinds[static_cast<int>(kind)]; }
 
 std::string quoted(const std::string& s) {
   std::string out = "\"";
@@ -39,13 +25,9 @@ std::string quoted(const std::string& s) {
 }
 
 bool depends_on_time(const Block& block) {
-  for (const ScalarRow& row : block.rows) {
-    const Expr roots[] = {row.C, row.Cdot};
-    for (const Expr e : topological(roots)) {
-      if (e->kind == Kind::symbol && e->role == Role::time) return true;
-    }
-  }
-  return false;
+  std::vector<Expr> roots;
+  for (const ScalarRow& row : block.rows) roots.insert(roots.end(), {row.C, row.Cdot});
+  return std::ranges::any_of(leaves_of(roots), [](Expr leaf) { return leaf->role == Role::time; });
 }
 
 class KernelWriter {

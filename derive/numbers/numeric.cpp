@@ -111,15 +111,6 @@ double Random::between(double low, double high) {
   return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
 }
 
-std::vector<Expr> leaves_of(std::span<const Expr> expressions) {
-  std::vector<Expr> leaves;
-  for (const Expr e : topological(expressions)) {
-    if (e->kind == Kind::symbol) leaves.push_back(e);
-  }
-  std::sort(leaves.begin(), leaves.end(), [](Expr a, Expr b) { return a->symbol < b->symbol; });
-  return leaves;
-}
-
 EulerParameters<double> turned_about(std::size_t axis, double amount, const EulerParameters<double>& e) {
   EulerParameters<double> turn{std::cos(amount / 2), 0, 0, 0};
   turn[axis + 1] = std::sin(amount / 2);

@@ -228,9 +228,6 @@ struct Sample {
   std::vector<Expr> leaves;
 };
 
-// Every leaf of the expressions, in the order of their names.
-std::vector<Expr> leaves_of(std::span<const Expr> expressions);
-
 // Positions within a few metres, orientations all around, scalars in [0.5, 2], unit vectors of length 1.
 Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std::uint64_t seed);
 

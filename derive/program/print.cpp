@@ -226,13 +226,10 @@ std::vector<std::string> print_statements(const Program& program, const Printing
 
 std::set<std::string> inputs_read(const Program& program, const Printing& printing) {
   std::set<std::string> read;
-  std::vector<bool> needed(program.ops.size());
-  for (const Output& o : program.outputs) needed[static_cast<std::size_t>(o.op)] = true;
-  for (std::size_t i = program.ops.size(); i-- > 0;) {
-    if (!needed[i]) continue;
+  const std::vector<int> uses = use_counts(program);
+  for (std::size_t i = 0; i < uses.size(); ++i) {
     const Operation& op = program.ops[i];
-    for (const int arg : op.args) needed[static_cast<std::size_t>(arg)] = true;
-    if (op.kind != OpKind::input) continue;
+    if (uses[i] == 0 || op.kind != OpKind::input) continue;
     const auto found = printing.inputs.find(op.input);
     read.insert(found == printing.inputs.end() ? op.input : found->second);
   }

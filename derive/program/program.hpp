@@ -63,6 +63,9 @@ Program assemble(const std::vector<NamedExpr>& outputs);
 // The cheapest of what the passes find: common pairs of terms and of factors shared, common factors taken out.
 Program simplify(const Program& program);
 
+// How often each operation is used by needed operations and outputs.
+std::vector<int> use_counts(const Program& program);
+
 // Only operations that an output needs count.
 Count count(const Program& program);
 

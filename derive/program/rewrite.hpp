@@ -9,9 +9,6 @@
 
 namespace cdot::derive {
 
-// How often an operation is used by needed operations and outputs.
-std::vector<int> use_counts(const Program& program);
-
 // Copies the needed operations; `rewrite` may build something else in the place of an operation (its operands, in terms
 // of the new program, are given), or say nullopt to keep it.
 using Rewrite =
@@ -20,5 +17,10 @@ Program rewritten(const Program& program, const Rewrite& rewrite);
 
 // The place of an operand; the number of operands if it is none of them.
 std::size_t index_of(const std::vector<int>& args, int arg);
+
+// Passes that compute once what occurs in many sums or products: each takes the most frequent pair, the first of
+// equals, and says nullopt if no pair occurs twice.
+std::optional<Program> share_terms(const Program& program);    // x + ratio y
+std::optional<Program> share_factors(const Program& program);  // x y
 
 }  // namespace cdot::derive

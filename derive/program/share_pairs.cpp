@@ -1,5 +1,4 @@
-#include "derive/program/share_pairs.hpp"
-
+// The passes that share pairs of terms or of factors.
 #include <algorithm>
 #include <map>
 #include <string>

@@ -5,7 +5,6 @@
 #include <set>
 
 #include "derive/program/rewrite.hpp"
-#include "derive/program/share_pairs.hpp"
 
 namespace cdot::derive {
 namespace {
