@@ -16,7 +16,7 @@ void take_over(const Diagnostics& diagnostics, Findings& findings) {
   }
 }
 
-// What a broken law says; a law about the derivation itself is named, for it is no fault of the spec.
+// Reports a broken law. A law about the derivation itself is named: the spec is not its cause.
 void take_over(const Proved& proved, Findings& findings) {
   for (const Law& law : proved.proof.laws) {
     if (!is_broken(law)) continue;
@@ -77,7 +77,7 @@ std::string_view name_of(Level level) {
   return "";
 }
 
-// As the reader's messages; the level is ours, since a reader has no notes.
+// Renders a finding like the reader's messages. The reader has no notes, so the level is replaced.
 std::string render(const SourceFile& file, const Finding& f) {
   std::string text = render(file, Diagnostic{Severity::warning, f.where, f.also, f.message, f.fix});
   const std::string said = ": warning: ";

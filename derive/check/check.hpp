@@ -1,4 +1,4 @@
-// Everything known to be wrong or risky about a spec, before any code exists.
+// A spec to its errors and risks, before any code exists.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 namespace cdot::derive {
 
 enum class Level {
-  note,     // what the author may want to know: where K is singular, what the kernel does at 1/0
+  note,     // information for the author: where K is singular, what the kernel does at 1/0
   warning,  // likely a mistake
   error     // no kernel should be made of this
 };

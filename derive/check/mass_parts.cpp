@@ -30,7 +30,7 @@ std::string where_all_vanish(const std::vector<std::vector<std::string>>& factor
     if (any.empty()) ++without_words;
     if (!any.empty()) alternatives.emplace_back(any.begin(), any.end());
   }
-  if (alternatives.empty()) return "at some poses, perhaps: no words were found for where";
+  if (alternatives.empty()) return "at some poses, possibly: no closed form was found";
   std::sort(alternatives.begin(), alternatives.end());
   alternatives.erase(std::unique(alternatives.begin(), alternatives.end()), alternatives.end());
   std::vector<std::string> conditions;

@@ -1,4 +1,4 @@
-// `cdot check`: what is wrong or risky about specs, for people or as JSON.
+// `cdot check`: errors and risks of specs, for people or as JSON.
 #include "derive/check/check.hpp"
 
 #include <CLI/CLI.hpp>
@@ -117,8 +117,8 @@ Run check_command(CLI::App& command) {
                    "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
   add_shared_options(command, options->specs_folder, options->processes);
   command.footer(
-      "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where the joint\n"
-      "is singular or undefined and what the kernel does there.\n"
+      "An error forbids a kernel. A warning is a likely mistake. A note says where the joint is singular or\n"
+      "undefined, and what the kernel computes there.\n"
       "Exit status: 0 nothing but notes; 1 problems; 2 a spec cannot be read.\n\n"
       "Operators\n" +
       operators_help());

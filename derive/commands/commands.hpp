@@ -18,7 +18,7 @@ Run explain_command(CLI::App& command);
 Run diff_command(CLI::App& command);
 Run check_command(CLI::App& command);
 
-// --specs and -j, of commands that work on several specs.
+// Adds --specs and -j, for commands on several specs.
 void add_shared_options(CLI::App& command, std::string& specs_folder, int& processes);
 
 }  // namespace cdot::derive

@@ -21,7 +21,7 @@ struct Options {
   int processes = usual_processes();
 };
 
-// A .hand file and the spec that it is about: the .joint of the same name beside it, or in the specs folder.
+// A .hand file and its spec: the .joint of the same name beside it, or in the specs folder.
 struct Pairing {
   fs::path hand, spec;
   std::string entry;  // the only one that is asked for; empty: all
@@ -52,7 +52,7 @@ std::vector<Pairing> all_pairs(const SpecsFolder& folder) {
   return pairs;
 }
 
-// LIN-4, JO-12, L-n1: an entry of some .hand file; there may be one of that name beside several joints.
+// LIN-4, JO-12, L-n1: an entry of some .hand file. Several joints may have an entry of one name.
 bool is_id(const std::string& word) {
   return !word.empty() && word[0] >= 'A' && word[0] <= 'Z' && word.find('-') != word.npos;
 }
@@ -137,17 +137,16 @@ int run(const Options& options) {
 
 Run diff_command(CLI::App& command) {
   auto options = std::make_shared<Options>();
-  command.add_option(
-      "SPEC", options->what,
-      "Specs by name or path (their .hand beside them), .hand files, or ids of entries (LIN-4); all if none\n"
-      "is given");
-  command.add_flag("--all", options->all, "Also entries that agree (always shown for named specs)");
+  command.add_option("SPEC", options->what,
+                     "Specs by name or path (with a .hand file beside them), .hand files, or ids of entries (LIN-4).\n"
+                     "Default: all");
+  command.add_flag("--all", options->all, "Also show entries that agree (named specs always show them)");
   command.add_flag("--json", options->json,
                    "An array with, per entry: id, joint, title, source, verdict (agrees, agrees-if, differs, listed),\n"
                    "condition (of agrees-if; the reason of listed), remarks, and items: what, row, column, kind,\n"
-                   "generated, hand, difference, sentence, confirmed (by which numbers)");
+                   "generated, hand, difference, sentence, confirmed (the numbers that show it)");
   add_shared_options(command, options->specs_folder, options->processes);
-  command.footer("Exit status: 0 nothing differs; 1 something does; 2 bad usage or input.");
+  command.footer("Exit status: 0 no entry differs; 1 some entry differs; 2 bad usage or input.");
   return [options] { return run(*options); };
 }
 

@@ -124,7 +124,7 @@ Motion Confirm::times_inverse_mass(const Sample& sample, const Motion& impulse) 
   return change;
 }
 
-// Body by body the impulse p with M^-1 p = change: the shortest such p, which is the only one.
+// The impulse p with M^-1 p = change, body by body: the shortest such p is the only one.
 Motion Confirm::times_mass(const Sample& sample, const Motion& change) const {
   Gradients inverse(change.size());
   for (std::size_t c = 0; c < change.size(); ++c) {

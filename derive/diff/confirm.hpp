@@ -1,5 +1,5 @@
-// Confirms differences by numbers at random poses: central differences of C, impulses applied, both sides evaluated.
-// None of it uses what is derived, but to say how far that is off.
+// Confirms differences by numbers at random poses: central differences of C, applied impulses, both sides evaluated.
+// The generated formulas are only measured, never used as the reference.
 #pragma once
 
 #include <functional>
@@ -15,20 +15,20 @@ namespace cdot::derive {
 // One number per column of J.
 using Motion = std::vector<double>;
 
-// The change of C along a motion of the bodies and of time, by central differences; of a velocity row, its value there
-// less that at rest.
+// The change of C along a motion of the bodies and of time, by central differences. For a velocity row: its value at
+// that motion minus its value at rest.
 double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample, const Motion& motion, double time);
 
-// An update of velocities or positions with the impulse spelled out, or with an impulse of any size, of which only the
+// An update of velocities or positions with an explicit impulse, or with an impulse of any size. Of the latter only the
 // direction M^-1 J^T can be judged.
 enum class UpdateLevel { velocities, positions, any_impulse };
 
-// What a source changes, one expression per column of J; `generated` beside it.
+// The change by an update, one expression per column of J: as generated and as published.
 struct Change {
   std::vector<Expr> generated, published;
 };
 
-// Each sentence says how far the generated and the published value are off.
+// Each sentence gives the errors of the generated and of the published value.
 class Confirm {
  public:
   using Measure = std::function<double(const Sample&)>;
@@ -42,22 +42,22 @@ class Confirm {
   double mass(const ScalarRow& row, const ScalarRow& other, const Sample& sample) const;
   double rate(const ScalarRow& row, const Sample& sample) const;
   std::string against(const Measure& measured, Expr generated, Expr published) const;
-  // `fulfilled`: poses at which C = 0, where C has to vanish, if the row is no coordinate.
+  // `fulfilled`: poses with C = 0. The published C must vanish there, unless the row is a coordinate.
   std::string value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated, Expr published) const;
   std::string claim(Expr left, Expr right) const;
   // Shows that some other reading of a formula without a value is right; `sign` is that of the row.
   std::string reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const;
 
-  // How far the rows of one matrix are from being combinations of those of another.
+  // The distance of the rows of `smaller` from the row space of `larger`.
   std::string row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const;
 
-  // What is left of the rows after a change; of an impulse of any size its work along motions that the rows allow.
+  // The error of the rows after a change; for an impulse of any size, its work along motions that the rows allow.
   std::string after(UpdateLevel level, const std::vector<ScalarRow>& rows, const Change& change) const;
   // While C rises by itself: the impulse of an equation pulls it back, that of an inequality does not act.
   std::string bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const;
 
  private:
-  // How far two values are off at worst from what is measured, relative to its size.
+  // The largest errors over all poses.
   std::string worst(const std::string& how, const Poses& poses, const Measure& generated_error,
                     const Measure& published_error) const;
   double value(Expr e, const Sample& sample) const { return values_at(joint_, {e}, sample)[0]; }

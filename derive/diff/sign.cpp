@@ -1,5 +1,5 @@
-// The sign of C is the author's choice, row by row: the one is taken with which the fewest entries of C, Cdot, J and b
-// differ over the whole entry, and in them the fewest terms.
+// The sign of C is the author's choice, row by row. The chosen sign has the fewest differing entries of C, Cdot, J and
+// b in the whole entry, and the fewest differing terms in them.
 #include <algorithm>
 
 #include "derive/diff/entry.hpp"
@@ -9,8 +9,8 @@ namespace cdot::derive {
 namespace {
 
 struct Misfit {
-  int blocks = 0;         // that differ
-  std::size_t terms = 0;  // that differ in them
+  int blocks = 0;         // differing ones
+  std::size_t terms = 0;  // differing ones in them
   friend auto operator<=>(const Misfit&, const Misfit&) = default;
 };
 
@@ -19,7 +19,7 @@ int block_of(const Entry& entry, int column) {
   return 2 * (column / entry.width()) + (column % entry.width() < entry.joint.dimension ? 0 : 1);
 }
 
-// How badly one row of an item fits if the row is counted with this sign.
+// Adds the misfit of one row of an item, if the row has this sign.
 void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row, int sign) {
   if (!item.value) return;
   const Generated& g = part.generated;

@@ -1,4 +1,4 @@
-// Update rules: what a source adds to velocities or positions, against M^-1 J^T lambda with the right impulse; and the
+// Update rules: a source's change of velocities or positions against M^-1 J^T lambda with the right impulse; and the
 // bounds of the impulse.
 #include <algorithm>
 #include <fmt/format.h>
@@ -44,7 +44,7 @@ std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& r
   return columns;
 }
 
-// All columns are the same multiple of what is generated.
+// True if all columns are the same multiple of the generated ones.
 bool same_direction(const Change& change, const Poses& poses) {
   for (std::size_t i = 0; i < change.generated.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
@@ -56,7 +56,7 @@ bool same_direction(const Change& change, const Poses& poses) {
   return true;
 }
 
-// The impulse that the changes are compared with: a symbol where the source's is, or else what makes Cdot vanish
+// The impulse of the generated change: a symbol if the source's is one, else the impulse that makes Cdot vanish
 // (positions: C).
 std::vector<Expr> impulse(Pool& pool, const Part& part, UpdateLevel level) {
   const std::size_t n = part.rows.size();
@@ -76,7 +76,7 @@ UpdateLevel level_of(const std::vector<const HandItem*>& updates) {
   return is_position_level(updates[0]->target) ? UpdateLevel::positions : UpdateLevel::velocities;
 }
 
-// Turned where the published one then fits better: an impulse of any size counts C either way round.
+// Negates the generated change if the published one then fits better: an impulse of any size has either sign of C.
 std::vector<Expr> turned_to_fit(std::vector<Expr> generated, const std::vector<Expr>& published, const Poses& poses) {
   const auto wrong = [&](Rational sign) {
     int count = 0;

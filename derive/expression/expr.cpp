@@ -24,8 +24,8 @@ std::string key_of(const Node& n) {
   return key;
 }
 
-// Where a leaf stands among others: differences of positions come first (they cancel what is large and common), then
-// what turns with a body; masses before inertias; the rest by name.
+// The order of leaves. Differences of positions come first, since they cancel large common parts; then vectors that
+// turn with a body. Masses precede inertias. Names order the rest.
 int rank(const Node& n) {
   switch (n.role) {
     case Role::constant: return 0;

@@ -1,4 +1,4 @@
-// Texts of the generated files. Nothing here depends on anything but the joints: no date, no path, no version.
+// Kernels to the texts of generated files. They depend on the joints alone: no date, no path, no version.
 #pragma once
 
 #include <map>

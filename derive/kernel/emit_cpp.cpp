@@ -82,7 +82,7 @@ class KernelWriter {
     }
   }
 
-  // Adjacent literals, so that no line is too long; ends the statement.
+  // Adjacent literals of limited length, and the end of the statement.
   void string_literal(std::string s, int depth) {
     constexpr std::size_t most = 80;
     while (s.size() > most) {
@@ -137,7 +137,7 @@ class KernelWriter {
     line("}};", 1);
   }
 
-  // Members that every row block has. A variant inherits from the block `base` what is the same there.
+  // Members that every row block has. A variant inherits equal members from the block `base`.
   void block(const KernelBlock& b, const KernelBlock* base, int depth) {
     const std::size_t rows = b.block->rows.size();
     if (base == nullptr) {
@@ -212,7 +212,7 @@ class KernelWriter {
     line("};", 1);
   }
 
-  // `struct line::a_immovable : line`, with what is different.
+  // `struct line::a_immovable : line`, with the members that differ.
   void variants(const KernelBlock& base, const std::string& name) {
     for (const KernelBlock& variant : base.variants) {
       const std::string& body = joint_.bodies[static_cast<std::size_t>(variant.block->immovable)];

@@ -1,4 +1,4 @@
-// What every kernel costs, and what the published derivations of the same quantity cost after the same passes.
+// The cost of every kernel, and of the published derivations of the same quantities after the same passes.
 #pragma once
 
 #include <string>
@@ -13,9 +13,9 @@ struct LedgerRow {
   std::string space;                   // "planar", "spatial"
   std::string joint, block, quantity;  // "line", "slide.a_immovable", "jacobian"
                                        // ("apply_isotropic"); quantities from poses: "C", "J", "K"
-  // "generated", or the id of a published derivation that agrees wherever the joint is; then, if it does not say the
-  // same as the spec, what it is about: "PRI-9 with t on a", "WLD-6 of pin". Such a one has a row beside it for what is
-  // generated of the same: "generated with t on a".
+  // "generated", or the id of a published derivation that agrees at every pose. If its scope differs from the spec, the
+  // scope follows: "PRI-9 with t on a", "WLD-6 of pin". Then another row has the generated cost of that scope:
+  // "generated with t on a".
   std::string source;
   Count count;
 

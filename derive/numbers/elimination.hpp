@@ -5,7 +5,7 @@
 
 namespace cdot::derive {
 
-// x of A x = b, by quotient(a, pivot) where the pivot may vanish.
+// Solves A x = b. `quotient(a, pivot)` divides, and decides what happens at a zero pivot.
 template <class T, class Quotient>
 std::vector<T> solved(std::vector<std::vector<T>> A, std::vector<T> b, Quotient quotient) {
   const std::size_t n = b.size();

@@ -10,8 +10,8 @@
 namespace cdot::derive {
 namespace {
 
-// All that an equation may move: bodies, or also scalars, vectors and triads that are fixed somewhere. Directions and
-// orientations are turned, so that they keep their length.
+// The unknowns: bodies; if wanted, also scalars, and vectors and triads in their frames. Directions and orientations
+// are rotated, which preserves their length.
 class Variables {
  public:
   Variables(const Joint& joint, const Sample& sample, bool only_bodies) : dimension_(joint.dimension) {
@@ -100,7 +100,7 @@ std::vector<double> shortest_step(const Gradients& G, const std::vector<double>&
     largest = std::max(largest, K[i][i]);
   }
   for (std::size_t i = 0; i < n; ++i) K[i][i] += 1e-13 * largest;
-  // K is symmetric, positive and, by a little on its diagonal, regular.
+  // The small diagonal term makes the symmetric positive K regular.
   const std::vector<double> lambda =
       solved(K, values, [](double a, double pivot) { return pivot == 0 ? 0 : a / pivot; });
   std::vector<double> step(G[0].size());

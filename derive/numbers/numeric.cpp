@@ -147,7 +147,7 @@ Sample::Body random_body(int dimension, Random& random) {
   return body;
 }
 
-// Components of an inverse inertia: some positive definite tensor, the same however many of them occur.
+// Components of an inverse inertia: a positive definite tensor, the same however many of them occur.
 double inverse_inertia_component(const std::string& name, double first) {
   if (name.ends_with("_xx") || name.ends_with("_yy") || name.ends_with("_zz")) return 1 + first;
   return 0.2 * (first - 1);
@@ -158,7 +158,7 @@ Triple<double> random_direction(int dimension, Random& random, double second) {
   return axes_of(random_orientation(random))[0];
 }
 
-// What leaves other than poses and velocities are, each from its own draw.
+// Draws the value of a leaf that is neither pose nor velocity.
 void draw_leaf(const Joint& joint, Expr leaf, Random& random, Sample& sample) {
   const double first = random.between(0.5, 2), second = random.between(-2, 2);
   const Pool::Axis axis = joint.pool->axis_of(leaf);

@@ -19,8 +19,8 @@ namespace cdot::derive {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double slow = 10;         // seconds that a task may take without a word
-const std::string well = "well: ";  // how what a process says begins, if it has a result
+constexpr double slow = 10;         // [s]; longer tasks are reported
+const std::string well = "well: ";  // precedes the result in a process's answer
 
 [[noreturn]] void raise_errno(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
@@ -31,7 +31,7 @@ struct Process {
   Clock::time_point begun = Clock::now();
 };
 
-// Dies when the parent does, however that comes: by Ctrl-C, or killed.
+// Runs a task in the child. The child dies with its parent, also by Ctrl-C or SIGKILL.
 [[noreturn]] void work(const Tasks& tasks, std::size_t task, pid_t parent, std::FILE* file) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
@@ -78,7 +78,7 @@ class Running {
     processes_.push_back({task, id, said});
   }
 
-  // Until one of them ends.
+  // Waits until one of them ends.
   void wait() {
     show();
     int status = 0;

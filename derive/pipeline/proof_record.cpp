@@ -20,7 +20,7 @@ std::string hash_of(std::string_view text) {
   return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(hash >> 64), static_cast<std::uint64_t>(hash));
 }
 
-// Which rows a block and its variants have, as text; and every expression of theirs, in a fixed order.
+// Appends the rows of a block and its variants as text, and all their expressions in a fixed order.
 void add(const Block& block, std::string& text, std::vector<Expr>& all) {
   const auto take = [&](const std::vector<Expr>& some) { all.insert(all.end(), some.begin(), some.end()); };
   text += fmt::format("block {} {}\n", block.name, block.immovable);
@@ -113,7 +113,7 @@ std::string shown_text(const std::vector<ProofRow>& rows) {
       laws += (laws.empty() ? "" : "; ") + std::string(name_of(law_of(word).value()));
     }
     if (laws.empty()) continue;
-    text += fmt::format("{}{}: shown at {} random points, too much to prove: {}\n", row.joint,
+    text += fmt::format("{}{}: shown at {} random points, too expensive to prove: {}\n", row.joint,
                         row.block == "rows" ? "" : ", coordinate " + row.block, exact_points, laws);
   }
   return text;

@@ -1,4 +1,4 @@
-// Expressions to programs, and what a program costs.
+// Expressions to programs, and the cost of a program.
 #include "derive/program/program.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace cdot::derive {
 namespace {
 
-// Equal for equal operations and for no others: the numbers of one after the other, as bytes.
+// A unique key of an operation: its numbers, one after the other, as bytes.
 std::string key_of(const Operation& op) {
   std::string key;
   const auto add = [&](std::int64_t n) { key.append(reinterpret_cast<const char*>(&n), sizeof n); };

@@ -65,7 +65,7 @@ std::optional<Pair> most_frequent(const Program& program, PairFinder pairs_of) {
   return best;
 }
 
-// What the spec calls x + ratio y, if it has a name there.
+// The name of x + ratio y in the spec; empty if it has none.
 std::string name_of(const Program& program, const Pair& pair) {
   for (const Operation& op : program.ops) {
     if (op.kind != OpKind::sum || op.args.size() != 2 || op.name.empty()) continue;

@@ -1,4 +1,4 @@
-// The laws that stand in files of their own, and how any law is judged.
+// Laws with files of their own, and the judgement of any law.
 #pragma once
 
 #include <functional>
@@ -8,21 +8,21 @@
 
 namespace cdot::derive {
 
-// A law that `check` may break; undecided if it throws, for GiNaC's text is not for the user.
+// Runs `check`, which may break the law. If it throws, the law is undecided; users never see GiNaC's text.
 Law judged(LawId id, const std::function<void(Law&)>& check);
 
-// difference = 0, else the law fails at `where`; the first failure is the one that is told.
+// Requires difference = 0; else the law fails at `where`. The first failure is reported.
 void require_zero(Law& law, Algebra& algebra, const ex& difference, const ScalarRow& row, const std::string& where);
 
-// The law that needs a person's attention most often: J v = 0 for a common translation and a common rotation, at C = 0.
-// `names` is over the route of that name.
+// J v = 0 for a common translation and a common rotation, at C = 0. Authors break this law most often. `names` has the
+// route of that name.
 void conserves_momentum(Law& law, const Joint& joint, const Block& block, Algebra& names);
 
-// As many independent rows as are written: exact, without GiNaC.
+// No row is redundant: exact, without GiNaC.
 void rows_are_independent(Law& law, const Block& block);
 
-// The laws of what is specialised from a block. All else a variant has from the block itself, so a proof of the block
-// and these laws cover every function of a kernel.
+// The laws of specialised blocks. A variant inherits everything else from the block. So a proof of the block and these
+// laws cover every function of a kernel.
 // C as in the block, J without the body's columns, K with its inverse mass and inertia zero.
 Law variants_are_the_block(const Joint& joint, const Block& block);
 // K of inverse inertias i and K of inverse inertias i E, of the block and of its variants; in space.

@@ -1,4 +1,4 @@
-// The laws, one function each: what is derived, and what GiNaC makes of the same C, must differ by nothing.
+// The laws, one function each: the derivation and GiNaC's result from the same C must be equal.
 #include "derive/proof/prove.hpp"
 
 #include <algorithm>
@@ -89,7 +89,7 @@ class Prover {
     }
   }
 
-  // Each entry against row i of J times M^-1 times row j of J, and the other way round.
+  // K(i, j) = J_i M^-1 J_j^T, and the same with i and j exchanged.
   void mass(Law& law) {
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
@@ -164,8 +164,8 @@ class Prover {
     return force;
   }
 
-  // Along body axes, de/dt = 1/2 e (0, w'), and along the Euler parameters themselves, by GiNaC from C in raw
-  // coordinates: a route that knows nothing of w. With dC/de = J_c + (dC/de . e) e^T.
+  // Derivatives along body axes, de/dt = 1/2 e (0, w'), and along the Euler parameters themselves. GiNaC takes them
+  // from C in raw coordinates, a route without w. dC/de = J_c + (dC/de . e) e^T.
   void forms(Law& law) {
     law.verdict = Verdict::does_not_apply;
     if (joint_.dimension == 2) return;
@@ -198,7 +198,7 @@ class Prover {
                        ": J diag(E, A) is not the derivative of C along the body's axes");
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      // Column k of 2 G: the w that de_k/dt = 1 alone would be.
+      // Column k of 2 G: the w of de_k/dt = 1 alone.
       EulerParameters<ex> unit = {0, 0, 0, 0};
       unit[k] = 2;
       const EulerParameters<ex> w = cdot::derive::product(unit, conjugate);
@@ -273,7 +273,7 @@ Law judged(LawId id, const std::function<void(Law&)>& check) {
     check(law);
   } catch (const std::exception&) {
     law.verdict = Verdict::undecided;
-    law.text = "the formulas are undefined somewhere on the way";
+    law.text = "an intermediate formula is undefined";
   }
   return law;
 }

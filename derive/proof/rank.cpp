@@ -36,7 +36,7 @@ void rows_are_independent(Law& law, const Block& block) {
   law.row = block.rows[static_cast<std::size_t>(first.row)].row;
   law.text = std::to_string(block.rows.size()) + " rows, but only " + std::to_string(found.rank) +
              " independent: " + dependence_text(first, block);
-  law.fix = "drop one of these rows: the others hold it already";
+  law.fix = "drop one of these rows: it follows from the others";
 }
 
 }  // namespace cdot::derive

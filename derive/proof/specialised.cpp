@@ -20,23 +20,23 @@ class Specialised {
     for (const ex& entry : tensor(symbols.inv_I)) without_mass[entry] = 0;
     const Expr zero = joint_.pool->number(0);
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
-      require_equal(variant.rows[i].C, block.rows[i].C, block.rows[i], where + "C is another one");
+      require_equal(variant.rows[i].C, block.rows[i].C, block.rows[i], where + "C differs from that of the block");
       for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
         const std::vector<Expr> J = columns_of(variant.rows[i].J[b]), all = columns_of(block.rows[i].J[b]);
         for (std::size_t k = 0; k < J.size(); ++k) {
           require_equal(J[k], b == body ? zero : all[k], block.rows[i],
-                        where + "J is another one in the columns of " + joint_.bodies[b]);
+                        where + "J differs from that of the block in the columns of " + joint_.bodies[b]);
         }
       }
       for (std::size_t j = 0; j <= i; ++j) {
         const ex K = names_.of(block.K[i][j]).subs(without_mass, GiNaC::subs_options::no_pattern);
         require_zero(law_, names_, names_.of(variant.K[i][j]) - K, block.rows[i],
-                     where + "K does not merely lose its terms");
+                     where + "K is not that of the block without the terms of the body");
       }
     }
   }
 
-  // Each inertia a number, which the first entry of its tensor stands for.
+  // Each inertia becomes a number, represented by the first entry of its tensor.
   void compare_isotropic(const Block& block) {
     GiNaC::exmap isotropic;
     std::map<const Node*, Expr> numbers;
@@ -52,7 +52,7 @@ class Specialised {
       for (std::size_t j = 0; j <= i; ++j) {
         const ex K = names_.of(block.K[i][j]).subs(isotropic, GiNaC::subs_options::no_pattern);
         require_zero(law_, names_, names_.of(substitute(block.K_isotropic[i][j], numbers)) - K, block.rows[i],
-                     fmt::format(": K({},{}) of isotropic bodies is another one", i + 1, j + 1));
+                     fmt::format(": K({},{}) of isotropic bodies is not that of the block", i + 1, j + 1));
       }
     }
   }
