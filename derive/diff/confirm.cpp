@@ -39,6 +39,12 @@ std::vector<double> inverse_inertia(const Joint& joint, const Sample& sample, st
   return numbers;
 }
 
+double largest(const Poses& poses, const Confirm::Measure& error) {
+  double most = 0;
+  for (const Sample& sample : poses.samples()) most = std::max(most, std::abs(error(sample)));
+  return most;
+}
+
 std::string small(double error) { return error == 0 ? "0" : fmt::format("{:.0e}", error); }
 
 double inner(const Motion& a, const Motion& b) {
@@ -137,23 +143,19 @@ Motion Confirm::times_mass(const Sample& sample, const Motion& change) const {
 
 std::string Confirm::worst(const std::string& how, const Poses& poses, const Measure& generated_error,
                            const Measure& published_error) const {
-  double derived = 0, published = 0;
-  for (const Sample& sample : poses.samples()) {
-    derived = std::max(derived, std::abs(generated_error(sample)));
-    published = std::max(published, std::abs(published_error(sample)));
-  }
   return fmt::format("{} at {} poses: generated off by {}, published by {:.2g}", how, poses.samples().size(),
-                     small(derived), published);
+                     small(largest(poses, generated_error)), largest(poses, published_error));
+}
+
+Confirm::Measure Confirm::error(const Measure& measured, Expr e) const {
+  return [this, measured, e](const Sample& sample) {
+    const double truth = measured(sample);
+    return (value(e, sample) - truth) / (1 + std::abs(truth));
+  };
 }
 
 std::string Confirm::against(const Measure& measured, Expr generated, Expr published) const {
-  const auto error = [&](Expr e) {
-    return [&, e](const Sample& sample) {
-      const double truth = measured(sample);
-      return (value(e, sample) - truth) / (1 + std::abs(truth));
-    };
-  };
-  return worst("central differences of C", poses_, error(generated), error(published));
+  return worst("central differences of C", poses_, error(measured, generated), error(measured, published));
 }
 
 double Confirm::mass(const ScalarRow& row, const ScalarRow& other, const Sample& sample) const {
@@ -179,23 +181,17 @@ std::string Confirm::value_of_C(const ScalarRow& row, const Poses& fulfilled, Ex
 }
 
 std::string Confirm::claim(Expr left, Expr right) const {
-  double most = 0;
-  for (const Sample& sample : poses_.samples())
-    most = std::max(most, std::abs(value(left, sample) - value(right, sample)));
+  const Measure apart = [&](const Sample& sample) { return value(left, sample) - value(right, sample); };
   const Sample& first = poses_.samples().front();
   return fmt::format(
       "both sides at {} poses: they differ by up to {:.2g}; at the first {:.4g} stands where {:.4g} belongs",
-      poses_.samples().size(), most, value(left, first), value(right, first));
+      poses_.samples().size(), largest(poses_, apart), value(left, first), value(right, first));
 }
 
 std::string Confirm::reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const {
-  double off = 0;
-  for (const Sample& sample : poses_.samples()) {
-    const double truth = sign * rate(row, sample);
-    off = std::max(off, std::abs(value(read, sample) - truth) / (1 + std::abs(truth)));
-  }
+  const Measure measured = [&](const Sample& sample) { return sign * rate(row, sample); };
   return fmt::format("no value as published; {} it is off by {} from central differences of C at {} poses", words,
-                     small(off), poses_.samples().size());
+                     small(largest(poses_, error(measured, read))), poses_.samples().size());
 }
 
 std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const {

@@ -60,6 +60,8 @@ class Confirm {
   // The largest errors over all poses.
   std::string worst(const std::string& how, const Poses& poses, const Measure& generated_error,
                     const Measure& published_error) const;
+  // Of e, relative to the size of the measured value.
+  Measure error(const Measure& measured, Expr e) const;
   double value(Expr e, const Sample& sample) const { return values_at(joint_, {e}, sample)[0]; }
   Motion in_form(const Motion& gradient, const Sample& sample) const;
   Motion gradient(const ScalarRow& row, const Sample& sample) const;
