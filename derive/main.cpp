@@ -14,10 +14,10 @@ const struct {
 } commands[] = {
     {"derive",  "Prove every spec and write its kernel, the registry, the ledger of operation counts and the record of "
                 "proofs", derive_command},
-    {"explain", "The derivation of a spec, step by step: C, Cdot, J, K, gamma, and what was assumed", explain_command},
-    {"diff",    "Compare hand derivations with the generated one: every entry, and what is missing, flipped, doubled or\n"
-                "on the wrong body", diff_command},
-    {"check",   "Everything known to be wrong or risky about a spec, before any code exists", check_command},
+    {"explain", "Explain the derivation of a spec, step by step: C, Cdot, J, K, gamma, and its assumptions", explain_command},
+    {"diff",    "Compare hand derivations with the generated one, entry by entry, and name each mistake: a missing\n"
+                "or extra term, a sign, a factor, a wrong body", diff_command},
+    {"check",   "Report errors and risks of a spec, before any code exists", check_command},
 };
 // clang-format on
 
@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   CLI::App app{
       "Write a joint's position constraint C(q) = 0; get its Jacobian J, its effective mass K = J M^-1 J^T,\n"
       "the proof, and a C++ kernel.\n\n"
-      "  cdot check   specs/planar/line.joint    what is wrong or risky about a spec\n"
+      "  cdot check   specs/planar/line.joint    errors and risks of a spec\n"
       "  cdot explain specs/planar/line.joint    the derivation, step by step\n"
       "  cdot diff    line                       published derivations against the generated one\n"
       "  cdot derive                             all specs to generated/, proved\n\n"

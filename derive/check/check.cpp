@@ -11,36 +11,20 @@ namespace {
 void take_over(const Diagnostics& diagnostics, Findings& findings) {
   for (const Diagnostic& d : diagnostics.list) {
     const bool error = d.severity == Severity::error;
-    findings.push_back(
-        {error ? Level::error : Level::warning, error ? "unreadable" : "reader", d.where, d.also, d.message, d.fix});
+    findings.add(error ? Level::error : Level::warning, error ? "unreadable" : "reader", d.where, d.message, d.fix);
+    findings.back().also = d.also;
   }
 }
 
-std::string kind_of(LawId id) {
-  switch (id) {
-    case LawId::momentum: return "momentum";
-    case LawId::rank: return "dependent";
-    default: return "law";
-  }
-}
-
-// What a broken law says; a law about the derivation itself is named, for it is no fault of the
-// spec.
+// Reports a broken law. A law about the derivation itself is named: the spec is not its cause.
 void take_over(const Proved& proved, Findings& findings) {
   for (const Law& law : proved.proof.laws) {
     if (!is_broken(law)) continue;
-    const std::string kind = kind_of(law.id);
-    Finding finding{Level::error,
-                    kind,
-                    law.row != nullptr ? law.row->where : proved.where,
-                    law.parts,
-                    kind == "law" ? fmt::format("{}: {}", name_of(law.id), law.text) : law.text,
-                    law.fix};
-    if (!finding.also.empty()) {
-      finding.where = finding.also.front();
-      finding.also.erase(finding.also.begin());
-    }
-    findings.push_back(std::move(finding));
+    const std::string kind = law.id == LawId::momentum ? "momentum" : law.id == LawId::rank ? "dependent" : "law";
+    const Span row = law.row != nullptr ? law.row->where : proved.where;
+    findings.add(Level::error, kind, law.parts.empty() ? row : law.parts.front(),
+                 kind == "law" ? fmt::format("{}: {}", name_of(law.id), law.text) : law.text, law.fix);
+    if (!law.parts.empty()) findings.back().also.assign(law.parts.begin() + 1, law.parts.end());
   }
 }
 
@@ -72,14 +56,10 @@ CheckReport check(const ReadResult& read) {
     check_undefined(subject, report.findings);
     check_mass(subject, report.findings);
   } catch (const NotLinear& e) {
-    report.findings.push_back({Level::error,
-                               "linear",
-                               joint.rows.front().where,
-                               {},
-                               e.what(),
-                               "a velocity row is a sum of velocities times what does not contain them"});
+    report.findings.add(Level::error, "linear", joint.rows.front().where, e.what(),
+                        "a velocity row is a sum of velocities times what does not contain them");
   } catch (const NumberTooLarge& e) {
-    report.findings.push_back({Level::error, "number", joint.rows.front().where, {}, e.what(), ""});
+    report.findings.add(Level::error, "number", joint.rows.front().where, e.what());
   }
   std::stable_sort(report.findings.begin(), report.findings.end(), [](const Finding& a, const Finding& b) {
     if (a.where.begin != b.where.begin) return a.where.begin < b.where.begin;
@@ -97,7 +77,7 @@ std::string_view name_of(Level level) {
   return "";
 }
 
-// As the reader's messages; the level is ours, since a reader has no notes.
+// Renders a finding like the reader's messages. The reader has no notes, so the level is replaced.
 std::string render(const SourceFile& file, const Finding& f) {
   std::string text = render(file, Diagnostic{Severity::warning, f.where, f.also, f.message, f.fix});
   const std::string said = ": warning: ";

@@ -1,7 +1,8 @@
-// Everything known to be wrong or risky about a spec, before any code exists.
+// A spec to its errors and risks, before any code exists.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "derive/language/read.hpp"
@@ -10,7 +11,7 @@
 namespace cdot::derive {
 
 enum class Level {
-  note,     // what the author may want to know: where K is singular, what the kernel does at 1/0
+  note,     // information for the author: where K is singular, what the kernel does at 1/0
   warning,  // likely a mistake
   error     // no kernel should be made of this
 };
@@ -23,10 +24,16 @@ struct Finding {
   std::string message, fix;
 };
 
+struct Findings : std::vector<Finding> {
+  void add(Level level, std::string kind, Span where, std::string message, std::string fix = {}) {
+    push_back({level, std::move(kind), where, {}, std::move(message), std::move(fix)});
+  }
+};
+
 struct CheckReport {
   bool readable = true;
-  std::vector<Finding> findings;  // in the order of the text; errors first where they stand at one place
-  std::vector<Proved> proofs;     // of the rows and of each coordinate
+  Findings findings;           // in the order of the text; errors first where they stand at one place
+  std::vector<Proved> proofs;  // of the rows and of each coordinate
 
   bool clean() const;  // nothing but notes
 };

@@ -1,11 +1,11 @@
-// Where K is singular. By Cauchy-Binet det K is a sum over choices of columns of J of (minor of
-// J)^2 times the inverse masses of the columns: no term is negative, so K is singular exactly where
-// the terms of every product of inverse masses vanish, and never where one of them is a sum of
-// squares that cannot vanish.
+// Where K is singular. By Cauchy-Binet, det K is a sum over choices of columns of J: (minor of J)^2 times the inverse
+// masses of the columns. No term is negative, so K is singular exactly where the terms of every product of inverse
+// masses vanish. K is regular if one of these terms is a sum of squares that cannot vanish.
 #include "derive/check/mass.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <fmt/format.h>
 #include <optional>
 #include <set>
 
@@ -15,8 +15,7 @@
 namespace cdot::derive {
 namespace {
 
-// With more minors than the first, formulas become too long for algebra: then numbers at the random
-// poses decide.
+// Beyond the first number of minors, algebra is too expensive and numbers at the random poses decide.
 constexpr double most_minors_by_algebra = 250, most_minors = 20000;
 
 // Powers of the inverse masses: m of the first body, its I, m of the second, ...
@@ -27,11 +26,11 @@ struct Coefficient {
   ex value;                  // sum of the squares of the minors
   std::vector<double> seen;  // at the random poses
   bool never_zero = false;
-  // It is zero where one of them is: "ratio", "cross(ra, n)"; empty if no words were found.
+  // It is zero where one of these is: "ratio", "cross(ra, n)"; empty if no closed form was found.
   std::vector<std::string> factors;
 };
 
-// Something that a person has a name for, and what it is at the random poses.
+// A quantity with a name, and its values at the random poses.
 struct Candidate {
   Expr e;
   std::vector<double> seen;
@@ -45,7 +44,8 @@ class MassCheck {
   void run() {
     const double minors = number_of_choices(width_ * joint_.bodies.size(), subject_.block.rows.size());
     if (minors > most_minors) {
-      return add("where K is singular was not looked into: too many minors of J");
+      return add(fmt::format("singular poses of K were not searched: J has {:.0f} minors, more than {:.0f}", minors,
+                             most_minors));
     }
     by_algebra_ = minors <= most_minors_by_algebra;
     expand();
@@ -127,7 +127,7 @@ class MassCheck {
     return is_world_axis(e) || (e->kind == Kind::cross && std::any_of(e->args.begin(), e->args.end(), is_world_axis));
   }
 
-  // An axis brings the other axes of its frame: they are across one another.
+  // An axis brings the other axes of its frame, which are orthogonal to it.
   void add_vector(Expr e, std::vector<Expr>& vectors) {
     const Pool::Axis axis = joint_.pool->axis_of(e);
     for (const Expr v : axis.triad ? std::vector<Expr>(axis.triad->begin(), axis.triad->end()) : std::vector<Expr>{e}) {
@@ -162,11 +162,11 @@ class MassCheck {
     }
     // The shortest words for the same thing.
     std::stable_sort(candidates_.begin(), candidates_.end(), [&](const Candidate& a, const Candidate& b) {
-      return said(a.e, joint_).size() < said(b.e, joint_).size();
+      return spec_text(a.e, joint_).size() < spec_text(b.e, joint_).size();
     });
   }
 
-  // factor such that c = factor * s^2 at every pose that was looked at, if there is a simple one.
+  // A simple factor with c = factor * s^2 at every random pose, if there is one.
   std::optional<ex> factor_of(const Coefficient& c, const std::vector<double>& s) {
     const double ratio = c.seen[0] / (s[0] * s[0]);
     const double twelfths = std::round(12 * ratio);
@@ -177,7 +177,7 @@ class MassCheck {
     return numeric(static_cast<long>(twelfths)) / 12;
   }
 
-  // As the square of one candidate, or of two.
+  // Writes it as the square of one candidate, or of a product of two.
   bool recognise(Coefficient& c) {
     for (const Candidate& s : candidates_) {
       if (!is_square_of(c, s.seen, [&] { return names_.of(s.e); })) continue;
@@ -190,14 +190,14 @@ class MassCheck {
         std::vector<double> product = t.seen;
         for (std::size_t p = 0; p < product.size(); ++p) product[p] *= s.seen[p];
         if (!is_square_of(c, product, [&] { return names_.of(t.e) * names_.of(s.e); })) continue;
-        c.factors = {said(s.e, joint_), said(t.e, joint_)};
+        c.factors = {spec_text(s.e, joint_), spec_text(t.e, joint_)};
         return true;
       }
     }
     return false;
   }
 
-  // Where numbers decide, they have done so already.
+  // Without algebra, the numbers have decided already.
   template <class Root>
   bool is_square_of(const Coefficient& c, const std::vector<double>& seen, Root root_of) {
     const std::optional<ex> factor = factor_of(c, seen);
@@ -211,7 +211,7 @@ class MassCheck {
     const bool product = e->kind == Kind::product && e->name.empty();
     for (const Expr factor : product ? e->args : std::vector<Expr>{e}) {
       const Expr e = factor->kind == Kind::norm && factor->name.empty() ? factor->args[0] : factor;
-      names.push_back(said(e->vector ? e : with_leading_sign(e), joint_));
+      names.push_back(spec_text(e->vector ? e : with_leading_sign(e), joint_));
     }
     return names;
   }
@@ -226,7 +226,7 @@ class MassCheck {
       if (!c.never_zero) recognise(c);
       return;
     }
-    const std::optional<ex> numerator = names_.reduced_numerator(c.value);
+    const std::optional<ex> numerator = names_.numerator(c.value, true);
     const auto positive = [&](const ex& p) { return is_positive(p, names_.symbols_in(p)); };
     if (numerator && (positive(*numerator) || positive(names_.other_coordinates(*numerator)))) {
       c.never_zero = true;
@@ -237,7 +237,7 @@ class MassCheck {
 
   using Choice = std::vector<const Coefficient*>;
 
-  // Those that are not zero while these inverse masses alone are not.
+  // The coefficients that remain if all other inverse masses are zero.
   template <class Allowed>
   Choice chosen(Allowed allowed) const {
     Choice out;
@@ -249,9 +249,7 @@ class MassCheck {
     return out;
   }
 
-  static bool any_never_zero(const Choice& choice) {
-    return std::any_of(choice.begin(), choice.end(), [](const Coefficient* c) { return c->never_zero; });
-  }
+  static bool any_never_zero(const Choice& choice) { return std::ranges::any_of(choice, &Coefficient::never_zero); }
 
   static std::string all_zero(const Choice& choice) {
     std::vector<std::vector<std::string>> factors;
@@ -268,10 +266,6 @@ class MassCheck {
     return way;
   }
 
-  static bool includes(const std::set<std::string>& all, const std::set<std::string>& some) {
-    return std::includes(all.begin(), all.end(), some.begin(), some.end());
-  }
-
   void report_all() {
     const Choice all = chosen([](std::size_t) { return true; });
     if (!any_never_zero(all)) return add("K is singular " + all_zero(all));
@@ -280,7 +274,8 @@ class MassCheck {
       const Way way = way_of(c->monomial);
       const bool least = std::none_of(all.begin(), all.end(), [&](const Coefficient* other) {
         const Way less = way_of(other->monomial);
-        return other->never_zero && less != way && includes(way.move, less.move) && includes(way.turn, less.turn);
+        return other->never_zero && less != way && std::ranges::includes(way.move, less.move) &&
+               std::ranges::includes(way.turn, less.turn);
       });
       const bool known = std::find(ways.begin(), ways.end(), way) != ways.end();
       if (c->never_zero && least && !known) ways.push_back(way);
@@ -295,15 +290,14 @@ class MassCheck {
   }
 
   void add(std::string message) {
-    findings_.push_back({Level::note, "singular", joint_.rows.front().where, {}, std::move(message), ""});
+    findings_.add(Level::note, "singular", joint_.rows.front().where, std::move(message));
   }
 
   const Subject& subject_;
   const Joint& joint_;
   Findings& findings_;
   Algebra names_;
-  // Inertia counts as a number here also in space: a tensor that is positive definite changes no
-  // rank.
+  // Inertia counts as a number in space, too: a positive definite tensor changes no rank.
   std::size_t linear_ = static_cast<std::size_t>(joint_.dimension);
   std::size_t width_ = columns_per_body(joint_.dimension);
   bool by_algebra_ = true;
@@ -316,12 +310,8 @@ class MassCheck {
 void check_mass(const Subject& subject, Findings& findings) try {
   MassCheck(subject, findings).run();
 } catch (const GiNaC::pole_error&) {
-  findings.push_back({Level::note,
-                      "singular",
-                      subject.joint.rows.front().where,
-                      {},
-                      "where K is singular was not looked into: J divides by zero",
-                      ""});
+  findings.add(Level::note, "singular", subject.joint.rows.front().where,
+               "singular poses of K were not searched: J divides by zero");
 }
 
 }  // namespace cdot::derive

@@ -15,16 +15,14 @@ double determinant(const std::vector<std::vector<double>>& J, const std::vector<
 // n over k.
 double number_of_choices(std::size_t n, std::size_t k);
 
-// All even powers with positive factors, and a constant: never zero. A number other than zero is
-// one.
+// True for a positive constant plus even powers with positive factors: such a sum is never zero.
 bool is_positive(const ex& expanded, const std::vector<ex>& symbols);
 
-// For sums of squares that all have to vanish, each by the factors one of which has to (empty: no
-// words are known): "where ratio = 0 and cross(ra, n) = 0". What is zero where something else in
-// the list is goes without saying.
+// The place where sums of squares all vanish: "where ratio = 0 and cross(ra, n) = 0". Each sum is given by factors, one
+// of which must vanish; without factors, no closed form is known. Implied conditions are left out.
 std::string where_all_vanish(const std::vector<std::vector<std::string>>& factors);
 
-// Who has to be able to move and to turn.
+// The bodies that must be able to move, and to turn.
 struct Way {
   std::set<std::string> move, turn;
   friend bool operator==(const Way&, const Way&) = default;

@@ -6,8 +6,7 @@
 
 namespace cdot::derive {
 
-// What a part looks at: the joint, what was derived from it, and random poses, some of them with C
-// = 0.
+// The input of every part: the joint, its derivation, and random poses, some of them with C = 0.
 struct Subject {
   const Joint& joint;
   const Block& block;
@@ -19,10 +18,9 @@ Subject subject_of(const Derivation& derivation);
 // The rows of J at a sample.
 std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block, const Sample& sample);
 
-// Where a coordinate stands.
+// The place of a coordinate in the spec.
 Span place_of(const Block& coordinate, const Joint& joint);
 
-using Findings = std::vector<Finding>;
 void check_rows(const Subject& subject,
                 Findings& findings);                               // vanishing, dependent, without bodies
 void check_undefined(const Subject& subject, Findings& findings);  // 1/0, roots, directions, angles

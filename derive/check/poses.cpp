@@ -1,4 +1,4 @@
-// Poses to look at: random ones, and random ones brought to C = 0.
+// Random poses, and random poses projected onto C = 0.
 #include "derive/check/parts.hpp"
 #include "derive/numbers/newton.hpp"
 

@@ -1,4 +1,4 @@
-// Rows that cannot work: whose J vanishes where C = 0, or that depend on the other rows there.
+// Rows that cannot work: their J vanishes where C = 0, or they are redundant there.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ double length(const std::vector<double>& row) {
   return std::sqrt(total);
 }
 
-// What |u| = 0 or u . u = 0 says about u.
+// The u of |u| = 0 or u . u = 0.
 Expr vector_that_vanishes(Expr C) {
   const Expr e = split_coefficient(C).e;
   if (e->kind == Kind::norm) return e->args[0];
@@ -27,29 +27,29 @@ Expr vector_that_vanishes(Expr C) {
   return {};
 }
 
-// The row that says the same and changes its sign where C = 0, where the form of C shows it.
+// An equivalent row that changes its sign at C = 0, if the form of C shows one.
 std::string better_form(Expr C, const Joint& joint) {
   if (const Expr u = vector_that_vanishes(C)) return vanishing_vector(u, joint);
   const Expr e = split_coefficient(C).e;
-  if (e->kind == Kind::product && e->args.size() == 1) return said(e->args[0], joint) + " = 0";
-  if (e->kind == Kind::function && e->fn == Fn::abs) return said(e->args[0], joint) + " = 0";
+  if (e->kind == Kind::product && e->args.size() == 1) return spec_text(e->args[0], joint) + " = 0";
+  if (e->kind == Kind::function && e->fn == Fn::abs) return spec_text(e->args[0], joint) + " = 0";
   if (e->kind != Kind::sum || e->args.size() != 2) return "";
   for (std::size_t i = 0; i < 2; ++i) {  // cos(x) = 1, dot(s, t) = 1
     const Expr part = e->args[i], rest = e->args[1 - i];
     if (!is_one(rest) || abs(e->coefs[0]) != abs(e->coefs[1])) continue;
     if (part->kind == Kind::function && part->fn == Fn::cos) {
-      return said(part->args[0], joint) + (e->coefs[0] == e->coefs[1] ? " = pi" : " = 0");
+      return spec_text(part->args[0], joint) + (e->coefs[0] == e->coefs[1] ? " = pi" : " = 0");
     }
     const bool directions = part->kind == Kind::dot && part->args[0]->unit_length && part->args[1]->unit_length;
     if (directions) {
-      const std::string both = said(part->args[0], joint) + ", " + said(part->args[1], joint);
+      const std::string both = spec_text(part->args[0], joint) + ", " + spec_text(part->args[1], joint);
       return e->coefs[0] == e->coefs[1] ? "angle(" + both + ") = pi" : "angle(" + both + ") = 0";
     }
   }
   return "";
 }
 
-// Whether the row's J is negligible at every pose with C = 0, beside what it is elsewhere.
+// True if the row's J is negligible at every pose with C = 0, beside its length elsewhere.
 bool vanishes_on_constraint(const Subject& subject, std::size_t row) {
   double usual = 0, largest = 0;
   for (const Sample& sample : subject.anywhere) {
@@ -68,19 +68,17 @@ bool find_vanishing(const Subject& subject, Findings& findings) {
     if (row.kind == RowKind::velocity || !vanishes_on_constraint(subject, i)) continue;
     found = true;
     const std::string better = better_form(row.C, subject.joint);
-    findings.push_back({Level::error,
-                        "vanishing",
-                        row.row->where,
-                        {},
-                        row.name + ": J vanishes where C = 0: C only touches zero, so that no impulse can hold it "
-                                   "there (K is 0)",
-                        better.empty() ? "write the row so that C changes its sign where it is met"
-                                       : "write `" + better + "`, which changes its sign where it is met"});
+    findings.add(
+        Level::error, "vanishing", row.row->where,
+        row.name +
+            ": J vanishes where C = 0: C touches zero without changing its sign, so no impulse enforces it (K is 0)",
+        better.empty() ? "write the row so that C changes its sign at C = 0"
+                       : "write `" + better + "`, which changes its sign at zero");
   }
   return found;
 }
 
-// The row, made of unit length, that adds least to the rows before it: how long its new part is.
+// The unit row with the shortest part orthogonal to the rows before it.
 struct Weakest {
   std::size_t row = 0;
   double rest = 1;
@@ -111,26 +109,19 @@ void find_dependent_on_constraint(const Subject& subject, Findings& findings) {
     if (!(weak.rest < negligible)) return;
     row = std::max(row, weak.row);
   }
-  findings.push_back({Level::error,
-                      "dependent",
-                      rows[row].row->where,
-                      {},
-                      rows[row].name + ": where C = 0, its row of J is a combination of the rows "
-                                       "before it, though not elsewhere",
-                      "drop the row, or say what it should hold by other means"});
+  findings.add(Level::error, "dependent", rows[row].row->where,
+               rows[row].name + ": where C = 0, and only there, its row of J is a combination of the rows before it",
+               "drop the row, or state its condition in another form");
 }
 
 void find_unreachable(const Subject& subject, Findings& findings) {
   const bool any = std::any_of(subject.block.rows.begin(), subject.block.rows.end(),
                                [](const ScalarRow& r) { return r.kind != RowKind::velocity; });
   if (!any || !subject.on_constraint.empty()) return;
-  findings.push_back(
-      {Level::warning,
-       "unreachable",
-       subject.block.rows.front().row->where,
-       {},
-       "no pose with C = 0 was found from " + std::to_string(subject.anywhere.size()) + " random poses and parameters",
-       "make sure that the rows can be met together"});
+  findings.add(
+      Level::warning, "unreachable", subject.block.rows.front().row->where,
+      "no pose with C = 0 was found from " + std::to_string(subject.anywhere.size()) + " random poses and parameters",
+      "check that all rows can be satisfied at once");
 }
 
 bool is_in(const Block& block, std::size_t row, std::size_t body) {
@@ -138,7 +129,7 @@ bool is_in(const Block& block, std::size_t row, std::size_t body) {
   return !is_zero(entry.v) || !is_zero(entry.w);
 }
 
-// A body without a velocity in any row is not held; in some rows only, the author may want to know.
+// A joint does not act on a body whose velocity is in no row. A body that some rows lack is worth a note.
 void find_absent_bodies(const Subject& subject, Findings& findings) {
   const Joint& joint = subject.joint;
   const std::size_t rows = subject.block.rows.size();
@@ -149,19 +140,16 @@ void find_absent_bodies(const Subject& subject, Findings& findings) {
     }
     if (without.empty()) continue;
     const bool all = without.size() == rows;
-    findings.push_back(
-        {all ? Level::warning : Level::note,
-         "absent",
-         joint.rows.front().where,
-         {},
-         "the velocity of " + joint.bodies[b] +
-             (all ? " is in no row: the joint does not hold it" : " is not in " + listed(without, " nor in ")),
-         all ? "leave the body out, or use it in a row" : ""});
+    findings.add(
+        all ? Level::warning : Level::note, "absent", joint.rows.front().where,
+        "the velocity of " + joint.bodies[b] +
+            (all ? " is in no row: the joint does not act on it" : " is not in " + listed(without, " nor in ")),
+        all ? "leave the body out, or use it in a row" : "");
   }
 }
 
-// A coordinate that equations hold is not free: a motor on it would fight them.
-void find_held_coordinates(const Subject& subject, Findings& findings) {
+// A coordinate that the rows determine is not free: a motor on it would fight them.
+void find_constrained_coordinates(const Subject& subject, Findings& findings) {
   for (const Diagnostic& said : errors_of_constrained_coordinates(subject.joint)) {
     findings.push_back({Level::error, "held", said.where, said.also, said.message, said.fix});
   }
@@ -173,7 +161,7 @@ void check_rows(const Subject& subject, Findings& findings) {
   find_unreachable(subject, findings);
   if (!find_vanishing(subject, findings)) find_dependent_on_constraint(subject, findings);
   find_absent_bodies(subject, findings);
-  find_held_coordinates(subject, findings);
+  find_constrained_coordinates(subject, findings);
 }
 
 }  // namespace cdot::derive

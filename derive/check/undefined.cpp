@@ -1,5 +1,5 @@
-// Where formulas are undefined, and what the kernel does there: the guards of runtime/include/cdot/kernel.hpp,
-// said in the spec's own names. What is undefined wherever C = 0 is an error.
+// Where formulas are undefined, and the kernel's result there: the guards of runtime/include/cdot/kernel.hpp in the
+// spec's own names. A formula that is undefined wherever C = 0 is an error.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ class Undefined {
   }
 
  private:
-  std::string words(Expr e) const { return said(e, subject_.joint); }
+  std::string words(Expr e) const { return spec_text(e, subject_.joint); }
 
   void look_at(Expr e) {
     if (e->kind == Kind::unit) return direction(e->args[0]);
@@ -46,7 +46,7 @@ class Undefined {
     if (e->kind == Kind::dot && e->args[0] == e->args[1]) return direction(e->args[0]);
     if (!seen_.insert(&*e).second) return;
     if (vanishes_on_constraint(e)) {
-      return add(Level::error, name_ + ": a division by " + words(e) + ", which is 0 wherever C = 0",
+      return add(Level::error, name_ + ": it divides by " + words(e) + ", which is 0 wherever C = 0",
                  "write the row without the division");
     }
     add(Level::note, name_ + ": where " + words(e) + " = 0 the kernel takes 0 for 1/(" + words(e) + ")");
@@ -58,7 +58,7 @@ class Undefined {
     if (vanishes_on_constraint(u)) {
       return add(Level::error,
                  name_ + ": J is undefined wherever C = 0: " + name + " is zero there and has no direction",
-                 "two rows hold a vector at zero: write `" + vanishing_vector(u, subject_.joint) + "`");
+                 "a vector is zero by one row for each component: write `" + vanishing_vector(u, subject_.joint) + "`");
     }
     add(Level::note, name_ + ": where " + name + " is zero it has no direction: the kernel takes " +
                          (subject_.joint.dimension == 2 ? "(1, 0)" : "(1, 0, 0)") + " for unit(" + name +
@@ -78,7 +78,7 @@ class Undefined {
     if (!finding.empty()) add(Level::note, name_ + ": " + fmt::format(fmt::runtime(finding), x));
   }
 
-  // At every pose with C = 0 that was found.
+  // Tested at every pose with C = 0 that was found.
   bool vanishes_on_constraint(Expr e) const {
     if (!held_ || subject_.on_constraint.empty()) return false;
     return std::all_of(subject_.on_constraint.begin(), subject_.on_constraint.end(), [&](const Sample& sample) {
@@ -90,7 +90,7 @@ class Undefined {
   }
 
   void add(Level level, std::string message, std::string fix = {}) {
-    findings_.push_back({level, "undefined", where_, {}, std::move(message), std::move(fix)});
+    findings_.add(level, "undefined", where_, std::move(message), std::move(fix));
   }
 
   const Subject& subject_;

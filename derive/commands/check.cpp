@@ -1,4 +1,4 @@
-// `cdot check`: what is wrong or risky about specs, for people or as JSON.
+// `cdot check`: errors and risks of specs, for people or as JSON.
 #include "derive/check/check.hpp"
 
 #include <CLI/CLI.hpp>
@@ -9,7 +9,6 @@
 #include "derive/commands/commands.hpp"
 #include "derive/language/operators.hpp"
 #include "derive/language/specs_folder.hpp"
-#include "derive/pipeline/packing.hpp"
 #include "derive/pipeline/process_pool.hpp"
 
 namespace cdot::derive {
@@ -90,32 +89,22 @@ int run(const Options& options) {
   for (const std::string& spec : options.specs) paths.push_back(folder.find(spec));
   Json all = Json::array();
   int exit_status = 0;
-  Tasks tasks;
-  for (const std::filesystem::path& path : paths) tasks.names.push_back(path.string());
-  tasks.run = [&](std::size_t i) {
+  const auto check_one = [&](std::size_t i) {
     const ReadResult read = folder.read(paths[i]);
     const CheckReport report = check(read);
-    const int status = !report.readable ? 2 : report.clean() ? 0 : 1;
-    return packed(std::pair{
-        status, options.json ? as_json(*read.file, report).dump(-1, ' ', false, Json::error_handler_t::replace)
-                             : as_text(*read.file, report)});
+    const std::string text = options.json
+                                 ? as_json(*read.file, report).dump(-1, ' ', false, Json::error_handler_t::replace)
+                                 : as_text(*read.file, report);
+    return std::pair{!report.readable ? 2 : report.clean() ? 0 : 1, text};
   };
-  tasks.take = [&](std::size_t i, const Answer& answer) {
-    if (!answer.failure.empty()) {
-      exit_status = 2;
-      return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
-    }
-    const auto [status, text] = unpacked<std::pair<int, std::string>>(answer.result);
-    exit_status = std::max(exit_status, status);
-    if (options.json) {
-      all.push_back(Json::parse(text));
-    } else {
-      fmt::print("{}", text);
-    }
+  const auto take = [&](const std::pair<int, std::string>& answer) {
+    exit_status = std::max(exit_status, answer.first);
+    if (options.json) all.push_back(Json::parse(answer.second));
+    else fmt::print("{}", answer.second);
   };
-  in_processes(tasks, options.processes);
+  const int failed = in_processes({paths.begin(), paths.end()}, {}, options.processes, check_one, take);
   if (options.json) fmt::print("{}\n", all.dump(2));
-  return exit_status;
+  return failed > 0 ? 2 : exit_status;
 }
 
 }  // namespace
@@ -123,15 +112,13 @@ int run(const Options& options) {
 Run check_command(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("SPEC", options->specs, "Specs, by path or by name")->required();
-  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
   command.add_flag("--json", options->json,
                    "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
                    "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
-  add_processes_option(command, options->processes);
+  add_shared_options(command, options->specs_folder, options->processes);
   command.footer(
-      "Errors are what no kernel should be made of, warnings are likely mistakes, notes say where "
-      "the joint\n"
-      "is singular or undefined and what the kernel does there.\n"
+      "An error forbids a kernel. A warning is a likely mistake. A note says where the joint is singular or\n"
+      "undefined, and what the kernel computes there.\n"
       "Exit status: 0 nothing but notes; 1 problems; 2 a spec cannot be read.\n\n"
       "Operators\n" +
       operators_help());

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 namespace CLI {
 class App;
@@ -17,7 +18,7 @@ Run explain_command(CLI::App& command);
 Run diff_command(CLI::App& command);
 Run check_command(CLI::App& command);
 
-// -j, of commands that work on several specs.
-void add_processes_option(CLI::App& command, int& processes);
+// Adds --specs and -j, for commands on several specs.
+void add_shared_options(CLI::App& command, std::string& specs_folder, int& processes);
 
 }  // namespace cdot::derive

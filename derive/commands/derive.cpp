@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "derive/commands/commands.hpp"
-#include "derive/pipeline/packing.hpp"
 #include "derive/pipeline/pipeline.hpp"
 #include "derive/pipeline/process_pool.hpp"
 
@@ -39,7 +38,7 @@ std::string content_of(const fs::path& path) {
   return all.str();
 }
 
-// The rows of all, each once: two published derivations may be about the same.
+// Each row once: two published derivations may describe the same quantity.
 std::vector<LedgerRow> without_repetition(const std::vector<LedgerRow>& all) {
   std::vector<LedgerRow> rows;
   for (const LedgerRow& row : all) {
@@ -48,8 +47,8 @@ std::vector<LedgerRow> without_repetition(const std::vector<LedgerRow>& all) {
   return rows;
 }
 
-// The dear ones first, so that none is left over at the end: those without a kernel yet, then by its size.
-std::vector<std::size_t> dearest_first(const std::vector<fs::path>& paths, const fs::path& output) {
+// Most expensive specs first, so that none runs alone at the end: those without a kernel, then by its size.
+std::vector<std::size_t> most_expensive_first(const std::vector<fs::path>& paths, const fs::path& output) {
   std::vector<std::pair<std::uintmax_t, std::size_t>> sized;
   for (std::size_t i = 0; i < paths.size(); ++i) {
     std::error_code missing;  // then the size is the greatest there is
@@ -62,7 +61,7 @@ std::vector<std::size_t> dearest_first(const std::vector<fs::path>& paths, const
   return order;
 }
 
-// The files of all specs, or none if there is anything wrong with any of them, which is said here.
+// The files of all specs, or none if any spec has an error. Reports the errors.
 std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsFolder& folder, const Options& options) {
   const fs::path record_file = fs::path(options.output) / proofs_file;
   const ProofRecord record = options.fresh ? ProofRecord() : ProofRecord(content_of(record_file));
@@ -70,13 +69,7 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
   std::vector<LedgerRow> hand_costs;
   std::vector<ProofRow> proofs;
   std::size_t on_record = 0;
-  Tasks tasks;
-  for (const fs::path& path : paths) tasks.names.push_back(path.string());
-  tasks.order = dearest_first(paths, options.output);
-  tasks.run = [&](std::size_t i) { return packed(derive_spec(paths[i], folder, record)); };
-  tasks.take = [&](std::size_t i, const Answer& answer) {
-    if (!answer.failure.empty()) return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
-    const auto outcome = unpacked<Outcome>(answer.result);
+  const auto take = [&](const Outcome& outcome) {
     fmt::print(stderr, "{}", outcome.complaints);
     fmt::print("{}", outcome.said);
     if (!outcome.proved) return;
@@ -85,7 +78,9 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
     hand_costs.insert(hand_costs.end(), outcome.hand_costs.begin(), outcome.hand_costs.end());
     proofs.insert(proofs.end(), outcome.proofs.begin(), outcome.proofs.end());
   };
-  in_processes(tasks, options.processes);
+  in_processes(
+      {paths.begin(), paths.end()}, most_expensive_first(paths, options.output), options.processes,
+      [&](std::size_t i) { return derive_spec(paths[i], folder, record); }, take);
   if (on_record > 0) {
     fmt::print(stderr, "{} of {} specs are proved by the record {} (--fresh: prove all again)\n", on_record,
                paths.size(), record_file.string());
@@ -96,7 +91,7 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
   return files;
 }
 
-// What stands below `root` and is ours: everything that `cdot derive` could have written.
+// The files below `root` that `cdot derive` could have written.
 Files present(const fs::path& root) {
   Files files;
   for (const char* table : {"ledger.csv", proofs_file}) {
@@ -111,7 +106,7 @@ Files present(const fs::path& root) {
   return files;
 }
 
-// Through a temporary file, so that nobody ever reads half of one; untouched if it is right already.
+// Writes through a temporary file, so that nobody reads half of one.
 void write_file(const fs::path& path, const std::string& content) {
   fs::create_directories(path.parent_path());
   fs::path temporary = path;
@@ -124,7 +119,7 @@ void write_file(const fs::path& path, const std::string& content) {
   fs::rename(temporary, path);
 }
 
-// The first line in which two texts differ, for a person to see what changed.
+// The first line in which two texts differ, for people.
 std::string first_difference(const std::string& old_text, const std::string& new_text) {
   std::istringstream a(old_text), b(new_text);
   std::string left, right;
@@ -138,37 +133,36 @@ std::string first_difference(const std::string& old_text, const std::string& new
   }
 }
 
+bool is_in(const Files& files, const std::string& name, const std::string& content) {
+  const auto at = files.find(name);
+  return at != files.end() && at->second == content;
+}
+
 int compare(const Files& wanted, const fs::path& root, const std::string& command) {
   const Files found = present(root);
   int differences = 0;
   for (const auto& [name, content] : wanted) {
-    const auto at = found.find(name);
-    if (at != found.end() && at->second == content) continue;
+    if (is_in(found, name, content)) continue;
     ++differences;
-    fmt::print("  {}: {}\n{}", (root / name).string(), at == found.end() ? "missing" : "differs",
-               at == found.end() ? "" : first_difference(at->second, content));
+    const bool differs = found.contains(name);
+    fmt::print("  {}: {}\n{}", (root / name).string(), differs ? "differs" : "missing",
+               differs ? first_difference(found.at(name), content) : "");
   }
   for (const auto& [name, content] : found) {
     if (wanted.contains(name)) continue;
     ++differences;
-    fmt::print("  {}: no spec makes it\n", (root / name).string());
+    fmt::print("  {}: no spec generates it\n", (root / name).string());
   }
-  if (differences == 0) {
-    fmt::print("{} is current: {} files\n", root.string(), wanted.size());
-    return 0;
-  }
-  fmt::print("{} is not current: {} of {} files. To mend it: {}\n", root.string(), differences, wanted.size(), command);
-  return 1;
+  if (differences == 0) fmt::print("{} is current: {} files\n", root.string(), wanted.size());
+  else fmt::print("{} is not current: {} of {} files. Fix: {}\n", root.string(), differences, wanted.size(), command);
+  return differences == 0 ? 0 : 1;
 }
 
 void write(const Files& wanted, const fs::path& root) {
   const Files found = present(root);
   int written = 0, removed = 0;
   for (const auto& [name, content] : wanted) {
-    const auto at = found.find(name);
-    if (at != found.end() && at->second == content) continue;
-    write_file(root / name, content);
-    ++written;
+    if (!is_in(found, name, content)) write_file(root / name, content), ++written;
   }
   for (const auto& [name, content] : found) {
     if (!wanted.contains(name)) fs::remove(root / name), ++removed;
@@ -176,7 +170,7 @@ void write(const Files& wanted, const fs::path& root) {
   fmt::print("{}: {} files, {} written, {} removed\n", root.string(), wanted.size(), written, removed);
 }
 
-// It writes what `options` ask to check.
+// The command that writes the files of these options.
 std::string command_line(const Options& options) {
   const Options usual;
   std::string command = "cdot derive";
@@ -207,22 +201,22 @@ int run(const Options& options) {
 Run derive_command(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("SPEC", options->specs,
-                     "Specs, by path or by name; all of the specs folder if none is given. With some given, DIR "
-                     "holds\njust these afterwards, so it should not be the folder of all");
+                     "Specs, by path or by name (default: all in the specs folder). DIR will hold only these specs:\n"
+                     "give another DIR for a part of all specs");
   command.add_option("-o,--output", options->output, "Folder to write to")->type_name("DIR")->capture_default_str();
-  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
   command.add_flag("--check", options->check,
                    "Write nothing; exit 1 unless DIR has exactly the files that would be written");
-  command.add_flag("--fresh", options->fresh, "Prove everything anew, on record or not");
-  add_processes_option(command, options->processes);
+  command.add_flag("--fresh", options->fresh, "Ignore the record of proofs and prove everything again");
+  add_shared_options(command, options->specs_folder, options->processes);
   command.footer(
-      "DIR/proofs.csv records what is proved, by content: a proof is done again where the derivation differs from the "
-      "record.");
+      "DIR/proofs.csv records all proofs by content: a spec is proved again only if its derivation changed.\n"
+      "Exit status: 0 written, or current; 1 not current; 2 bad usage or input.");
   return [options] { return run(*options); };
 }
 
-void add_processes_option(CLI::App& command, int& processes) {
-  command.add_option("-j,--jobs", processes, "Specs at once, each in a process of its own")
+void add_shared_options(CLI::App& command, std::string& specs_folder, int& processes) {
+  command.add_option("--specs", specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
+  command.add_option("-j,--jobs", processes, "Number of specs at once, each in its own process")
       ->type_name("N")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

@@ -7,7 +7,6 @@
 #include <iostream>
 
 #include "derive/commands/commands.hpp"
-#include "derive/pipeline/packing.hpp"
 #include "derive/pipeline/process_pool.hpp"
 
 namespace cdot::derive {
@@ -22,8 +21,7 @@ struct Options {
   int processes = usual_processes();
 };
 
-// A .hand file and the spec that it is about: the .joint of the same name beside it, or in the
-// specs folder.
+// A .hand file and its spec: the .joint of the same name beside it, or in the specs folder.
 struct Pairing {
   fs::path hand, spec;
   std::string entry;  // the only one that is asked for; empty: all
@@ -54,8 +52,7 @@ std::vector<Pairing> all_pairs(const SpecsFolder& folder) {
   return pairs;
 }
 
-// LIN-4, JO-12, L-n1: an entry of some .hand file; there may be one of that name beside several
-// joints.
+// LIN-4, JO-12, L-n1: an entry of some .hand file. Several joints may have an entry of one name.
 bool is_id(const std::string& word) {
   return !word.empty() && word[0] >= 'A' && word[0] <= 'Z' && word.find('-') != word.npos;
 }
@@ -92,17 +89,13 @@ std::vector<Pairing> pairs_of(const std::vector<std::string>& words, const Specs
   return pairs;
 }
 
-}  // namespace
-
 // Of one .hand file.
 struct FileVerdict {
   std::string complaints, text;  // for stderr and stdout
   bool unreadable = false;
   std::array<int, 4> counts = {};  // by Agreement
+  NLOHMANN_DEFINE_TYPE_INTRUSIVE(FileVerdict, complaints, text, unreadable, counts)
 };
-NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(FileVerdict, complaints, text, unreadable, counts)
-
-namespace {
 
 FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Options& options) {
   DiffReport report = judge(pair.hand, folder.read(pair.spec));
@@ -121,35 +114,23 @@ FileVerdict verdict_on(const Pairing& pair, const SpecsFolder& folder, const Opt
 int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
   const std::vector<Pairing> pairs = pairs_of(options.what, folder);
-  std::vector<std::string> entries;
-  bool unreadable = false;
-  int counts[4] = {};
-  Tasks tasks;
-  for (const Pairing& pair : pairs) tasks.names.push_back(pair.hand.string());
-  tasks.run = [&](std::size_t i) { return packed(verdict_on(pairs[i], folder, options)); };
-  tasks.take = [&](std::size_t i, const Answer& answer) {
-    if (!answer.failure.empty()) {
-      unreadable = true;
-      return fmt::print(stderr, "{}: {}\n", tasks.names[i], answer.failure);
-    }
-    const auto verdict = unpacked<FileVerdict>(answer.result);
-    unreadable = unreadable || verdict.unreadable;
-    for (std::size_t k = 0; k < 4; ++k) counts[k] += verdict.counts[k];
+  std::vector<std::string> names, entries;
+  for (const Pairing& pair : pairs) names.push_back(pair.hand.string());
+  FileVerdict total;
+  const auto take = [&](const FileVerdict& verdict) {
+    total.unreadable = total.unreadable || verdict.unreadable;
+    for (std::size_t k = 0; k < total.counts.size(); ++k) total.counts[k] += verdict.counts[k];
     std::cerr << verdict.complaints;
-    if (options.json) {
-      entries.push_back(verdict.text);
-    } else {
-      std::cout << verdict.text << std::flush;
-    }
+    if (options.json) entries.push_back(verdict.text);
+    else std::cout << verdict.text << std::flush;
   };
-  in_processes(tasks, options.processes);
-  if (options.json) {
-    std::cout << joined_json(entries);
-  } else {
-    fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", counts[0],
-               counts[1], counts[2], counts[3]);
-  }
-  return unreadable ? 2 : counts[2] > 0 ? 1 : 0;
+  const int failed = in_processes(
+      names, {}, options.processes, [&](std::size_t i) { return verdict_on(pairs[i], folder, options); }, take);
+  if (options.json) std::cout << joined_json(entries);
+  else
+    fmt::print("{} agree, {} agree if a condition holds, {} differ, {} are listed without a verdict\n", total.counts[0],
+               total.counts[1], total.counts[2], total.counts[3]);
+  return failed > 0 || total.unreadable ? 2 : total.counts[2] > 0 ? 1 : 0;
 }
 
 }  // namespace
@@ -157,19 +138,15 @@ int run(const Options& options) {
 Run diff_command(CLI::App& command) {
   auto options = std::make_shared<Options>();
   command.add_option("SPEC", options->what,
-                     "Specs by name or path (their .hand beside them), .hand files, or ids of "
-                     "entries (LIN-4); all if none\n"
-                     "is given");
-  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
-  command.add_flag("--all", options->all, "Also entries that agree (always shown for named specs)");
+                     "Specs by name or path (with a .hand file beside them), .hand files, or ids of entries (LIN-4).\n"
+                     "Default: all");
+  command.add_flag("--all", options->all, "Also show entries that agree (named specs always show them)");
   command.add_flag("--json", options->json,
-                   "An array with, per entry: id, joint, title, source, verdict (agrees, "
-                   "agrees-if, differs, listed),\n"
-                   "condition (of agrees-if; the reason of listed), remarks, and items: what, "
-                   "row, column, kind,\n"
-                   "generated, hand, difference, sentence, confirmed (by which numbers)");
-  add_processes_option(command, options->processes);
-  command.footer("Exit status: 0 nothing differs; 1 something does; 2 bad usage or input.");
+                   "An array with, per entry: id, joint, title, source, verdict (agrees, agrees-if, differs, listed),\n"
+                   "condition (of agrees-if; the reason of listed), remarks, and items: what, row, column, kind,\n"
+                   "generated, hand, difference, sentence, confirmed (the numbers that show it)");
+  add_shared_options(command, options->specs_folder, options->processes);
+  command.footer("Exit status: 0 no entry differs; 1 some entry differs; 2 bad usage or input.");
   return [options] { return run(*options); };
 }
 

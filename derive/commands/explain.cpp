@@ -1,5 +1,4 @@
-// `cdot explain`: the derivation of one spec, for a person as text, HTML or LaTeX, for a program as
-// JSON.
+// `cdot explain`: the derivation of one spec, for a person as text, HTML or LaTeX, for a program as JSON.
 #include "derive/explain/explain.hpp"
 
 #include <CLI/CLI.hpp>
@@ -26,16 +25,15 @@ constexpr const char* json_schema =
     "  joint, title, source, dimension, bodies\n"
     "  columns        of every J: v_a_x, v_a_y, w_a, v_b_x, ...; in space v_a_z, w_a_x, ... too\n"
     "  symbols        name -> {kind, meaning, unit, frame, body, from, unit_length}; kind is position, orientation,\n"
-    "                 velocity, mass, parameter, derived, time or constant; `from` gives a derived one from the pose "
-    "and\n"
-    "                 the parameters: r_pa_x = cos(theta_a)*pa_local_x - sin(theta_a)*pa_local_y;\n"
+    "                 velocity, mass, parameter, derived, time or constant; `from` gives a derived one from the pose\n"
+    "                 and the parameters: r_pa_x = cos(theta_a)*pa_local_x - sin(theta_a)*pa_local_y;\n"
     "                 unit_length: true for components of a vector of length 1\n"
     "  frames         [{name, axes}]: right-handed triads among the parameters, in space\n"
-    "  intermediates  [{name, definition}], in order: each uses only what stands before it\n"
+    "  intermediates  [{name, definition}], in order: each uses only those before it\n"
     "  guards         [{where, kernel}]: where an entry is undefined and what a kernel does there\n"
     "  rows           [{name, kind, text, unit}], kind is equality, inequality or velocity\n"
     "  C, Cdot, C_t, gamma   one expression a row; C_t is dC/dt with the bodies at rest\n"
-    "  J, K           one array a row; K is square; \"0\" where nothing is\n"
+    "  J, K           one array a row; K is square; \"0\" for an empty entry\n"
     "  coordinates    [{name, text, unit, C, Cdot, C_t, J, K, gamma}], with one row each\n"
     "Expressions are infix text with + - * / ** and the functions of the specs, as sympy and\n"
     "Python read them. A spec's name that Python reserves gets an underscore at its end.";
@@ -54,9 +52,7 @@ int run(const Options& options) {
   std::cerr << render(*read.file, read.diagnostics);
   if (!read.joint) return 2;
   if (read.joint->dimension == 2 && options.form != "global") {
-    fmt::print(stderr,
-               "cdot explain: --form is for spatial joints: in the plane w is one number, in every "
-               "form\n");
+    fmt::print(stderr, "cdot explain: --form is for spatial joints: in the plane w is one number, in every form\n");
     return 2;
   }
   const std::string text = explanation(derive(*read.joint), options);
@@ -80,12 +76,13 @@ Run explain_command(CLI::App& command) {
       command.add_option("--format", options->format, "text; html: a page of its own; latex: an article")
           ->check(CLI::IsMember({"text", "html", "latex"}))
           ->capture_default_str();
-  CLI::Option* form = command
-                          .add_option("--form", options->form,
-                                      "Of velocity, in space: global: w in world axes; local: w' in the bodies' axes;\n"
-                                      "euler: the rates of the Euler parameters. J is shown in that form too")
-                          ->check(CLI::IsMember({"global", "local", "euler"}))
-                          ->capture_default_str();
+  CLI::Option* form =
+      command
+          .add_option("--form", options->form,
+                      "Form of velocity, in space. global: w in world axes; local: w' in the bodies' axes;\n"
+                      "euler: the rates of the Euler parameters. J has the same form")
+          ->check(CLI::IsMember({"global", "local", "euler"}))
+          ->capture_default_str();
   command.add_flag("--json", options->json, "Every entry as an expression for other programs (see below)")
       ->excludes(format)
       ->excludes(form);

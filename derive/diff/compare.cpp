@@ -1,4 +1,4 @@
-// Published C, Cdot, J, K and claims, entry by entry of their matrices against what is derived.
+// Published C, Cdot, J, K and claims against the generated ones, entry by entry of their matrices.
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 namespace cdot::derive {
 namespace {
 
-// Neighbours that belong together. `joins`: whether one belongs to the one before it.
+// Groups neighbours. `joins(i)` is true if i belongs to the group of i - 1.
 template <class Joins, class Name>
 std::vector<Group> grouped(int count, Joins joins, Name name) {
   std::vector<Group> groups;
@@ -19,7 +19,7 @@ std::vector<Group> grouped(int count, Joins joins, Name name) {
   return groups;
 }
 
-// In space the rows of one vector equation go together.
+// In space the rows of one vector equation form a group.
 std::vector<Group> groups_of_rows(const Entry& entry, const Part& part, int count) {
   const auto row_of = [&](int r) { return part.rows[static_cast<std::size_t>(r)].row; };
   return grouped(
@@ -44,7 +44,7 @@ std::string row_text(const Matrix& m, int row) {
   return s;
 }
 
-// The rows of `larger` that are none of `smaller`, if the others are those, in order.
+// The rows of `larger` that `smaller` lacks, if the others are those of `smaller`, in order.
 std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix& smaller, const Poses& poses) {
   if (larger.columns != smaller.columns) return std::nullopt;
   const auto same = [&](int i, int j) {
@@ -65,7 +65,7 @@ std::optional<std::vector<int>> further_rows(const Matrix& larger, const Matrix&
   return further;
 }
 
-// Matrices of different sizes: turned, or with rows too many or too few.
+// Matrices of different sizes: transposed, or with missing or extra rows.
 void compare_sizes(Entry& entry, const HandItem& item, const std::string& what, const Matrix& hand,
                    const Matrix& generated) {
   Place place{what, "", "", {}, {}, &entry.joint};
@@ -114,13 +114,13 @@ std::vector<Contribution> contributions(const Entry& entry, const ScalarRow& row
   return sources;
 }
 
-// A quantity beside what is derived for it, in the source's signs of C.
+// A published quantity beside the generated one, in the source's signs of C.
 struct Quantity {
   Entry& entry;
   const Part& part;
   const HandItem& item;
 
-  // `describe` completes the place of an entry; `confirm` shows that the published one is wrong there.
+  // `describe` completes the place of an entry; `confirm` shows by numbers that the published entry is wrong.
   template <class Sign, class Describe, class Confirmed>
   void compare(Matrix generated, const std::vector<Group>& columns, Sign sign_of, Describe describe,
                Confirmed confirm) const {
@@ -191,7 +191,8 @@ void judge_Cdot(Entry& entry, const Part& part, const HandItem& item) {
     place.sources = contributions(entry, Cdot.row(r), Cdot.sign(r), [](const ScalarRow& row) { return row.Cdot; });
   };
   Cdot.compare(part.generated.Cdot, one_column, sign, describe, [&](int r, int c, Expr generated, Expr published) {
-    return entry.confirm().rate(Cdot.row(r), sign(r, c), generated, published);
+    const auto rate = [&](const Sample& sample) { return sign(r, c) * entry.confirm().rate(Cdot.row(r), sample); };
+    return entry.confirm().against(rate, generated, published);
   });
 }
 
@@ -211,7 +212,11 @@ void judge_J(Entry& entry, const Part& part, const HandItem& item) {
       part.generated.J, groups_of_velocities(entry.joint, entry.form, part.generated.J.columns),
       [&](int r, int) { return J.sign(r); }, describe,
       [&](int r, int c, Expr generated, Expr published) {
-        return entry.confirm().entry_of_J(J.row(r), J.sign(r), static_cast<std::size_t>(c), generated, published);
+        const Confirm confirm = entry.confirm();
+        const auto slope = [&](const Sample& sample) {
+          return J.sign(r) * confirm.columns(J.row(r), sample)[static_cast<std::size_t>(c)];
+        };
+        return confirm.against(slope, generated, published);
       });
   if (item.value->columns == part.generated.J.columns) judge_momentum(entry, part, *item.value);
 }
@@ -223,11 +228,13 @@ void judge_K(Entry& entry, const Part& part, const HandItem& item) {
       part.generated.K, groups_of_rows(entry, part, part.generated.K.columns), sign,
       [&](Place& place, int, int c) { place.column = name_of_row(part, c); },
       [&](int r, int c, Expr generated, Expr published) {
-        return entry.confirm().entry_of_K(K.row(r), K.row(c), sign(r, c), generated, published);
+        const Confirm confirm = entry.confirm();
+        const auto mass = [&](const Sample& sample) { return sign(r, c) * confirm.mass(K.row(r), K.row(c), sample); };
+        return confirm.against(mass, generated, published);
       });
 }
 
-// The right side of a claim is what its left side, the published one, would have to equal.
+// The left side of a claim counts as published, its right side as generated.
 void judge_claim(Entry& entry, const HandItem& item) {
   const Matrix &left = *item.value, &right = *item.right;
   const std::string what = "claim on " + item.what;
@@ -252,7 +259,7 @@ void judge_claim(Entry& entry, const HandItem& item) {
   });
 }
 
-// As it stands, and as its author may have meant it.
+// Judges a formula without a value, also in other readings that its author may have meant.
 void judge_problem(Entry& entry, const Part& part, const HandItem& item) {
   Place place{item.what.empty() ? "update" : item.what, "", "", {}, {}, &entry.joint};
   if (part.rows.size() == 1 && item.kind == HandItem::Kind::quantity) {

@@ -39,6 +39,12 @@ std::vector<double> inverse_inertia(const Joint& joint, const Sample& sample, st
   return numbers;
 }
 
+double largest(const Poses& poses, const Confirm::Measure& error) {
+  double most = 0;
+  for (const Sample& sample : poses.samples()) most = std::max(most, std::abs(error(sample)));
+  return most;
+}
+
 std::string small(double error) { return error == 0 ? "0" : fmt::format("{:.0e}", error); }
 
 double inner(const Motion& a, const Motion& b) {
@@ -124,7 +130,7 @@ Motion Confirm::times_inverse_mass(const Sample& sample, const Motion& impulse) 
   return change;
 }
 
-// Body by body the impulse p with M^-1 p = change: the shortest such p, which is the only one.
+// The impulse p with M^-1 p = change, body by body: the shortest such p is the only one.
 Motion Confirm::times_mass(const Sample& sample, const Motion& change) const {
   Gradients inverse(change.size());
   for (std::size_t c = 0; c < change.size(); ++c) {
@@ -137,44 +143,27 @@ Motion Confirm::times_mass(const Sample& sample, const Motion& change) const {
 
 std::string Confirm::worst(const std::string& how, const Poses& poses, const Measure& generated_error,
                            const Measure& published_error) const {
-  double derived = 0, published = 0;
-  for (const Sample& sample : poses.samples()) {
-    derived = std::max(derived, std::abs(generated_error(sample)));
-    published = std::max(published, std::abs(published_error(sample)));
-  }
   return fmt::format("{} at {} poses: generated off by {}, published by {:.2g}", how, poses.samples().size(),
-                     small(derived), published);
+                     small(largest(poses, generated_error)), largest(poses, published_error));
+}
+
+Confirm::Measure Confirm::error(const Measure& measured, Expr e) const {
+  return [this, measured, e](const Sample& sample) {
+    const double truth = measured(sample);
+    return (value(e, sample) - truth) / (1 + std::abs(truth));
+  };
 }
 
 std::string Confirm::against(const Measure& measured, Expr generated, Expr published) const {
-  const auto error = [&](Expr e) {
-    return [&, e](const Sample& sample) {
-      const double truth = measured(sample);
-      return (value(e, sample) - truth) / (1 + std::abs(truth));
-    };
-  };
-  return worst("central differences of C", poses_, error(generated), error(published));
+  return worst("central differences of C", poses_, error(measured, generated), error(measured, published));
 }
 
-std::string Confirm::entry_of_J(const ScalarRow& row, double sign, std::size_t column, Expr generated,
-                                Expr published) const {
-  return against([&](const Sample& sample) { return sign * in_form(gradient(row, sample), sample)[column]; }, generated,
-                 published);
+double Confirm::mass(const ScalarRow& row, const ScalarRow& other, const Sample& sample) const {
+  return inner(gradient(row, sample), times_inverse_mass(sample, gradient(other, sample)));
 }
 
-std::string Confirm::entry_of_K(const ScalarRow& row, const ScalarRow& other, double sign, Expr generated,
-                                Expr published) const {
-  const auto measured = [&](const Sample& sample) {
-    return sign * inner(gradient(row, sample), times_inverse_mass(sample, gradient(other, sample)));
-  };
-  return against(measured, generated, published);
-}
-
-std::string Confirm::rate(const ScalarRow& row, double sign, Expr generated, Expr published) const {
-  const auto measured = [&](const Sample& sample) {
-    return sign * rate_along(joint_, row, sample, velocity(sample), 1);
-  };
-  return against(measured, generated, published);
+double Confirm::rate(const ScalarRow& row, const Sample& sample) const {
+  return rate_along(joint_, row, sample, velocity(sample), 1);
 }
 
 std::string Confirm::value_of_C(const ScalarRow& row, const Poses& fulfilled, Expr generated, Expr published) const {
@@ -192,24 +181,17 @@ std::string Confirm::value_of_C(const ScalarRow& row, const Poses& fulfilled, Ex
 }
 
 std::string Confirm::claim(Expr left, Expr right) const {
-  double most = 0;
-  for (const Sample& sample : poses_.samples())
-    most = std::max(most, std::abs(value(left, sample) - value(right, sample)));
+  const Measure apart = [&](const Sample& sample) { return value(left, sample) - value(right, sample); };
   const Sample& first = poses_.samples().front();
   return fmt::format(
-      "both sides at {} poses: they differ by up to {:.2g}; at the first {:.4g} stands where "
-      "{:.4g} belongs",
-      poses_.samples().size(), most, value(left, first), value(right, first));
+      "both sides at {} poses: they differ by up to {:.2g}; at the first {:.4g} stands where {:.4g} belongs",
+      poses_.samples().size(), largest(poses_, apart), value(left, first), value(right, first));
 }
 
 std::string Confirm::reading(const std::string& words, const ScalarRow& row, double sign, Expr read) const {
-  double off = 0;
-  for (const Sample& sample : poses_.samples()) {
-    const double truth = sign * rate_along(joint_, row, sample, velocity(sample), 1);
-    off = std::max(off, std::abs(value(read, sample) - truth) / (1 + std::abs(truth)));
-  }
+  const Measure measured = [&](const Sample& sample) { return sign * rate(row, sample); };
   return fmt::format("no value as published; {} it is off by {} from central differences of C at {} poses", words,
-                     small(off), poses_.samples().size());
+                     small(largest(poses_, error(measured, read))), poses_.samples().size());
 }
 
 std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const Matrix& smaller) const {
@@ -231,51 +213,41 @@ std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const M
     }
   }
   return fmt::format(
-      "; where the constraint holds, the rows of the smaller are combinations of those of the "
-      "larger, "
-      "off by {} at {} poses",
+      "; where the constraint holds, the rows of the smaller are combinations of those of the larger, off by {} at {} "
+      "poses",
       small(off), poses.samples().size());
 }
 
-std::string Confirm::after(const std::string& how, const Change& change, const Remaining& left) const {
+double Confirm::work(const std::vector<ScalarRow>& rows, const Motion& added, const Sample& sample) const {
+  Gradients J;
+  Motion rates;
+  for (const ScalarRow& row : rows) {
+    J.push_back(gradient(row, sample));
+    rates.push_back(inner(J.back(), velocity(sample)));
+  }
+  return inner(times_mass(sample, added), sum_of(velocity(sample), shortest_step(J, rates)));
+}
+
+std::string Confirm::after(UpdateLevel level, const std::vector<ScalarRow>& rows, const Change& change) const {
+  static const char* const how[] = {
+      // in the order of UpdateLevel
+      "Cdot after the update, by central differences of C,", "C after the update, by central differences along it,",
+      "work of the impulse along motions that C allows, which has to be 0,"};
+  const auto left = [&](const Motion& added, const Sample& sample) {
+    if (level == UpdateLevel::any_impulse) return work(rows, added, sample);
+    double most = 0;
+    for (const ScalarRow& row : rows) {
+      const double rest = level == UpdateLevel::positions
+                              ? value(row.C, sample) + rate_along(joint_, row, sample, added, 0)
+                              : rate_along(joint_, row, sample, sum_of(velocity(sample), added), 1);
+      most = std::max(most, std::abs(rest));
+    }
+    return most;
+  };
   const auto remaining = [&](const std::vector<Expr>& columns) {
     return [&](const Sample& sample) { return left(values_at(joint_, columns, sample), sample); };
   };
-  return worst(how, poses_, remaining(change.generated), remaining(change.published));
-}
-
-std::string Confirm::velocities_after(const std::vector<ScalarRow>& rows, const Change& change) const {
-  return after("Cdot after the update, by central differences of C,", change,
-               [&](const Motion& added, const Sample& sample) {
-                 const Motion velocities = sum_of(velocity(sample), added);
-                 double most = 0;
-                 for (const ScalarRow& row : rows)
-                   most = std::max(most, std::abs(rate_along(joint_, row, sample, velocities, 1)));
-                 return most;
-               });
-}
-
-std::string Confirm::positions_after(const std::vector<ScalarRow>& rows, const Change& change) const {
-  return after("C after the update, by central differences along it,", change,
-               [&](const Motion& step, const Sample& sample) {
-                 double most = 0;
-                 for (const ScalarRow& row : rows)
-                   most = std::max(most, std::abs(value(row.C, sample) + rate_along(joint_, row, sample, step, 0)));
-                 return most;
-               });
-}
-
-std::string Confirm::work(const std::vector<ScalarRow>& rows, const Change& change) const {
-  return after("work of the impulse along motions that C allows, which has to be 0,", change,
-               [&](const Motion& added, const Sample& sample) {
-                 Gradients J;
-                 Motion rates;
-                 for (const ScalarRow& row : rows) {
-                   J.push_back(gradient(row, sample));
-                   rates.push_back(inner(J.back(), velocity(sample)));
-                 }
-                 return inner(times_mass(sample, added), sum_of(velocity(sample), shortest_step(J, rates)));
-               });
+  return worst(how[static_cast<int>(level)], poses_, remaining(change.generated), remaining(change.published));
 }
 
 std::string Confirm::bound(const std::vector<ScalarRow>& rows, const std::vector<Expr>& lambda, bool inequality) const {

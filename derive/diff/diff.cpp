@@ -6,7 +6,7 @@
 namespace cdot::derive {
 namespace {
 
-// The anchors of an entry that are not the spec's anyway.
+// The anchors of an entry that differ from the spec's.
 std::map<std::string, std::string> changed(const std::map<std::string, std::string>& anchors, const Joint& joint) {
   std::map<std::string, std::string> other;
   for (const auto& [name, body] : anchors) {
@@ -35,14 +35,14 @@ DiffReport judge(const std::filesystem::path& hand, const ReadResult& plain) {
   DiffReport report{file.file, {}, file.diagnostics};
   if (!plain.joint) throw NoSuchSpec(render(*plain.file, plain.diagnostics));
   for (const HandEntryAst& ast : file.entries) {
-    // Every entry has a pool of its own, so that the names one gives never show in another.
+    // Every entry has a pool of its own: names given in one never show in another.
     ReadResult read = read_anchored(plain, ast.anchors);
     if (!read.joint) {
       report.diagnostics.error(
           ast.where, "with what this entry assumes, the spec cannot be read: " + render(*read.file, read.diagnostics));
       continue;
     }
-    read.joint = derive(*read.joint).joint;  // without the coordinates that its rows hold
+    read.joint = derive(*read.joint).joint;  // without the coordinates that its rows determine
     const std::size_t before = report.diagnostics.list.size();
     Entry entry = read_entry(ast, file, read, changed(ast.anchors, *plain.joint), report.diagnostics);
     if (report.diagnostics.list.size() == before) report.judgements.push_back(judge(std::move(entry)));

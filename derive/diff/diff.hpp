@@ -1,6 +1,5 @@
-// The verdict on published derivations: what each claims against what is derived, entry by entry.
-// Every verdict is computed: exact arithmetic modulo a prime decides equality, doubles where it cannot, and what
-// differs is confirmed by finite differences.
+// Published derivations to verdicts, entry by entry, by comparison with the generated ones. Exact arithmetic modulo a
+// prime decides equality; doubles decide where it cannot. Finite differences confirm each difference.
 #pragma once
 
 #include <string>

@@ -1,5 +1,4 @@
-// The differences of two matrices. In space what is one mistake in vectors differs in many numbers: they are told as
-// one.
+// The differences of two matrices. In space one mistake in vectors changes many numbers: they are reported as one.
 #include <algorithm>
 #include <fmt/format.h>
 #include <regex>
@@ -41,7 +40,7 @@ void set_reason(Difference& d, const std::string& reason) {
   d.sentence = place + ": " + reason;
 }
 
-// "[a, b ; c, d]" of what `entry` gives for each place in a block.
+// "[a, b ; c, d]": the texts of `entry(row, column)` in a block.
 template <class Entry>
 std::string text_of(const Group& rows, const Group& columns, const Joint& joint, Entry entry) {
   std::string s;
@@ -54,8 +53,8 @@ std::string text_of(const Group& rows, const Group& columns, const Joint& joint,
   return s + "]";
 }
 
-// The differences within a block as one, where one reason fits them all; else as they are. Each is of one entry, and
-// component of a vector by its order.
+// Merges the differences within a block into one, if one reason fits them all. Each is of one entry; their order is
+// that of vector components.
 Differences merged(Differences entries, const Sides& sides, const Group& rows, const Group& columns,
                    const Joint& joint) {
   if (entries.size() < 2) return entries;

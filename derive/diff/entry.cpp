@@ -1,4 +1,4 @@
-// An entry read and derived, its poses, and its verdict from those on its items.
+// Reads and derives an entry, draws its poses, and combines the verdicts on its items.
 #include "derive/diff/entry.hpp"
 
 #include <algorithm>
@@ -89,7 +89,7 @@ void prepare_poses(Entry& entry, const std::vector<Part>& parts) {
       for (const HandReading& reading : item.readings) take(reading.value);
     }
   }
-  // Everything that a hidden assumption may be about, and that finite differences need.
+  // Expressions that hidden assumptions and finite differences may need.
   const auto take_any = [&](Expr e) {
     for (const Expr component : components_of(e)) all.push_back(component);
   };
@@ -104,12 +104,12 @@ void prepare_poses(Entry& entry, const std::vector<Part>& parts) {
   if (equations.empty()) return;
   entry.assumed = entry.anywhere->where(equations);
   if (entry.assumed->empty()) {
-    entry.verdict.remarks.push_back("no pose was found that fulfils the assumptions; they are left out");
+    entry.verdict.remarks.push_back("no pose satisfies the assumptions; they are ignored");
     entry.assumed.reset();
   }
 }
 
-// What an entry is about, if not all rows of the spec as it stands: " of pin", " with t on a".
+// The scope of an entry, if it is not all rows of the spec as written: " of pin", " with t on a".
 std::string scope_of(const Entry& entry, const Part& part) {
   std::string scope;
   const auto append = [&](const char* first, const char* further, const std::string& what) {
@@ -123,7 +123,7 @@ std::string scope_of(const Entry& entry, const Part& part) {
   return scope;
 }
 
-// Beside what is generated of the same, where the ledger does not have that anyway.
+// Adds the cost of a published quantity; beside it that of the generated one, if the ledger lacks it.
 void add_costs(Entry& entry, const Part& part, const HandItem& item) {
   const Generated& g = part.generated;
   const Matrix* const generated = item.what == "C" ? &g.C : item.what == "J" ? &g.J : item.what == "K" ? &g.K : nullptr;
@@ -151,7 +151,7 @@ void judge_item(Entry& entry, const Part& part, const HandItem& item) {
   else if (item.what == "J") judge_J(entry, part, item);
   else if (item.what == "K") judge_K(entry, part, item);
   else judge_Cdot(entry, part, item);
-  // Under an assumption more may be left out than is when nothing is assumed: no fair comparison.
+  // An assumption may simplify the published formula: its cost is then no fair comparison.
   if (entry.verdict.differences.size() == before && !entry.needs_assumptions) add_costs(entry, part, item);
   entry.needs_assumptions = entry.needs_assumptions || others_need_assumptions;
 }
@@ -192,7 +192,7 @@ std::vector<Expr> Entry::columns_in_form(const std::vector<JacobianEntry>& J) co
   return columns;
 }
 
-// Where the joint holds.
+// Poses with C = 0.
 const Poses& Entry::poses_on_constraint() {
   if (on_constraint) return *on_constraint;
   std::vector<Expr> equations;
@@ -258,11 +258,11 @@ Judgement judge(Entry entry) {
     for (const HandItem& item : part.hand->items) judge_item(entry, part, item);
     judge_updates(entry, part);
   }
-  const bool other_way_round = std::any_of(parts.begin(), parts.end(), [](const Part& part) {
+  const bool opposite = std::any_of(parts.begin(), parts.end(), [](const Part& part) {
     return std::count(part.sign.begin(), part.sign.end(), -1) > 0;
   });
-  if (other_way_round) verdict.remarks.push_back("C is counted the other way round: J flips its sign, K does not");
-  if (entry.only_by_numbers) verdict.remarks.push_back("equal at 12 random poses; algebra alone did not decide");
+  if (opposite) verdict.remarks.push_back("C has the opposite sign: J changes its sign, K does not");
+  if (entry.only_by_numbers) verdict.remarks.push_back("equal at 12 random poses; exact arithmetic did not decide");
   conclude(entry);
   return verdict;
 }

@@ -1,4 +1,4 @@
-// One entry of a .hand file beside what is derived. The verdict on an item is a function of the published formula, the
+// One entry of a .hand file beside the derivation. The verdict on an item is a function of the published formula, the
 // generated one and the poses at which they are compared.
 #pragma once
 
@@ -8,12 +8,12 @@
 
 namespace cdot::derive {
 
-// What the entry says about some rows, beside what is derived for them.
+// The entry's items about some rows, beside the derivation of these rows.
 struct Part {
   const HandPart* hand = nullptr;
   std::vector<ScalarRow> rows;
   Generated generated;
-  std::vector<int> sign;  // of each row: -1 where the source counts C the other way round
+  std::vector<int> sign;  // of each row: -1 where the source has the opposite sign of C
 };
 
 struct Entry {
@@ -36,16 +36,16 @@ struct Entry {
   const Poses& poses() const { return assumed ? *assumed : *anywhere; }
   const Poses& poses_on_constraint();
   Confirm confirm() const { return {joint, immovable, poses(), form}; }
-  // Equal everywhere, or where the entry's assumptions hold.
+  // True if both are equal everywhere, or under the entry's assumptions.
   bool equal(Expr published, Expr generated);
 };
 
-// `read`: the spec, with the anchors of the entry. What cannot be read goes into `diagnostics`.
+// `read`: the spec, with the anchors of the entry. Unreadable items go into `diagnostics`.
 Entry read_entry(const HandEntryAst& ast, const HandFile& file, const ReadResult& read,
                  const std::map<std::string, std::string>& changed_anchors, Diagnostics& diagnostics);
 Judgement judge(Entry entry);
 
-// The sign of C is the author's choice, row by row: found from all parts together.
+// The sign of C is the author's choice, row by row. All parts together decide it.
 void find_signs(const Entry& entry, std::vector<Part>& parts);
 
 // Each adds its differences to the verdict.
@@ -57,10 +57,10 @@ void judge_claim(Entry& entry, const HandItem& item);
 void judge_problem(Entry& entry, const Part& part, const HandItem& item);  // a formula without a value
 void judge_updates(Entry& entry, const Part& part);
 void judge_bound(Entry& entry, const Part& part, const HandItem& item);
-// A published Jacobian alone: a common motion of all bodies must not be felt. Adds remarks.
+// Judges a published Jacobian alone: J v = 0 for a common motion of all bodies. Adds remarks.
 void judge_momentum(Entry& entry, const Part& part, const Matrix& J);
 
-// Two matrices of one size, and their blocks: the rows, or columns, that one mistake in vectors is about.
+// Two matrices of one size, and their blocks: one mistake in vectors covers the rows, or columns, of a group.
 struct Group {
   int first = 0, count = 1;
   std::string name;
@@ -72,13 +72,13 @@ struct Sides {
 void compare(Entry& entry, const Sides& sides, const std::function<Difference(int row, int column)>& difference);
 // "w_a", "v_b.x"; of its change in positions "x_b.x".
 std::string column_name(const Joint& joint, Form form, int column, bool positions = false);
-// In space the columns of one velocity, or of its change, go together.
+// In space the columns of one velocity, or of its change, form a group.
 std::vector<Group> groups_of_velocities(const Joint& joint, Form form, int columns, bool positions = false);
 // Rows are numbered, or named in parts about certain rows.
 std::string name_of_row(const Part& part, int row);
-// Where the item stands, and with the condition that may have been meant.
+// Completes a difference: its place, and a condition that its author may have meant.
 Difference finished(Entry& entry, const HandItem& item, Difference difference, Expr published, Expr generated);
-// A difference that is not one of two formulas.
+// Adds a difference without a pair of formulas.
 void add_plain(Entry& entry, const HandItem& item, const Place& place, std::string kind, const std::string& sentence,
                std::string confirmed);
 

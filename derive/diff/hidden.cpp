@@ -13,8 +13,8 @@ struct Condition {
   bool aligned = false;  // looked for from poses in which all bodies are turned almost alike
 };
 
-// The likely ones first: ratios of one, angles or ways of zero; bodies that have not turned, so that their frame is the
-// world's; vectors that are zero, alike, parallel or at right angles.
+// The likely ones first: unit ratios, zero angles or lengths; bodies whose frame is the world's; vectors that are zero,
+// equal, parallel or orthogonal.
 std::vector<Condition> likely_conditions(const Joint& joint) {
   std::vector<Condition> all;
   for (const Parameter& p : joint.parameters) {
@@ -53,8 +53,7 @@ std::vector<Condition> likely_conditions(const Joint& joint) {
   return all;
 }
 
-// A free symbol that stands for a quantity of the joint. Where it stands for anything, the two are equal only by chance
-// or if it means something.
+// The quantity of the joint that a free symbol stands for, if that makes both sides equal.
 std::string meaning_of_symbols(const Joint& joint, Expr hand, Expr generated, const Poses& poses) {
   for (const Expr symbol : free_symbols(hand)) {
     for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
@@ -73,15 +72,15 @@ std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Ex
                               const Poses& poses) {
   if (!free_symbols(hand).empty()) return meaning_of_symbols(joint, hand, generated, poses);
   const Expr zero = joint.pool->number(0);
-  // Equal there, and not just zero both, as a factor C of both sides would make them.
+  // Both sides are equal there, but not merely both zero, as by a common factor C.
   const auto equal_and_needed = [&](const Poses& there) {
     return there.equal(hand, generated) && (!there.equal(generated, zero) || poses.equal(generated, zero));
   };
-  // Where C = 0; there nothing may stand, because nothing is needed.
+  // C = 0: there a term may be omitted if it vanishes.
   if (on_constraint.equal(hand, generated) && (poses.equal(hand, zero) || equal_and_needed(on_constraint)))
     return "C = 0";
   for (const Condition& condition : likely_conditions(joint)) {
-    // Most fail at the first poses.
+    // Most conditions fail at the first poses.
     if (!poses.first(2).where(condition.equations).equal(hand, generated)) continue;
     const Poses start = condition.aligned ? poses.aligned() : poses;
     if (equal_and_needed(start.where(condition.equations))) return condition.words;

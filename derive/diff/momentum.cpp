@@ -1,5 +1,5 @@
-// A published Jacobian judged alone: moving all bodies together must not be felt by a joint that
-// has nothing to do with the world, whatever C was.
+// Judges a published Jacobian alone: a common motion of all bodies must not change a joint without the world, whatever
+// C is.
 #include <fmt/format.h>
 
 #include "derive/diff/entry.hpp"
@@ -8,8 +8,7 @@
 namespace cdot::derive {
 namespace {
 
-// What multiplies the column of each rate of turning in J_w: nothing in the plane, axes in space;
-// J_w = 1/2 J_e G^T for those of Euler parameters.
+// The factor of each angular column in J_w: 1 in the plane, an axis in space; J_w = 1/2 J_e G^T for Euler parameters.
 std::vector<Expr> turns_of_columns(const Entry& entry, int body) {
   Pool& pool = entry.pool();
   if (entry.joint.dimension == 2) return {pool.number(1)};
@@ -18,7 +17,7 @@ std::vector<Expr> turns_of_columns(const Entry& entry, int body) {
   std::vector<Expr> turns;
   const std::vector<Expr> axes = world_axes(pool);
   for (std::size_t i = 0; i < 3; ++i) {
-    // The row i of 2 G, as columns_in makes it of the row [0, e_i].
+    // Row i of 2 G: columns_in of the row [0, e_i].
     std::vector<Expr> row(6, pool.number(0));
     row[3 + i] = pool.number(1);
     const std::vector<Expr> columns = columns_in(entry.form, row, entry.joint, body);
@@ -43,8 +42,7 @@ void note_momentum(Entry& entry, const std::vector<std::string>& rows, const cha
 
 }  // namespace
 
-// Judged where C = 0: a vector row in world axes turns with the bodies, and is zero only there
-// after it.
+// Judged where C = 0: a vector row in world axes rotates with the bodies, so it stays zero only if it was zero.
 void judge_momentum(Entry& entry, const Part& part, const Matrix& J) {
   if (entry.joint.uses_world || entry.immovable >= 0) return;
   Pool& pool = entry.pool();
@@ -70,7 +68,7 @@ void judge_momentum(Entry& entry, const Part& part, const Matrix& J) {
       for (int k = entry.joint.dimension; k < entry.width(); ++k) {
         w = w + J.at(r, first + k) * turns[static_cast<std::size_t>(k - entry.joint.dimension)];
       }
-      // A turn about the origin gives the centre at x the velocity w x x.
+      // A rotation about the origin gives the centre at x the velocity w x x.
       moved = moved + v;
       turned = turned + w + cross(body_symbols(entry.joint, b).x, v);
     }

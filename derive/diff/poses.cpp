@@ -25,7 +25,7 @@ bool is_positive(const Sample& sample) {
 Poses::Poses(const Joint& joint, std::vector<Expr> expressions) : joint_(&joint) {
   for (int i = 0; i < number_of_poses; ++i) {
     Sample sample = random_sample(joint, expressions, 1000 + static_cast<std::uint64_t>(i));
-    // Ratios come with both signs; lengths, masses and what is declared free are positive.
+    // Ratios have both signs; lengths, masses and free symbols are positive.
     for (const Parameter& p : joint.parameters) {
       const auto found = sample.scalars.find(p.name);
       if (p.unit == Unit{} && i % 2 == 1 && found != sample.scalars.end()) found->second *= -1;
@@ -34,8 +34,7 @@ Poses::Poses(const Joint& joint, std::vector<Expr> expressions) : joint_(&joint)
   }
 }
 
-// Rotations vanish also where one turns by pi; from almost the same orientations the next solution
-// is that without.
+// Equations on rotations also have solutions that differ by pi; from nearly equal orientations Newton avoids them.
 Poses Poses::aligned() const {
   if (joint_->dimension == 2) return *this;
   Poses poses = *this;
@@ -53,8 +52,7 @@ Poses Poses::aligned() const {
   return poses;
 }
 
-// A symbol that an entry declares free stays positive, unless what the entry assumes does not let
-// it.
+// A free symbol stays positive, unless the entry's assumptions forbid it.
 Poses Poses::where(const std::vector<Expr>& equations) const {
   Poses moved = *this;
   moved.samples_.clear();
@@ -79,8 +77,8 @@ Poses Poses::first(std::size_t count) const {
   return few;
 }
 
-// Doubles decide where equations hold, since no points modulo a prime are known to fulfil them; and what asks for a
-// sign, a logarithm or an angle, which only real numbers have.
+// Doubles decide under equations, since no points modulo a prime are known to satisfy them. They also decide for signs,
+// logarithms and angles, which only real numbers have.
 bool Poses::equal(Expr a, Expr b) const {
   if (samples_.empty()) return false;
   const Nullity difference = equations_.empty() ? difference_modulo_prime(a, b) : Nullity::unknown;

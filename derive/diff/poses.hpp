@@ -1,4 +1,4 @@
-// Random poses at which formulas are compared, and the same poses moved to where equations hold.
+// Random poses at which formulas are compared, and the same poses moved until equations hold.
 #pragma once
 
 #include <optional>
@@ -10,13 +10,13 @@ namespace cdot::derive {
 
 class Poses {
  public:
-  // `expressions`: everything that will be evaluated.
+  // `expressions`: all expressions that will be evaluated.
   Poses(const Joint& joint, std::vector<Expr> expressions);
 
-  // The same poses moved to where these equations are zero, too; no poses if that is not possible.
+  // The same poses, moved until these equations hold as well; none if Newton fails at too many.
   Poses where(const std::vector<Expr>& equations) const;
 
-  // The same poses with all bodies in almost the same orientation: where to start from for C = 0.
+  // The same poses with all bodies in nearly the same orientation: starting points for C = 0.
   Poses aligned() const;
   Poses first(std::size_t count) const;
   bool empty() const { return samples_.empty(); }

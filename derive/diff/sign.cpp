@@ -1,6 +1,7 @@
-// The sign of C is the author's choice, row by row: the one is taken with which the fewest entries
-// of C, Cdot, J and b differ over the whole entry, and in them the fewest terms.
+// The sign of C is the author's choice, row by row. The chosen sign has the fewest differing entries of C, Cdot, J and
+// b in the whole entry, and the fewest differing terms in them.
 #include <algorithm>
+#include <array>
 
 #include "derive/diff/entry.hpp"
 #include "derive/diff/terms.hpp"
@@ -9,8 +10,8 @@ namespace cdot::derive {
 namespace {
 
 struct Misfit {
-  int blocks = 0;         // that differ
-  std::size_t terms = 0;  // that differ in them
+  int blocks = 0;         // differing ones
+  std::size_t terms = 0;  // differing ones in them
   friend auto operator<=>(const Misfit&, const Misfit&) = default;
 };
 
@@ -19,7 +20,7 @@ int block_of(const Entry& entry, int column) {
   return 2 * (column / entry.width()) + (column % entry.width() < entry.joint.dimension ? 0 : 1);
 }
 
-// How badly one row of an item fits if the row is counted with this sign.
+// Adds the misfit of one row of an item, if the row has this sign.
 void add_misfit(Misfit& misfit, const Entry& entry, const Part& part, const HandItem& item, std::size_t row, int sign) {
   if (!item.value) return;
   const Generated& g = part.generated;
@@ -65,28 +66,24 @@ std::vector<int> signs_of_mass(const Entry& entry, const Part& part) {
 }  // namespace
 
 void find_signs(const Entry& entry, std::vector<Part>& parts) {
-  struct Evidence {
-    Misfit plus, minus;
-    bool any = false;
-  };
-  std::map<std::string, Evidence> evidence;  // by row: a row may occur in several parts
+  std::map<std::string, std::array<Misfit, 2>>
+      evidence;  // by row, with the sign 1 and -1; several parts may have a row
   for (const Part& part : parts) {
     for (std::size_t row = 0; row < part.rows.size(); ++row) {
-      Evidence& e = evidence[part.rows[row].name];
       for (const HandItem& item : part.hand->items) {
         if (item.kind != HandItem::Kind::quantity || item.what == "K") continue;
-        add_misfit(e.plus, entry, part, item, row, 1);
-        add_misfit(e.minus, entry, part, item, row, -1);
-        e.any = true;
+        auto& [plus, minus] = evidence[part.rows[row].name];
+        add_misfit(plus, entry, part, item, row, 1);
+        add_misfit(minus, entry, part, item, row, -1);
       }
     }
   }
   for (Part& part : parts) {
     bool any = false;
-    for (std::size_t row = 0; row < part.rows.size(); ++row) {
-      const Evidence& e = evidence.at(part.rows[row].name);
-      part.sign.push_back(e.minus < e.plus ? -1 : 1);
-      any = any || e.any;
+    for (const ScalarRow& row : part.rows) {
+      const auto found = evidence.find(row.name);
+      any = any || found != evidence.end();
+      part.sign.push_back(found != evidence.end() && found->second[1] < found->second[0] ? -1 : 1);
     }
     if (!any) part.sign = signs_of_mass(entry, part);
   }

@@ -28,8 +28,7 @@ class Expansion {
     for (const Let& let : joint.lets) lets_of_spec_.insert(let.name);
   }
 
-  // The name of the root itself is always opened. What has too many terms for a person to read
-  // stays as it is.
+  // The name of the root itself is always opened. A sum with too many terms for a reader stays closed.
   Terms of(Expr e) {
     constexpr std::size_t most_terms = 40;
     const auto known = known_.find(&*e);
@@ -134,7 +133,7 @@ class Expansion {
     return is_composed(v) ? of(total) : terms_of(total);
   }
 
-  // In space, what has components that are sums of products.
+  // A vector in space whose components are sums of products.
   bool is_composed(Expr v) const {
     return pool_.dimension() == 3 && (v->kind == Kind::cross || v->kind == Kind::tensor);
   }
@@ -190,7 +189,7 @@ Powers powers_of(Expr e) {
   return powers;
 }
 
-// Of two exponents of one sign the smaller: what both sides have.
+// The common part of two exponents: the smaller one, if they have one sign.
 int shared(int m, int n) { return m * n <= 0 ? 0 : m > 0 ? std::min(m, n) : std::max(m, n); }
 
 }  // namespace

@@ -1,5 +1,4 @@
-// Two expressions taken apart, so that what they have in common cancels: into terms, and terms into
-// factors.
+// Splits two expressions into terms, and terms into factors, so that common parts cancel.
 #pragma once
 
 #include <vector>
@@ -10,7 +9,7 @@ namespace cdot::derive {
 
 using Terms = std::vector<Term>;
 
-// How far expressions are taken apart before terms are compared: the less, the better it reads.
+// How far expressions are expanded before terms are compared. Less expansion reads better.
 enum class Opened {
   top,         // nothing is distributed
   nothing,     // products are distributed over sums, but for those that have a name
@@ -26,7 +25,7 @@ constexpr Opened all_openings[] = {Opened::top,        Opened::nothing, Opened::
 // e as a sum of products.
 Terms terms_of_expansion(Expr e, const Joint& joint, Opened opened);
 
-// What only one of two expressions has.
+// The terms that only one of two expressions has.
 struct Leftover {
   Terms hand, generated;
 };
@@ -39,13 +38,13 @@ struct Factors {
 };
 Factors leftover_factors(const Term& hand, const Term& generated);
 
-// hand - generated, in the spec's names and as short as opening and collecting makes it.
+// hand - generated, in the spec's names and in the shortest form that opening and collecting finds.
 Expr difference_of(Expr hand, Expr generated, const Joint& joint);
 
-// The shorter of what stands there and what that is in components, in space.
+// The text of e; in space that of its components, if it is shorter.
 std::string brief_text(Expr e, const Joint& joint);
 
-// Their value is unknown: symbols that an entry declares free.
+// The symbols that an entry declares free: their values are unknown.
 std::vector<Expr> free_symbols(Expr e);
 
 }  // namespace cdot::derive

@@ -1,46 +1,31 @@
-// Update rules: what a source adds to velocities or positions, against M^-1 J^T lambda with the
-// right impulse; and the bounds of the impulse.
+// Update rules: a source's change of velocities or positions against M^-1 J^T lambda with the right impulse; and the
+// bounds of the impulse.
 #include <algorithm>
 #include <fmt/format.h>
 
 #include "derive/diff/entry.hpp"
+#include "derive/numbers/elimination.hpp"
 
 namespace cdot::derive {
 namespace {
 
 using Target = HandItem::Target;
 
-// An update of velocities or positions with the impulse spelled out, or with an impulse of any size, of which only the
-// direction M^-1 J^T can be judged.
-enum class UpdateLevel { velocities, positions, any_impulse };
-
 bool is_linear(Target t) { return t == Target::velocity || t == Target::position; }
 bool is_position_level(Target t) { return t == Target::position || t == Target::angle; }
 
 bool contains_multiplier(const HandItem& item) {
-  const std::vector<Expr> nodes = topological(item.value->entries);
-  return std::any_of(nodes.begin(), nodes.end(),
-                     [](Expr e) { return e->kind == Kind::symbol && e->role == Role::multiplier; });
+  return std::ranges::any_of(leaves_of(item.value->entries), [](Expr e) { return e->role == Role::multiplier; });
 }
 
-// K^-1 b by elimination.
+// K^-1 b
 std::vector<Expr> solved(const Matrix& K, std::vector<Expr> b) {
-  const int n = K.rows;
-  std::vector<Expr> A = K.entries;
-  const auto at = [&](int i, int j) -> Expr& { return A[static_cast<std::size_t>(i * n + j)]; };
-  const auto rhs = [&](int i) -> Expr& { return b[static_cast<std::size_t>(i)]; };
-  for (int k = 0; k < n; ++k) {
-    for (int i = k + 1; i < n; ++i) {
-      const Expr factor = at(i, k) / at(k, k);
-      for (int j = k; j < n; ++j) at(i, j) = at(i, j) - factor * at(k, j);
-      rhs(i) = rhs(i) - factor * rhs(k);
-    }
+  std::vector<std::vector<Expr>> rows;
+  for (int i = 0; i < K.rows; ++i) {
+    const auto first = K.entries.begin() + i * K.columns;
+    rows.emplace_back(first, first + K.columns);
   }
-  for (int i = n; i-- > 0;) {
-    for (int j = i + 1; j < n; ++j) rhs(i) = rhs(i) - at(i, j) * rhs(j);
-    rhs(i) = rhs(i) / at(i, i);
-  }
-  return b;
+  return solved(std::move(rows), std::move(b), [](Expr a, Expr pivot) { return a / pivot; });
 }
 
 // M^-1 J^T lambda, column by column.
@@ -59,8 +44,8 @@ std::vector<Expr> changes_by(const Joint& joint, const std::vector<ScalarRow>& r
   return columns;
 }
 
-// All columns are the same multiple of what is generated.
-bool same_direction(const Confirm::Change& change, const Poses& poses) {
+// True if all columns are the same multiple of the generated ones.
+bool same_direction(const Change& change, const Poses& poses) {
   for (std::size_t i = 0; i < change.generated.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       if (!poses.equal(change.published[i] * change.generated[j], change.published[j] * change.generated[i])) {
@@ -71,8 +56,8 @@ bool same_direction(const Confirm::Change& change, const Poses& poses) {
   return true;
 }
 
-// The impulse that the changes are compared with: a symbol where the source's is, or else what
-// makes Cdot vanish (positions: C).
+// The impulse of the generated change: a symbol if the source's is one, else the impulse that makes Cdot vanish
+// (positions: C).
 std::vector<Expr> impulse(Pool& pool, const Part& part, UpdateLevel level) {
   const std::size_t n = part.rows.size();
   std::vector<Expr> lambda;
@@ -91,7 +76,7 @@ UpdateLevel level_of(const std::vector<const HandItem*>& updates) {
   return is_position_level(updates[0]->target) ? UpdateLevel::positions : UpdateLevel::velocities;
 }
 
-// Turned where the published one then fits better: an impulse of any size counts C either way round.
+// Negates the generated change if the published one then fits better: an impulse of any size has either sign of C.
 std::vector<Expr> turned_to_fit(std::vector<Expr> generated, const std::vector<Expr>& published, const Poses& poses) {
   const auto wrong = [&](Rational sign) {
     int count = 0;
@@ -106,15 +91,6 @@ std::vector<Expr> turned_to_fit(std::vector<Expr> generated, const std::vector<E
   return generated;
 }
 
-std::string confirmation(const Confirm& confirm, const Part& part, UpdateLevel level, const Confirm::Change& change) {
-  switch (level) {
-    case UpdateLevel::any_impulse: return confirm.work(part.rows, change);
-    case UpdateLevel::positions: return confirm.positions_after(part.rows, change);
-    case UpdateLevel::velocities: return confirm.velocities_after(part.rows, change);
-  }
-  return "";
-}
-
 }  // namespace
 
 void judge_updates(Entry& entry, const Part& part) {
@@ -124,7 +100,7 @@ void judge_updates(Entry& entry, const Part& part) {
   }
   if (updates.empty()) return;
   const UpdateLevel level = level_of(updates);
-  Confirm::Change change{changes_by(entry.joint, part.rows, impulse(entry.pool(), part, level)), {}};
+  Change change{changes_by(entry.joint, part.rows, impulse(entry.pool(), part, level)), {}};
   change.published.assign(change.generated.size(), entry.pool().number(0));
   std::vector<const HandItem*> said_by(change.generated.size(), updates[0]);
   const int dimension = entry.joint.dimension;
@@ -145,7 +121,7 @@ void judge_updates(Entry& entry, const Part& part) {
       groups_of_velocities(entry.joint, Form::global, columns, level == UpdateLevel::positions);
   std::string confirmed;
   compare(entry, {published, generated, {Group{}}, groups}, [&](int, int c) {
-    if (confirmed.empty()) confirmed = confirmation(entry.confirm(), part, level, change);
+    if (confirmed.empty()) confirmed = entry.confirm().after(level, part.rows, change);
     const std::string column = column_name(entry.joint, Form::global, c, level == UpdateLevel::positions);
     const Place place{"update", "", column, {}, {}, &entry.joint};
     Difference d = describe_difference(place, published.at(0, c), generated.at(0, c), entry.poses());
@@ -165,8 +141,7 @@ void judge_bound(Entry& entry, const Part& part, const HandItem& item) {
   const Place place{"update", "", "", {}, {}, &entry.joint};
   if (inequality) {
     add_plain(entry, item, place, "missing term",
-              "the impulse has to stay >= 0: an inequality may push C up, never pull it back; "
-              "without that the row "
+              "the impulse has to stay >= 0: an inequality may push C up, never pull it back; without that the row "
               "also stops bodies that are already on their way back",
               confirmed);
   } else {

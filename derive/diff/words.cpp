@@ -10,10 +10,10 @@
 namespace cdot::derive {
 namespace {
 
-// A formula that is longer does not fit a sentence; it stands in the lines below.
+// Longer formulas do not fit a sentence; the lines below show them.
 constexpr std::size_t longest_formula = 120;
 
-// Added to the effort of what says less than a missing term, a sign or a single factor.
+// Penalty for an explanation that is less specific than a missing term, a sign or a single factor.
 constexpr std::size_t unspecific = 500;
 
 struct Explained {
@@ -21,10 +21,10 @@ struct Explained {
   std::size_t effort = 0;  // to read: the explanation with the least is given
 };
 
-// By its name, if it has one.
+// The name of e, or its text if it has none.
 std::string spoken(Expr e) { return e->name.empty() ? text(e) : e->name; }
 
-// A name that the entry gave, with what it stands for: "theta_initial = -phi".
+// A name given by the entry, with its definition: "theta_initial = -phi".
 std::string introduced(Expr e, const Joint& joint) {
   constexpr std::size_t longest_value = 40;
   const bool of_spec =
@@ -34,7 +34,7 @@ std::string introduced(Expr e, const Joint& joint) {
   return fmt::format("{} = {}", e->name, value);
 }
 
-// What stands there, and what belongs there.
+// The published terms, and those that belong there.
 std::string instead(const std::string& has, const std::string& lacks) {
   if (has.size() + lacks.size() > longest_formula) return "it is not the generated one";
   return fmt::format("it has {} where {} belongs", has, lacks);
@@ -49,13 +49,13 @@ std::string where_from(const Contribution& source, const Joint& joint) {
   return fmt::format("{} moves with {}", s, body);
 }
 
-// A way in which one class of symbols may have got to another body.
+// A confusion of two bodies, or arms, in one class of symbols.
 struct Exchange {
-  std::map<const Node*, Expr> replacements;  // that would mend it
+  std::map<const Node*, Expr> replacements;  // that undo it
   std::string words;
 };
 
-// What belongs to one body, class by class: its masses, its inertias, its velocities.
+// The symbols of one body by class: masses, inertias, velocities.
 std::vector<std::vector<Expr>> symbols_by_class(const Joint& joint, std::size_t body) {
   const BodySymbols s = body_symbols(joint, static_cast<int>(body));
   std::vector<Expr> inertia = {s.inv_I};
@@ -100,7 +100,7 @@ std::vector<Exchange> exchanges(const Joint& joint) {
   return all;
 }
 
-// What of one body stands where another body's belongs; empty if that is not it.
+// Names a confusion of bodies that explains the difference; empty if none does.
 std::string of_another_body(Expr hand, Expr generated, const Joint& joint, const Poses& poses) {
   for (const Exchange& exchange : exchanges(joint)) {
     if (poses.equal(substitute(hand, exchange.replacements, KeepNames::no), generated)) return exchange.words;
@@ -127,7 +127,7 @@ std::optional<Explained> whole_entry(const Place& place, Expr hand, Expr generat
   return std::nullopt;
 }
 
-// The difference as what one moving leaf contributes to this entry, or twice that.
+// Explains the difference by one moving leaf: its contribution to this entry, once or twice.
 std::optional<Explained> single_source(const Place& place, Expr difference, const Poses& poses) {
   for (const Contribution& source : place.sources) {
     if (is_zero(source.term)) continue;
@@ -145,8 +145,7 @@ std::optional<Explained> single_source(const Place& place, Expr difference, cons
   return std::nullopt;
 }
 
-// All that is left over of the published side is what is left over of the generated one, but for a
-// factor.
+// Explains leftover terms of both sides that differ by one factor.
 std::optional<Explained> by_factor(const Leftover& left, Expr has, Expr lacks, const Poses& poses) {
   if (left.hand.size() != left.generated.size()) return std::nullopt;
   for (const Term& theirs : left.generated) {

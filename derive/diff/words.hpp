@@ -1,5 +1,4 @@
-// Names what is wrong with a published expression: its kind, and a sentence that says why the right
-// one is right.
+// Names the error in a published expression: its kind, and a sentence with the reason for the right one.
 #pragma once
 
 #include <string>
@@ -10,7 +9,7 @@
 
 namespace cdot::derive {
 
-// What a term of J may stem from: one leaf that moves with a body.
+// The origin of a term of J: one leaf that moves with a body.
 struct Contribution {
   Expr leaf, term;
 };
@@ -25,14 +24,13 @@ struct Place {
 // "J, row 1, w_b"; "K, row 2, column 1"; "Cdot, row line".
 std::string name_of(const Place& place);
 
-// Fills kind, texts and sentence. `poses` decide what equals what.
+// Fills kind, texts and sentence. `poses` decide equality.
 Difference describe_difference(const Place& place, Expr hand, Expr generated, const Poses& poses);
 
 // The axis that the spec calls f.x is a leaf f_x.
 std::string in_names_of_spec(std::string text, const Joint& joint);
 
-// A condition that nobody declared and under which the two are equal: "C = 0", "ratio = 1"; empty
-// if none is found. `constraints`: the rows of C.
+// An undeclared condition under which the two are equal: "C = 0", "ratio = 1"; empty if none is found.
 std::string hidden_assumption(const Joint& joint, const Poses& on_constraint, Expr hand, Expr generated,
                               const Poses& poses);
 

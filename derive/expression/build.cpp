@@ -167,7 +167,7 @@ Expr operator/(Expr a, Expr b) { return a * pow(b, -1); }
 
 namespace {
 
-// Known products within one triad, and of a cross product with one of its factors; empty if there is nothing to know.
+// Products within one triad, and of a cross product with one of its factors, are constants. Empty for other operands.
 Expr known_dot(Expr u, Expr v) {
   Pool& pool = *u->pool;
   const Pool::Axis a = pool.axis_of(u), b = pool.axis_of(v);

@@ -1,5 +1,4 @@
-// From vectors to components. Names follow the derivation, so that a kernel reads
-// like the code that a careful person writes.
+// Vectors to components. Names follow the derivation: a kernel reads like code that a careful person writes.
 #include "derive/expression/components.hpp"
 
 #include <algorithm>
@@ -51,12 +50,12 @@ std::string spoken_name(Expr e) {
   if (e->kind == Kind::unit && !spoken_name(e->args[0]).empty()) {
     return "dir_" + spoken_name(e->args[0]);
   }
-  // ra x n, a lever of a direction; a component of it along an axis of the world is not worth a name.
+  // ra x n, the lever of a direction. Its components along world axes need no name.
   if (e->vector && e->kind == Kind::cross && !is_world_axis(e->args[0]) && !is_world_axis(e->args[1])) {
     const std::string a = spoken_name(e->args[0]), b = spoken_name(e->args[1]);
     if (!a.empty() && !b.empty()) return a + "_x_" + b;
   }
-  // rb + u is spoken as rb_u; with a minus sign there is no short name that says it.
+  // rb + u becomes rb_u. A difference has no short name.
   if (e->vector && e->kind == Kind::sum && e->args.size() == 2 && e->coefs[0] == Rational(1) &&
       e->coefs[1] == Rational(1)) {
     const std::string a = spoken_name(e->args[0]), b = spoken_name(e->args[1]);

@@ -1,4 +1,4 @@
-// From vectors to components: what a kernel computes, as scalar expressions in an order that depends on names only.
+// Vectors to components: scalar expressions, as a kernel computes them, in an order that depends on names only.
 #pragma once
 
 #include <map>
@@ -26,7 +26,7 @@ class Components {
   std::map<const Node*, std::vector<Expr>> vectors_;
 };
 
-// A name for e made of the names in it, if it is simple enough to be read so: "u", "ra", "rb_u" for rb + u. Else "".
+// A name for a simple e, made of the names in it: "u", "ra", "rb_u" for rb + u. Empty for other expressions.
 std::string spoken_name(Expr e);
 
 }  // namespace cdot::derive

@@ -2,6 +2,7 @@
 // expression/text.cpp.
 #include "derive/expression/expr.hpp"
 
+#include <algorithm>
 #include <cassert>
 #include <set>
 
@@ -23,8 +24,8 @@ std::string key_of(const Node& n) {
   return key;
 }
 
-// Where a leaf stands among others: differences of positions come first (they cancel what is large and common),
-// then what turns with a body; masses before inertias; the rest by name.
+// The order of leaves. Differences of positions come first, since they cancel large common parts; then vectors that
+// turn with a body. Masses precede inertias. Names order the rest.
 int rank(const Node& n) {
   switch (n.role) {
     case Role::constant: return 0;
@@ -155,11 +156,18 @@ std::vector<Expr> topological(std::span<const Expr> roots) {
   return order;
 }
 
-bool depends_on_velocity(Expr e) {
-  for (const Expr n : topological(std::span(&e, 1))) {
-    if (n->kind == Kind::symbol && (n->role == Role::velocity || n->role == Role::spin)) return true;
+std::vector<Expr> leaves_of(std::span<const Expr> expressions) {
+  std::vector<Expr> leaves;
+  for (const Expr e : topological(expressions)) {
+    if (e->kind == Kind::symbol) leaves.push_back(e);
   }
-  return false;
+  std::sort(leaves.begin(), leaves.end(), [](Expr a, Expr b) { return a->symbol < b->symbol; });
+  return leaves;
+}
+
+bool depends_on_velocity(Expr e) {
+  return std::ranges::any_of(leaves_of(std::span(&e, 1)),
+                             [](Expr leaf) { return leaf->role == Role::velocity || leaf->role == Role::spin; });
 }
 
 Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements, KeepNames names) {

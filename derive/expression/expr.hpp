@@ -1,9 +1,9 @@
 // The generator's own expressions: interned nodes over scalars and vectors, in an order that depends on names only.
 //
 // Every stage after the reader works on these. Equal expressions are the same node, so comparing is one pointer
-// comparison and shared work is shared by construction. The builders below apply the identities that hold whatever
-// the operands are (dot(t, t) = 1 for a unit vector, dot(perp u, v) = cross(u, v), ...) and nothing else.
-// A name given by the author (`let u = ...`) sticks to the node, and sums do not flatten through it.
+// comparison and shared work is shared by construction. The builders below apply the identities that hold whatever the
+// operands are (dot(t, t) = 1 for a unit vector, dot(perp u, v) = cross(u, v), ...) and nothing else. A name given by
+// the author (`let u = ...`) sticks to the node, and sums do not flatten through it.
 #pragma once
 
 #include <array>
@@ -37,7 +37,7 @@ enum class Kind {
 enum class Fn : int;  // of expression/functions.hpp, a table
 std::string_view name_of(Fn fn);
 
-// What a leaf stands for; decides its time derivative and where a kernel reads it.
+// The quantity that a leaf stands for. It decides its time derivative and where a kernel reads it.
 enum class Role {
   position,         // vector x_a: the centre of mass of a body
   world_vector,     // vector fixed in the world: a parameter as it is, or the world's x axis
@@ -106,7 +106,7 @@ class Pool {
   Expr find(std::string_view name) const;  // empty if there is no such symbol
 
   int dimension() const { return dimension_; }  // 2 or 3
-  // Unit vectors `name`_x, `name`_y, `name`_z that stand on each other (in space).
+  // Orthonormal vectors `name`_x, `name`_y, `name`_z, in space.
   Triad triad(std::string_view name, Role role, int body = -1);
   // The triad that a leaf is an axis of, and which one; null if it is none.
   struct Axis {
@@ -142,7 +142,7 @@ struct Term {
   Rational coef;
   Expr e;
 };
-// e as coef * rest, rest without a numeric factor.
+// e = coef * rest; rest has no numeric factor.
 Term split_coefficient(Expr e);
 // e as a sum: its terms, or itself as the only one.
 std::vector<Term> terms_of(Expr e);
@@ -150,7 +150,7 @@ std::vector<Term> terms_of(Expr e);
 // Builders. Scalars and vectors must fit (asserted); the reader has checked the author's types before.
 Expr sum(Pool& pool, std::span<const Term> terms, bool vector);
 Expr product(Pool& pool, std::span<const Expr> factors, std::span<const int> exponents);
-// A product with its i-th factor taken out once; also where it has a name, which plain division does not look into.
+// A product without one power of its i-th factor. Plain division does not open named products; this does.
 Expr without_factor(Expr product, std::size_t i);
 Expr zero_vector(Pool& pool);
 Expr operator+(Expr a, Expr b);
@@ -192,6 +192,8 @@ Expr substitute(Expr e, const std::map<const Node*, Expr>& replacements, KeepNam
 
 // Every node that e depends on, operands before users, in an order fixed by structure.
 std::vector<Expr> topological(std::span<const Expr> roots);
+// Every leaf of them, in the order of their names.
+std::vector<Expr> leaves_of(std::span<const Expr> expressions);
 bool depends_on_velocity(Expr e);
 
 // Infix text in the spec language's notation; a named node prints as its name unless it is e itself.

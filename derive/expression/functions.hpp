@@ -13,9 +13,9 @@
 
 namespace cdot::derive {
 
-// The last three arise only after differentiation, when things are written out in components
-// (expression/components.hpp): inverse(x) is 1/x, and 0 at x = 0; select(l, x, y) is x where l > 0, else y; pivot(d, k)
-// is 1/d, and 0 where d is negligible beside the diagonal entry k that elimination left it from.
+// The last three arise only after differentiation, in components (expression/components.hpp). inverse(x) is 1/x, and 0
+// at x = 0. select(l, x, y) is x where l > 0, else y. pivot(d, k) is 1/d, and 0 where d is negligible beside the
+// diagonal entry k that elimination started from.
 enum class Fn : int { sqrt, sin, cos, tan, sinh, cosh, exp, log, abs, sign, atan2, inverse, select, pivot };
 
 struct Function {
@@ -23,16 +23,16 @@ struct Function {
   std::string_view name;                                       // in specs, in formulas and in kernels
   std::string_view signature{};                                // "sin(s)"; empty: no operator of the language
   UnitRule unit{};                                             // of that operator
-  std::string_view help{};                                     // about it
+  std::string_view help{};                                     // one line for people
   double (*value)(const double* x);                            // in doubles, as a kernel computes
-  std::optional<Rational> (*of_number)(Rational x) = nullptr;  // where that is known exactly
-  // f(x) by other functions, for arithmetic that knows no f: GiNaC's, and exact numbers modulo a prime. Null: each has
-  // f itself (proof/ginac_functions.cpp, numbers/modular_point.cpp).
+  std::optional<Rational> (*of_number)(Rational x) = nullptr;  // where the result is rational
+  // f(x) by other functions, for arithmetic without f: GiNaC's, and exact numbers modulo a prime. Null: both have f
+  // (proof/ginac_functions.cpp, numbers/modular_point.cpp).
   Expr (*by_others)(Expr x) = nullptr;
   Expr (*derivative)(Expr f) = nullptr;  // f'(x) for the node f = f(x); null: it has several arguments, or none is due
-  std::string_view rule{};               // the same as a sentence: "sin(x)_dot = cos(x) x_dot"
-  std::string_view limit{};              // where f or f' ends, for a reader of the derivation; {} is x
-  std::string_view finding{};            // and for the author of a spec
+  std::string_view rule{};               // the derivative as a sentence: "sin(x)_dot = cos(x) x_dot"
+  std::string_view limit{};              // limit of the domain of f or f', for a reader of the derivation; {} is x
+  std::string_view finding{};            // the same for the author of a spec
   struct Cost {
     int multiply = 0, divide = 0, root = 0, compare = 0, call = 0;
   } cost{.call = 1};
@@ -43,7 +43,7 @@ struct Function {
 
 namespace functions_detail {
 
-// A pivot that is this small beside the diagonal entry it was left from is round-off.
+// A pivot counts as round-off below this share of the diagonal entry that elimination started from.
 inline constexpr double negligible = 16 * std::numeric_limits<double>::epsilon();
 
 inline Expr of(Fn fn, Expr f) { return call(fn, f->args[0]); }

@@ -1,6 +1,5 @@
 // Matrices of scalar expressions, as hand derivations write them.
-// One without rows is a multiple of the identity, of the size that its place asks for; its factor
-// is the only entry.
+// One without rows is a multiple of the identity, of the size that its place asks for; its factor is the only entry.
 #pragma once
 
 #include <vector>

@@ -8,7 +8,7 @@
 
 namespace cdot::derive {
 
-// Thrown where a fraction no longer fits; the caller that knows the source position reports it.
+// Thrown on overflow. The caller that knows the source position reports it.
 struct NumberTooLarge : std::runtime_error {
   NumberTooLarge() : std::runtime_error("the number does not fit a fraction of 64-bit integers") {}
 };

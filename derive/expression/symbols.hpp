@@ -1,4 +1,4 @@
-// The leaves that stand for a body's state, by their one name each.
+// The leaves that stand for the state of a body; each has one name.
 #pragma once
 
 #include <string>
@@ -25,11 +25,11 @@ std::vector<Expr> body_euler_parameters(Pool& pool, int body);
 Expr time_symbol(Pool& pool);
 Expr pi_symbol(Pool& pool);
 
-// Names that these and the world's axes take, so that an author may not.
+// Names that these leaves and the world's axes reserve.
 bool is_symbol_of_tool(std::string_view name);
-// Words of C++, in which kernels are written with the author's names.
+// Keywords of C++: kernels use the author's names as identifiers.
 bool is_word_of_cpp(std::string_view name);
-// What every kernel calls something of its own, so that no coordinate may.
+// Members of every kernel: no coordinate may have such a name.
 bool is_member_of_kernels(std::string_view name);
 // The arm of a point: `ra` of `pa`, `r_q` of `q`; a prefix from an include stays in front.
 std::string arm_name(std::string_view prefix, std::string_view point);

@@ -63,7 +63,7 @@ class Printer {
   std::string sum_text(Expr e, Level level) const {
     if (e->args.empty()) return "0";
     std::string s;
-    // The first positive term leads, so that a sum does not open with a minus sign without need.
+    // The first positive term leads: a sum should not open with a minus sign without need.
     std::size_t lead = 0;
     while (lead < e->args.size() && e->coefs[lead].sign() < 0) ++lead;
     if (lead == e->args.size()) lead = 0;

@@ -1,5 +1,4 @@
-// Units as products of metres, radians, seconds and kilograms with rational exponents (roots halve
-// them).
+// Units as products of metres, radians, seconds and kilograms with rational exponents (roots halve them).
 #pragma once
 
 #include <optional>
@@ -10,8 +9,7 @@
 
 namespace cdot::derive {
 
-// Radians are kept only where nothing but seconds stands beside them: an arc, radius times angle,
-// is in metres.
+// Radians are kept only where nothing but seconds stands beside them: an arc, radius times angle, is in metres.
 struct Unit {
   Rational m{}, rad{}, s{}, kg{};
 

@@ -1,5 +1,4 @@
-// Texts of the generated files. Nothing here depends on anything but the joints: no date, no path,
-// no version.
+// Kernels to the texts of generated files. They depend on the joints alone: no date, no path, no version.
 #pragma once
 
 #include <map>
@@ -13,8 +12,7 @@ namespace cdot::derive {
 // generated/planar/<joint>.hpp or generated/spatial/<joint>.hpp
 std::string emit_kernel(const Kernel& kernel);
 
-// generated/planar/registry.hpp and generated/spatial/registry.hpp: the list of all joints, by
-// name.
+// generated/planar/registry.hpp and generated/spatial/registry.hpp: the list of all joints, by name.
 std::string emit_registry(const std::string& space, const std::vector<std::string>& joints);
 
 // C, J and K as people write them, a line each, for the comment above a kernel.

@@ -1,5 +1,5 @@
-// The comment above a kernel: the joint in words, then C, J and K in the spec's own names, as `cdot
-// explain` writes them.
+// The comment above a kernel: the joint in words, then C, J and K in the spec's own names, as `cdot explain` writes
+// them.
 #include <sstream>
 
 #include "derive/explain/explain.hpp"

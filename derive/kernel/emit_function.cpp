@@ -6,7 +6,7 @@
 namespace cdot::derive {
 namespace {
 
-// What the contract gives each function, and what it fills (runtime/include/cdot/kernel.hpp).
+// Inputs and output of each function of the contract (runtime/include/cdot/kernel.hpp).
 struct Signature {
   std::vector<std::string> inputs;
   std::string output;
@@ -31,7 +31,7 @@ const std::map<std::string, Signature>& signatures() {
   return table;
 }
 
-// Declarations with a place for the name, which is left out where the argument is not read.
+// Declarations with a place for the name. An argument that is not read gets no name.
 const std::map<std::string, std::string>& declarations() {
   static const std::map<std::string, std::string> table = {{"q", "const Pose<T> (&{})[BODIES]"},
                                                            {"v", "const Velocity<T> (&{})[BODIES]"},
@@ -66,7 +66,7 @@ void append(std::vector<std::string>& lines, std::vector<std::string> more) {
   lines.insert(lines.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-// Functions of <cmath>, brought in by name so that a pack's own are found as well.
+// Functions of <cmath>. A using-declaration lets a pack's own be found as well.
 std::set<std::string> mathematical_functions(const Program& program) {
   std::set<std::string> functions;
   for (const Operation& op : program.ops) {
@@ -147,7 +147,7 @@ std::string FunctionWriter::arguments(const std::vector<std::string>& names, con
   return sized(std::move(list), rows);
 }
 
-// The contract's array sizes in numbers.
+// Replaces the contract's array sizes by numbers.
 std::string FunctionWriter::sized(std::string declaration, std::size_t rows) const {
   declaration = replaced(declaration, "[BODIES]", fmt::format("[{}]", bodies_));
   declaration = replaced(declaration, "[COLUMNS]", fmt::format("[{}]", width_ * bodies_));

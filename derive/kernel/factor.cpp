@@ -1,5 +1,5 @@
-// K lambda = rhs solved in advance: K = L D L^T and the two substitutions, unrolled, without what
-// is zero at every pose.
+// Solves K lambda = rhs symbolically: K = L D L^T and both substitutions, unrolled, without entries that vanish at
+// every pose.
 #include "derive/kernel/factor.hpp"
 
 #include "derive/expression/components.hpp"
@@ -12,7 +12,7 @@ Expr opaque(Expr e, const std::string& name) {
   return e;
 }
 
-// L's entry vanishes for every pose if K's does and no fill arises.
+// An entry of L vanishes at every pose if that of K does and no fill arises.
 bool is_zero_in_factor(const Block& block, std::size_t i, std::size_t j) {
   if (!is_zero(block.K[i][j])) return false;
   for (std::size_t k = 0; k < j; ++k) {

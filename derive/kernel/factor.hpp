@@ -1,5 +1,4 @@
-// The factorisation of K and its solve, as outputs of kernel functions; and how outputs in arrays
-// are called.
+// The factorisation of K and its solve, as outputs of kernel functions; and the names of array elements.
 #pragma once
 
 #include <string>

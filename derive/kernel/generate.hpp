@@ -1,4 +1,4 @@
-// Simplified kernels to the texts of generated files: what `cdot derive` writes and `cdot derive --check` compares.
+// Simplified kernels to generated files: `cdot derive` writes them, `cdot derive --check` compares them.
 #pragma once
 
 #include <map>
@@ -12,7 +12,7 @@ namespace cdot::derive {
 
 using Files = std::map<std::string, std::string>;  // path below generated/ -> content
 
-// What one joint contributes: its kernel, and what that costs.
+// The kernel of one joint, and its cost.
 struct GeneratedJoint {
   std::string space, name, kernel;
   std::vector<LedgerRow> ledger;

@@ -1,4 +1,4 @@
-// The ledger of operation counts: generated/ledger.csv, so that a change's price shows in its diff.
+// Kernels to the ledger of operation counts, generated/ledger.csv: the diff of a change shows its price.
 #include "derive/kernel/ledger.hpp"
 
 #include <algorithm>
@@ -39,8 +39,8 @@ Count cost_from_poses(const Joint& joint, std::string_view quantity, const std::
   PoseInputs pose(joint);
   std::vector<NamedExpr> outputs;
   for (const Expr entry : entries) {
-    // A kernel's Jacobian holds one number for an entry and its negative, and what reads it adds or
-    // subtracts. C and K are handed out as they are, with their signs.
+    // A kernel's Jacobian stores one number for an entry and its negative; its readers add or subtract. C and K are
+    // returned with their signs.
     const Expr e = pose.of(entry);
     const bool negative = e->kind == Kind::sum && !e->coefs.empty() && e->coefs[0].sign() < 0;
     outputs.push_back({"", negative && quantity == "J" ? -e : e});

@@ -58,7 +58,7 @@ class BlockPlanner {
     out_.functions.push_back({std::move(name), std::move(summary), assemble(outputs), isotropic_, {}});
   }
 
-  // Which numbers Jacobian<T> holds: the factors of J's entries that are neither zero nor one.
+  // Chooses the numbers of Jacobian<T>: the factors of J's entries that are neither zero nor one.
   void store_jacobian() {
     Components components;
     for (std::size_t i = 0; i < rows(); ++i) {
@@ -128,8 +128,8 @@ class BlockPlanner {
     add("jacobian", "C and J", outputs);
   }
 
-  // K in the form that the derivation simplified it to, reading what J has stored. If that form
-  // needs something that J does not hold, the plain sum over J's entries is used.
+  // K in the simplified form of the derivation, from stored numbers of J. If that form needs other numbers, K falls
+  // back to the plain sum over J's entries.
   void add_effective_mass() {
     Components components;
     std::map<const Node*, Expr> held;
@@ -172,8 +172,7 @@ class BlockPlanner {
     return inverse_mass_times(column, [&](std::size_t c) { return stored(row, c); });
   }
 
-  // Row `column` of M^-1 times a column of numbers: 1/m for what moves the centre, 1/I or the
-  // tensor I^-1 for what turns.
+  // Row `column` of M^-1 times a column of numbers: 1/m for translation, 1/I or the tensor I^-1 for rotation.
   template <class Numbers>
   Expr inverse_mass_times(std::size_t column, Numbers numbers) const {
     const BodySymbols body = body_symbols(joint_, static_cast<int>(column / width_));
@@ -253,7 +252,7 @@ class BlockPlanner {
     add("inverse_mass_jacobian", "(M^-1 J^T)^T, laid out like dense", outputs);
   }
 
-  // What no inner loop of a solver asks for: a variant has it from the general block.
+  // Functions outside the inner loops of solvers: a variant inherits them from the general block.
   void add_what_variants_inherit() {
     if (joint_.dimension == 3) add_other_forms();
     add_from_pose();
@@ -297,7 +296,7 @@ class BlockPlanner {
         H);
   }
 
-  // The cheaper of two ways, J's if neither is: it loses fewer digits when the bodies move nearly alike.
+  // The cheaper of two forms. At equal cost that by J's entries: it loses fewer digits if the bodies move nearly alike.
   void add_gamma() {
     std::vector<NamedExpr> whole, by_entries;
     for (std::size_t i = 0; i < rows(); ++i) {
@@ -308,7 +307,7 @@ class BlockPlanner {
     add_other_way(by_entries);
   }
 
-  // To the function added last; taken if it is no dearer.
+  // An alternative for the function added last; taken unless it is more expensive.
   void add_other_way(const std::vector<NamedExpr>& outputs) { out_.functions.back().other = {assemble(outputs)}; }
 
   const Joint& joint_;

@@ -1,5 +1,5 @@
-// A kernel as programs: every function of the contract (runtime/include/cdot/kernel.hpp) as a program, before
-// it becomes text.
+// A kernel as programs: every function of the contract (runtime/include/cdot/kernel.hpp) as a program, before it
+// becomes text.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ namespace cdot::derive {
 // One number stored by Jacobian<T>.
 struct Field {
   std::string name;
-  Expr value;   // what `jacobian` computes, in components
+  Expr value;   // computed by `jacobian`, in components
   Expr symbol;  // how later functions refer to it
 };
 
@@ -23,7 +23,7 @@ struct KernelFunction {
   std::string summary;         // "C and J"
   Program program;             // outputs carry the text of what is assigned: "C[0]", "J.t_x"
   bool isotropic = false;      // the overload for bodies whose inertia is a number, in space
-  std::vector<Program> other;  // another way to the same outputs, if there is one: the cheaper is kept
+  std::vector<Program> other;  // another way to the same outputs, if there is one; the cheaper wins
 };
 
 // One row block: the joint, a coordinate, or one of these with a body immovable.
@@ -51,9 +51,8 @@ Kernel plan(const Derivation& derivation);
 // Common terms and factors shared in every function; of two ways, the cheaper one.
 Kernel simplified(Kernel kernel);
 
-// Everything written out in components and read from poses and parameters: arms become c l_x - s
-// l_y, in space xx l_x + xy l_y + xz l_z. Shared by the kernel, the ledger and the hand
-// derivations, so that all are counted alike.
+// Writes expressions out in components of poses and parameters: an arm becomes c l_x - s l_y, in space xx l_x + xy l_y
+// + xz l_z. Kernels, ledger and hand derivations share it, so all are counted alike.
 class PoseInputs {
  public:
   explicit PoseInputs(const Joint& joint);
@@ -65,13 +64,12 @@ class PoseInputs {
   std::map<const Node*, Expr> rotated_;
 };
 
-// The default of a parameter that has one, in the frame that it is fixed in.
+// The default of a parameter that has one, in its own frame.
 DefaultValue plan_default(const Joint& joint, int index);
 
-// The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space
-// "f_x_x" to "f_z_z".
+// The numbers of a parameter in Parameters<T>, by name: "pa_x", "pa_y"; "phi"; of a frame in space "f_x_x" to "f_z_z".
 std::vector<std::string> fields_of(const Joint& joint, const Parameter& parameter);
-// How a kernel reads a parameter's numbers: symbols, in the same order.
+// The symbols by which a kernel reads these numbers, in the same order.
 std::vector<Expr> local_symbols(const Joint& joint, const Parameter& parameter);
 
 }  // namespace cdot::derive

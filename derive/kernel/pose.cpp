@@ -1,5 +1,4 @@
-// From poses and parameters to what formulas are made of: arms and directions turned into the
-// world, and back for defaults.
+// Poses and parameters to the vectors of formulas: arms and directions rotated into the world, and back for defaults.
 #include "derive/derivation/forms.hpp"
 #include "derive/expression/components.hpp"
 #include "derive/expression/symbols.hpp"
@@ -67,8 +66,7 @@ Expr PoseInputs::of(Expr scalar) {
   return substitute(components.of(scalar), rotated_);
 }
 
-// The default of a parameter in the frame that it is fixed in: R^T (p - x) for a point, R^T u for a
-// vector.
+// The default of a parameter in its own frame: R^T (p - x) for a point, R^T u for a vector.
 DefaultValue plan_default(const Joint& joint, int index) {
   const Parameter& parameter = joint.parameters[static_cast<std::size_t>(index)];
   PoseInputs pose(joint);

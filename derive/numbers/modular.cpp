@@ -12,8 +12,7 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 
-// A generic pose. Angles and scalars are small whole numbers, so that sums of them can be
-// recognised in the argument of a sine.
+// A generic pose. Angles and scalars are small whole numbers: a sine recognises sums of them in its argument.
 class Pose final : public Arithmetic<Modular> {
  public:
   explicit Pose(std::uint64_t seed) : point_(seed) {}
@@ -47,7 +46,7 @@ class Pose final : public Arithmetic<Modular> {
  private:
   std::int64_t angle_of(int body) { return angles_.try_emplace(body, point_.small()).first->second; }
 
-  // Whatever turns with a body points anywhere; a triad is turned anywhere as a whole.
+  // Vectors of a body are random; a triad has one random orientation.
   Triple<Modular> vector_in_space(const Node& symbol) {
     if (is_world_axis(Expr(&symbol))) {
       Triple<Modular> axis{};
@@ -66,7 +65,7 @@ class Pose final : public Arithmetic<Modular> {
     return {point_.any(), point_.any(), point_.any()};
   }
 
-  // Euler parameters of length 1: half of all quadruples have a length.
+  // Euler parameters of length 1. Half of all quadruples have a square for their squared length.
   const EulerParameters<Modular>& orientation(int body) {
     const auto found = orientations_.find(body);
     if (found != orientations_.end()) return found->second;
@@ -121,8 +120,7 @@ std::optional<Rows> jacobian_at(std::span<const std::vector<Expr>> rows, std::ui
   return J;
 }
 
-// A combination of rows that vanishes: its last coefficient is 1 and stands at the row that depends
-// on the earlier ones.
+// A vanishing combination of rows. Its last coefficient is 1 and belongs to the row that depends on earlier ones.
 struct Combination {
   std::size_t row;
   std::vector<Modular> coefs;
@@ -150,7 +148,7 @@ std::vector<Combination> combinations(Rows J) {
   return found;
 }
 
-// The fraction with a small numerator and denominator that x stands for, if there is one.
+// The fraction with small numerator and denominator that x represents, if there is one.
 std::optional<Rational> small_fraction(Modular x) {
   for (std::int64_t den = 1; den <= 1000; ++den) {
     const std::int64_t num = (x * Modular(den)).centred();

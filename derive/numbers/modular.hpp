@@ -1,7 +1,6 @@
-// Exact ranks: a Jacobian evaluated at random poses modulo the prime p = 2^61 - 1. Full rank there
-// is full rank over the rationals. Modulo this p, -1 is no square and half of all numbers are, so
-// roots and signs can be chosen as among the reals (the root that is a square itself), and the
-// rotations form a group in which angles add.
+// Exact arithmetic at random poses modulo the prime p = 2^61 - 1: ranks and the zero-test. Full rank modulo p is full
+// rank over the rationals. Modulo this p, -1 is no square and half of all numbers are squares. So roots and signs can
+// be chosen as among the reals (the root that is itself a square), and the rotations form a group in which angles add.
 #pragma once
 
 #include <cstdint>
@@ -39,27 +38,26 @@ class Modular {
 Modular pow(Modular base, std::uint64_t exponent);
 Modular inverse(Modular x);  // x must not be zero
 
-// At so many random points a formula has to vanish that counts as zero without a proof.
+// Number of random points at which a formula must vanish to count as zero without a proof.
 inline constexpr int exact_points = 8;
 
-// The answer to every question whether a formula is zero, by exact arithmetic at random points modulo the prime. A
-// nonzero formula of degree d passes for zero with a probability of about d/2^61 at each point.
+// Result of the zero-test: exact arithmetic at random points modulo the prime. A nonzero formula of degree d passes for
+// zero at a point with a probability of about d/2^61.
 enum class Nullity {
   zero,     // at all of exact_points
-  differs,  // a quotient of polynomials that is not zero at a point, so that it is not zero among the reals either
-  unknown   // not zero at a point, but there a root or a logarithm has a value of its own; or it is defined nowhere
+  differs,  // a quotient of polynomials, nonzero at a point, hence nonzero among the reals
+  unknown   // nonzero at a point, but with a root or logarithm chosen at random; or defined nowhere
 };
 Nullity difference_modulo_prime(Expr a, Expr b);
 
-// How many of the rows are independent at generic poses.
+// Number of independent rows at generic poses.
 struct GenericRank {
   int rank = 0;
-  int poses = 0;  // that were tried; 0: no pose was found at which everything is defined
-  // For each superfluous row: coefficients, one per row, of a combination of the rows of J that
-  // vanishes at every pose; empty if the coefficients depend on the pose. In order of the rows; the
-  // last nonzero coefficient is 1.
+  int poses = 0;  // poses tried; 0: every pose left something undefined
+  // One for each redundant row, in order of the rows. The coefficients, one per row, combine the rows of J to zero at
+  // every pose; the last nonzero one is 1. They are empty if they depend on the pose.
   struct Dependence {
-    int row = 0;          // that depends on earlier ones
+    int row = 0;          // the redundant one
     std::vector<int> on;  // the earlier rows with a nonzero coefficient
     std::vector<Rational> coefs;
   };

@@ -49,7 +49,7 @@ Modular ModularPoint::call(Fn fn, std::span<const Modular> args) {
     case Fn::sqrt:
     case Fn::abs:
     case Fn::select: break;
-    // Of log and atan2 no law is known here.
+    // log and atan2 obey no law here.
     default: return arbitrary(6 + static_cast<int>(fn), x, args.back());
   }
   holds_for_reals_ = false;  // they ask for signs

@@ -1,5 +1,5 @@
-// The elementary functions at one random point modulo the prime: random values that obey the laws
-// which formulas rely on. Apart from what is evaluated there: our own expressions, or GiNaC's.
+// The elementary functions at one random point modulo the prime: random values that obey the laws on which formulas
+// rely. Our own expressions and GiNaC's are both evaluated by it.
 #pragma once
 
 #include <span>
@@ -9,7 +9,7 @@
 
 namespace cdot::derive {
 
-// A root of no square, a division by zero: another point has to be tried.
+// Thrown for the root of a non-square and for a division by zero: the caller tries another point.
 struct UndefinedHere {};
 
 struct Rotation {
@@ -18,8 +18,8 @@ struct Rotation {
 Rotation operator*(Rotation a, Rotation b);
 Rotation pow(Rotation r, std::int64_t exponent);
 
-// Sines of small whole numbers and their sums obey the addition theorems, exponentials theirs;
-// other arguments get a random value each.
+// Sines of small whole numbers and their sums obey the addition theorems, exponentials theirs; other arguments get a
+// random value each.
 class ModularPoint {
  public:
   explicit ModularPoint(std::uint64_t seed);
@@ -33,8 +33,8 @@ class ModularPoint {
   Modular inverse(Modular x) const;
   Modular root(Modular x) const;
   Modular call(Fn fn, std::span<const Modular> args);
-  // So far every value was a quotient of polynomials in what the point is made of. Else a value other than zero says
-  // nothing of the reals: there a sum of squares is positive, log(x y) = log x + log y, and so on.
+  // True while every value was a quotient of polynomials in the point's coordinates. Otherwise a nonzero value proves
+  // nothing about the reals, where a sum of squares is positive, log(x y) = log x + log y, and so on.
   bool holds_for_reals() const { return holds_for_reals_; }
   Modular any_for(int kind, Modular x, Modular y) const;  // the same for the same arguments
 
@@ -54,8 +54,8 @@ class ModularPoint {
   bool holds_for_reals_ = true;
 };
 
-// Of a formula by its value at the point of a seed, and by whether that holds for the reals. With n roots, one point in
-// 2^n serves.
+// The zero-test of a formula. `value_at(seed)` returns its value at a point, and whether that holds for the reals. With
+// n roots, one point in 2^n is defined.
 template <class ValueAt>
 Nullity nullity(ValueAt value_at) {
   constexpr std::uint64_t attempts = 16384;

@@ -5,29 +5,13 @@
 #include <functional>
 #include <set>
 
+#include "derive/numbers/elimination.hpp"
+
 namespace cdot::derive {
 namespace {
 
-// x of A x = b by Gaussian elimination; A is symmetric, positive and, by a little on its diagonal,
-// regular.
-std::vector<double> solve(Gradients A, std::vector<double> b) {
-  const std::size_t n = b.size();
-  for (std::size_t k = 0; k < n; ++k) {
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const double factor = A[k][k] == 0 ? 0 : A[i][k] / A[k][k];
-      for (std::size_t j = k; j < n; ++j) A[i][j] -= factor * A[k][j];
-      b[i] -= factor * b[k];
-    }
-  }
-  for (std::size_t k = n; k-- > 0;) {
-    for (std::size_t j = k + 1; j < n; ++j) b[k] -= A[k][j] * b[j];
-    b[k] = A[k][k] == 0 ? 0 : b[k] / A[k][k];
-  }
-  return b;
-}
-
-// All that an equation may move: bodies, or also scalars, vectors and triads that are fixed somewhere.
-// Directions and orientations are turned, so that they keep their length.
+// The unknowns: bodies; if wanted, also scalars, and vectors and triads in their frames. Directions and orientations
+// are rotated, which preserves their length.
 class Variables {
  public:
   Variables(const Joint& joint, const Sample& sample, bool only_bodies) : dimension_(joint.dimension) {
@@ -116,7 +100,9 @@ std::vector<double> shortest_step(const Gradients& G, const std::vector<double>&
     largest = std::max(largest, K[i][i]);
   }
   for (std::size_t i = 0; i < n; ++i) K[i][i] += 1e-13 * largest;
-  const std::vector<double> lambda = solve(K, values);
+  // The small diagonal term makes the symmetric positive K regular.
+  const std::vector<double> lambda =
+      solved(K, values, [](double a, double pivot) { return pivot == 0 ? 0 : a / pivot; });
   std::vector<double> step(G[0].size());
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = 0; k < step.size(); ++k) step[k] -= G[i][k] * lambda[i];

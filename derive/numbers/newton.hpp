@@ -1,5 +1,5 @@
-// Newton's method for equations with more unknowns than equations, in plain doubles: the search for poses where
-// equations hold, C = 0 or what an author assumes.
+// Newton's method for equations with more unknowns than equations, in doubles. It finds poses with C = 0, or poses that
+// satisfy an author's assumptions.
 #pragma once
 
 #include <vector>
@@ -11,12 +11,11 @@ namespace cdot::derive {
 // A row per equation, a column per unknown.
 using Gradients = std::vector<std::vector<double>>;
 
-// The shortest dx with values + G dx = 0: dx = -G^T (G G^T + little)^-1 values. Dependent rows do
-// no harm.
+// The shortest dx with values + G dx = 0: dx = -G^T (G G^T + eps E)^-1 values. Redundant rows do no harm.
 std::vector<double> shortest_step(const Gradients& G, const std::vector<double>& values);
 
 std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample);
-// The triads of a sample by the order of their names: that of their addresses changes from run to run.
+// The triads of a sample, ordered by name: the order of addresses changes from run to run.
 std::vector<const Triad*> triads_of(const Joint& joint, const Sample& sample);
 
 // Moves a sample to where all equations are zero; false if that does not get there.

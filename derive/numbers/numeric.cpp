@@ -111,15 +111,6 @@ double Random::between(double low, double high) {
   return low + (high - low) * (static_cast<double>(bits() >> 11) * 0x1p-53);
 }
 
-std::vector<Expr> leaves_of(std::span<const Expr> expressions) {
-  std::vector<Expr> leaves;
-  for (const Expr e : topological(expressions)) {
-    if (e->kind == Kind::symbol) leaves.push_back(e);
-  }
-  std::sort(leaves.begin(), leaves.end(), [](Expr a, Expr b) { return a->symbol < b->symbol; });
-  return leaves;
-}
-
 EulerParameters<double> turned_about(std::size_t axis, double amount, const EulerParameters<double>& e) {
   EulerParameters<double> turn{std::cos(amount / 2), 0, 0, 0};
   turn[axis + 1] = std::sin(amount / 2);
@@ -156,7 +147,7 @@ Sample::Body random_body(int dimension, Random& random) {
   return body;
 }
 
-// Components of an inverse inertia: some positive definite tensor, the same however many of them occur.
+// Components of an inverse inertia: a positive definite tensor, the same however many of them occur.
 double inverse_inertia_component(const std::string& name, double first) {
   if (name.ends_with("_xx") || name.ends_with("_yy") || name.ends_with("_zz")) return 1 + first;
   return 0.2 * (first - 1);
@@ -167,7 +158,7 @@ Triple<double> random_direction(int dimension, Random& random, double second) {
   return axes_of(random_orientation(random))[0];
 }
 
-// What leaves other than poses and velocities are, each from its own draw.
+// Draws the value of a leaf that is neither pose nor velocity.
 void draw_leaf(const Joint& joint, Expr leaf, Random& random, Sample& sample) {
   const double first = random.between(0.5, 2), second = random.between(-2, 2);
   const Pool::Axis axis = joint.pool->axis_of(leaf);

@@ -1,5 +1,5 @@
-// Expressions as numbers: one walk from leaves to roots for any kind of number (doubles here, a
-// finite field, symbols of GiNaC and long decimals elsewhere), and random poses to try formulas at.
+// Expressions as numbers: one walk from leaves to roots for any kind of number (doubles here, a finite field, symbols
+// of GiNaC and long decimals elsewhere), and random poses to try formulas at.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ EulerParameters<T> product(const EulerParameters<T>& p, const EulerParameters<T>
           p[0] * q[2] + p[2] * q[0] + p[3] * q[1] - p[1] * q[3], p[0] * q[3] + p[3] * q[0] + p[1] * q[2] - p[2] * q[1]};
 }
 
-// The axes of what is turned by e, as columns of the rotation matrix
+// The axes of a frame with orientation e: the columns of the rotation matrix
 // A(e) = (e0^2 - e'e') E + 2 e' e'^T + 2 e0 ~e', e' = (e1, e2, e3); exact where e . e = 1.
 template <class T>
 std::array<Triple<T>, 3> axes_of(const EulerParameters<T>& e) {
@@ -52,7 +52,7 @@ std::array<Triple<T>, 3> axes_of(const EulerParameters<T>& e) {
            {twice(e[1] * e[3] + e[0] * e[2]), twice(e[2] * e[3] - e[0] * e[1]), e00 - e11 - e22 + e33}}};
 }
 
-// What a walk has to know about its numbers.
+// The operations that a walk needs of its numbers.
 template <class T>
 class Arithmetic {
  public:
@@ -62,14 +62,14 @@ class Arithmetic {
   virtual Triple<T> vector_leaf(const Node& symbol) = 0;
   virtual T inverse(const T& x) = 0;
   virtual T call(Fn fn, std::span<const T> args) = 0;
-  // Whether call() takes it, also where the table has it by other functions.
+  // True if call() implements the function, even if the table expresses it by others.
   virtual bool has(Fn fn) const { return function_of(fn).by_others == nullptr; }
   // The component i, j of a symmetric tensor leaf.
   virtual T tensor_leaf(const Node& tensor, std::size_t i, std::size_t j) {
     const Expr component = tensor_component(Expr(&tensor), i, j);
     return scalar_leaf(*component);
   }
-  virtual Triple<T> direction(const Triple<T>& u) {  // of a vector
+  virtual Triple<T> direction(const Triple<T>& u) {
     const T inv = inverse(length(u));
     return {u[0] * inv, u[1] * inv, u[2] * inv};
   }
@@ -179,8 +179,8 @@ class Evaluation {
 // Values of leaves by name; a vector leaf `t` is read as `t_x`, `t_y`, `t_z`. `pi` and the world's axes are known.
 using Values = std::map<std::string, double>;
 
-// In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is the x axis.
-// Throws std::out_of_range with the name of a leaf that has no value.
+// In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is the x axis. Throws std::out_of_range
+// with the name of a leaf that has no value.
 class Numbers {
  public:
   explicit Numbers(Values values);
@@ -208,7 +208,7 @@ class Random {
 // e, then a turn by an amount about a world axis.
 EulerParameters<double> turned_about(std::size_t axis, double amount, const EulerParameters<double>& e);
 
-// Bodies somewhere, and a value for everything else that some expressions contain.
+// Poses and velocities of the bodies, and a value for every other leaf of some expressions.
 struct Sample {
   struct Body {
     Triple<double> x{}, v{}, w{};           // in the plane w turns about the third axis
@@ -227,9 +227,6 @@ struct Sample {
   std::map<const Triad*, EulerParameters<double>> triads;
   std::vector<Expr> leaves;
 };
-
-// Every leaf of the expressions, in the order of their names.
-std::vector<Expr> leaves_of(std::span<const Expr> expressions);
 
 // Positions within a few metres, orientations all around, scalars in [0.5, 2], unit vectors of length 1.
 Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std::uint64_t seed);

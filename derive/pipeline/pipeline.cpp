@@ -15,7 +15,7 @@ void complain(const SourceFile& file, const Diagnostic& diagnostic, Outcome& out
   outcome.complaints += render(file, diagnostic);
 }
 
-// Everything that is wrong with it, or what was proved.
+// Fills in the errors, or the proofs.
 void prove_derivation(const Derivation& derivation, const ProofRecord& record, Outcome& outcome) {
   const Joint& joint = derivation.joint;
   for (const Diagnostic& held : errors_of_constrained_coordinates(joint)) complain(*joint.file, held, outcome);
@@ -28,7 +28,8 @@ void prove_derivation(const Derivation& derivation, const ProofRecord& record, O
     for (const Proved& proved : proofs) {
       for (const Law& law : proved.proof.laws) {
         if (!is_broken(law)) continue;
-        // A law beyond the algebra, as of some coordinates of arctangents: said at each run, never recorded.
+        // Algebra does not decide some laws, as of coordinates with arctangents: each run reports them, none records
+        // them.
         if (law.verdict == Verdict::undecided && !proved.name.empty()) {
           outcome.said += fmt::format("{}: {}: {}\n", joint.name, name_of(law.id), law.text);
           undecided = true;
@@ -44,7 +45,7 @@ void prove_derivation(const Derivation& derivation, const ProofRecord& record, O
   outcome.said += shown_text(outcome.proofs);
 }
 
-// The cost of the published derivations beside it, as far as they are right.
+// Adds the costs of the published derivations beside it, as far as they are right.
 void judge_hand(const fs::path& spec, const ReadResult& read, Outcome& outcome) {
   const fs::path hand = fs::path(spec).replace_extension(".hand");
   if (!fs::exists(hand)) return;

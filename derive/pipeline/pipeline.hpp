@@ -24,7 +24,7 @@ struct Outcome {
   std::string said, complaints;  // for stdout and stderr
   std::vector<ProofRow> proofs;
   GeneratedJoint joint;
-  std::vector<LedgerRow> hand_costs;  // of the published derivations beside it, as far as they are right
+  std::vector<LedgerRow> hand_costs;  // of the published derivations beside it that agree
 };
 
 // Proves what is not on record.

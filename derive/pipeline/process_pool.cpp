@@ -5,11 +5,10 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <fmt/format.h>
 #include <iostream>
 #include <numeric>
 #include <optional>
-#include <poll.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <system_error>
@@ -20,142 +19,104 @@ namespace cdot::derive {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double slow = 10;         // seconds that a task may take without a word
-const std::string well = "well: ";  // how what a process says begins, if it has a result
+constexpr double slow = 10;         // [s]; longer tasks are reported
+const std::string well = "well: ";  // precedes the result in a process's answer
 
 [[noreturn]] void raise_errno(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
 struct Process {
   std::size_t task;
   pid_t id;
-  int output;  // the end of its pipe that is read here
-  std::string said;
+  std::FILE* said;  // in memory that both processes share
   Clock::time_point begun = Clock::now();
 };
 
-// One line that is overwritten, on a terminal.
-class Progress {
- public:
-  explicit Progress(std::size_t tasks) : tasks_(tasks) {}
+// Runs a task in the child. The child dies with its parent, also by Ctrl-C or SIGKILL.
+[[noreturn]] void work(const Tasks& tasks, std::size_t task, pid_t parent, std::FILE* file) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);
+  std::string said;
+  try {
+    said = well + tasks.run(task);
+  } catch (const std::exception& e) {
+    said = std::string("failed: ") + e.what();
+  }
+  const bool written = std::fwrite(said.data(), 1, said.size(), file) == said.size() && std::fflush(file) == 0;
+  _exit(written ? 0 : 1);
+}
 
-  void show(std::size_t done, const std::string& running) {
-    if (terminal_) fmt::print(stderr, "\r\033[K[{} of {}] {}", done, tasks_, running), shown_ = true;
-  }
-  void clear() {
-    if (shown_) fmt::print(stderr, "\r\033[K"), shown_ = false;
-  }
-  void finished(const std::string& task, double seconds) {
-    if (!terminal_ && seconds > slow) fmt::print(stderr, "{}: took {:.0f} s\n", task, seconds);
-  }
+std::string content_of(std::FILE* file) {
+  std::fseek(file, 0, SEEK_END);
+  std::string content(static_cast<std::size_t>(std::ftell(file)), ' ');
+  std::rewind(file);
+  content.resize(std::fread(content.data(), 1, content.size(), file));
+  return content;
+}
 
- private:
-  std::size_t tasks_;
-  bool terminal_ = isatty(STDERR_FILENO) == 1, shown_ = false;
-};
-
-void write_all(int file, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t written = write(file, text.data(), text.size());
-    if (written < 0 && errno != EINTR) _exit(1);
-    if (written > 0) text.remove_prefix(static_cast<std::size_t>(written));
+Answer answer_of(const std::string& said, int status) {
+  if (WIFSIGNALED(status)) {
+    return {"", fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))};
   }
+  if (WEXITSTATUS(status) == 0 && said.starts_with(well)) return {said.substr(well.size()), ""};
+  return {"", said.empty() ? "ended without a word" : said};
 }
 
 class Running {
  public:
-  explicit Running(const Tasks& tasks) : tasks_(tasks), progress_(tasks.names.size()), answers_(tasks.names.size()) {}
+  explicit Running(const Tasks& tasks) : tasks_(tasks), answers_(tasks.names.size()) {}
   ~Running() {  // after an exception; else none is left
     for (const Process& process : processes_) kill(process.id, SIGKILL), waitpid(process.id, nullptr, 0);
   }
 
   void begin(std::size_t task) {
-    int ends[2];
-    if (pipe(ends) != 0) raise_errno("no pipe");
+    std::FILE* const said = fdopen(memfd_create("cdot", MFD_CLOEXEC), "w+");
+    if (said == nullptr) raise_errno("no memory for an answer");
     std::cout.flush(), std::cerr.flush(), std::fflush(nullptr);
     const pid_t parent = getpid(), id = fork();
     if (id < 0) raise_errno("no process");
-    if (id == 0) child(task, parent, ends[1]);
-    close(ends[1]);
-    processes_.push_back({task, id, ends[0], ""});
+    if (id == 0) work(tasks_, task, parent, said);
+    processes_.push_back({task, id, said});
   }
 
-  // Until one of them ends.
+  // Waits until one of them ends.
   void wait() {
     show();
-    for (bool ended = false; !ended;) {
-      std::vector<pollfd> polled;
-      for (const Process& process : processes_) polled.push_back({process.output, POLLIN, 0});
-      if (poll(polled.data(), polled.size(), -1) < 0 && errno != EINTR) raise_errno("no news");
-      for (std::size_t i = polled.size(); i-- > 0;) {
-        if (polled[i].revents == 0 || !at_end(processes_[i])) continue;
-        end(i);
-        ended = true;
-      }
-    }
-    hand_over();
-  }
-
-  std::size_t count() const { return processes_.size(); }
-
- private:
-  // Dies when the parent does, however that comes: by Ctrl-C, or killed.
-  [[noreturn]] void child(std::size_t task, pid_t parent, int output) const {
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);
-    std::string said;
-    try {
-      said = well + tasks_.run(task);
-    } catch (const std::exception& e) {
-      said = std::string("failed: ") + e.what();
-    }
-    write_all(output, said);
-    _exit(0);
-  }
-
-  static bool at_end(Process& process) {
-    char buffer[1 << 16];
-    const ssize_t n = read(process.output, buffer, sizeof buffer);
-    if (n > 0) process.said.append(buffer, static_cast<std::size_t>(n));
-    return n == 0 || (n < 0 && errno != EINTR);
-  }
-
-  void end(std::size_t i) {
-    Process process = std::move(processes_[i]);
-    processes_.erase(processes_.begin() + static_cast<std::ptrdiff_t>(i));
-    close(process.output);
     int status = 0;
-    while (waitpid(process.id, &status, 0) < 0 && errno == EINTR) {
+    pid_t id = 0;
+    while ((id = ::wait(&status)) < 0) {
+      if (errno != EINTR) raise_errno("no news");
     }
-    answers_[process.task] = answer(process.said, status);
+    const auto ended = std::ranges::find(processes_, id, &Process::id);
+    answers_[ended->task] = answer_of(content_of(ended->said), status);
+    std::fclose(ended->said);
     ++done_;
-    progress_.clear();
-    progress_.finished(tasks_.names[process.task], std::chrono::duration<double>(Clock::now() - process.begun).count());
-  }
-
-  static Answer answer(const std::string& said, int status) {
-    if (WIFSIGNALED(status)) {
-      return {"", fmt::format("killed by signal {} ({})", WTERMSIG(status), strsignal(WTERMSIG(status)))};
+    clear();
+    const std::chrono::duration<double> seconds = Clock::now() - ended->begun;
+    if (!terminal_ && seconds.count() > slow) {
+      fmt::print(stderr, "{}: took {:.0f} s\n", tasks_.names[ended->task], seconds.count());
     }
-    if (WEXITSTATUS(status) == 0 && said.starts_with(well)) return {said.substr(well.size()), ""};
-    return {"", said.empty() ? "ended without a word" : said};
-  }
-
-  void hand_over() {
+    processes_.erase(ended);
     for (; next_ < answers_.size() && answers_[next_]; ++next_) {
-      progress_.clear();
       tasks_.take(next_, *answers_[next_]);
       *answers_[next_] = {};
     }
   }
 
-  void show() {
+  std::size_t count() const { return processes_.size(); }
+
+ private:
+  // One line that is overwritten, on a terminal.
+  void show() const {
     std::string names;
     for (const Process& process : processes_) names += (names.empty() ? "" : ", ") + tasks_.names[process.task];
-    progress_.show(done_, names);
+    if (terminal_) fmt::print(stderr, "\r\033[K[{} of {}] {}", done_, tasks_.names.size(), names);
+  }
+  void clear() const {
+    if (terminal_) fmt::print(stderr, "\r\033[K");
   }
 
   const Tasks& tasks_;
-  Progress progress_;
+  const bool terminal_ = isatty(STDERR_FILENO) == 1;
   std::vector<Process> processes_;
   std::vector<std::optional<Answer>> answers_;
   std::size_t next_ = 0, done_ = 0;

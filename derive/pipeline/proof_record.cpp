@@ -20,20 +20,22 @@ std::string hash_of(std::string_view text) {
   return fmt::format("{:016x}{:016x}", static_cast<std::uint64_t>(hash >> 64), static_cast<std::uint64_t>(hash));
 }
 
-// Every expression of a block, in a fixed order.
-void add_expressions(const Block& block, std::vector<Expr>& all) {
+// Appends the rows of a block and its variants as text, and all their expressions in a fixed order.
+void add(const Block& block, std::string& text, std::vector<Expr>& all) {
+  const auto take = [&](const std::vector<Expr>& some) { all.insert(all.end(), some.begin(), some.end()); };
+  text += fmt::format("block {} {}\n", block.name, block.immovable);
   for (const ScalarRow& row : block.rows) {
+    text += fmt::format("{} {} {}\n", row.name, static_cast<int>(row.kind), row.component);
     for (const Expr e : {row.C, row.Cdot, row.C_t, row.gamma, row.gamma_by_entries}) {
       if (e) all.push_back(e);
     }
-    const std::vector<Expr> J = columns_of(row.J);
-    all.insert(all.end(), J.begin(), J.end());
+    take(columns_of(row.J));
   }
   for (const auto* matrix : {&block.K, &block.K_isotropic, &block.stiffness}) {
-    for (const std::vector<Expr>& row : *matrix) all.insert(all.end(), row.begin(), row.end());
+    for (const std::vector<Expr>& row : *matrix) take(row);
   }
-  all.insert(all.end(), block.lambda.begin(), block.lambda.end());
-  for (const Block& variant : block.variants) add_expressions(variant, all);
+  take(block.lambda);
+  for (const Block& variant : block.variants) add(variant, text, all);
 }
 
 // The graph of the expressions as text: each node by its own contents and the numbers of its operands.
@@ -54,16 +56,6 @@ std::string text_of_graph(const Pool& pool, const std::vector<Expr>& roots) {
     numbers.emplace(&*e, numbers.size());
   }
   for (const Expr root : roots) text += fmt::format("{} ", number(root));
-  return text;
-}
-
-// Which rows there are, apart from their expressions.
-std::string text_of_rows(const Block& block) {
-  std::string text = fmt::format("block {} {}\n", block.name, block.immovable);
-  for (const ScalarRow& row : block.rows) {
-    text += fmt::format("{} {} {}\n", row.name, static_cast<int>(row.kind), row.component);
-  }
-  for (const Block& variant : block.variants) text += text_of_rows(variant);
   return text;
 }
 
@@ -99,12 +91,8 @@ std::string statement_of(const Derivation& derivation) {
     text += fmt::format("\n{} {}\n", row.name, static_cast<int>(row.kind));
     expressions.push_back(row.C);
   }
-  text += text_of_rows(derivation.rows);
-  add_expressions(derivation.rows, expressions);
-  for (const Block& coordinate : derivation.coordinates) {
-    text += text_of_rows(coordinate);
-    add_expressions(coordinate, expressions);
-  }
+  add(derivation.rows, text, expressions);
+  for (const Block& coordinate : derivation.coordinates) add(coordinate, text, expressions);
   return hash_of(text + text_of_graph(*joint.pool, expressions));
 }
 
@@ -125,7 +113,7 @@ std::string shown_text(const std::vector<ProofRow>& rows) {
       laws += (laws.empty() ? "" : "; ") + std::string(name_of(law_of(word).value()));
     }
     if (laws.empty()) continue;
-    text += fmt::format("{}{}: shown at {} random points, too much to prove: {}\n", row.joint,
+    text += fmt::format("{}{}: shown at {} random points, too expensive to prove: {}\n", row.joint,
                         row.block == "rows" ? "" : ", coordinate " + row.block, exact_points, laws);
   }
   return text;

@@ -1,4 +1,4 @@
-// Builds a Program operation by operation, each once: what the assembler and every pass end in.
+// Builds a Program, each operation once. The assembler and every pass end in it.
 #pragma once
 
 #include <unordered_map>
@@ -15,7 +15,7 @@ class ProgramBuilder {
   int product(std::vector<int> args, std::vector<int> exponents, std::string name = {});
   int function(Fn fn, std::vector<int> args, std::string name = {});
   int input(const Operation& op);
-  // op with other operands.
+  // The same operation with other operands.
   int rebuild(const Operation& op, std::vector<int> args);
 
   const Operation& at(int op) const { return program_.ops[static_cast<std::size_t>(op)]; }

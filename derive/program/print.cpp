@@ -27,7 +27,7 @@ class StatementPrinter {
   }
 
   std::vector<std::string> print() {
-    // Quantities first, then the outputs, so that an argument may be read and written.
+    // Quantities precede the outputs: an argument may be both read and written.
     for (std::size_t i = 0; i < program_.ops.size(); ++i) {
       if (uses_[i] > 0 && !program_.ops[i].name.empty()) named_[program_.ops[i].name] = static_cast<int>(i);
     }
@@ -64,8 +64,7 @@ class StatementPrinter {
 
   bool is_zero(int op) const { return at(op).kind == OpKind::number && at(op).value.is_zero(); }
 
-  // What a nameless quantity of this output is called after: "K21" for "K[1]", "wb" for "J.wb",
-  // "g1" for "g[0]".
+  // The stem for names of nameless quantities of an output: "K21" for "K[1]", "wb" for "J.wb", "g1" for "g[0]".
   static std::string plain(const std::string& output) {
     const std::size_t open = output.find('[');
     if (output.compare(0, 2, "J.") == 0) return output.substr(2);
@@ -78,8 +77,7 @@ class StatementPrinter {
     return fmt::format("{}{}{}", output[0], row + 1, i - row * (row + 1) / 2 + 1);
   }
 
-  // ia_ra_x_t for I_a^-1 (ra x t): products with a body's inverse mass or inertia are called after
-  // both.
+  // ia_ra_x_t for I_a^-1 (ra x t): products with an inverse mass or inertia are named after both factors.
   std::string natural_name(const Operation& o) const {
     if (o.kind != OpKind::product || o.args.size() != 2) return "";
     if (o.exponents[0] != 1 || o.exponents[1] != 1) return "";
@@ -108,7 +106,7 @@ class StatementPrinter {
     if (!variable_[index(op)].empty()) return;
     define_sibling(at(op).name, "_y", "x");
     for (const int arg : at(op).args) define(arg);
-    // A sibling that was defined first may have defined this one in its turn.
+    // A sibling that was defined first may already have defined this one.
     if (!variable_[index(op)].empty() || !wants_variable(op)) return;
     std::string name = at(op).name;
     if (name.empty()) name = natural_name(at(op));
@@ -228,20 +226,17 @@ std::vector<std::string> print_statements(const Program& program, const Printing
 
 std::set<std::string> inputs_read(const Program& program, const Printing& printing) {
   std::set<std::string> read;
-  std::vector<bool> needed(program.ops.size());
-  for (const Output& o : program.outputs) needed[static_cast<std::size_t>(o.op)] = true;
-  for (std::size_t i = program.ops.size(); i-- > 0;) {
-    if (!needed[i]) continue;
+  const std::vector<int> uses = use_counts(program);
+  for (std::size_t i = 0; i < uses.size(); ++i) {
     const Operation& op = program.ops[i];
-    for (const int arg : op.args) needed[static_cast<std::size_t>(arg)] = true;
-    if (op.kind != OpKind::input) continue;
+    if (uses[i] == 0 || op.kind != OpKind::input) continue;
     const auto found = printing.inputs.find(op.input);
     read.insert(found == printing.inputs.end() ? op.input : found->second);
   }
   return read;
 }
 
-// Where the character in that column starts, or the end.
+// The byte at which the character in that column starts, or the end.
 static std::size_t byte_of_column(const std::string& line, std::size_t column) {
   std::size_t i = 0;
   for (; i < line.size(); ++i) {

@@ -23,8 +23,8 @@ std::vector<std::string> print_statements(const Program& program, const Printing
 // The texts of the inputs that the program reads, as printed.
 std::set<std::string> inputs_read(const Program& program, const Printing& printing);
 
-// Breaks a line after 100 columns at the outermost operator that fits (in prose: at the last
-// space); what follows is indented by four more.
+// Breaks a line before column 100 at the outermost operator that fits, in prose at the last space. The rest is indented
+// by four more.
 enum class Break { at_operators, at_spaces };
 std::vector<std::string> wrapped(std::string line, Break where = Break::at_operators);
 

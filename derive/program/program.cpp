@@ -1,4 +1,4 @@
-// Expressions to programs, and what a program costs.
+// Expressions to programs, and the cost of a program.
 #include "derive/program/program.hpp"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace cdot::derive {
 namespace {
 
-// Equal for equal operations and for no others: the numbers of one after the other, as bytes.
+// A unique key of an operation: its numbers, one after the other, as bytes.
 std::string key_of(const Operation& op) {
   std::string key;
   const auto add = [&](std::int64_t n) { key.append(reinterpret_cast<const char*>(&n), sizeof n); };
@@ -234,14 +234,21 @@ Program assemble(const std::vector<NamedExpr>& outputs) {
   return builder.finish();
 }
 
-Count count(const Program& program) {
-  std::vector<bool> needed(program.ops.size());
-  for (const Output& output : program.outputs) needed[static_cast<std::size_t>(output.op)] = true;
-  Count total;
+std::vector<int> use_counts(const Program& program) {
+  std::vector<int> uses(program.ops.size());
+  for (const Output& output : program.outputs) ++uses[static_cast<std::size_t>(output.op)];
   for (std::size_t i = program.ops.size(); i-- > 0;) {
-    if (!needed[i]) continue;
-    add_cost(program, program.ops[i], total);
-    for (const int arg : program.ops[i].args) needed[static_cast<std::size_t>(arg)] = true;
+    if (uses[i] == 0) continue;
+    for (const int arg : program.ops[i].args) ++uses[static_cast<std::size_t>(arg)];
+  }
+  return uses;
+}
+
+Count count(const Program& program) {
+  const std::vector<int> uses = use_counts(program);
+  Count total;
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    if (uses[i] > 0) add_cost(program, program.ops[i], total);
   }
   return total;
 }

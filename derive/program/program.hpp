@@ -1,5 +1,4 @@
-// A function of a kernel as a flat list of scalar operations by index: the form that passes rewrite
-// and printers read.
+// A kernel function as a flat list of scalar operations by index. Passes rewrite this form, printers read it.
 #pragma once
 
 #include <map>
@@ -35,17 +34,16 @@ struct Program {
   std::vector<Output> outputs;
 };
 
-// The term that a sum opens with: the first positive one; without one, the first with a number that
-// takes the minus sign, -2 x; else the first, negated, -x, which costs an operation.
+// The term that opens a sum: the first positive one. Without one it is the first with a numeric factor, as in -2 x.
+// Else it is the first one, negated, which costs an operation.
 struct Lead {
   std::size_t term = 0;
   bool negated = false;
 };
 Lead lead_of(const Program& program, const Operation& sum);
 
-// Operations by kind. A power x^n is n - 1 products; a subtraction or negation counts as an
-// addition; the guarded inverse is a division and a comparison, a guarded pivot another product
-// besides.
+// Operations by kind. A power x^n is n - 1 products; a subtraction or negation counts as an addition; the guarded
+// inverse is a division and a comparison, a guarded pivot another product besides.
 struct Count {
   int add = 0, multiply = 0, divide = 0, root = 0, compare = 0, call = 0;
 
@@ -59,14 +57,16 @@ struct NamedExpr {
   Expr e;  // written out in components
 };
 
-// The program that computes `outputs`, shared work shared, nothing else done.
+// The program that computes `outputs`. Equal work is shared; nothing else is done.
 Program assemble(const std::vector<NamedExpr>& outputs);
 
-// The cheapest of what the passes find: common pairs of terms and of factors shared, common factors
-// taken out.
+// The cheapest program that the passes find: they share pairs of terms and of factors, and take out common factors.
 Program simplify(const Program& program);
 
-// Only operations that an output needs count.
+// How often each operation is used by needed operations and outputs.
+std::vector<int> use_counts(const Program& program);
+
+// Counts the operations that an output needs.
 Count count(const Program& program);
 
 }  // namespace cdot::derive

@@ -4,16 +4,6 @@
 
 namespace cdot::derive {
 
-std::vector<int> use_counts(const Program& program) {
-  std::vector<int> uses(program.ops.size());
-  for (const Output& output : program.outputs) ++uses[static_cast<std::size_t>(output.op)];
-  for (std::size_t i = program.ops.size(); i-- > 0;) {
-    if (uses[i] == 0) continue;
-    for (const int arg : program.ops[i].args) ++uses[static_cast<std::size_t>(arg)];
-  }
-  return uses;
-}
-
 Program rewritten(const Program& program, const Rewrite& rewrite) {
   const std::vector<int> uses = use_counts(program);
   ProgramBuilder builder;

@@ -1,4 +1,4 @@
-// What all passes over programs are made of: a copy in which some operations become others.
+// The base of all passes over programs: a copy in which some operations become others.
 #pragma once
 
 #include <functional>
@@ -9,16 +9,18 @@
 
 namespace cdot::derive {
 
-// How often an operation is used by needed operations and outputs.
-std::vector<int> use_counts(const Program& program);
-
-// Copies the needed operations; `rewrite` may build something else in the place of an operation (its operands, in
-// terms of the new program, are given), or say nullopt to keep it.
+// Copies the needed operations. `rewrite` receives an operation and the new indices of all operations; it builds a
+// replacement, or returns nullopt to leave the operation as it is.
 using Rewrite =
     std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index, const std::vector<int>& new_index)>;
 Program rewritten(const Program& program, const Rewrite& rewrite);
 
 // The place of an operand; the number of operands if it is none of them.
 std::size_t index_of(const std::vector<int>& args, int arg);
+
+// Passes that compute a common pair once. Each takes the most frequent pair, the first of equals; nullopt if no pair
+// occurs twice.
+std::optional<Program> share_terms(const Program& program);    // x + ratio y
+std::optional<Program> share_factors(const Program& program);  // x y
 
 }  // namespace cdot::derive

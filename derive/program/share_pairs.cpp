@@ -1,5 +1,4 @@
-#include "derive/program/share_pairs.hpp"
-
+// The passes that share pairs of terms or of factors.
 #include <algorithm>
 #include <map>
 #include <string>
@@ -66,7 +65,7 @@ std::optional<Pair> most_frequent(const Program& program, PairFinder pairs_of) {
   return best;
 }
 
-// What the spec calls x + ratio y, if it has a name there.
+// The name of x + ratio y in the spec; empty if it has none.
 std::string name_of(const Program& program, const Pair& pair) {
   for (const Operation& op : program.ops) {
     if (op.kind != OpKind::sum || op.args.size() != 2 || op.name.empty()) continue;

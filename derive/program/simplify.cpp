@@ -1,11 +1,10 @@
 // Passes from program to program. Each finds its best single rewriting, deterministically: the most frequent pair, the
-// first of equals. They are run in several orders and the cheapest program wins, for sharing and factoring compete.
+// first of equals. Sharing and factoring compete, so they run in several orders and the cheapest program wins.
 #include <algorithm>
 #include <optional>
 #include <set>
 
 #include "derive/program/rewrite.hpp"
-#include "derive/program/share_pairs.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -86,12 +85,12 @@ std::optional<Program> take_out_factor(const Program& program) {
       });
 }
 
-// -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for whatever uses the sum, not one per term.
+// -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for the sum, not one per term.
 Program take_out_coefficients(const Program& program) {
   return rewritten(
       program,
       [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
-        // A name of the spec stays.
+        // Names of the spec survive.
         if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
         const bool alike =
             std::all_of(op.coefs.begin(), op.coefs.end(), [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
@@ -109,7 +108,7 @@ Program take_out_coefficients(const Program& program) {
       });
 }
 
-// (x + y) + z = x + y + z and -(x - y) = y - x, where the inner sum is nobody else's.
+// (x + y) + z = x + y + z and -(x - y) = y - x, where the inner sum has no other user.
 bool flattens(const Operation& outer, Rational coef, const Operation& inner, int uses) {
   if (inner.kind != OpKind::sum || uses != 1) return false;
   if (abs(coef) != Rational(1) && inner.args.size() > 1) return false;  // 2 (x + y) is cheaper
@@ -132,7 +131,7 @@ Program flatten_sums(const Program& program) {
   return rewritten(
       program,
       [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
-        if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // nobody reads it
+        if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // never read
         if (op.kind != OpKind::sum) return std::nullopt;
         std::vector<int> args;
         std::vector<Rational> coefs;
@@ -152,8 +151,8 @@ Program flatten_sums(const Program& program) {
       });
 }
 
-// u + r = x_a - x_b where u = x_a - x_b - r: what was taken away and is added again costs an operation and digits.
-// The sum, and which of its terms is a sum as well.
+// u + r = x_a - x_b where u = x_a - x_b - r: adding again what was subtracted costs an operation and digits.
+// Returns the sum, and which of its terms is itself a sum.
 using Cancelling = std::pair<std::size_t, std::size_t>;
 std::optional<Cancelling> find_cancelling(const Program& program) {
   const std::vector<int> uses = use_counts(program);
@@ -204,10 +203,10 @@ Program exhaust(Program program, Pass pass) {
   return program;
 }
 
-// What an operation costs beside an addition; a division or root weighs as on current processors.
+// Cost in units of an addition; a division or root weighs as on current processors.
 int weight(const Count& c) { return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call; }
 
-// The cheapest that the passes find from here.
+// The cheapest program that the passes find from here.
 Program searched(const Program& program) {
   static constexpr Pass orders[][3] = {{share_factors, share_terms, take_out_factor},
                                        {take_out_factor, share_factors, share_terms},

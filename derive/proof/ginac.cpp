@@ -1,7 +1,5 @@
-// From expressions to GiNaC's, over either set of coordinates, and the chain rule over them.
+// Expressions to GiNaC's, over either set of coordinates, and the chain rule over them.
 #include "derive/proof/ginac.hpp"
-
-#include "derive/proof/ginac_functions.hpp"
 
 namespace cdot::derive {
 
@@ -50,11 +48,11 @@ EulerParameters<ex> rates_of(const EulerParameters<ex>& e, const ex& w_x, const 
   return product(EulerParameters<ex>{0, w_x / 2, w_y / 2, w_z / 2}, e);
 }
 
+}  // namespace
+
 ex derivative(const ex& e, const ex& symbol) {
   return is_a<GiNaC::symbol>(symbol) ? e.diff(ex_to<GiNaC::symbol>(symbol)) : 0;
 }
-
-}  // namespace
 
 EulerParameters<ex> Algebra::orientation(const std::string& name, int body) {
   const bool fresh = !leaves_.contains(name + "0");
@@ -104,7 +102,7 @@ ex Algebra::scalar_leaf(const Node& symbol) {
   }
 }
 
-// Components that are nobody's function, of length 1 where that is known.
+// A vector with independent components, of length 1 where that is known.
 Triple<ex> Algebra::free_vector(const Node& symbol) {
   const std::string last = joint_.dimension == 2 ? "_y" : "_z";
   const bool fresh = !leaves_.contains(symbol.symbol + "_x");
@@ -148,7 +146,7 @@ Triple<ex> Algebra::vector_leaf(const Node& symbol) {
   }
 }
 
-// What is fixed in a body, or in the world.
+// A vector fixed in a body or in the world.
 Triple<ex> Algebra::vector_of_body(const Node& symbol) {
   const bool rotated = symbol.role == Role::body_vector && route_ == Route::raw;
   const bool body_axis = symbol.symbol.starts_with("axis_");

@@ -1,5 +1,5 @@
-// GiNaC's view of a joint's expressions, and a decision whether one of them vanishes. Nothing that
-// includes this header hands GiNaC's text on: its order of terms changes from run to run.
+// A joint's expressions in GiNaC, and the zero-test. No includer may print GiNaC's own text: its order of terms changes
+// from run to run.
 #pragma once
 
 #include <optional>
@@ -25,7 +25,7 @@ class Algebra final : public Arithmetic<ex> {
 
   ex of(Expr scalar) { return evaluation_.scalar(scalar); }
   Triple<ex> of_vector(Expr vector) { return evaluation_.vector(vector); }
-  // Tells the zero test which sums of vectors its expressions are about.
+  // Introduces variables for the sums of vectors in `root`, which shortens the polynomials of the zero-test.
   void shorten(Expr root);
   // The coordinate and velocity symbols of a body: x, y, theta and v_x, v_y, w; in space x, y, z, e0, e1, e2, e3 and
   // v_x, ..., w_z.
@@ -33,24 +33,24 @@ class Algebra final : public Arithmetic<ex> {
   std::vector<ex> velocities(int body);
   // The derivative of e as the body moves along column k of J at unit rate.
   ex slope(const ex& e, int body, std::size_t k);
-  // d e/dt along the motion; the velocities count as constant.
+  // de/dt along the motion, at constant velocities.
   ex rate(const ex& e);
-  // Decides whether e vanishes wherever it is defined, given that unit vectors have length 1 and so on. Arithmetic
-  // modulo the prime decides; on top of it GiNaC proves what it can reduce to 0 as a polynomial within its budget.
+  // The zero-test: does e vanish wherever it is defined, under the relations of its symbols (unit vectors have length
+  // 1, and so on)? Arithmetic modulo the prime decides. GiNaC then proves each zero that it can reduce as a polynomial
+  // within its budget.
   enum class Zero {
     yes,    // by algebra
-    shown,  // too much for algebra, but zero at `exact_points` random points modulo a prime
+    shown,  // zero at `exact_points` random points modulo a prime; too expensive for algebra
     no,
     undecided
   };
   Zero is_zero(const ex& e);
   bool vanishes(const ex& e) { return is_zero(e) <= Zero::shown; }
-  // A pose at which it is not zero, in the joint's names, and how much it is there; empty if none was found.
+  // A pose at which e is not zero, in the joint's names, and its value there; empty if none was found.
   std::string witness(const ex& e);
-  // Reduced by the same relations: a numerator as a polynomial, zero where e is; the second one
-  // without what cancels.
-  std::optional<ex> numerator(const ex& e);
-  std::optional<ex> reduced_numerator(const ex& e);
+  // The numerator of e as a polynomial, reduced by the same relations; `cancelled`: without common factors. Empty if it
+  // exceeds the budget.
+  std::optional<ex> numerator(const ex& e, bool cancelled = false);
   ex other_coordinates(const ex& polynomial);
   // The factors of such a numerator, in the joint's names: "u_x", "ratio".
   std::vector<std::string> factors_of(const ex& polynomial) const;
@@ -63,11 +63,10 @@ class Algebra final : public Arithmetic<ex> {
   ex call(Fn fn, std::span<const ex> args) override;
 
  private:
-  // A symbol that stands for a compound, with the relation that it obeys; it may contain earlier
-  // ones.
+  // A symbol for a compound, with the relation that it obeys. The compound may contain earlier atoms.
   struct Atom {
     enum class Kind { square, inverse } kind;  // symbol^2 = operand; symbol operand = 1
-    GiNaC::realsymbol symbol;                  // kept as what it is: a copy as plain `symbol` would be another one
+    GiNaC::realsymbol symbol;                  // not `symbol`: a plain copy would be another symbol
     ex operand;
   };
   struct Leaf {
@@ -78,7 +77,7 @@ class Algebra final : public Arithmetic<ex> {
   ex leaf(const std::string& name, const ex& rate);
   Triple<ex> free_vector(const Node& symbol);
   Triple<ex> vector_of_body(const Node& symbol);
-  // Euler parameters that are nobody's function; of `body`, they turn with it.
+  // Independent Euler parameters; those of `body` rotate with it.
   EulerParameters<ex> orientation(const std::string& name, int body);
   bool moves(int body) const { return body >= 0 && body != immovable_; }
 
@@ -94,8 +93,8 @@ class Algebra final : public Arithmetic<ex> {
   std::string difference_at(const ex& e, std::uint64_t seed);
   Nullity nullity_of(const ex& e) const;
 
-  // What one test, and all tests together, may take, in factors of terms that are multiplied. Every
-  // test that is given up halves what the next may take: it is likely to be as long.
+  // Budgets of one test and of all tests together, in factors of multiplied terms. A test that exceeds its budget
+  // halves that of the next one, which is likely to be as expensive.
   static constexpr std::int64_t most_work = 500000, least_work = most_work / 64;
   static constexpr std::int64_t most_work_in_all = 6 * most_work;
   struct TooLong : std::runtime_error {
@@ -110,9 +109,8 @@ class Algebra final : public Arithmetic<ex> {
   ex expanded(const ex& e);
   ex square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square);
   ex inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand);
-  ex inverse_cancelled(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand);
-  ex reduced(const ex& polynomial);
-  ex without_inverses(const ex& polynomial);
+  ex without_common_factors(ex polynomial);
+  ex reduced(const ex& polynomial, bool without_inverses = false);
 
   const Joint& joint_;
   Route route_;
@@ -121,7 +119,7 @@ class Algebra final : public Arithmetic<ex> {
   std::vector<Atom> atoms_;
   std::vector<std::vector<ex>> units_;                   // symbols whose squares sum to 1
   GiNaC::exmap known_;                                   // symbols for compounds of which nothing is known
-  GiNaC::exmap atomised_;                                // what atomised() made of compounds, by their old variables
+  GiNaC::exmap atomised_;                                // results of atomised(), by compounds in old variables
   GiNaC::exmap inverses_;                                // by their operand in normal form
   std::vector<std::pair<ex, ex>> roots_;                 // operand -> symbol
   std::vector<std::pair<ex, std::array<ex, 2>>> turns_;  // angle -> (cos, sin)
@@ -132,7 +130,10 @@ class Algebra final : public Arithmetic<ex> {
   Evaluation<ex> evaluation_;
 };
 
-// e or -e, so that its first term by name is positive: what is zero where e is, in one form.
+// de/dsymbol. It is zero for the velocity of an immovable body, which is the number 0.
+ex derivative(const ex& e, const ex& symbol);
+
+// e or -e, whichever has a positive first term: one form of expressions with equal zeros.
 Expr with_leading_sign(Expr e);
 
 }  // namespace cdot::derive

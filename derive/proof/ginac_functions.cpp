@@ -13,7 +13,7 @@ struct Counterpart {
   ex (*call)(const ex* x);
 };
 
-// GiNaC makes |x| of the root of a square by itself; its root is a power.
+// A root is a power in GiNaC, so sqrt is not here. GiNaC itself turns the root of a square into |x|.
 const Counterpart counterparts[] = {
     {Fn::sin, sin_SERIAL::serial, [](const ex* x) -> ex { return sin(*x); }},
     {Fn::cos, cos_SERIAL::serial, [](const ex* x) -> ex { return cos(*x); }},

@@ -3,8 +3,6 @@
 #include <array>
 #include <cstdlib>
 
-#include "derive/proof/ginac_functions.hpp"
-
 namespace cdot::derive {
 
 namespace {

@@ -1,22 +1,22 @@
-// GiNaC's expressions at one random point modulo a prime: what decides, up to a vanishing
-// probability, where algebra would take too long, and what sorts terms in the same way on every run.
+// GiNaC's expressions at one random point modulo a prime. The values decide the zero-test, up to a vanishing
+// probability, and sort terms in the same way on every run.
 #pragma once
 
 #include <map>
 #include <vector>
 
 #include "derive/numbers/modular_point.hpp"
-#include "derive/proof/ginac_names.hpp"
+#include "derive/proof/ginac_functions.hpp"
 
 namespace cdot::derive {
 
 class PointValues {
  public:
-  // Only squares have roots, as among the reals; or everything has some value as its root.
+  // `of_squares`: only squares have roots, as among the reals. `of_all`: every number has some value as its root.
   enum class Roots { of_squares, of_all };
   PointValues(std::uint64_t seed, Roots roots) : point_(seed), roots_(roots) {}
 
-  // Small whole numbers, which angles have to be.
+  // Draws a small whole number, as angles require.
   void put(const ex& symbol) { values_[symbol] = Modular(point_.small()); }
   void put_direction(const std::vector<ex>& unit_vector);
 

@@ -1,5 +1,5 @@
-// Polynomials multiplied out and reduced by the relations of their symbols, with every product of
-// two terms counted: what would take too long is given up, at the same place on every machine.
+// Expands polynomials and reduces them by the relations of their symbols. Every product of two terms is counted: the
+// budget ends at the same place on every machine.
 #include <algorithm>
 
 #include "derive/proof/ginac.hpp"
@@ -10,7 +10,7 @@ namespace {
 
 std::size_t size_of(const ex& polynomial) { return is_a<GiNaC::add>(polynomial) ? polynomial.nops() : 1; }
 
-// How many powers of symbols all terms together have, and one more for each term.
+// The number of powers of symbols in all terms, plus one for each term.
 std::size_t weight_of(const ex& polynomial) {
   const auto weight = [](const ex& term) {
     if (!is_a<GiNaC::mul>(term)) return std::size_t{2};
@@ -26,7 +26,7 @@ std::size_t weight_of(const ex& polynomial) {
 
 void Algebra::spend(std::size_t work) {
   const auto count = static_cast<std::int64_t>(work);
-  if (count > left_for_test_) {  // all of it is gone, wherever in the sum this happened to come up
+  if (count > left_for_test_) {  // the rest counts as spent: at which term it ends depends on the run
     left_in_all_ -= left_for_test_;
     left_for_test_ = 0;
     allowance_ = std::max(allowance_ / 2, least_work);
@@ -36,8 +36,8 @@ void Algebra::spend(std::size_t work) {
   left_in_all_ -= count;
 }
 
-// The operands of a sum or product in an order that does not depend on the run, as GiNaC's does; nor
-// does the sign of a factor, (x - y) or (y - x), count.
+// The operands of a sum or product in the same order on every run, unlike GiNaC's. The sign of a factor, (x - y) or (y
+// - x), does not count.
 GiNaC::exvector Algebra::ordered(const ex& e) {
   std::vector<std::pair<std::int64_t, ex>> keyed;
   for (const ex& part : e) keyed.emplace_back(std::abs(fingerprint(part).centred()), part);
@@ -57,7 +57,7 @@ GiNaC::realsymbol Algebra::fresh_symbol(const std::string& name) {
   return symbol;
 }
 
-// a * b, both multiplied out already.
+// a * b, both expanded already.
 ex Algebra::multiplied(const ex& a, const ex& b) {
   spend(size_of(a) * weight_of(b) + weight_of(a) * size_of(b));
   return (a * b).expand();
@@ -70,7 +70,7 @@ ex Algebra::raised(const ex& polynomial, int exponent) {
   return result;
 }
 
-// What GiNaC's expand() gives.
+// The result of GiNaC's expand(), within the budget.
 ex Algebra::expanded(const ex& e) {
   if (e.info(GiNaC::info_flags::expanded)) {
     if (is_a<GiNaC::add>(e)) spend(weight_of(e));  // as without GiNaC's mark, which may be missing
@@ -98,8 +98,7 @@ ex Algebra::expanded(const ex& e) {
   return result.expand();
 }
 
-// Powers of `symbol` from two on are replaced by means of symbol^2 = square. The polynomial must be
-// expanded.
+// Reduces powers of `symbol` by symbol^2 = square. The polynomial must be expanded.
 ex Algebra::square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, const ex& square) {
   const int degree = polynomial.degree(symbol);
   if (degree < 2) return polynomial;
@@ -111,7 +110,7 @@ ex Algebra::square_reduced(const ex& polynomial, const GiNaC::symbol& symbol, co
   return expanded(out);
 }
 
-// The numerator over the power of `operand` that symbol = 1/operand needs.
+// The numerator over the power of `operand` that removes symbol = 1/operand.
 ex Algebra::inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
   const int degree = polynomial.degree(symbol);
   if (degree < 1) return polynomial;
@@ -123,38 +122,30 @@ ex Algebra::inverse_removed(const ex& polynomial, const GiNaC::symbol& symbol, c
   return expanded(out);
 }
 
-// Where the terms with symbol = 1/operand are multiples of the operand, both go.
-ex Algebra::inverse_cancelled(const ex& polynomial, const GiNaC::symbol& symbol, const ex& operand) {
-  ex out = polynomial;
-  for (int k = polynomial.degree(symbol); k > 0; --k) {
-    ex quotient;
-    const ex factor = out.coeff(symbol, k);
-    spend(weight_of(out) + size_of(factor) * weight_of(operand));
-    if (factor.is_zero() || !divide(factor, operand, quotient)) continue;
-    out = expanded(out - factor * pow(symbol, k) + quotient * pow(symbol, k - 1));
+// Cancels symbol = 1/operand against multiples of the operand.
+ex Algebra::without_common_factors(ex p) {
+  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
+    for (int k = atom->kind == Atom::Kind::inverse ? p.degree(atom->symbol) : 0; k > 0; --k) {
+      ex quotient;
+      const ex factor = p.coeff(atom->symbol, k);
+      spend(weight_of(p) + size_of(factor) * weight_of(atom->operand));
+      if (factor.is_zero() || !divide(factor, atom->operand, quotient)) continue;
+      p = expanded(p - factor * pow(atom->symbol, k) + quotient * pow(atom->symbol, k - 1));
+    }
   }
-  return out;
+  return p;
 }
 
-ex Algebra::reduced(const ex& polynomial) {
+ex Algebra::reduced(const ex& polynomial, bool without_inverses) {
   ex p = expanded(polynomial);
   for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
     if (atom->kind == Atom::Kind::square) p = square_reduced(p, atom->symbol, atom->operand);
+    else if (without_inverses) p = inverse_removed(p, atom->symbol, atom->operand);
   }
   return p;
 }
 
-ex Algebra::without_inverses(const ex& polynomial) {
-  ex p = expanded(polynomial);
-  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    p = atom->kind == Atom::Kind::square ? square_reduced(p, atom->symbol, atom->operand)
-                                         : inverse_removed(p, atom->symbol, atom->operand);
-  }
-  return p;
-}
-
-// The same polynomial by the other of two coordinates on a circle: t^2 = 1 - s^2 where s^2 = 1 -
-// t^2 was used.
+// The same polynomial in the other of two coordinates on a circle: t^2 = 1 - s^2 in place of s^2 = 1 - t^2.
 ex Algebra::other_coordinates(const ex& polynomial) try {
   ex p = polynomial;
   for (const Atom& atom : atoms_) {

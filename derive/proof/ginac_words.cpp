@@ -1,10 +1,8 @@
-// GiNaC's polynomials as text, in an order that depends on names only: they become our own
-// expressions first.
+// GiNaC's polynomials as text, in an order that depends on names only: they become our own expressions first.
 #include <algorithm>
 #include <set>
 
 #include "derive/proof/ginac.hpp"
-#include "derive/proof/ginac_functions.hpp"
 
 namespace cdot::derive {
 

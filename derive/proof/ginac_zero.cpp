@@ -1,6 +1,5 @@
-// The decision whether something vanishes: compounds (roots, quotients, sines) become symbols with
-// the relation that they obey; a polynomial in symbols is reduced by the relations, last symbol
-// first.
+// The zero-test. Compounds (roots, quotients, sines) become symbols with the relations that they obey. The relations
+// reduce a polynomial in the symbols, last symbol first.
 #include <algorithm>
 #include <fmt/format.h>
 #include <stdexcept>
@@ -11,7 +10,7 @@ namespace cdot::derive {
 
 namespace {
 
-constexpr int digits = 80;       // of the numbers that decide what algebra does not
+constexpr int digits = 80;       // of the decimals that decide where algebra does not
 constexpr int random_poses = 6;  // at which they are taken
 
 ex random_fraction(Random& random) { return numeric(static_cast<long>(random.bits() % 2001) - 1000) / numeric(487); }
@@ -40,7 +39,7 @@ ex numeric_factor(const ex& term) {
 
 }  // namespace
 
-// A symbol for a compound about which nothing is known but its name.
+// A symbol for a compound without known relations.
 ex Algebra::symbol_for(const ex& compound) {
   const auto found = known_.find(compound);
   if (found != known_.end()) return found->second;
@@ -50,7 +49,7 @@ ex Algebra::symbol_for(const ex& compound) {
   return symbol;
 }
 
-// After the change of variables, which is made at the leaves: what occurs many times is walked once.
+// The change of variables is made at the leaves, and each compound is converted once.
 ex Algebra::atomised(const ex& e) {
   if (is_a<numeric>(e)) return e;
   if (is_a<GiNaC::symbol>(e)) {
@@ -129,7 +128,7 @@ ex Algebra::root_of(const ex& base) {
     if (other.is_equal(operand)) return symbol;
   }
   for (const auto& [other, symbol] : roots_) {
-    if (without_inverses(operand - other).is_zero()) return symbol;
+    if (reduced(operand - other, true).is_zero()) return symbol;
   }
   const GiNaC::realsymbol symbol = fresh_symbol();
   atoms_.push_back({Atom::Kind::square, symbol, operand});
@@ -138,8 +137,7 @@ ex Algebra::root_of(const ex& base) {
   return symbol;
 }
 
-// cos or sin of an angle, of a sum of angles by the addition theorems; c^2 + s^2 = 1 for the angle
-// of each term.
+// cos or sin of an angle; of a sum of angles by the addition theorems. c^2 + s^2 = 1 for the angle of each term.
 ex Algebra::turned(bool cosine, const ex& angle) {
   const ex angle_sum = reduced(angle);
   ex c = 1, s = 0;
@@ -175,19 +173,8 @@ ex Algebra::turned(bool cosine, const ex& angle) {
   return reduced(cosine ? c : s);
 }
 
-std::optional<ex> Algebra::reduced_numerator(const ex& e) try {
-  left_for_test_ = std::min(allowance_, left_in_all_);
-  ex p = reduced(atomised(e));
-  for (auto atom = atoms_.rbegin(); atom != atoms_.rend(); ++atom) {
-    if (atom->kind == Atom::Kind::inverse) p = inverse_cancelled(p, atom->symbol, atom->operand);
-  }
-  return without_inverses(p);
-} catch (const std::exception&) {
-  return std::nullopt;
-}
-
-// A change of variables that keeps polynomials short: where the joint speaks of u = x_a + ra - x_b
-// - rb, u takes the place of x_a, so that |u|^2 has two terms and not twenty.
+// A change of variables shortens polynomials: for u = x_a + ra - x_b - rb in the joint, u replaces x_a. Then |u|^2 has
+// two terms, not twenty.
 void Algebra::shorten(Expr root) {
   for (const Expr u : topological(std::span(&root, 1))) {
     if (!u->vector || u->kind != Kind::sum) continue;
@@ -206,8 +193,8 @@ void Algebra::shorten(Expr root) {
   }
 }
 
-// Makes `compound` a variable in place of x, if it contains x times a number. A variable without a
-// name is not shown.
+// Makes `compound` a variable in place of x, if it contains x times a number. Messages do not show a variable without a
+// name.
 bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) {
   if (change_.contains(x)) return false;
   const ex now = compound.subs(change_, GiNaC::subs_options::no_pattern).expand();
@@ -224,16 +211,17 @@ bool Algebra::replace(const ex& x, const ex& compound, const std::string& name) 
   return true;
 }
 
-std::optional<ex> Algebra::numerator(const ex& e) try {
+std::optional<ex> Algebra::numerator(const ex& e, bool cancelled) try {
   left_for_test_ = std::min(allowance_, left_in_all_);
-  return without_inverses(atomised(e));
+  ex p = atomised(e);
+  if (cancelled) p = without_common_factors(reduced(p));
+  return reduced(p, true);
 } catch (const std::exception&) {  // too long; or GiNaC's own complaints, say of a pole
   return std::nullopt;
 }
 
-// Signs, logarithms and angles have their values among the reals only, which are ordered: long decimals, at a random
-// rational pose, decide where arithmetic modulo the prime does not; and a reader can follow them. Empty if e is zero or
-// undefined there.
+// Signs, logarithms and angles need the order of the reals. So long decimals at a random rational pose decide where
+// arithmetic modulo the prime does not; a reader can check them. Empty if e is zero or undefined there.
 std::string Algebra::difference_at(const ex& e, std::uint64_t seed) try {
   Random random(seed);
   GiNaC::exmap pose;

@@ -1,16 +1,15 @@
-#include "derive/proof/momentum.hpp"
-
+// The law of momentum, and which terms of a row break it.
 #include <algorithm>
 #include <bit>
 #include <set>
 
+#include "derive/proof/laws.hpp"
 #include "derive/proof/words.hpp"
 
 namespace cdot::derive {
 namespace {
 
-// What a row of J makes of all bodies moving as one: of a unit velocity, and of a unit spin about
-// the origin.
+// A row of J times a common motion of all bodies: a unit velocity, and a unit spin about the origin.
 struct Felt {
   Expr translation;  // sum of J_v, a vector
   Expr rotation;     // sum of J_w + x cross J_v, since v = w cross x; in space a vector
@@ -25,8 +24,8 @@ Felt felt_by(const std::vector<JacobianEntry>& J, const Joint& joint) {
   return felt;
 }
 
-// Where C = 0, a centre of mass that stands in C with a number as its factor is a function of
-// everything else: substituting it is how `pa = pb` says that the two points are one.
+// Where C = 0, a centre of mass with a numeric factor in C is a function of the other variables. Substituting it
+// applies `pa = pb`.
 GiNaC::exmap on_the_constraint(const Joint& joint, Algebra& names) {
   GiNaC::exmap solved;
   const auto put = [&](const ex& C) {
@@ -68,8 +67,8 @@ class Momentum {
   }
   bool translation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.translation)); }
   bool rotation_vanishes(const Felt& felt) { return all_vanish(components_of(felt.rotation)); }
-  // A vector C that turns with the bodies, dC/dt = w x C, is felt by its components along the axes e
-  // of the world, e . (w x C) = w . (C x e), and that only where C is not zero.
+  // A vector C that rotates with the bodies has dC/dt = w x C. Its components along world axes e change by e . (w x C)
+  // = w . (C x e), which vanishes where C = 0.
   bool turns_with_the_bodies(const ScalarRow& row, const Felt& felt) {
     if (row.component < 0 || row.kind != RowKind::equality) return false;
     const Expr axis = world_axes(*joint_.pool)[static_cast<std::size_t>(row.component)];
@@ -82,7 +81,7 @@ class Momentum {
   bool only_on_constraint() const { return only_on_constraint_; }
   bool proved() const { return proved_; }
 
-  // The fewest terms of a row whose removal leaves nothing to feel.
+  // The fewest terms of a row without which a common motion no longer changes it.
   std::vector<Expr> breaking_terms(const std::vector<Expr>& terms, const std::vector<Felt>& felt_by_term) {
     constexpr std::size_t most_terms = 8;
     if (terms.size() > most_terms) return terms;
@@ -133,7 +132,7 @@ std::vector<Expr> terms_of_row(const ScalarRow& row, Expr written) {
   return terms;
 }
 
-// How the author may have written what a common motion changes in these terms.
+// Spellings in the spec of the quantities in these terms that a common motion changes.
 std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joint, bool rotation) {
   std::set<std::string> words;
   const std::vector<Expr> leaves = leaves_of(terms);
@@ -159,23 +158,18 @@ std::set<std::string> spellings(const std::vector<Expr>& terms, const Joint& joi
   return words;
 }
 
-std::vector<Span> spans_of(const std::vector<Expr>& terms, const Joint& joint, Span where, bool rotation) {
-  if (!joint.file) return {};
-  return occurrences(*joint.file, where, spellings(terms, joint, rotation));
-}
-
 std::string sentence(const ScalarRow& row, const Felt& felt, bool rotation, const Joint& joint) {
   const char* const changes = row.kind == RowKind::velocity ? " gives " : " changes C by ";
   if (rotation) {
-    return "angular momentum is not conserved: " + row.name + " resists turning all bodies " + "together, which" +
-           changes + said(felt.rotation, joint) + " per radian";
+    return "angular momentum is not conserved: " + row.name + " resists a common rotation of all bodies, which" +
+           changes + spec_text(felt.rotation, joint) + " per radian";
   }
-  return "momentum is not conserved: " + row.name + " resists moving all bodies together, which" + changes +
-         said(felt.translation, joint) + " per metre";
+  return "momentum is not conserved: " + row.name + " resists a common translation of all bodies, which" + changes +
+         spec_text(felt.translation, joint) + " per metre";
 }
 
-Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt, bool rotation,
-           Momentum& momentum) {
+void fail(Law& law, const Joint& joint, const Block& block, const ScalarRow& row, const Felt& felt, bool rotation,
+          Momentum& momentum) {
   Expr written;
   Span where;
   for (const Coordinate& c : joint.coordinates) {
@@ -189,35 +183,31 @@ Law broken(const Joint& joint, const Block& block, const ScalarRow& row, const F
     felt_by_term.push_back(felt_by(isolate_velocities(velocity ? term : time_derivative(term, joint), joint), joint));
   }
   const std::vector<Expr> guilty = momentum.breaking_terms(terms, felt_by_term);
-  Law law{LawId::momentum, Verdict::fails, {}, {}, row.row, {}};
+  law.verdict = Verdict::fails;
+  law.row = row.row;
   law.text = sentence(row, felt, rotation, joint);
   std::vector<std::string> parts;
-  for (const Expr term : guilty) parts.push_back(said(term, joint));
-  if (terms.size() > 1) law.text += "; it is the doing of " + listed(parts);
-  law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is "
-                       "fixed in the world"
+  for (const Expr term : guilty) parts.push_back(spec_text(term, joint));
+  if (terms.size() > 1) law.text += "; the cause is " + listed(parts);
+  law.fix = rotation ? "use angles and directions of bodies relative to each other, or say what is fixed in the world"
                      : "use differences of points, or say which point is fixed in the world";
-  law.parts = spans_of(guilty, joint, where, rotation);
-  return law;
+  if (joint.file) law.parts = occurrences(*joint.file, where, spellings(guilty, joint, rotation));
 }
 
 }  // namespace
 
-Law conserves_momentum(const Joint& joint, const Block& block, Algebra& names) {
-  Law law{LawId::momentum, Verdict::does_not_apply, {}, {}, nullptr, {}};
-  if (joint.uses_world || block.immovable >= 0) return law;
+void conserves_momentum(Law& law, const Joint& joint, const Block& block, Algebra& names) {
+  law.verdict = Verdict::does_not_apply;
+  if (joint.uses_world || block.immovable >= 0) return;
   Momentum momentum(joint, names);
   for (const ScalarRow& row : block.rows) {
     const Felt felt = felt_by(row.J, joint);
-    if (!momentum.translation_vanishes(felt)) {
-      return broken(joint, block, row, felt, false, momentum);
-    }
+    if (!momentum.translation_vanishes(felt)) return fail(law, joint, block, row, felt, false, momentum);
     if (!momentum.turns_with_the_bodies(row, felt) && !momentum.rotation_vanishes(felt))
-      return broken(joint, block, row, felt, true, momentum);
+      return fail(law, joint, block, row, felt, true, momentum);
   }
   law.verdict = momentum.proved() ? Verdict::holds : Verdict::shown;
   if (momentum.only_on_constraint()) law.text = "where C = 0";
-  return law;
 }
 
 }  // namespace cdot::derive

@@ -1,14 +1,10 @@
-// The laws, one function each: what is derived, and what GiNaC makes of the same C, must differ by
-// nothing.
+// The laws, one function each: the derivation and GiNaC's result from the same C must be equal.
 #include "derive/proof/prove.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 
-#include "derive/proof/ginac.hpp"
-#include "derive/proof/momentum.hpp"
-#include "derive/proof/rank.hpp"
-#include "derive/proof/specialised.hpp"
+#include "derive/proof/laws.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -34,82 +30,37 @@ class Prover {
     }
   }
 
-  Proof run() {
-    Proof proof;
-    for (int i = 0; i < number_of_laws; ++i) {
-      law_ = Law{};
-      law_.id = static_cast<LawId>(i);
-      try {
-        check(law_.id);
-      } catch (const std::exception&) {  // GiNaC's text is not for the user
-        law_.verdict = Verdict::undecided;
-        law_.text = "the formulas are undefined somewhere on the way";
-      }
-      proof.laws.push_back(law_);
-    }
-    return proof;
-  }
+  Proof run();
 
- private:
-  void check(LawId id) {
-    switch (id) {
-      case LawId::rate: return rate();
-      case LawId::linear: return linear();
-      case LawId::jacobian: return jacobian();
-      case LawId::raw: return raw();
-      case LawId::mass: return mass();
-      case LawId::gamma: return gamma();
-      case LawId::stiffness: return stiffness();
-      case LawId::forms: return forms();
-      case LawId::momentum: law_ = conserves_momentum(joint_, block_, names_); return;
-      case LawId::rank: law_ = rows_are_independent(block_); return;
-      default: return;
-    }
-  }
-
-  // difference = 0, else the law fails at `where`; the first failure is the one that is told.
-  void require_zero(Algebra& algebra, const ex& difference, const ScalarRow& row, const std::string& where) {
-    if (law_.verdict == Verdict::fails) return;
-    const Algebra::Zero zero = algebra.is_zero(difference);
-    if (zero == Algebra::Zero::yes) return;
-    if (zero == Algebra::Zero::shown) {
-      if (law_.verdict == Verdict::holds) law_.verdict = Verdict::shown;
-      return;
-    }
-    law_.row = row.row;
-    const bool differs = zero == Algebra::Zero::no;
-    law_.verdict = differs ? Verdict::fails : Verdict::undecided;
-    law_.text = row.name + where +
-                (differs ? ", for instance " + algebra.witness(difference)
-                         : ": equal to 60 digits at random poses, but not proved");
-  }
+  void momentum(Law& law) { conserves_momentum(law, joint_, block_, names_); }
+  void rank(Law& law) { rows_are_independent(law, block_); }
 
   bool movable(std::size_t body) const { return static_cast<int>(body) != block_.immovable; }
 
-  void rate() {
-    law_.verdict = Verdict::does_not_apply;
+  void rate(Law& law) {
+    law.verdict = Verdict::does_not_apply;
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const ScalarRow& row = block_.rows[i];
       if (row.kind == RowKind::velocity) continue;
-      if (law_.verdict == Verdict::does_not_apply) law_.verdict = Verdict::holds;
-      require_zero(names_, names_.of(row.Cdot) - Cdot_[i], row, ": Cdot is not the time derivative of C");
+      if (law.verdict == Verdict::does_not_apply) law.verdict = Verdict::holds;
+      require_zero(law, names_, names_.of(row.Cdot) - Cdot_[i], row, ": Cdot is not the time derivative of C");
     }
   }
 
   // d2 Cdot / dv_i dv_j = 0
-  void linear() {
+  void linear(Law& law) {
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const std::vector<ex> v = velocities(names_);
       for (std::size_t j = 0; j < v.size(); ++j) {
         const ex slope = derivative(Cdot_[i], v[j]);
         for (std::size_t k = 0; k <= j; ++k) {
-          require_zero(names_, derivative(slope, v[k]), block_.rows[i], ": Cdot is not linear in the velocities");
+          require_zero(law, names_, derivative(slope, v[k]), block_.rows[i], ": Cdot is not linear in the velocities");
         }
       }
     }
   }
 
-  void jacobian() {
+  void jacobian(Law& law) {
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const ScalarRow& row = block_.rows[i];
       ex Jv = names_.of(row.C_t);
@@ -118,12 +69,12 @@ class Prover {
         const auto J = entries(names_, row.J[b]);
         for (std::size_t k = 0; k < J.size(); ++k) Jv += J[k] * v[k];
       }
-      require_zero(names_, Jv - Cdot_[i], row, ": J v + dC/dt is not Cdot");
+      require_zero(law, names_, Jv - Cdot_[i], row, ": J v + dC/dt is not Cdot");
     }
   }
 
   // Columns of J against the slopes of C as each body moves and turns, or at velocity level against dCdot/dv.
-  void raw() {
+  void raw(Law& law) {
     for (const ScalarRow& row : block_.rows) {
       const bool position = row.kind != RowKind::velocity;
       const ex source = raw_.of(position ? row.C : row.Cdot);
@@ -132,20 +83,20 @@ class Prover {
         const auto v = raw_.velocities(static_cast<int>(b));
         for (std::size_t k = 0; k < J.size(); ++k) {
           const ex expected = position ? raw_.slope(source, static_cast<int>(b), k) : derivative(source, v[k]);
-          require_zero(raw_, J[k] - expected, row, ", column " + column(b, k) + ": J is not the derivative of C");
+          require_zero(law, raw_, J[k] - expected, row, ", column " + column(b, k) + ": J is not the derivative of C");
         }
       }
     }
   }
 
-  // Each entry against row i of J times M^-1 times row j of J, and the other way round.
-  void mass() {
+  // K(i, j) = J_i M^-1 J_j^T, and the same with i and j exchanged.
+  void mass(Law& law) {
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
         const std::string where = ": K(" + std::to_string(i + 1) + "," + std::to_string(j + 1) + ") is not J M^-1 J^T";
         const ex K = names_.of(block_.K[i][j]);
-        require_zero(names_, K - product(i, j), block_.rows[i], where);
-        if (i != j) require_zero(names_, K - product(j, i), block_.rows[i], where);
+        require_zero(law, names_, K - product(i, j), block_.rows[i], where);
+        if (i != j) require_zero(law, names_, K - product(j, i), block_.rows[i], where);
       }
     }
   }
@@ -173,28 +124,28 @@ class Prover {
     return names_.of(joint_.dimension == 2 ? inv_I : tensor_component(inv_I, k, l));
   }
 
-  void gamma() {
-    if (block_.immovable >= 0) law_.verdict = Verdict::does_not_apply;
+  void gamma(Law& law) {
+    if (block_.immovable >= 0) law.verdict = Verdict::does_not_apply;
     for (std::size_t i = 0; i < block_.rows.size(); ++i) {
       const ScalarRow& row = block_.rows[i];
       for (const Expr gamma : {row.gamma, row.gamma_by_entries}) {
         if (!gamma) continue;
-        require_zero(names_, names_.of(gamma) + names_.rate(Cdot_[i]), row,
+        require_zero(law, names_, names_.of(gamma) + names_.rate(Cdot_[i]), row,
                      ": gamma is not minus the second time derivative of C without accelerations");
       }
     }
   }
 
   // d(J^T lambda)/dq, J^T lambda being the gradient of lambda . C where there is a C.
-  void stiffness() {
-    if (block_.stiffness.empty()) law_.verdict = Verdict::does_not_apply;
+  void stiffness(Law& law) {
+    if (block_.stiffness.empty()) law.verdict = Verdict::does_not_apply;
     const std::size_t width = columns_per_body(joint_.dimension);
     for (std::size_t row = 0; row < block_.stiffness.size(); ++row) {
       const ex force = generalised_force(row / width, row % width);
       for (std::size_t c = 0; c < block_.stiffness.size(); ++c) {
         const ex H = raw_.of(block_.stiffness[row][c]);
         const ex expected = movable(row / width) ? raw_.slope(force, static_cast<int>(c / width), c % width) : ex(0);
-        require_zero(raw_, H - expected, block_.rows.front(),
+        require_zero(law, raw_, H - expected, block_.rows.front(),
                      ", entry (" + column(row / width, row % width) + ", " + column(c / width, c % width) +
                          "): the geometric stiffness is not d(J^T lambda)/dq");
       }
@@ -213,21 +164,21 @@ class Prover {
     return force;
   }
 
-  // Along body axes, de/dt = 1/2 e (0, w'), and along the Euler parameters themselves, by GiNaC from C in raw
-  // coordinates: a route that knows nothing of w. With dC/de = J_c + (dC/de . e) e^T.
-  void forms() {
-    law_.verdict = Verdict::does_not_apply;
+  // Derivatives along body axes, de/dt = 1/2 e (0, w'), and along the Euler parameters themselves. GiNaC takes them
+  // from C in raw coordinates, a route without w. dC/de = J_c + (dC/de . e) e^T.
+  void forms(Law& law) {
+    law.verdict = Verdict::does_not_apply;
     if (joint_.dimension == 2) return;
     for (const ScalarRow& row : block_.rows) {
       if (row.kind == RowKind::velocity) continue;
-      if (law_.verdict == Verdict::does_not_apply) law_.verdict = Verdict::holds;
+      if (law.verdict == Verdict::does_not_apply) law.verdict = Verdict::holds;
       for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
-        if (movable(b)) forms_of(row, static_cast<int>(b));
+        if (movable(b)) forms_of(law, row, static_cast<int>(b));
       }
     }
   }
 
-  void forms_of(const ScalarRow& row, int b) {
+  void forms_of(Law& law, const ScalarRow& row, int b) {
     const auto J = entries(raw_, row.J[static_cast<std::size_t>(b)]);
     const std::vector<ex> q = raw_.coordinates(b);
     const EulerParameters<ex> e = {q[3], q[4], q[5], q[6]}, conjugate = {e[0], -e[1], -e[2], -e[3]};
@@ -242,25 +193,22 @@ class Prover {
       const EulerParameters<ex> rate = cdot::derive::product(e, turn);
       ex expected = 0;
       for (std::size_t m = 0; m < 4; ++m) expected += slope[m] * rate[m];
-      require_zero(raw_, inner_product(J_w, A[k]) - expected, row,
+      require_zero(law, raw_, inner_product(J_w, A[k]) - expected, row,
                    ", column w'_" + joint_.bodies[static_cast<std::size_t>(b)] + "." + "xyz"[k] +
                        ": J diag(E, A) is not the derivative of C along the body's axes");
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      // Column k of 2 G: the w that de_k/dt = 1 alone would be.
+      // Column k of 2 G: the w of de_k/dt = 1 alone.
       EulerParameters<ex> unit = {0, 0, 0, 0};
       unit[k] = 2;
       const EulerParameters<ex> w = cdot::derive::product(unit, conjugate);
-      require_zero(raw_, inner_product(J_w, Triple<ex>{w[1], w[2], w[3]}) - (slope[k] - along * e[k]), row,
+      require_zero(law, raw_, inner_product(J_w, Triple<ex>{w[1], w[2], w[3]}) - (slope[k] - along * e[k]), row,
                    ", column e" + std::to_string(k) + " of " + joint_.bodies[static_cast<std::size_t>(b)] +
                        ": J diag(E, 2 G) is not dC/de - (dC/de . e) e^T");
     }
   }
 
-  static ex derivative(const ex& e, const ex& symbol) {
-    return is_a<GiNaC::symbol>(symbol) ? e.diff(ex_to<GiNaC::symbol>(symbol)) : 0;
-  }
-
+ private:
   std::vector<ex> velocities(Algebra& algebra) const {
     std::vector<ex> all;
     for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
@@ -286,35 +234,70 @@ class Prover {
   const Block& block_;
   Algebra names_, raw_;
   std::vector<ex> Cdot_;  // by GiNaC
-  Law law_;
 };
 
 // clang-format off
-const struct { std::string_view word, name; } law_texts[] = {  // in the order of LawId
-    {"rate",      "Cdot is the time derivative of C"},
-    {"linear",    "Cdot is linear in v"},
-    {"jacobian",  "J v + dC/dt = Cdot"},
-    {"raw",       "J agrees with C in raw coordinates"},
-    {"mass",      "K is symmetric and J M^-1 J^T"},
-    {"gamma",     "gamma = -Jdot v - d/dt dC/dt"},
-    {"stiffness", "the geometric stiffness is the Hessian of lambda . C"},
-    {"forms",     "J_b = J diag(E, A) and J_c = J diag(E, 2 G) are derivatives of C"},
-    {"momentum",  "momentum is conserved"},
-    {"rank",      "the rows are independent"},
+const struct {
+  std::string_view word, name;
+  void (Prover::*prove)(Law&) = nullptr;  // null: of what is specialised from a block
+} laws[] = {  // in the order of LawId
+    {"rate",      "Cdot is the time derivative of C",                                  &Prover::rate},
+    {"linear",    "Cdot is linear in v",                                               &Prover::linear},
+    {"jacobian",  "J v + dC/dt = Cdot",                                                &Prover::jacobian},
+    {"raw",       "J agrees with C in raw coordinates",                                &Prover::raw},
+    {"mass",      "K is symmetric and J M^-1 J^T",                                     &Prover::mass},
+    {"gamma",     "gamma = -Jdot v - d/dt dC/dt",                                      &Prover::gamma},
+    {"stiffness", "the geometric stiffness is the Hessian of lambda . C",              &Prover::stiffness},
+    {"forms",     "J_b = J diag(E, A) and J_c = J diag(E, 2 G) are derivatives of C",  &Prover::forms},
+    {"momentum",  "momentum is conserved",                                             &Prover::momentum},
+    {"rank",      "the rows are independent",                                          &Prover::rank},
     {"immovable", "a body made immovable only loses its own terms"},
     {"isotropic", "K of isotropic bodies is K"},
 };
 // clang-format on
 
+Proof Prover::run() {
+  Proof proof;
+  for (int i = 0; i < number_of_laws; ++i) {
+    proof.laws.push_back(judged(static_cast<LawId>(i), [&](Law& law) { (this->*laws[i].prove)(law); }));
+  }
+  return proof;
+}
+
 }  // namespace
 
-std::string_view word_of(LawId id) { return law_texts[static_cast<std::size_t>(id)].word; }
-std::string_view name_of(LawId id) { return law_texts[static_cast<std::size_t>(id)].name; }
+Law judged(LawId id, const std::function<void(Law&)>& check) {
+  Law law;
+  law.id = id;
+  try {
+    check(law);
+  } catch (const std::exception&) {
+    law.verdict = Verdict::undecided;
+    law.text = "an intermediate formula is undefined";
+  }
+  return law;
+}
+
+void require_zero(Law& law, Algebra& algebra, const ex& difference, const ScalarRow& row, const std::string& where) {
+  if (law.verdict == Verdict::fails) return;
+  const Algebra::Zero zero = algebra.is_zero(difference);
+  if (zero == Algebra::Zero::shown && law.verdict == Verdict::holds) law.verdict = Verdict::shown;
+  if (zero <= Algebra::Zero::shown) return;
+  law.row = row.row;
+  const bool differs = zero == Algebra::Zero::no;
+  law.verdict = differs ? Verdict::fails : Verdict::undecided;
+  law.text = row.name + where +
+             (differs ? ", for instance " + algebra.witness(difference)
+                      : ": equal to 60 digits at random poses, but not proved");
+}
+
+std::string_view word_of(LawId id) { return laws[static_cast<std::size_t>(id)].word; }
+std::string_view name_of(LawId id) { return laws[static_cast<std::size_t>(id)].name; }
 
 std::optional<LawId> law_of(std::string_view word) {
-  const auto found = std::find_if(std::begin(law_texts), std::end(law_texts), [&](auto& t) { return t.word == word; });
-  if (found == std::end(law_texts)) return std::nullopt;
-  return static_cast<LawId>(found - std::begin(law_texts));
+  const auto found = std::find_if(std::begin(laws), std::end(laws), [&](auto& t) { return t.word == word; });
+  if (found == std::end(laws)) return std::nullopt;
+  return static_cast<LawId>(found - std::begin(laws));
 }
 
 std::string_view name_of(Verdict v) {

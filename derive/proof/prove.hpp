@@ -1,5 +1,4 @@
-// The laws that every derivation has to obey, proved by GiNaC and exactly, independently of our own
-// derivative.
+// The laws of every derivation, proved by GiNaC or by exact arithmetic, independently of our own derivative.
 #pragma once
 
 #include <optional>
@@ -13,7 +12,7 @@ namespace cdot::derive {
 
 enum class Verdict {
   holds,
-  shown,  // too much for algebra; true at `exact_points` random points modulo a prime
+  shown,  // true at `exact_points` random points modulo a prime; too expensive for algebra
   fails,
   undecided,      // algebra does not decide; numbers agree to 60 digits at several poses
   does_not_apply  // no C at velocity level, a joint with the world, ...
@@ -28,9 +27,9 @@ enum class LawId {
   gamma,      // gamma = -Jdot v - d/dt dC/dt
   stiffness,  // the geometric stiffness is the Hessian of lambda . C in raw coordinates
   forms,      // in space: J by body-local spins and by Euler parameters is the derivative of C along them
-  momentum,   // a joint without the world is not felt by a common motion of all bodies
-  rank,       // as many independent rows as are written
-  // Of what is specialised from a block that obeys these:
+  momentum,   // a common motion of all bodies does not change a joint without the world
+  rank,       // no row is redundant
+  // Of blocks specialised from one that obeys these:
   immovable,  // each variant is the block with that body's velocity and inverse mass zero
   isotropic   // in space: K for numbers as inertias is K for tensors that are such a number times E
 };
@@ -39,9 +38,9 @@ inline constexpr int number_of_laws = 10;  // of a block by itself
 struct Law {
   LawId id = LawId::rate;
   Verdict verdict = Verdict::holds;
-  std::string text;          // what fails, and where it can be seen; empty if the law holds
-  std::string fix;           // what the author may do about it; empty if it is no matter of the spec
-  const Row* row = nullptr;  // that breaks it, if it is a row's doing
+  std::string text;          // the failure, with an example; empty if the law holds
+  std::string fix;           // advice to the author; empty if the spec is not the cause
+  const Row* row = nullptr;  // the row that breaks it, if one does
   std::vector<Span> parts;   // the terms of the row that break it
 };
 
@@ -59,7 +58,7 @@ std::optional<LawId> law_of(std::string_view word);
 std::string_view name_of(LawId id);   // "J v + dC/dt = Cdot"
 std::string_view name_of(Verdict v);  // "holds"
 
-// `block` is what derive_rows or derive_coordinate made of the joint; by the laws of a block by itself.
+// Judges the laws of a block by itself; `block` is the result of derive_rows or derive_coordinate.
 Proof prove(const Joint& joint, const Block& block);
 
 struct Proved {
@@ -69,7 +68,7 @@ struct Proved {
 };
 // The rows and the coordinates, each by itself.
 std::vector<Proved> prove_blocks(const Derivation& derivation);
-// All that kernels are made of: those, and by the last laws their variants and what isotropic bodies have.
+// Everything that kernels contain: these blocks and, by the last laws, their variants and K of isotropic bodies.
 std::vector<Proved> prove(const Derivation& derivation);
 
 }  // namespace cdot::derive

@@ -1,4 +1,5 @@
-#include "derive/proof/rank.hpp"
+// The law of ranks.
+#include "derive/proof/laws.hpp"
 
 namespace cdot::derive {
 namespace {
@@ -24,27 +25,18 @@ std::string dependence_text(const GenericRank::Dependence& d, const Block& block
 
 }  // namespace
 
-Law rows_are_independent(const Block& block) {
-  Law law;
-  law.id = LawId::rank;
-  if (block.immovable >= 0) {  // a row may well speak of that body alone
-    law.verdict = Verdict::does_not_apply;
-    return law;
-  }
+void rows_are_independent(Law& law, const Block& block) {
+  law.verdict = Verdict::does_not_apply;
+  if (block.immovable >= 0) return;  // a row may well speak of that body alone
   const GenericRank found = generic_rank(columns_of(block.rows));
-  if (found.poses == 0) {
-    law.verdict = Verdict::undecided;
-    law.text = "no pose was found at which every row is defined";
-    return law;
-  }
-  if (found.dependences.empty()) return law;
-  law.verdict = Verdict::fails;
+  if (found.poses == 0) law.text = "no pose was found at which every row is defined";
+  law.verdict = found.poses == 0 ? Verdict::undecided : found.dependences.empty() ? Verdict::holds : Verdict::fails;
+  if (law.verdict != Verdict::fails) return;
   const GenericRank::Dependence& first = found.dependences.front();
   law.row = block.rows[static_cast<std::size_t>(first.row)].row;
   law.text = std::to_string(block.rows.size()) + " rows, but only " + std::to_string(found.rank) +
              " independent: " + dependence_text(first, block);
-  law.fix = "drop one of these rows: the others hold it already";
-  return law;
+  law.fix = "drop one of these rows: it follows from the others";
 }
 
 }  // namespace cdot::derive

@@ -1,15 +1,14 @@
-#include "derive/proof/specialised.hpp"
-
+// C, J and K of the variants of a block, and K of isotropic bodies.
 #include <fmt/format.h>
 
-#include "derive/proof/ginac.hpp"
+#include "derive/proof/laws.hpp"
 
 namespace cdot::derive {
 namespace {
 
 class Specialised {
  public:
-  Specialised(const Joint& joint, LawId id) : joint_(joint), names_(joint, Algebra::Route::names) { law_.id = id; }
+  Specialised(const Joint& joint, Law& law) : joint_(joint), names_(joint, Algebra::Route::names), law_(law) {}
 
   // Every entry of a variant against that of the block.
   void compare(const Block& variant, const Block& block) {
@@ -21,22 +20,23 @@ class Specialised {
     for (const ex& entry : tensor(symbols.inv_I)) without_mass[entry] = 0;
     const Expr zero = joint_.pool->number(0);
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
-      require_equal(variant.rows[i].C, block.rows[i].C, block.rows[i], where + "C is another one");
+      require_equal(variant.rows[i].C, block.rows[i].C, block.rows[i], where + "C differs from that of the block");
       for (std::size_t b = 0; b < joint_.bodies.size(); ++b) {
         const std::vector<Expr> J = columns_of(variant.rows[i].J[b]), all = columns_of(block.rows[i].J[b]);
         for (std::size_t k = 0; k < J.size(); ++k) {
           require_equal(J[k], b == body ? zero : all[k], block.rows[i],
-                        where + "J is another one in the columns of " + joint_.bodies[b]);
+                        where + "J differs from that of the block in the columns of " + joint_.bodies[b]);
         }
       }
       for (std::size_t j = 0; j <= i; ++j) {
         const ex K = names_.of(block.K[i][j]).subs(without_mass, GiNaC::subs_options::no_pattern);
-        require_zero(names_.of(variant.K[i][j]) - K, block.rows[i], where + "K does not merely lose its terms");
+        require_zero(law_, names_, names_.of(variant.K[i][j]) - K, block.rows[i],
+                     where + "K is not that of the block without the terms of the body");
       }
     }
   }
 
-  // Each inertia a number, which the first entry of its tensor stands for.
+  // Each inertia becomes a number, represented by the first entry of its tensor.
   void compare_isotropic(const Block& block) {
     GiNaC::exmap isotropic;
     std::map<const Node*, Expr> numbers;
@@ -51,13 +51,11 @@ class Specialised {
     for (std::size_t i = 0; i < block.rows.size(); ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
         const ex K = names_.of(block.K[i][j]).subs(isotropic, GiNaC::subs_options::no_pattern);
-        require_zero(names_.of(substitute(block.K_isotropic[i][j], numbers)) - K, block.rows[i],
-                     fmt::format(": K({},{}) of isotropic bodies is another one", i + 1, j + 1));
+        require_zero(law_, names_, names_.of(substitute(block.K_isotropic[i][j], numbers)) - K, block.rows[i],
+                     fmt::format(": K({},{}) of isotropic bodies is not that of the block", i + 1, j + 1));
       }
     }
   }
-
-  Law law() && { return std::move(law_); }
 
  private:
   std::vector<ex> tensor(Expr inv_I) {
@@ -71,45 +69,29 @@ class Specialised {
 
   // Equal expressions are one node.
   void require_equal(Expr a, Expr b, const ScalarRow& row, const std::string& failure) {
-    if (a != b) require_zero(names_.of(a) - names_.of(b), row, failure);
-  }
-
-  void require_zero(const ex& difference, const ScalarRow& row, const std::string& failure) {
-    if (is_broken(law_)) return;
-    const Algebra::Zero zero = names_.is_zero(difference);
-    if (zero == Algebra::Zero::shown) law_.verdict = Verdict::shown;
-    if (zero <= Algebra::Zero::shown) return;
-    law_.verdict = zero == Algebra::Zero::no ? Verdict::fails : Verdict::undecided;
-    law_.row = row.row;
-    law_.text = row.name + failure;
-    if (law_.verdict == Verdict::fails) law_.text += ", for instance " + names_.witness(difference);
+    if (a != b) require_zero(law_, names_, names_.of(a) - names_.of(b), row, failure);
   }
 
   const Joint& joint_;
   Algebra names_;
-  Law law_;
+  Law& law_;
 };
-
-template <class Compare>
-Law judged(const Joint& joint, LawId id, bool applies, Compare compare) try {
-  Specialised specialised(joint, id);
-  if (!applies) return {id, Verdict::does_not_apply, {}, {}, nullptr, {}};
-  compare(specialised);
-  return std::move(specialised).law();
-} catch (const std::exception&) {  // GiNaC's text is not for the user
-  return {id, Verdict::undecided, "the formulas are undefined somewhere on the way", {}, nullptr, {}};
-}
 
 }  // namespace
 
 Law variants_are_the_block(const Joint& joint, const Block& block) {
-  return judged(joint, LawId::immovable, !block.variants.empty(), [&](Specialised& specialised) {
+  return judged(LawId::immovable, [&](Law& law) {
+    if (block.variants.empty()) law.verdict = Verdict::does_not_apply;
+    Specialised specialised(joint, law);
     for (const Block& variant : block.variants) specialised.compare(variant, block);
   });
 }
 
 Law isotropic_is_the_block(const Joint& joint, const Block& block) {
-  return judged(joint, LawId::isotropic, joint.dimension == 3, [&](Specialised& specialised) {
+  return judged(LawId::isotropic, [&](Law& law) {
+    if (joint.dimension == 2) law.verdict = Verdict::does_not_apply;
+    if (joint.dimension == 2) return;
+    Specialised specialised(joint, law);
     specialised.compare_isotropic(block);
     for (const Block& variant : block.variants) specialised.compare_isotropic(variant);
   });

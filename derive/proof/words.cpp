@@ -12,7 +12,7 @@ bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c =
 
 }  // namespace
 
-std::string said(Expr e, const Joint& joint) {
+std::string spec_text(Expr e, const Joint& joint) {
   if (!e->name.empty()) return e->name;
   std::map<const Node*, Expr> spelled;
   for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
@@ -31,7 +31,7 @@ std::string vanishing_vector(Expr u, const Joint& joint) {
       if (p.value - q.value == u) return p.name + " = " + q.name;
     }
   }
-  return said(u, joint) + " = 0";
+  return spec_text(u, joint) + " = 0";
 }
 
 std::vector<Span> occurrences(const SourceFile& file, Span where, const std::set<std::string>& words) {

@@ -26,7 +26,7 @@ char mark_at(const std::vector<Mark>& marks, int byte, char under) {
   return mark;
 }
 
-// Keeps only the neighbourhood of the first mark of a very long line. Returns whether a part on the left is gone.
+// Cuts a very long line to the neighbourhood of its first mark. True if a part on the left was cut.
 bool cut_far_left(std::string_view& line, std::vector<Mark>& marks, int columns) {
   const int kept = 8 * columns;  // bytes on either side, plenty for the columns that are shown
   const int focus = marks.front().begin, size = static_cast<int>(line.size());
@@ -41,7 +41,7 @@ bool cut_far_left(std::string_view& line, std::vector<Mark>& marks, int columns)
   return begin > 0;
 }
 
-// With one cell behind the end, for a caret there.
+// The cells of a line, and one behind its end for a caret there.
 std::vector<Cell> cells_of(std::string_view line, const std::vector<Mark>& marks, const Look& look) {
   std::vector<Cell> cells;
   for (std::size_t i = 0; i < line.size();) {
@@ -56,7 +56,7 @@ std::vector<Cell> cells_of(std::string_view line, const std::vector<Mark>& marks
   return cells;
 }
 
-// How many characters begin before a byte.
+// The number of characters that begin before a byte.
 int characters(std::string_view line, std::size_t end) {
   int count = 0;
   for (std::size_t i = 0; i < std::min(end, line.size()); ++count)

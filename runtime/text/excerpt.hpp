@@ -1,5 +1,4 @@
-// A line of a file, and carets under the part of it that a message is about. Derive's messages and those of scenes are
-// laid out by this room, which includes nothing of either.
+// Lays out a line of a file with carets under the part that a message concerns. Specs and scenes share it.
 #pragma once
 
 #include <string>
@@ -21,7 +20,7 @@ struct Mark {
   bool primary = true;
 };
 
-// How a kind of message shows a line.
+// The style in which a kind of message shows a line.
 struct Look {
   int columns;             // at most, of a long line
   std::string_view cut;    // stands for a part that is left out

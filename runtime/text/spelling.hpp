@@ -1,4 +1,4 @@
-// How near two words are, for "did you mean".
+// The nearest word, for "did you mean".
 #pragma once
 
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 namespace cdot::text {
 
-// The candidate that becomes the word by the fewest edits of a letter (insert, delete, replace, swap of neighbours), at
-// most so many; capitals do not count. Of equally near ones the first by the alphabet; empty if none is near.
+// The candidate with the fewest edits of a letter (insert, delete, replace, swap of neighbours), at most `most_edits`;
+// capitals do not count. Of equal candidates the first by the alphabet; empty if none is near.
 std::string nearest(std::string_view word, std::span<const std::string> candidates, std::size_t most_edits);
 
 }  // namespace cdot::text

@@ -66,11 +66,11 @@ TEST_F(Derive, CheckNamesTheOneCommandThatMends) {
     fs::remove(place_ / folder / "ledger.csv");
     const Result check = cdot("derive --check" + options);
     EXPECT_EQ(check.status, 1);
-    for (const char* words : {"line.hpp: differs", "- changed by hand", "stale.hpp: no spec makes it",
-                              "ledger.csv: missing", "To mend it: cdot derive"}) {
+    for (const char* words : {"line.hpp: differs", "- changed by hand", "stale.hpp: no spec generates it",
+                              "ledger.csv: missing", "Fix: cdot derive"}) {
       EXPECT_NE(check.said.find(words), std::string::npos) << words << "\n" << check.said;
     }
-    const std::string mend = check.said.substr(check.said.rfind("To mend it: cdot ") + 17);
+    const std::string mend = check.said.substr(check.said.rfind("Fix: cdot ") + 10);
     EXPECT_EQ(cdot(mend.substr(0, mend.find('\n'))).status, 0) << mend;
     EXPECT_EQ(files(folder), right);
     EXPECT_EQ(cdot("derive --check" + options).status, 0);

@@ -106,7 +106,7 @@ TEST(Diff, ForgivesTheSignOfCAndSaysSo) {
   const Judgement j = judged("line", "  C = -dot(t, u)\n  J = [ -t', -cross(ra, t), t', cross(rb + u, t) ]\n");
   EXPECT_EQ(j.agreement, Agreement::agrees);
   ASSERT_EQ(j.remarks.size(), 1u);
-  EXPECT_EQ(j.remarks[0], "C is counted the other way round: J flips its sign, K does not");
+  EXPECT_EQ(j.remarks[0], "C has the opposite sign: J changes its sign, K does not");
 }
 
 // C and J with one sign, b with that of the other: b is what differs, and it alone.

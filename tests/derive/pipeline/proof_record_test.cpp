@@ -110,7 +110,7 @@ TEST_F(Recorded, AFreshCheckFindsAFalseRecord) {
   const Result check = cdot("derive --check --fresh p1 -o one");
   EXPECT_EQ(check.status, 1);
   EXPECT_NE(check.said.find("proofs.csv: differs"), std::string::npos) << check.said;
-  const std::string mend = check.said.substr(check.said.rfind("To mend it: cdot ") + 17);
+  const std::string mend = check.said.substr(check.said.rfind("Fix: cdot ") + 10);
   EXPECT_EQ(cdot(mend.substr(0, mend.find('\n'))).status, 0) << mend;
   EXPECT_EQ(files("one"), right);
 }
