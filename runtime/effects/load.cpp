@@ -1,10 +1,7 @@
 // A constant force or torque along a coordinate: J^T F. Its energy is -F C, so that nothing is lost by it.
-#include <array>
 #include <cmath>
 
-#include <cdot/effects.hpp>
-
-#include "runtime/effects/set_constants.hpp"
+#include "runtime/effects/effect.hpp"
 
 namespace cdot {
 namespace {
@@ -28,21 +25,16 @@ void force_of_load(const Batch<S>& batch, int slot, const typename S::Scalar*, t
 template <class S>
 constexpr Law<S> load_law{1, false, fill_load<S>, nullptr, energy_load<S>, force_of_load<S>, nullptr};
 
-std::array<double, 1> constants_of(const Load& load) {
-  if (!std::isfinite(load.force)) throw Error("a load must be finite");
-  return {load.force};
-}
-
 }  // namespace
 
 template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Load& load) {
-  return add_coordinate_row(world.state(), joint, coordinate, &load_law<S>, constants_of(load));
+static NamedLaw<S> law_of(const Load&) {
+  return {load_law<S>, "load"};
 }
 
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Load& load) {
-  set_constants(world, joint, effect, load_law<S>, "load", constants_of(load));
+static std::array<double, 1> constants_of(const Load& load) {
+  if (!std::isfinite(load.force)) throw Error("a load must be finite");
+  return {load.force};
 }
 
 #define CDOT_INSTANTIATE(S) CDOT_INSTANTIATE_EFFECT(S, Load)

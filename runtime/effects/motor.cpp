@@ -1,10 +1,7 @@
 // Motor and dry friction: a row with bounds on its force.
-#include <array>
 #include <cmath>
 
-#include <cdot/effects.hpp>
-
-#include "runtime/effects/set_constants.hpp"
+#include "runtime/effects/effect.hpp"
 
 namespace cdot {
 namespace {
@@ -31,37 +28,26 @@ void guard_motor(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* gua
 template <class S>
 constexpr Law<S> motor_law{2, false, fill_motor<S>, nullptr, nullptr, nullptr, guard_motor<S>};
 
-std::array<double, 2> constants_of(const Motor& motor) {
+}  // namespace
+
+template <class S>
+static NamedLaw<S> law_of(const Motor&) {
+  return {motor_law<S>, "motor"};
+}
+template <class S>
+static NamedLaw<S> law_of(const DryFriction&) {
+  return {motor_law<S>, "dry friction"};
+}
+
+static std::array<double, 2> constants_of(const Motor& motor) {
   if (!std::isfinite(motor.speed)) throw Error("a motor's speed must be finite");
   if (!(motor.max_force >= 0)) throw Error("a motor's largest force must be >= 0");
   return {motor.speed, motor.max_force};
 }
 
-std::array<double, 2> constants_of(const DryFriction& friction) {
+static std::array<double, 2> constants_of(const DryFriction& friction) {
   if (!(friction.max_force >= 0)) throw Error("the largest force of dry friction must be >= 0");
   return {0, friction.max_force};
-}
-
-}  // namespace
-
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor) {
-  return add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants_of(motor));
-}
-
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const DryFriction& friction) {
-  return add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants_of(friction));
-}
-
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Motor& motor) {
-  set_constants(world, joint, effect, motor_law<S>, "motor", constants_of(motor));
-}
-
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const DryFriction& friction) {
-  set_constants(world, joint, effect, motor_law<S>, "dry friction", constants_of(friction));
 }
 
 #define CDOT_INSTANTIATE(S) CDOT_INSTANTIATE_EFFECT(S, Motor) CDOT_INSTANTIATE_EFFECT(S, DryFriction)

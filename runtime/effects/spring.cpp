@@ -1,10 +1,7 @@
 // Spring and damper on a coordinate.
-#include <array>
 #include <cmath>
 
-#include <cdot/effects.hpp>
-
-#include "runtime/effects/set_constants.hpp"
+#include "runtime/effects/effect.hpp"
 #include "runtime/rows/laws.hpp"
 
 namespace cdot {
@@ -38,7 +35,14 @@ void force_of_spring(const Batch<S>& batch, int slot, const typename S::Scalar* 
 template <class S>
 constexpr Law<S> spring_law{4, false, fill_spring<S>, nullptr, energy_spring<S>, force_of_spring<S>, nullptr};
 
-std::array<double, 4> constants_of(const CoordinateSpring& spring) {
+}  // namespace
+
+template <class S>
+static NamedLaw<S> law_of(const CoordinateSpring&) {
+  return {spring_law<S>, "spring"};
+}
+
+static std::array<double, 4> constants_of(const CoordinateSpring& spring) {
   std::array<double, 4> constants;
   spring_constants(spring.softness, constants.data());
   if (!spring.rest || !std::isfinite(*spring.rest)) throw Error("a spring's rest position must be finite");
@@ -46,18 +50,11 @@ std::array<double, 4> constants_of(const CoordinateSpring& spring) {
   return constants;
 }
 
-}  // namespace
-
 template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const CoordinateSpring& spring) {
+static CoordinateSpring at_pose(BasicWorld<S>& world, int joint, std::string_view coordinate,
+                                const CoordinateSpring& spring) {
   check_joint(world.state(), joint);
-  const double rest = spring.rest ? *spring.rest : world.coordinate(joint, coordinate);
-  return add_coordinate_row(world.state(), joint, coordinate, &spring_law<S>, constants_of({spring.softness, rest}));
-}
-
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const CoordinateSpring& spring) {
-  set_constants(world, joint, effect, spring_law<S>, "spring", constants_of(spring));
+  return {spring.softness, spring.rest ? *spring.rest : world.coordinate(joint, coordinate)};
 }
 
 #define CDOT_INSTANTIATE(S) CDOT_INSTANTIATE_EFFECT(S, CoordinateSpring)

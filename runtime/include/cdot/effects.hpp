@@ -66,31 +66,16 @@ struct CoordinateEffects {
   }
 };
 
-// Adds an effect. Returns its number among those of its joint; -1 where the joint connects only immovable bodies.
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit);
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor);
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const CoordinateSpring& spring);
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const DryFriction& friction);
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Load& load);
+// Adds one of these effects. Returns its number among those of its joint; -1 where the joint connects only immovable
+// bodies.
+template <class S, class Effect>
+int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Effect& effect);
 
 // While a World runs: other numbers for the effect of that number, from the next step on. Wakes the joint's island. A
 // motor whose largest force is 0 is switched off, and so is a limit from -unlimited to unlimited; a limit with two ends
 // and a locked coordinate do not become each other.
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Limit& limit);
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Motor& motor);
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const CoordinateSpring& spring);
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const DryFriction& friction);
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Load& load);
+template <class S, class Effect>
+void set_effect(BasicWorld<S>& world, int joint, int number, const Effect& effect);
 
 // The joint disappears after the first step in which the norm of its row forces exceeds the load
 // [N, N m].

@@ -91,8 +91,8 @@ std::string list_json() {
 
 std::string keys_text() {
   std::string text;
-  for (const KeyTable& table :
-       {keys_of_the_top(), keys_of_a_body(), keys_of_a_joint(), keys_of_effects(), keys_of_a_spring()}) {
+  for (const KeyTable& table : {keys_of_the_top(), keys_of_a_body(), keys_of_a_shape(), keys_of_a_joint(),
+                                keys_of_effects(), keys_of_a_spring(), keys_of_copies()}) {
     text += fmt::format("{}{}\n\n", text.empty() ? "" : "\n", table.title);
     for (const auto& [name, meaning, otherwise] : table.rows)
       text += fmt::format("    {:<16} {}{}\n", name, meaning, otherwise.empty() ? "" : "; if not given: " + otherwise);

@@ -44,11 +44,6 @@ constexpr int most_told = 5;  // joints that the start does not fit; of others t
 // A scene whose bodies are all far away, against how far they are apart, is counted from among them.
 constexpr double far_away = 1000;
 
-Vec3 position_of(const SceneBody& body, Dimension dimension) {
-  if (dimension == Dimension::planar) return {body.definition.x, body.definition.y, 0};
-  return {body.spatial.x, body.spatial.y, body.spatial.z};
-}
-
 template <class S>
 void choose_origin(const Scene& scene, BasicWorld<S>& world) {
   if (scene.bodies.empty()) return;
@@ -69,6 +64,11 @@ void choose_origin(const Scene& scene, BasicWorld<S>& world) {
 }
 
 }  // namespace
+
+Vec3 position_of(const SceneBody& body, Dimension dimension) {
+  if (dimension == Dimension::planar) return {body.definition.x, body.definition.y, 0};
+  return {body.spatial.x, body.spatial.y, body.spatial.z};
+}
 
 template <class S>
 BasicWorld<S> build_world_in(const Scene& scene) {

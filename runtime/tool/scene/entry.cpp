@@ -5,12 +5,21 @@
 #include <charconv>
 #include <fmt/format.h>
 
+#include "runtime/tool/scene/keys.hpp"
+
 namespace cdot {
 namespace {
 
 constexpr int most_copies = 100000;
 
 }  // namespace
+
+KeyTable keys_of_copies() {
+  return {"Copies of a [[body]], [[joint]] or [[spring]]; {i}, {i+1}, {i-1} in a text are the copy's number, from 1",
+          {{Entry::repeat_key, "how many there are", "1"},
+           {Entry::shift_key, "{ position = [1, 0] }: each copy's numbers differ from the one before by that", ""},
+           {Entry::each_key, "{ name = [\"a\", \"b\"] }: the values of a key, one a copy", ""}}};
+}
 
 Span span_of(const toml::source_region& region) {
   const int line = static_cast<int>(region.begin.line), begin = static_cast<int>(region.begin.column);
@@ -42,9 +51,8 @@ std::vector<Entry> Entry::list(const std::string& key) {
   }
   for (const toml::node& element : *node->as_array()) {
     Entry entry(*element.as_table(), span_of(element.source()), fmt::format("[[{}]]", key), *mistakes_);
-    const toml::node* repeat = entry.find("repeat");
-    const int copies = repeat ? entry.whole("repeat", 1).value_or(1) : 1;
-    entry.repeated_ = repeat != nullptr;
+    const int copies = entry.whole(repeat_key, 1).value_or(1);
+    entry.repeated_ = entry.has(repeat_key);
     entry.check_repeat(copies);
     for (entry.copy_ = 0; entry.copy_ < std::min(copies, most_copies); ++entry.copy_) entries.push_back(entry);
   }
@@ -54,14 +62,14 @@ std::vector<Entry> Entry::list(const std::string& key) {
 // `shift` adds something from copy to copy, `each` gives a value per copy; both make sense only
 // with `repeat`.
 void Entry::check_repeat(int copies) {
-  for (const char* key : {"shift", "each"}) {
+  for (const char* key : {shift_key, each_key}) {
     const toml::node* node = find(key);
     if (!node) continue;
     if (!repeated_) error(where(key), fmt::format("`{}` without `repeat`", key), "say how often: repeat = 10");
     if (!node->is_table()) wrong_type(*node, key, "a table, as { position = [1, 0] }");
   }
-  if (copies > most_copies) error(where("repeat"), fmt::format("`repeat` is more than {}", most_copies));
-  const toml::table* each = table_->get_as<toml::table>("each");
+  if (copies > most_copies) error(where(repeat_key), fmt::format("`repeat` is more than {}", most_copies));
+  const toml::table* each = table_->get_as<toml::table>(each_key);
   if (!each) return;
   for (auto&& [key, values] : *each) {
     const std::string name = fmt::format("each.{}", key.str());
@@ -74,9 +82,13 @@ void Entry::check_repeat(int copies) {
   }
 }
 
+const toml::table* Entry::of_copies(const char* key) const {
+  return repeated_ ? table_->get_as<toml::table>(key) : nullptr;
+}
+
 const toml::node* Entry::find(const std::string& key) {
   asked_.insert(key);
-  const toml::table* each = repeated_ ? table_->get_as<toml::table>("each") : nullptr;
+  const toml::table* each = of_copies(each_key);
   const toml::array* values = each ? each->get_as<toml::array>(key) : nullptr;
   if (values && copy_ < static_cast<int>(values->size())) return values->get(static_cast<std::size_t>(copy_));
   return table_->get(key);
@@ -90,9 +102,7 @@ bool Entry::leaves_table_unread(const std::string& key) const {
 
 Span Entry::where(const std::string& key) const {
   const toml::node* node = table_->get(key);
-  if (!node && repeated_) {
-    if (const toml::table* each = table_->get_as<toml::table>("each")) node = each->get(key);
-  }
+  if (const toml::table* each = node ? nullptr : of_copies(each_key)) node = each->get(key);
   return node ? span_of(node->source()) : header_;
 }
 
@@ -157,24 +167,20 @@ std::optional<std::string> Entry::text(const std::string& key) {
 
 std::string Entry::written(const std::string& key) {
   const toml::node* node = find(key);
-  return node ? node->value<std::string>().value_or("") : "";
+  return toml::node_view(node).value_or(std::string());
 }
 
 std::optional<std::vector<std::string>> Entry::texts(const std::string& key) {
   const toml::node* node = find(key);
   if (!node) return {};
-  std::vector<std::string> result;
-  const toml::array* array = node->as_array();
-  if (!array) {
+  if (!node->is_array()) {
     wrong_type(*node, key, "a list of texts, as [\"a\", \"b\"]");
     return {};
   }
-  for (const toml::node& element : *array) {
-    if (!element.is_string()) {
-      wrong_type(element, key, "a list of texts");
-      return {};
-    }
-    const std::optional<std::string> text = plain_text(element);
+  std::vector<std::string> result;
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_string()) wrong_type(element, key, "a list of texts");
+    const auto text = element.is_string() ? plain_text(element) : std::nullopt;
     if (!text) return {};
     result.push_back(*text);
   }
@@ -189,15 +195,9 @@ std::optional<Entry> Entry::table(const std::string& key, const std::string& exa
   return {};
 }
 
-bool Entry::is_array(const std::string& key) {
-  const toml::node* node = find(key);
-  return node && node->is_array();
-}
+bool Entry::is_array(const std::string& key) { return toml::node_view(find(key)).is_array(); }
 
-bool Entry::is_array_of_arrays(const std::string& key) {
-  const toml::node* node = find(key);
-  return node && node->is_array() && node->as_array()->get(0) && node->as_array()->get(0)->is_array();
-}
+bool Entry::is_array_of_arrays(const std::string& key) { return toml::node_view(find(key))[0].is_array(); }
 
 std::optional<std::string> Entry::choice(const std::string& key, const std::vector<std::string>& allowed) {
   const std::optional<std::string> value = text(key);
@@ -213,7 +213,7 @@ void Entry::required(const std::string& key, const std::string& fix) {
 void Entry::close(const std::vector<std::string>& also_known) const {
   std::vector<std::string> known(also_known);
   for (const std::string& key : asked_) {
-    const bool only_repeated = key == "shift" || key == "each";
+    const bool only_repeated = key == shift_key || key == each_key;
     if (!only_repeated || repeated_) known.push_back(key);
   }
   for (auto&& [key, node] : *table_) {
@@ -222,8 +222,8 @@ void Entry::close(const std::vector<std::string>& also_known) const {
     error(span_of(key.source()), fmt::format("unknown key `{}` in {}", name, what_), did_you_mean(name, known));
   }
   const std::vector<std::string> shiftable(asked_.begin(), asked_.end());
-  for (const char* list : {"shift", "each"}) {
-    const toml::table* inner = repeated_ ? table_->get_as<toml::table>(list) : nullptr;
+  for (const char* list : {shift_key, each_key}) {
+    const toml::table* inner = of_copies(list);
     if (!inner) continue;
     for (auto&& [key, node] : *inner) {
       const std::string name(key.str());

@@ -30,6 +30,9 @@ class Entry {
   // `what` names the table in messages: "[[body]]". Copy k of a repeated entry counts from 0.
   Entry(const toml::table& table, Span header, std::string what, Mistakes& mistakes, int copy = 0);
 
+  // Of the copies of a repeated entry.
+  static constexpr const char *repeat_key = "repeat", *shift_key = "shift", *each_key = "each";
+
   // The entries of the array of tables `key`, each repeated as it asks.
   std::vector<Entry> list(const std::string& key);
 
@@ -62,6 +65,7 @@ class Entry {
   void close(const std::vector<std::string>& also_known = {}) const;
 
  private:
+  const toml::table* of_copies(const char* key) const;  // `shift` or `each` of a repeated entry
   const toml::node* find(const std::string& key);
   std::optional<double> plain_number(const toml::node& node, const std::string& key, Quantity);
   std::optional<std::string> plain_text(const toml::node& node);

@@ -49,7 +49,7 @@ std::optional<double> Entry::plain_number(const toml::node& node, const std::str
 
 // What copy k adds to number `index` of `key`: k times the shift.
 std::optional<double> Entry::shift_of(const std::string& key, std::size_t index) {
-  const toml::table* shift = repeated_ ? table_->get_as<toml::table>("shift") : nullptr;
+  const toml::table* shift = of_copies(shift_key);
   const toml::node* node = shift ? shift->get(key) : nullptr;
   if (!node) return 0;
   const toml::array* array = node->as_array();

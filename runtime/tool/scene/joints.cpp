@@ -93,10 +93,10 @@ std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterI
     return read_two_axes(joint, key);
   std::optional<Vec3> vector;
   if (parameter.kind == ParameterKind::point) {
-    vector = read_point(joint, key, body, names);
+    vector = read_of_body(joint, key, body, names, &BodyNames::to_body);
     if (!joint.has(key) && at) vector = names.to_body(body, *at);
   } else {
-    vector = read_direction(joint, key, body, names);
+    vector = read_of_body(joint, key, body, names, &BodyNames::turned_to_body);
     const bool direction = parameter.kind != ParameterKind::vector;
     if (direction && vector && std::hypot((*vector)[0], (*vector)[1], (*vector)[2]) == 0) {
       joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key),
@@ -141,21 +141,17 @@ void read_parameters(Entry& joint, const char* key, JointReading& to) {
 // An effect on a coordinate that other joints have, but not this one: revolute, where hinge was
 // meant.
 void refuse_other_coordinates(Entry& joint, const JointType& type, Dimension dimension) {
-  std::map<std::string, std::string> owners;  // by coordinate: the joints of as many bodies
-  for (const JointType& other : joint_types(dimension)) {
-    if (other.bodies != type.bodies) continue;
-    for (const CoordinateInfo& coordinate : other.coordinates) {
-      std::string& names = owners[std::string(coordinate.name)];
-      names += fmt::format("{}`{}`", names.empty() ? "" : ", ", other.name);
-    }
-  }
+  std::map<std::string, std::vector<std::string>> owners;  // by coordinate: the joints of as many bodies
+  for (const JointType& other : joint_types(dimension))
+    for (const CoordinateInfo& coordinate : other.coordinates)
+      if (other.bodies == type.bodies) owners[std::string(coordinate.name)].push_back(fmt::format("`{}`", other.name));
   for (const auto& [coordinate, names] : owners) {
     if (!joint.leaves_table_unread(coordinate)) continue;
     std::string own;
     for (const CoordinateInfo& c : type.coordinates)
       own += fmt::format("{}`{}`", own.empty() ? "it has " : ", ", c.name);
     joint.error(joint.where(coordinate), fmt::format("`{}` has no coordinate `{}`", type.name, coordinate),
-                fmt::format("{}{}joints that have it: {}", own, own.empty() ? "" : "; ", names));
+                fmt::format("{}{}joints that have it: {}", own, own.empty() ? "" : "; ", fmt::join(names, ", ")));
     joint.has(coordinate);  // read now: one complaint is enough
   }
 }
@@ -172,10 +168,6 @@ void read_bodies_of_joint(Entry& joint, const char*, JointReading& to) {
 
 void read_soft(Entry& joint, const char* key, JointReading& to) {
   to.joint.definition.soft = read_softness(joint, key);
-}
-
-void read_breaking(Entry& joint, const char* key, JointReading& to) {
-  to.joint.breaking = joint.number(key, {Sign::positive});
 }
 
 struct SpringReading {
@@ -197,16 +189,13 @@ void read_bodies_of_spring(Entry& spring, const char* key, SpringReading& to) {
   to.spring.body_b = two ? (*bodies)[1] : world_body;
 }
 
-void read_pa(Entry& spring, const char* key, SpringReading& to) {
-  const Vec3 p = read_point(spring, key, to.spring.body_a, to.names).value_or(Vec3{});
-  to.spring.ax = p[0], to.spring.ay = p[1], to.spring.az = p[2];
-  to.from = to.names.to_world(to.spring.body_a, p);
-}
-
-void read_pb(Entry& spring, const char* key, SpringReading& to) {
-  const Vec3 p = read_point(spring, key, to.spring.body_b, to.names).value_or(Vec3{});
-  to.spring.bx = p[0], to.spring.by = p[1], to.spring.bz = p[2];
-  to.to = to.names.to_world(to.spring.body_b, p);
+using Number = double SpringDefinition::*;
+template <int SpringDefinition::*of, Number x, Number y, Number z, Vec3 SpringReading::*in_world>
+void read_end(Entry& spring, const char* key, SpringReading& to) {
+  const int body = to.spring.*of;
+  const Vec3 p = read_of_body(spring, key, body, to.names, &BodyNames::to_body).value_or(Vec3{});
+  to.spring.*x = p[0], to.spring.*y = p[1], to.spring.*z = p[2];
+  to.*in_world = to.names.to_world(body, p);
 }
 
 void read_rest(Entry& spring, const char* key, SpringReading& to) {
@@ -221,6 +210,9 @@ void read_stiffness(Entry& spring, const char* key, SpringReading& to) {
 }
 
 constexpr auto spring = &SpringReading::spring;
+using Spring = SpringDefinition;
+constexpr auto read_pa = read_end<&Spring::body_a, &Spring::ax, &Spring::ay, &Spring::az, &SpringReading::from>;
+constexpr auto read_pb = read_end<&Spring::body_b, &Spring::bx, &Spring::by, &Spring::bz, &SpringReading::to>;
 
 // clang-format off
 constexpr Key<JointReading> named[] = {
@@ -232,7 +224,7 @@ constexpr Key<JointReading> keys[] = {
     {"bodies", "the spec's a, b, … in this order; \"world\" never moves", "required", read_bodies_of_joint},
     {"at", "the points that are not given by their own names, in the world at the start [m]", "", read_parameters},
     {"soft", "{ frequency, damping_ratio } or { stiffness, damping }: the joint is a spring", "exact", read_soft},
-    {"breaking", "the joint goes after a step in which it carried more [N, N m]", "never", read_breaking},
+    {"breaking", "the joint goes after a step in which it carried more [N, N m]", "never", read_number<Sign::positive, &JointReading::joint, &SceneJoint::breaking>},
 };
 constexpr Key<SpringReading> spring_keys[] = {
     {"name", "of messages", "", read_spring_name},
@@ -273,9 +265,7 @@ void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
 }
 
 KeyTable keys_of_a_joint() {
-  KeyTable table = table_of("[[joint]], beside the parameters and coordinates of its type", named);
-  for (const KeyTable::Row& row : table_of("", keys).rows) table.rows.push_back(row);
-  return table;
+  return table_of("[[joint]], beside the parameters and coordinates of its type", named, keys);
 }
 
 KeyTable keys_of_a_spring() { return table_of("[[spring]]", spring_keys); }

@@ -59,18 +59,23 @@ struct KeyTable {
   std::vector<Row> rows;
 };
 
-template <class To, std::size_t count>
-KeyTable table_of(std::string title, const Key<To> (&keys)[count]) {
+template <class... Keys>
+KeyTable table_of(std::string title, const Keys&... parts) {
   KeyTable table{std::move(title), {}};
-  for (const Key<To>& key : keys)
-    table.rows.push_back({key.name,
-                          key.where == Where::in_space ? std::string("in space: ") + key.meaning : key.meaning,
-                          key.otherwise});
+  const auto add = [&](const auto& keys) {
+    for (const auto& key : keys)
+      table.rows.push_back({key.name,
+                            key.where == Where::in_space ? std::string("in space: ") + key.meaning : key.meaning,
+                            key.otherwise});
+  };
+  (add(parts), ...);
   return table;
 }
 
 KeyTable keys_of_the_top();   // tool/scene/settings.cpp
+KeyTable keys_of_copies();    // tool/scene/entry.cpp
 KeyTable keys_of_a_body();    // tool/scene/bodies.cpp
+KeyTable keys_of_a_shape();   // tool/scene/bodies.cpp
 KeyTable keys_of_a_joint();   // tool/scene/joints.cpp
 KeyTable keys_of_a_spring();  // tool/scene/joints.cpp
 KeyTable keys_of_effects();   // tool/scene/effects.cpp

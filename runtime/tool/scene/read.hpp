@@ -22,13 +22,12 @@ class BodyNames {
   std::optional<std::vector<int>> find(Entry& entry, const std::string& key) const;
   const std::string& name(int body) const;
   // A world position or direction in the frame of a body at its initial pose.
-  Vec3 to_body(int body, Vec3 world_position) const;
-  Vec3 turned_to_body(int body, Vec3 world_direction) const;
-  Vec3 to_world(int body, Vec3 body_position) const;
+  Vec3 to_body(int body, const Vec3& world_position) const;
+  Vec3 turned_to_body(int body, const Vec3& world_direction) const;
+  Vec3 to_world(int body, const Vec3& body_position) const;
   Dimension dimension() const { return scene_->dimension; }
 
  private:
-  Vec3 centre(int body) const;
   const Scene* scene_;
   std::map<std::string, int> index_;
   std::vector<std::string> known_;
@@ -37,9 +36,10 @@ class BodyNames {
 // [x, y], in space [x, y, z].
 std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension dimension);
 
-// A point of a body: [x, y] in its frame, or { world = [x, y] } where it is at the start.
-std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names);
-std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names);
+// A point of a body, or a direction: [x, y] in its frame; or { world = [x, y] } at the start, which to_body() or
+// turned_to_body() takes there.
+std::optional<Vec3> read_of_body(Entry& entry, const std::string& key, int body, const BodyNames& names,
+                                 Vec3 (BodyNames::*from_world)(int, const Vec3&) const);
 
 // A name that a CSV column can carry, unused so far; `fallback` if the entry has none and that is
 // allowed.
@@ -52,7 +52,6 @@ std::optional<Softness> read_softness(Entry& joint, const char* key);
 
 void read_settings(Entry& top, Scene& scene);                         // tool/scene/settings.cpp
 void read_bodies(Entry& top, Scene& scene);                           // tool/scene/bodies.cpp
-void read_spatial_body(Entry& entry, SceneBody& body);                // tool/scene/bodies_spatial.cpp
 void read_joints(Entry& top, const BodyNames& names, Scene& scene);   // tool/scene/joints.cpp
 void read_springs(Entry& top, const BodyNames& names, Scene& scene);  // tool/scene/joints.cpp
 

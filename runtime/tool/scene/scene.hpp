@@ -40,6 +40,9 @@ struct SceneBody {
   std::vector<Vec3> traces;  // points of the body whose paths are drawn
 };
 
+// Of its centre of mass at the start.
+Vec3 position_of(const SceneBody& body, Dimension dimension);
+
 struct SceneJoint {
   std::string name;
   JointDefinition definition;  // its bodies are indices into Scene::bodies, or world_body
