@@ -14,6 +14,16 @@ constexpr double slow_turn = 0.02, needs_no_help = 0.5;  // [rad] per step
 constexpr double sweeps_per_condition = 4;               // that leave little of an error
 constexpr double float_noise = 6e-8, blurred = 0.01;
 
+std::string advised(Integrator integrator) {
+  return fmt::format("integrator = \"{}\"", name_of(integrators, integrator));
+}
+const std::string tension_taken = advised(most_exact([](const IntegratorRow& row) { return row.stiffens; }));
+const std::string turns_kept =
+    advised(most_exact([](const IntegratorRow& row) { return row.level == Level::velocity && !row.stiffens; }));
+const std::string own_steps =
+    advised(most_exact([](const IntegratorRow& row) { return row.level == Level::acceleration; })) +
+    " with local_error = 1e-6";
+
 std::string listed(const std::vector<int>& joints, const Names& names) {
   constexpr std::size_t most = 6;
   std::vector<std::string> words;
@@ -52,10 +62,10 @@ void on_stiffness(const Diagnosis::Island& island, const Settings& settings, dou
   const bool tension = island.stiffest.tension > 0.5 * island.stiffest.square;
   std::string fix = fmt::format("substeps = {:.0f} or more", std::ceil(radians / 0.5) * settings.substeps);
   const bool stiffens = row_of(settings.integrator).stiffens;
-  if (tension && !stiffens) fix += ", integrator = \"implicit\"";
+  if (tension && !stiffens) fix += ", " + tension_taken;
   // Between bodies it is rows of the direct solver.
   if (tension && stiffens && sweeps(settings.solver)) fix += ", solver = \"direct\"";
-  fix += ", or integrator = \"dop853\" with local_error = 1e-6";
+  fix += ", or " + own_steps;
   concerns.push_back(
       {true,
        fmt::format("{} makes {} swing with {:.3g} rad/s, {:.2g} rad per substep: {} {}",
@@ -73,8 +83,8 @@ void on_spin(const Diagnosis::Island& island, const Settings& settings, double h
       {true,
        fmt::format("{} turns by {:.2g} rad per substep: {} follows turns of less than about {}",
                    names.body(island.spinning), radians, name_of(integrators, settings.integrator), sharp_turn),
-       fmt::format("substeps = {:.0f} or more, or integrator = \"dop853\" with local_error = 1e-6",
-                   std::ceil(radians / sharp_turn) * settings.substeps)});
+       fmt::format("substeps = {:.0f} or more, or {}", std::ceil(radians / sharp_turn) * settings.substeps,
+                   own_steps)});
 }
 
 // What tension stiffens is taken as inertia by the linearly implicit step: where h omega is small without it, that only
@@ -89,7 +99,7 @@ void on_damping(const Diagnosis::Island& island, const Settings& settings, doubl
        fmt::format("{} slows down what turns, as {} does by {:.2g} rad per substep, and no tension "
                    "here needs it: the stiffest motion swings by {:.2g} rad per substep",
                    name_of(integrators, settings.integrator), names.body(island.spinning), turn, radians),
-       "integrator = \"rattle\""});
+       turns_kept});
 }
 
 void on_condition(const Diagnosis::Island& island, const Settings& settings, bool single, const Names& names,

@@ -2,6 +2,7 @@
 // instead.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <string>
 #include <vector>
@@ -19,6 +20,15 @@ struct Concern {
 struct Names {
   std::function<std::string(int)> body, joint;
 };
+
+// Among the integrators of which `fits` is true, the one of highest order; of equal ones the first.
+template <class F>
+constexpr Integrator most_exact(F fits) {
+  const auto less = [&](const IntegratorRow& a, const IntegratorRow& b) {
+    return (fits(a) ? a.order : 0) < (fits(b) ? b.order : 0);
+  };
+  return std::max_element(integrator_rows.begin(), integrator_rows.end(), less)->integrator;
+}
 
 // `h`: of a substep [s].
 std::vector<Concern> concerns_about(const Diagnosis::Island& island, const Settings& settings, bool single, double h,

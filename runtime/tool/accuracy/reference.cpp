@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <limits>
 
+#include "runtime/diagnose/concerns.hpp"
 #include "runtime/tool/accuracy/compose.hpp"
 #include "runtime/tool/run/process.hpp"
 
@@ -81,6 +82,14 @@ class Purse {
   double start_;
 };
 
+// Three methods that share as little as there is: of the highest order on accelerations, symmetric on impulses, and
+// on accelerations again, of another order.
+constexpr bool on_accelerations(const IntegratorRow& row) { return row.level == Level::acceleration; }
+constexpr Integrator first_method = most_exact(on_accelerations);
+constexpr Integrator second_method = most_exact([](const IntegratorRow& row) { return row.symmetric; });
+constexpr Integrator third_method =
+    most_exact([](const IntegratorRow& row) { return on_accelerations(row) && row.integrator != first_method; });
+
 // Methods one after the other, in one precision, and the two of them that agree best.
 class Comparison {
  public:
@@ -100,12 +109,12 @@ class Comparison {
   // Runge-Kutta on accelerations against RATTLE on impulses, which share no formula but the kernels'; or, where the
   // motion is not reversible, against a Runge-Kutta method of another order.
   void ask_two(const Purse& purse) {
-    ask(Integrator::dop853, purse.share(3));
+    ask(first_method, purse.share(3));
     Effort effort = purse.share(2);
-    if (!reversible(scene_)) return ask(Integrator::rk4, effort);
+    if (!reversible(scene_)) return ask(third_method, effort);
     // RATTLE takes about as many steps as the first has evaluations, or it does not get there.
     effort.evaluations = std::min(effort.evaluations, 5 * first().evaluations);
-    ask(Integrator::rattle, effort);
+    ask(second_method, effort);
   }
   bool agrees() const { return best_.disagreement() <= wanted_agreement; }
   // By more than chance.
@@ -155,7 +164,7 @@ ReferenceRun make_reference_run(const Scene& scene, const Effort& effort, const 
     if (comparison->agrees()) return comparison->best();
   }
   Comparison& better = extended.better_than(doubles) ? extended : doubles;
-  if (reversible(scene)) better.ask(Integrator::rk4, purse.share(1));
+  if (reversible(scene)) better.ask(third_method, purse.share(1));
   ReferenceRun& best = better.best();
   if (better.agrees() || !better.first().found()) return best;
   best.sensitivity = sensitivity_of(scene, best, better.first(), stop);

@@ -57,11 +57,6 @@ std::vector<Row> samples_of(const std::vector<Row>& rows, double duration) {
   return samples;
 }
 
-BodyState state_of(const double* n, Dimension dimension) {
-  if (dimension == Dimension::planar) return {n[0], n[1], n[2], n[3], n[4], n[5]};
-  return {n[0], n[1], 0, n[7], n[8], 0, n[2], n[9], n[3], n[4], n[5], n[6], n[10], n[11], n[12]};
-}
-
 // The file has no energies: those of a World that is put into each of its states.
 template <class S>
 double energy_of(BasicWorld<S>& world, const Frame& frame) {
@@ -85,12 +80,13 @@ ReferenceRun reference_of(const std::vector<Row>& samples, const Scene& scene) {
   ReferenceRun reference;
   std::string warnings;
   BasicWorld<S> world = world_at_start<S>(scene, warnings);
-  const std::size_t columns = S::dimension == Dimension::planar ? 6 : 13;
   for (const Row& row : samples) {
     Frame frame;
     frame.time = row.time;
-    for (std::size_t k = 0; k < scene.bodies.size(); ++k)
-      frame.bodies.push_back(state_of(row.numbers.data() + k * columns, S::dimension));
+    frame.bodies.resize(scene.bodies.size());
+    auto number = row.numbers.begin();
+    for (BodyState& body : frame.bodies)
+      for (const StateColumn& column : state_columns(S::dimension)) body.*column.number = *number++;
     frame.energy = energy_of(world, frame);
     reference.times.push_back(row.time);
     reference.frames.push_back(frame);
@@ -111,8 +107,7 @@ ReferenceRun read_reference_run(const std::string& path, const Scene& scene) {
   const auto columns = static_cast<std::size_t>(std::count(head.begin(), head.end(), ',')) + 1;
   const std::vector<Row> samples = samples_of(read_rows(path, file, columns), scene.duration);
   if (samples.empty()) throw Error(fmt::format("{}: no row between 0 and {} s", path, scene.duration));
-  ReferenceRun reference = scene.dimension == Dimension::planar ? reference_of<Planar<double>>(samples, scene)
-                                                                : reference_of<Spatial<double>>(samples, scene);
+  ReferenceRun reference = in_space_of<double>(scene, [&]<class S>(S) { return reference_of<S>(samples, scene); });
   reference.made_by = path;
   return reference;
 }

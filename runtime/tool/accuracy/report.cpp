@@ -57,31 +57,60 @@ std::string advice_text(const AccuracyReport& report) {
   return text;
 }
 
-nlohmann::ordered_json json_of(const AccuracyReport& report, const Point& point) {
-  const Way& way = point.way;
-  nlohmann::ordered_json json = {
-      {"method", name_of(way)},
-      {"integrator", name_of(integrators, way.integrator)},
-      {"solver", name_of(solvers, way.solver)},
-      {"drift", name_of(drifts, way.drift)},
-      {"iterations", sweeps(way.solver) ? way.iterations : 0},
-      {"precision", way.single ? "float" : "double"},
-      {"step", way.adaptive ? 0 : step_of(report, point)},
-      {"local_error", knob_at(way, point.level).local_error},
-      {"failure", point.failure},
-  };
+using Json = nlohmann::ordered_json;
+
+// Of a point: a row each, in the files and in JSON alike.
+// clang-format off
+struct Column {
+  const char* name;
+  Json (*value)(const AccuracyReport& report, const Point& point);
+};
+constexpr Column columns_of_way[] = {
+    {"method",      [](auto&, auto& p) { return Json(name_of(p.way)); }},
+    {"integrator",  [](auto&, auto& p) { return Json(name_of(integrators, p.way.integrator)); }},
+    {"solver",      [](auto&, auto& p) { return Json(name_of(solvers, p.way.solver)); }},
+    {"drift",       [](auto&, auto& p) { return Json(name_of(drifts, p.way.drift)); }},
+    {"iterations",  [](auto&, auto& p) { return Json(sweeps(p.way.solver) ? p.way.iterations : 0); }},
+    {"precision",   [](auto&, auto& p) { return Json(name_of(precisions, p.way.single)); }},
+    {"step",        [](auto& report, auto& p) { return Json(p.way.adaptive ? 0 : step_of(report, p)); }},
+    {"local_error", [](auto&, auto& p) { return Json(knob_at(p.way, p.level).local_error); }},
+};
+constexpr Column columns_of_answer[] = {
+    {"error",          [](auto&, auto& p) { return Json(p.errors.trajectory()); }},
+    {"position_error", [](auto&, auto& p) { return Json(p.errors.position); }},
+    {"angle_error",    [](auto&, auto& p) { return Json(p.errors.angle); }},
+    {"C",              [](auto&, auto& p) { return Json(p.errors.C); }},
+    {"Cdot",           [](auto&, auto& p) { return Json(p.errors.Cdot); }},
+    {"energy_error",   [](auto&, auto& p) { return Json(p.errors.energy); }},
+    {"cpu_per_second", [](auto&, auto& p) { return Json(p.cost()); }},
+    {"cpu_spread",     [](auto&, auto& p) { return Json(p.spread()); }},
+};
+// clang-format on
+
+Json json_of(const AccuracyReport& report, const Point& point) {
+  Json json;
+  for (const auto& [name, value] : columns_of_way) json[name] = value(report, point);
+  json["failure"] = point.failure;
   if (!point.failure.empty()) return json;
-  const Errors& errors = point.errors;
-  json["error"] = errors.trajectory();
-  json["position_error"] = errors.position;
-  json["angle_error"] = errors.angle;
-  json["C"] = errors.C;
-  json["Cdot"] = errors.Cdot;
-  json["energy_error"] = errors.energy;
-  json["cpu_per_second"] = point.cost();
-  json["cpu_spread"] = point.spread();
+  for (const auto& [name, value] : columns_of_answer) json[name] = value(report, point);
   json["rounds"] = point.rounds;
   return json;
+}
+
+// Of names only that of the way has commas.
+std::string csv_cell(const Json& value) {
+  if (value.is_number_float()) return fmt::format("{},", value.get<double>());
+  const std::string text = value.dump();
+  const bool plain = value.is_string() && text.find(',') == std::string::npos;
+  return (plain ? value.get<std::string>() : text) + ",";
+}
+
+std::string csv_row(const AccuracyReport& report, const Point& point, bool best) {
+  std::string row;
+  for (const auto& [name, value] : columns_of_way) row += csv_cell(value(report, point));
+  for (const auto& [name, value] : columns_of_answer)
+    row += point.failure.empty() ? csv_cell(value(report, point)) : ",";
+  return row + (best ? "1," : "0,") + (point.failure.empty() ? "" : "\"" + point.failure + "\"") + "\n";
 }
 
 // Is it the motion itself that forbids to know more?
@@ -133,14 +162,14 @@ std::string accuracy_text(const AccuracyReport& report) {
 }
 
 std::string accuracy_json(const AccuracyReport& report) {
-  nlohmann::ordered_json points = nlohmann::ordered_json::array(), failures = points, advice = points;
+  Json points = Json::array(), failures = points, advice = points;
   for (const Point& point : report.answers) points.push_back(json_of(report, point));
   for (const Point& point : report.failures) failures.push_back(json_of(report, point));
   for (const Advice& a : report.advice) {
     advice.push_back({{"error", std::pow(10.0, a.decade)}, {"point", a.point}});
     if (a.factor) advice.back()["ten_times_more_accuracy_costs"] = *a.factor;
   }
-  const nlohmann::ordered_json json = {
+  const Json json = {
       {"scene", report.scene.file},
       {"title", report.scene.title},
       {"until", until(report)},
@@ -161,25 +190,13 @@ std::string accuracy_json(const AccuracyReport& report) {
 }
 
 std::string accuracy_csv(const AccuracyReport& report) {
-  std::string text =
-      "method,integrator,solver,drift,iterations,precision,step,local_error,error,position_error,angle_error,C,Cdot,"
-      "energy_error,cpu_per_second,cpu_spread,frontier,failure\n";
-  const auto begin = [&](const Point& point) {
-    const Way& way = point.way;
-    const double local = knob_at(way, point.level).local_error;
-    return fmt::format("\"{}\",{},{},{},{},{},{},{}", name_of(way), name_of(integrators, way.integrator),
-                       name_of(solvers, way.solver), name_of(drifts, way.drift),
-                       sweeps(way.solver) ? way.iterations : 0, way.single ? "float" : "double",
-                       local > 0 ? 0 : step_of(report, point), local);
-  };
-  for (std::size_t k = 0; k < report.answers.size(); ++k) {
-    const Point& point = report.answers[k];
-    const Errors& e = point.errors;
-    const bool best = std::find(report.frontier.begin(), report.frontier.end(), k) != report.frontier.end();
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},\n", begin(point), e.trajectory(), e.position, e.angle, e.C,
-                        e.Cdot, e.energy, point.cost(), point.spread(), best ? 1 : 0);
-  }
-  for (const Point& point : report.failures) text += fmt::format("{},,,,,,,,,0,\"{}\"\n", begin(point), point.failure);
+  std::string text;
+  for (const Column& column : columns_of_way) text += fmt::format("{},", column.name);
+  for (const Column& column : columns_of_answer) text += fmt::format("{},", column.name);
+  text += "frontier,failure\n";
+  for (std::size_t k = 0; k < report.answers.size(); ++k)
+    text += csv_row(report, report.answers[k], std::ranges::count(report.frontier, k) > 0);
+  for (const Point& point : report.failures) text += csv_row(report, point, false);
   return text;
 }
 

@@ -1,9 +1,9 @@
 #include "runtime/tool/accuracy/state.hpp"
 
-#include <cstdint>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "runtime/number/hash.hpp"
 #include "runtime/tool/run/output.hpp"
 
 namespace cdot {
@@ -19,11 +19,10 @@ NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRun, made_by, settled, times, disagr
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepState, reference, points)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fingerprint, program, scene)
 
-// FNV-1a
 std::string hash_of(const std::string& text) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
-  return fmt::format("{:016x}", hash);
+  Hash hash;
+  hash.bytes(text.data(), text.size());
+  return fmt::format("{:016x}", hash.value);
 }
 
 std::string hash_of_program() { return hash_of(read_file("/proc/self/exe")); }

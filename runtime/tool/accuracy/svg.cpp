@@ -7,7 +7,7 @@
 namespace cdot {
 namespace {
 
-constexpr int hues[] = {215, 300, 35, 150, 0};  // by Integrator
+constexpr int hues[] = {215, 300, 35, 150, 0, 180, 60, 255};  // by Integrator
 
 std::size_t family_of(const Way& way) { return static_cast<std::size_t>(way.integrator) % std::size(hues); }
 

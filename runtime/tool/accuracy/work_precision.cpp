@@ -4,7 +4,7 @@
 #include <cmath>
 #include <fmt/format.h>
 
-#include "runtime/tool/viewer/text.hpp"
+#include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
 namespace {
@@ -70,12 +70,6 @@ std::pair<int, int> decades(const std::vector<CostedError>& points, F value) {
 
 double error_shown(const CostedError& point) { return std::max(point.error, least_error); }
 double microseconds(const CostedError& point) { return 1e6 * point.cost; }
-
-std::string line_through(const std::vector<Spot>& spots) {
-  std::string path;
-  for (const Spot& spot : spots) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', spot.x, spot.y);
-  return path;
-}
 
 std::string power(double x, double y, const char* anchor, int decade) {
   return fmt::format(
@@ -152,7 +146,7 @@ class Drawing {
   std::string frontier() const {
     const std::vector<Spot> spots = spots_of(all_);
     if (spots.empty()) return {};
-    std::string svg = fmt::format("<path class=\"frontier\" d=\"{}\"/>\n", line_through(spots));
+    std::string svg = fmt::format("<path class=\"frontier\" d=\"{}\"/>\n", path_through(spots));
     for (const Spot& spot : spots) svg += ring(spot);
     return svg;
   }
@@ -163,7 +157,7 @@ class Drawing {
       for (const CostedError& point : series.points)
         svg += fmt::format("<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\" fill=\"{}\"/>\n",
                            spot_of(point).x, spot_of(point).y, series.colour);
-      svg += fmt::format("<path class=\"curve\" d=\"{}\" stroke=\"{}\"/>\n", line_through(spots_of(series.points)),
+      svg += fmt::format("<path class=\"curve\" d=\"{}\" stroke=\"{}\"/>\n", path_through(spots_of(series.points)),
                          series.colour);
       for (const std::size_t k : best_of(series.points))
         svg += mark(series, spot_of(series.points[k]), k < series.notes.size() ? series.notes[k] : "");

@@ -188,7 +188,7 @@ int run(const Options& options) {
   if (options.matrix) return show_matrix(options, scene);
   RunOptions run;
   run.progress = progress_shown(options.scene);
-  run.diagnose_times = diagnose_times(scene.duration, poses_diagnosed);
+  run.diagnose_times = equal_times(scene.duration, poses_diagnosed, 0);
   if (options.time) {
     check_within(*options.time, scene.duration);
     run.diagnose_times = {*options.time};

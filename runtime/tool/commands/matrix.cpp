@@ -99,12 +99,10 @@ std::string numbers_text(const Scene& scene, const SystemMatrix& system) {
 }  // namespace
 
 SystemMatrix system_matrix(const Scene& scene) {
-  if (scene.dimension == Dimension::planar) {
-    auto world = build_world_in<Planar<double>>(scene);
+  return in_space_of<double>(scene, [&]<class S>(S) {
+    auto world = build_world_in<S>(scene);
     return system_matrix(world);
-  }
-  auto world = build_world_in<Spatial<double>>(scene);
-  return system_matrix(world);
+  });
 }
 
 std::string matrix_text(const Scene& scene, const SystemMatrix& system) {

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "runtime/tool/commands/matrix.hpp"
-#include "runtime/tool/viewer/text.hpp"
+#include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
 namespace {

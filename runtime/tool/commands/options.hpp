@@ -13,9 +13,7 @@ namespace cdot {
 // They take the place of the scene's own settings.
 struct SceneOptions {
   std::string file;
-  double until = 0, step = 0, local_error = 0;
-  std::string solver, integrator, drift, kernels, precision;
-  int iterations = 0, substeps = 0;
+  std::vector<std::function<void(Scene&)>> changes;
   bool progress = false;
 };
 

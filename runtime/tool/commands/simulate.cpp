@@ -5,7 +5,6 @@
 
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/run/output.hpp"
-#include "runtime/tool/run/state.hpp"
 #include "runtime/tool/viewer/viewer.hpp"
 
 namespace cdot {
@@ -69,7 +68,7 @@ RunOptions run_options(const Options& options, const Scene& scene, OutputFile* c
   std::sort(run.row_times.begin(), run.row_times.end());
   if (options.every > 0) run.row_times = every(options.every, scene.duration);
   if (!options.html.empty() || !options.svg.empty()) run.film_times = film_times(scene);
-  run.diagnose_times = diagnose_times(scene.duration, poses_diagnosed);
+  run.diagnose_times = equal_times(scene.duration, poses_diagnosed, 0);
   run.progress = progress_shown(options.scene);
   if (!options.from_state.empty()) run.from = read_state(options.from_state);
   if (options.save_state.empty()) return run;
@@ -92,7 +91,7 @@ int run(const Options& options) {
   if (result.interrupted) return stopped;
 
   if (csv) csv->commit();
-  if (!result.state.empty()) write_state(options.save_state, result.state);
+  if (!result.state.empty()) write_file(options.save_state, result.state.text());
   if (!options.html.empty()) write_file(options.html, html_page(scene, result.film));
   if (!options.svg.empty()) write_file(options.svg, svg_still(scene, result.film));
   fmt::print("{}", options.json ? summary_json(scene, result) : summary_text(scene, result));

@@ -13,7 +13,7 @@ constexpr double finer = 0.01;    // share of the local error of the run that is
 constexpr double finest = 1e-15;  // local error: beyond it there is only round-off
 constexpr double safety = 0.5;    // of the accuracy asked for
 
-Way way_of(Integrator integrator) { return {integrator, Solver::direct, Drift::projection, 0, false, true}; }
+Way way_of(Integrator integrator) { return {.integrator = integrator, .iterations = 0, .adaptive = true}; }
 
 double distance_between(const Trajectory& a, const Trajectory& b, Dimension dimension) {
   double worst = a.finite && b.finite ? 0 : std::numeric_limits<double>::infinity();
@@ -42,14 +42,21 @@ Choice try_integrator(const Scene& scene, Integrator integrator) {
   return best;
 }
 
+bool better(const Choice& a, const Choice& b) {
+  if (a.reached != b.reached) return a.reached;
+  return a.reached ? a.evaluations < b.evaluations : a.achieved < b.achieved;
+}
+
 }  // namespace
 
 Choice choose_method(const Scene& scene) {
-  const Choice fourth = try_integrator(scene, Integrator::rk4);
-  const Choice eighth = try_integrator(scene, Integrator::dop853);
-  if (fourth.reached != eighth.reached) return fourth.reached ? fourth : eighth;
-  if (!fourth.reached) return fourth.achieved < eighth.achieved ? fourth : eighth;
-  return fourth.evaluations < eighth.evaluations ? fourth : eighth;
+  std::optional<Choice> best;
+  for (const IntegratorRow& row : integrator_rows) {
+    if (row.level != Level::acceleration) continue;
+    const Choice choice = try_integrator(scene, row.integrator);
+    if (!best || !better(*best, choice)) best = choice;
+  }
+  return *best;
 }
 
 Scene solved_by(const Choice& choice, Scene scene) {

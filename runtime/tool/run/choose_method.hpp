@@ -7,7 +7,7 @@
 namespace cdot {
 
 struct Choice {
-  Integrator integrator = Integrator::dop853;
+  Integrator integrator{};
   double local_error = 0;
   // [m, rad] how far the run chosen is from one of a hundredth of its local error, over the samples of the run.
   double achieved = 0;
@@ -16,7 +16,7 @@ struct Choice {
   long long evaluations = 0;
 };
 
-// The scene must ask for an accuracy. Runs it a few times.
+// Of the integrators that choose their steps. The scene must ask for an accuracy. Runs it a few times.
 Choice choose_method(const Scene& scene);
 
 // A run is looked at so often, at least: those that compare as well as the run itself end a step there.

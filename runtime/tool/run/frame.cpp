@@ -51,6 +51,17 @@ constexpr double same_time = 1e-6;
 
 }  // namespace
 
+std::span<const StateColumn> state_columns(Dimension dimension) {
+  using B = BodyState;
+  static constexpr StateColumn planar[] = {{"x", &B::x},   {"y", &B::y},   {"angle", &B::angle},
+                                           {"vx", &B::vx}, {"vy", &B::vy}, {"omega", &B::w}};
+  static constexpr StateColumn in_space[] = {
+      {"x", &B::x},   {"y", &B::y},   {"z", &B::z},   {"e0", &B::e0}, {"e1", &B::e1}, {"e2", &B::e2}, {"e3", &B::e3},
+      {"vx", &B::vx}, {"vy", &B::vy}, {"vz", &B::vz}, {"wx", &B::wx}, {"wy", &B::wy}, {"wz", &B::wz}};
+  if (dimension == Dimension::planar) return planar;
+  return in_space;
+}
+
 template <class S>
 Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
   Frame frame;
@@ -113,6 +124,12 @@ std::vector<double> every(double dt, double until) {
   std::vector<double> times;
   const auto last = static_cast<long long>(std::floor(until / dt * (1 + 1e-12)));
   for (long long k = 0; k <= last; ++k) times.push_back(static_cast<double>(k) * dt);
+  return times;
+}
+
+std::vector<double> equal_times(double until, int count, int first) {
+  std::vector<double> times;
+  for (int k = first; k < first + count; ++k) times.push_back(until * k / count);
   return times;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include <cdot/world.hpp>
@@ -14,6 +15,13 @@ struct BodyState {
   double z = 0, vz = 0;           // and the rest only in space
   double e0 = 1, e1 = 0, e2 = 0, e3 = 0, wx = 0, wy = 0, wz = 0;
 };
+
+// The numbers of a state that files have, by the names of their columns.
+struct StateColumn {
+  const char* name;
+  double BodyState::*number;
+};
+std::span<const StateColumn> state_columns(Dimension dimension);
 
 struct Frame {
   double time = 0;
@@ -46,5 +54,7 @@ class Sampler {
 
 // 0, dt, 2 dt, … up to `until`.
 std::vector<double> every(double dt, double until);
+// So many ends of as many equal stretches of [0, until], from end number `first` on.
+std::vector<double> equal_times(double until, int count, int first = 1);
 
 }  // namespace cdot

@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include <cdot/snapshot.hpp>
+
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
@@ -35,5 +37,8 @@ std::string read_file(const std::string& path);
 // vx, vy, vz, wx, wy, wz. Numbers read back to the same bits.
 std::string csv_head(const Scene& scene);
 std::string csv_row(const Scene& scene, const Frame& frame);
+
+// The state of a run, which another goes on from. Throws cdot::Error with the path if the file is no state.
+Snapshot read_state(const std::string& path);
 
 }  // namespace cdot

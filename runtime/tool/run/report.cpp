@@ -10,13 +10,6 @@ namespace cdot {
 
 namespace {
 
-// The name of a body or a joint; empty if there is none.
-template <class List>
-std::string name_in(const List& list, int index) {
-  const bool known = index >= 0 && static_cast<std::size_t>(index) < list.size();
-  return known ? list[static_cast<std::size_t>(index)].name : std::string();
-}
-
 std::string failed_step_text(const Scene& scene, const StepResult& step) {
   return fmt::format("{}. Likely fix: {}",
                      in_words(step, fmt::format("body \"{}\"", name_in(scene.bodies, step.body)),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fmt/format.h>
 
 #include "runtime/tool/run/process.hpp"
@@ -15,31 +14,6 @@ template <class T>
 constexpr double start_tolerance = std::is_same_v<T, float> ? 1e-4 : 1e-6;
 template <class T>
 constexpr double start_projected = by_precision<T>(1e-5, 1e-12);
-
-// A line on stderr that is written over, at most a few times a second.
-class Progress {
- public:
-  Progress(bool wanted, double until) : wanted_(wanted), until_(until) {}
-  ~Progress() {
-    if (shown_) fmt::print(stderr, "\r{:60}\r", "");
-  }
-  void at(double time) {
-    if (!wanted_ || ++calls_ % 64 != 0) return;
-    const std::time_t now = std::time(nullptr);
-    if (now == last_) return;
-    if (last_ != 0) {
-      fmt::print(stderr, "\r{:3.0f} %  {:.4g} s of {:.4g} s", 100 * time / until_, time, until_);
-      shown_ = true;
-    }
-    last_ = now;
-  }
-
- private:
-  bool wanted_, shown_ = false;
-  double until_;
-  unsigned calls_ = 0;
-  std::time_t last_ = 0;
-};
 
 void judge(const Scene& scene, const Frame& frame, RunResult& result) {
   const WorstError& worst = frame.worst;
@@ -153,7 +127,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   Sampler film(from_time(options.film_times, result.start, scene.step),
                [&](const Frame& frame) { result.film.push_back(frame); });
   const bool every_step = options.row && options.row_times.empty();
-  Progress progress(options.progress, scene.duration);
+  ProgressLine progress(options.progress);
   const Interrupt interrupt;
 
   const int bodies = static_cast<int>(scene.bodies.size());
@@ -185,7 +159,9 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     result.steps = k + 1;
     std::swap(before, after);
     after = frame_of(world, steps.time(k + 1), bodies);
-    progress.at(after.time);
+    if (progress.due())
+      progress.show(fmt::format("{:3.0f} %  {:.4g} s of {:.4g} s", 100 * after.time / scene.duration, after.time,
+                                scene.duration));
   }
   finish(scene, world, result);
   return result;
@@ -213,11 +189,8 @@ RunResult simulate(const Scene& scene, const RunOptions& options, std::string& w
     result.choice = choice;
     return result;
   }
-  if (scene.dimension == Dimension::planar)
-    return scene.single ? simulate_in<Planar<float>>(scene, options, warnings)
-                        : simulate_in<Planar<double>>(scene, options, warnings);
-  return scene.single ? simulate_in<Spatial<float>>(scene, options, warnings)
-                      : simulate_in<Spatial<double>>(scene, options, warnings);
+  const auto run = [&]<class S>(S) { return simulate_in<S>(scene, options, warnings); };
+  return scene.single ? in_space_of<float>(scene, run) : in_space_of<double>(scene, run);
 }
 
 #define CDOT_INSTANTIATE(S) template BasicWorld<S> world_at_start(const Scene&, std::string&);

@@ -151,10 +151,4 @@ Apart apart(const Frame& a, const Frame& b, Dimension dimension) {
   return worst;
 }
 
-std::vector<double> equal_times(double until, int count) {
-  std::vector<double> times;
-  for (int k = 1; k <= count; ++k) times.push_back(until * k / count);
-  return times;
-}
-
 }  // namespace cdot

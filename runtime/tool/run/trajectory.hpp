@@ -24,10 +24,8 @@ struct Trajectory {
 // f(space) for the space and precision in which the way computes.
 template <class F>
 auto in_space_of(const Scene& scene, const Way& way, F f) {
-  const bool planar = scene.dimension == Dimension::planar;
-  if (way.extended) return planar ? f(Planar<long double>{}) : f(Spatial<long double>{});
-  if (way.single) return planar ? f(Planar<float>{}) : f(Spatial<float>{});
-  return planar ? f(Planar<double>{}) : f(Spatial<double>{});
+  if (way.extended) return in_space_of<long double>(scene, f);
+  return way.single ? in_space_of<float>(scene, f) : in_space_of<double>(scene, f);
 }
 
 // A start beside the scene's: every number of every body off by up to as much, then back onto the joints.
@@ -52,8 +50,5 @@ struct Apart {
   double larger() const { return position > angle ? position : angle; }
 };
 Apart apart(const Frame& a, const Frame& b, Dimension dimension);
-
-// n + 1 ends of n equal stretches of [0, until], less the first.
-std::vector<double> equal_times(double until, int count);
 
 }  // namespace cdot

@@ -10,9 +10,9 @@
 namespace cdot {
 
 struct Way {
-  Integrator integrator = Integrator::euler;
-  Solver solver = Solver::direct;
-  Drift drift = Drift::projection;
+  Integrator integrator = Settings{}.integrator;
+  Solver solver = Settings{}.solver;
+  Drift drift = Settings{}.drift;
   int iterations = 10;    // of the iterative solver
   bool single = false;    // in float
   bool adaptive = false;  // its knob is the local error, not the step

@@ -31,18 +31,12 @@ void add_island(const Diagnosis::Island& now, double time, WorstOfIsland& worst)
 }  // namespace
 
 std::string body_name(const Scene& scene, int body) {
-  const auto at = static_cast<std::size_t>(body);
-  return body >= 0 && at < scene.bodies.size() ? "\"" + scene.bodies[at].name + "\"" : "nothing";
+  const std::string name = name_in(scene.bodies, body);
+  return name.empty() ? "nothing" : "\"" + name + "\"";
 }
 std::string joint_name(const Scene& scene, int joint) {
-  const auto at = static_cast<std::size_t>(joint);
-  return joint >= 0 && at < scene.joints.size() ? "\"" + scene.joints[at].name + "\"" : "no joint";
-}
-
-std::vector<double> diagnose_times(double duration, int count) {
-  std::vector<double> times;
-  for (int k = 0; k < count; ++k) times.push_back(duration * k / count);
-  return times;
+  const std::string name = name_in(scene.joints, joint);
+  return name.empty() ? "no joint" : "\"" + name + "\"";
 }
 
 void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>& worst) {

@@ -20,7 +20,13 @@ struct Key {
   const char* otherwise;       // if the key is not given
   void (*read)(Entry& entry, const char* key, To& to);
   Where where = Where::everywhere;
+  std::vector<std::string> (*choices)() = nullptr;  // the texts that it may be
 };
+
+template <const auto& table>
+std::vector<std::string> choices_of() {
+  return names_of(table);
+}
 
 // A key that is not asked for stays unknown to the entry, which then complains about it.
 template <class To, std::size_t count>
@@ -59,13 +65,17 @@ struct KeyTable {
   std::vector<Row> rows;
 };
 
+// "direct or iterative", "a, b or c"
+std::string listed(const std::vector<std::string>& choices);  // tool/scene/settings.cpp
+
 template <class... Keys>
 KeyTable table_of(std::string title, const Keys&... parts) {
   KeyTable table{std::move(title), {}};
   const auto add = [&](const auto& keys) {
     for (const auto& key : keys)
       table.rows.push_back({key.name,
-                            key.where == Where::in_space ? std::string("in space: ") + key.meaning : key.meaning,
+                            (key.where == Where::in_space ? "in space: " : "") + std::string(key.meaning) +
+                                (key.choices ? ": " + listed(key.choices()) : ""),
                             key.otherwise});
   };
   (add(parts), ...);

@@ -86,6 +86,12 @@ World<T> build_world(const Scene& scene) {
   return build_world_in<Planar<T>>(scene);
 }
 
+// f(space), for the scene's dimension and numbers of type T.
+template <class T, class F>
+auto in_space_of(const Scene& scene, F f) {
+  return scene.dimension == Dimension::planar ? f(Planar<T>{}) : f(Spatial<T>{});
+}
+
 // The rows that the start violates beyond `tolerance`, a paragraph for each of the first joints, and how many more
 // there are; empty if there are none.
 template <class S>

@@ -1,5 +1,7 @@
 // The top of a scene file: what is simulated, for how long, and how.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <span>
 
 #include <cdot/methods.hpp>
 
@@ -44,22 +46,22 @@ constexpr Key<Scene> keys[] = {
     {"gravity", "[m/s^2]", "[0, -9.81], in space [0, 0, -9.81]", read_gravity},
     {"duration", "[s]", "10", read_number<Sign::positive, &Scene::duration>},
     {"step", "[s]; the run ends with the first step at or after duration", "0.001", read_step},
-    {"solver", "direct (exact) or iterative (sequential impulses)", "direct", read_choice<solvers, settings, &Settings::solver>},
-    {"integrator", "euler, implicit, rattle, rk4 or dop853", "euler", read_choice<integrators, settings, &Settings::integrator>},
+    {"solver", "how a step finds the impulses", "direct", read_choice<solvers, settings, &Settings::solver>, Where::everywhere, choices_of<solvers>},
+    {"integrator", "how a step is taken", "euler", read_choice<integrators, settings, &Settings::integrator>, Where::everywhere, choices_of<integrators>},
     {"local_error", "rk4 and dop853 choose their steps: the estimated error of one [m, rad, m/s, rad/s]", "fixed steps", read_number<Sign::positive, settings, &Settings::local_error>},
-    {"drift", "what keeps joints together: projection, baumgarte or none", "projection", read_choice<drifts, settings, &Settings::drift>},
+    {"drift", "what keeps joints together", "projection", read_choice<drifts, settings, &Settings::drift>, Where::everywhere, choices_of<drifts>},
     {"baumgarte", "share of the error removed per step", "0.2", read_number<Sign::positive, settings, &Settings::baumgarte>},
     {"iterations", "of the iterative solver", "10", read_count<settings, &Settings::iterations>},
     {"warm_start", "of the iterative solver", "true", read_flag<settings, &Settings::warm_start>},
-    {"kernels", "rows of one joint together in the iterative solver: fast, balanced or robust", "balanced", read_choice<kernel_forms, settings, &Settings::kernels>},
+    {"kernels", "rows of one joint together in the iterative solver", "balanced", read_choice<kernel_forms, settings, &Settings::kernels>, Where::everywhere, choices_of<kernel_forms>},
     {"substeps", "every step is taken as so many shorter ones", "1", read_count<settings, &Settings::substeps>},
-    {"precision", "double or float", "double", read_choice<precisions, &Scene::single>},
+    {"precision", "of all numbers", "double", read_choice<precisions, &Scene::single>, Where::everywhere, choices_of<precisions>},
     {"accuracy", "of the trajectory, by a method that the run chooses [m, rad]", "the method as given", read_number<Sign::positive, &Scene::accuracy>},
     {"sleep_after", "bodies at rest for so long sleep [s]; 0: never", "0", read_number<Sign::not_negative, settings, &Settings::sleep_after>},
     {"sleep_speed", "the speed that counts as rest [m/s, rad/s]", "0.001", read_number<Sign::positive, settings, &Settings::sleep_speed>},
     {"tolerance", "joint error from which the run has failed [m, rad]", "0.01", read_number<Sign::positive, &Scene::tolerance>},
     {"project", "move a start that does not fit onto its joints", "false", read_flag<&Scene::project>},
-    {"on_failure", "of a step: stop or retry", "stop", read_choice<failure_answers, &Scene::on_failure>},
+    {"on_failure", "of a step", "stop", read_choice<failure_answers, &Scene::on_failure>, Where::everywhere, choices_of<failure_answers>},
 };
 // clang-format on
 
@@ -86,6 +88,11 @@ void read_settings(Entry& top, Scene& scene) {
   read_keys(top, keys, scene.dimension, scene);
   check_method(top, scene.settings);
   check_accuracy(top);
+}
+
+std::string listed(const std::vector<std::string>& choices) {
+  const std::span most(choices.data(), choices.size() - 1);
+  return fmt::format("{} or {}", fmt::join(most, ", "), choices.back());
 }
 
 KeyTable keys_of_the_top() { return table_of("The top of the file", keys); }

@@ -7,7 +7,7 @@
 
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/scene/scene.hpp"
-#include "runtime/tool/viewer/text.hpp"
+#include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
 

@@ -188,14 +188,11 @@ std::string snapshots_of(const std::vector<Frame>& film, At at) {
 
 std::string planar_still(const Drawing& drawing, const std::vector<Frame>& film) {
   std::string svg = still_head(drawing.view.width, drawing.view.height);
-  for (const Trace& trace : drawing.traces) {
-    svg += fmt::format("<polyline class=\"trace c{}\" points=\"", trace.colour);
-    for (const Frame& frame : film) {
+  for (const Trace& trace : drawing.traces)
+    svg += trace_svg(fmt::format("c{}", trace.colour), film, [&](const Frame& frame) {
       const Vec2 at = position(trace.point, places_of(drawing.view, frame));
-      svg += fmt::format("{:.1f},{:.1f} ", at[0], at[1]);
-    }
-    svg += "\"/>\n";
-  }
+      return Place{at[0], at[1], 0};
+    });
   return svg + snapshots_of(film, [&](const Frame& frame, bool last) {
            return placed(drawing, places_of(drawing.view, frame), last);
          });

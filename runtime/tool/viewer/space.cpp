@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 #include <numbers>
 
+#include "runtime/tool/viewer/picture.hpp"
+
 namespace cdot {
 namespace {
 
@@ -83,7 +85,9 @@ class SpacePainter {
                                 {spring.body_b, {spring.bx, spring.by, spring.bz}},
                                 "spring"});
     for (std::size_t k = 0; k < scene_.bodies.size(); ++k) drawing_.bodies.push_back(body(k));
-    add_traces();
+    each_trace(scene_, [&](int body, const Vec3& p) {
+      drawing_.traces.push_back({{body, p}, kind(static_cast<std::size_t>(body))});
+    });
     return drawing_;
   }
 
@@ -149,17 +153,6 @@ class SpacePainter {
 
   static int body_of(const SceneJoint& joint, int body) {
     return body < 0 ? world_body : joint.definition.bodies[static_cast<std::size_t>(body)];
-  }
-
-  // What the scene asks for; else the centre of the last body that can move.
-  void add_traces() {
-    const auto add = [&](std::size_t k, const Vec3& p) {
-      drawing_.traces.push_back({{static_cast<int>(k), p}, kind(k)});
-    };
-    for (std::size_t k = 0; k < scene_.bodies.size(); ++k)
-      for (const Vec3& point : scene_.bodies[k].traces) add(k, point);
-    for (std::size_t k = scene_.bodies.size(); k-- > 0 && drawing_.traces.empty();)
-      if (!scene_.bodies[k].is_static) add(k, {});
   }
 
   const Scene& scene_;

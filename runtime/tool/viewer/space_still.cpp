@@ -6,6 +6,7 @@
 
 #include <cdot/rotation.hpp>
 
+#include "runtime/tool/viewer/picture.hpp"
 #include "runtime/tool/viewer/space.hpp"
 
 namespace cdot {
@@ -46,12 +47,6 @@ Vec3 placed(const Frame& frame, const SpacePoint& p) {
   const auto pose = spatial::oriented(b.x, b.y, b.z, b.e0, b.e1, b.e2, b.e3);
   const auto r = to_world(pose, spatial::Vector<double>{p.local[0], p.local[1], p.local[2]});
   return {b.x + r.x, b.y + r.y, b.z + r.z};
-}
-
-std::string path_of(const std::vector<Seen>& points, bool closed) {
-  std::string d;
-  for (const Seen& p : points) d += fmt::format("{}{:.1f} {:.1f}", d.empty() ? 'M' : 'L', p.x, p.y);
-  return closed ? d + 'Z' : d;
 }
 
 std::string circle(const Seen& p, double r) {
@@ -114,12 +109,12 @@ class Still {
     }
     if (area >= 0) return;
     const double shade = std::min(1.0, -area / (size * size) * 8);
-    items_.push_back({mean_depth(seen), path_of(seen, true), kind, 0.25 + 0.5 * shade});
+    items_.push_back({mean_depth(seen), path_through(seen) + "Z", kind, 0.25 + 0.5 * shade});
   }
 
   void add_line(const SpacePoint& from, const SpacePoint& to, const std::string& kind) {
     const std::vector<Seen> seen = {project_(placed(frame_, from)), project_(placed(frame_, to))};
-    items_.push_back({mean_depth(seen), path_of(seen, false), kind});
+    items_.push_back({mean_depth(seen), path_through(seen), kind});
   }
 
   const SpaceDrawing& drawing_;
@@ -133,16 +128,10 @@ class Still {
 std::string space_background(const SpaceDrawing& drawing, const std::vector<Frame>& film) {
   const Projection project(drawing);
   std::string floor;
-  for (const SpaceLine& line : drawing.floor) floor += path_of({project(line[0]), project(line[1])}, false);
+  for (const SpaceLine& line : drawing.floor) floor += path_through(std::array{project(line[0]), project(line[1])});
   std::string svg = fmt::format("<path class=\"floor\" d=\"{}\"/>\n", floor);
-  for (const SpaceTrace& trace : drawing.traces) {
-    svg += fmt::format("<polyline class=\"trace {}\" points=\"", trace.colour);
-    for (const Frame& frame : film) {
-      const Seen at = project(placed(frame, trace.point));
-      svg += fmt::format("{:.1f},{:.1f} ", at.x, at.y);
-    }
-    svg += "\"/>\n";
-  }
+  for (const SpaceTrace& trace : drawing.traces)
+    svg += trace_svg(trace.colour, film, [&](const Frame& frame) { return project(placed(frame, trace.point)); });
   return svg;
 }
 

@@ -1,5 +1,4 @@
 // cdot-run simulate --save-state and --from-state: a run in two parts writes the rows of one in a single part.
-#include "runtime/tool/run/state.hpp"
 
 #include <fmt/format.h>
 #include <fstream>

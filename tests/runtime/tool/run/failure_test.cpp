@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "runtime/tool/run/state.hpp"
+#include "runtime/tool/run/output.hpp"
 #include "tests/runtime/tool/support.hpp"
 
 namespace cdot::test::failure_test {
