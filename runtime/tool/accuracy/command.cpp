@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "runtime/tool/accuracy/state.hpp"
+#include "runtime/tool/accuracy/sweep.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/simulate.hpp"

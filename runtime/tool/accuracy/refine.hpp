@@ -7,7 +7,6 @@
 #include "runtime/tool/run/trajectory.hpp"
 
 namespace cdot {
-
 // How much may be spent on one method. The evaluations decide the same on every machine; the seconds are for people.
 struct Effort {
   long long evaluations = 2'000'000;                     // of an island's accelerations, or steps of RATTLE
@@ -34,5 +33,14 @@ Refined refined(Integrator integrator, bool extended, const Scene& scene, const 
 // The largest distance or angle at each time; both are whole.
 std::vector<double> distances(const std::vector<Frame>& a, const std::vector<Frame>& b, Dimension dimension);
 double largest(const std::vector<double>& values);
+
+// Whether the motion goes back the same way when velocities turn round, and nothing stops it: no dampers, friction,
+// motors or limits, nothing driven in time, nothing that breaks. Only then is it of that order.
+bool reversible(const Scene& scene);
+
+// `steps` such steps from one of the times to the next, in doubles or in extended precision. Counts::evaluations are
+// the method's steps.
+Trajectory composed(Integrator symmetric, const Scene& scene, int steps, const std::vector<double>& times,
+                    const Stop& stop = {}, bool extended = false);
 
 }  // namespace cdot

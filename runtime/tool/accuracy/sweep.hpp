@@ -10,7 +10,6 @@
 #include "runtime/tool/accuracy/reference.hpp"
 
 namespace cdot {
-
 struct Point {
   Way way;
   int level = 0;
@@ -50,5 +49,19 @@ std::vector<Point> answers_of(const SweepState& state, const std::vector<Way>& w
 std::vector<Point> failures_of(const SweepState& state, const std::vector<Way>& ways);
 
 std::vector<CostedError> costs_of(const std::vector<Point>& answers, const ReferenceRun& reference);
+
+// What the findings hold for: they are worth nothing for another program, scene or reference.
+struct Fingerprint {
+  std::string program, scene;
+  bool operator==(const Fingerprint&) const = default;
+};
+// Of the running program's file; of the scene's text, and whatever else decides what is computed.
+std::string hash_of_program();
+std::string hash_of(const std::string& text);
+
+void write_state(const std::string& path, const Fingerprint& fingerprint, const SweepState& state);
+
+// Throws cdot::Error with a sentence about what does not fit, or if there is no such file.
+SweepState read_state(const std::string& path, const Fingerprint& fingerprint);
 
 }  // namespace cdot

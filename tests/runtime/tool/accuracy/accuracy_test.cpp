@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "runtime/tool/accuracy/state.hpp"
 #include "runtime/tool/accuracy/sweep.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "tests/methods.hpp"

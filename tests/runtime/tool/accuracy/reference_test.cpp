@@ -10,7 +10,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "runtime/tool/accuracy/compose.hpp"
+#include "runtime/tool/accuracy/refine.hpp"
 #include "tests/runtime/tool/accuracy/pendulum.hpp"
 #include "tests/runtime/tool/support.hpp"
 
