@@ -1,5 +1,4 @@
-// What a diagnosis means for the method that is to take the steps: where it will be wrong or fly apart, and what to use
-// instead.
+// A diagnosis and a method -> warnings, where the method will be inaccurate or unstable, with a better one.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +11,7 @@
 namespace cdot {
 
 struct Concern {
-  bool warning = false;  // else a note: nothing goes wrong
+  bool warning = false;  // else a note
   std::string what, fix;
   bool operator==(const Concern&) const = default;
 };

@@ -1,3 +1,4 @@
+// Changes the constants of an effect of a running World.
 #include "runtime/effects/effect.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ void set_constants(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S
   for (size_t k = 0; k < count; ++k)
     batch.constants[slot_of(state, record.places[place]) * count + k] = typename S::Scalar(constants[k]);
   const int body = movable_body(state, record);
-  if (named.law.error)  // of where the bodies shall be
+  if (named.law.error)  // the law concerns positions
     wake(state, body);
   else wake_pushed(state, body);
 }

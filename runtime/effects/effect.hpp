@@ -21,12 +21,12 @@ struct NamedLaw {
   const char* name;  // in messages
 };
 
-// Throws Error if the joint has no effect of that number, or one of another law.
+// Throws Error if the joint has no effect of that number, or if the effect has another law.
 template <class S>
 void set_constants(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S>& named,
                    std::span<const double> constants);
 
-// The effect as it is at the present pose of the joint.
+// The effect, completed from the present pose of the joint.
 template <class S, class Effect>
 const Effect& at_pose(BasicWorld<S>&, int, std::string_view, const Effect& effect) {
   return effect;

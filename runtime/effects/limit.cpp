@@ -1,4 +1,4 @@
-// Limits of a coordinate, and the lock that both ends at one place make.
+// A limit on a coordinate: lower <= C <= upper. Equal ends make a lock.
 #include <cmath>
 #include <fmt/format.h>
 
@@ -8,8 +8,7 @@
 namespace cdot {
 namespace {
 
-// --- limit: lower <= C <= upper. Constants: lower, upper. One row serves both sides, the nearer
-// one at a time.
+// --- limit: lower <= C <= upper. Constants: lower, upper. One row serves the nearer side.
 
 template <class T>
 bool nearer_to_lower(T C, const T* limits) {
@@ -48,7 +47,7 @@ void guard_limit(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* gua
                                       : Guard<T>{C - limits[1], T(0), -T(unlimited), T(0)};
 }
 
-// --- lock, a limit whose ends are one: C = at. Constants: at.
+// --- lock: C = at. Constants: at.
 
 template <class S>
 void fill_lock(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings& settings) {
@@ -94,7 +93,7 @@ static NamedLaw<S> law_of(const Limit& limit) {
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
-#ifndef CDOT_EXTENDED  // how a scene writes them is one for all precisions
+#ifndef CDOT_EXTENDED  // the keys of a scene are the same in every precision
 namespace {
 
 std::optional<EffectKind::Wrong> take_limit(std::span<const EffectKind::Given> n, CoordinateEffects& effects) {

@@ -1,4 +1,4 @@
-// A constant force or torque along a coordinate: J^T F. Its energy is -F C, so that nothing is lost by it.
+// A constant force or torque along a coordinate: J^T F. It is conservative, with energy -F C.
 #include <cmath>
 
 #include "runtime/effects/effect.hpp"
@@ -6,7 +6,7 @@
 namespace cdot {
 namespace {
 
-// Constants: F. Bounds that are one leave the row no other impulse than h F.
+// Constants: F. Equal bounds fix the impulse of the row at h F.
 template <class S>
 void fill_load(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings&) {
   for (int i = begin; i < end; ++i) batch.lower[i] = batch.upper[i] = h * batch.constants[i];
@@ -41,7 +41,7 @@ static std::array<double, 1> constants_of(const Load& load) {
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
-#ifndef CDOT_EXTENDED  // how a scene writes them is one for all precisions
+#ifndef CDOT_EXTENDED  // the keys of a scene are the same in every precision
 namespace {
 
 std::optional<EffectKind::Wrong> take_load(std::span<const EffectKind::Given> n, CoordinateEffects& effects) {

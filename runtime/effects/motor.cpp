@@ -1,4 +1,4 @@
-// Motor and dry friction: a row with bounds on its force.
+// Motor and dry friction: a row J v = speed with bounds on its force.
 #include <cmath>
 
 #include "runtime/effects/effect.hpp"
@@ -6,8 +6,7 @@
 namespace cdot {
 namespace {
 
-// --- motor: J v = speed, as far as its force reaches. Constants: speed, largest force.
-// --- dry friction is a motor of speed 0.
+// Constants: speed, largest force. Dry friction is a motor of speed 0.
 
 template <class S>
 void fill_motor(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings&) {
@@ -54,7 +53,7 @@ static std::array<double, 2> constants_of(const DryFriction& friction) {
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
-#ifndef CDOT_EXTENDED  // how a scene writes them is one for all precisions
+#ifndef CDOT_EXTENDED  // the keys of a scene are the same in every precision
 namespace {
 
 std::optional<EffectKind::Wrong> take_motor(std::span<const EffectKind::Given> n, CoordinateEffects& effects) {

@@ -1,4 +1,4 @@
-// Spring and damper on a coordinate.
+// A spring with damping on a coordinate; a damper is a spring of stiffness 0.
 #include <cmath>
 
 #include "runtime/effects/effect.hpp"
@@ -61,7 +61,7 @@ static CoordinateSpring at_pose(BasicWorld<S>& world, int joint, std::string_vie
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
-#ifndef CDOT_EXTENDED  // how a scene writes them is one for all precisions
+#ifndef CDOT_EXTENDED  // the keys of a scene are the same in every precision
 namespace {
 
 std::optional<EffectKind::Wrong> take_spring(std::span<const EffectKind::Given> n, CoordinateEffects& effects) {

@@ -1,3 +1,4 @@
+// A scene and options -> a sweep, its files and its text.
 #include "runtime/tool/accuracy/command.hpp"
 
 #include <algorithm>
@@ -39,7 +40,7 @@ SweepOptions chosen(const AccuracyOptions& options) {
   if (!sweep.ways.empty()) return sweep;
   std::string known;
   for (const Way& way : options.sweep.ways) known += "\n  " + name_of(way);
-  throw Error(fmt::format("no way of solving has \"{}\" in its name; there are{}", options.only, known));
+  throw Error(fmt::format("no way has \"{}\" in its name; known ways:{}", options.only, known));
 }
 
 void write_files(const std::string& output, const AccuracyReport& report) {
@@ -48,7 +49,7 @@ void write_files(const std::string& output, const AccuracyReport& report) {
   write_file(output + ".svg", accuracy_svg(report));
 }
 
-// What there is to say about the start of a scene, once: the ways share it.
+// Warnings about the start of a scene. All ways share them.
 std::string warnings_of(const Scene& scene) {
   std::string warnings;
   in_space_of<double>(scene, [&]<class S>(S) { world_at_start<S>(scene, warnings); });
@@ -98,8 +99,7 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
   line.clear();
   if (!finished) {
     write_state(state_path, fingerprint, state);
-    fmt::print(stderr, "interrupted: {} runs are kept in {}; --resume goes on from there\n", state.points.size(),
-               state_path);
+    fmt::print(stderr, "interrupted: {} runs are saved in {}; --resume continues\n", state.points.size(), state_path);
     return {};
   }
   const AccuracyReport report = report_of(scene, ways, state);

@@ -1,3 +1,4 @@
+// A method, refined; and symmetric methods, composed to order 10.
 #include "runtime/tool/accuracy/refine.hpp"
 
 #include <algorithm>
@@ -13,8 +14,8 @@ namespace cdot {
 namespace {
 
 constexpr double settled = 3e-13;  // [m, rad]: a change that is round-off of doubles
-constexpr double small = 1e-6;     // a change from which on
-constexpr int patience = 3;        // so many finer knobs without a smaller one mean that round-off is reached
+constexpr double small = 1e-6;     // [m, rad]: below it, stagnation means round-off
+constexpr int patience = 3;        // finer knobs without a smaller change that make stagnation
 
 // The trajectory of one knob.
 Trajectory made(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
@@ -30,8 +31,8 @@ std::string name_of_method(Integrator integrator) {
 
 }  // namespace
 
-// Where two knobs, one after the other, differ least, the finer one is the best: before, the method's error, and behind
-// it round-off is larger.
+// Of the two successive knobs that differ least the finer one is best: coarser knobs have larger errors of the method,
+// finer ones more round-off.
 Refined refined(Integrator integrator, bool extended, const Scene& scene, const std::vector<double>& times,
                 const Effort& effort, const Stop& stop) {
   const Way way{.integrator = integrator, .extended = extended};
@@ -42,7 +43,7 @@ Refined refined(Integrator integrator, bool extended, const Scene& scene, const 
   long long last = 0;
   int idle = 0;
   for (int level = 0; has_level(way, level) && !refined.at_its_floor && !enough(); ++level) {
-    if (refined.evaluations + 2 * last > effort.evaluations) break;  // no knob costs more than twice the one before
+    if (refined.evaluations + 2 * last > effort.evaluations) break;  // a knob costs at most twice the previous one
     Trajectory now = made(scene, way, knob_at(way, level), times, enough);
     last = now.counts.evaluations;
     refined.evaluations += last;
@@ -85,8 +86,8 @@ constexpr double stages[] = {
 };
 constexpr int middle = std::size(stages) - 1;
 
-// Where velocities turn round, a step goes back the way that the motion came: the method is reversible. J, C and the
-// impulses are those of the poses, so that nothing has to be evaluated anew.
+// With reversed velocities a step of a reversible method goes back. J, C and impulses belong to the poses: nothing is
+// evaluated anew.
 template <class S>
 void turn_round(WorldState<S>& world) {
   using T = typename S::Scalar;
@@ -119,7 +120,7 @@ Trajectory composed_in(Integrator symmetric, const Scene& scene, int steps, cons
   for (const double to : times) {
     for (int k = 0; k < steps; ++k) {
       composed_step(world, (to - from) / steps);
-      world.state().time = from + (to - from) * (k + 1) / steps;  // steps back have counted forwards
+      world.state().time = from + (to - from) * (k + 1) / steps;  // the World counts steps back as forwards
     }
     from = to;
     trajectory.counts.evaluations += (2 * middle + 1) * static_cast<long long>(steps);

@@ -1,4 +1,4 @@
-// What `cdot-run accuracy` says, for people and for programs.
+// The results of a sweep -> text, CSV, JSON and a picture.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -12,11 +12,11 @@
 namespace cdot {
 namespace {
 
-constexpr double useful_agreement = 1e-9;  // up to where two references agreed so well, a run may be judged
+constexpr double useful_agreement = 1e-9;  // a reference serves up to the time of this agreement
 
 double until(const AccuracyReport& report) { return report.reference.times.back(); }
 
-// The step of a fixed-step way; the samples divide the time evenly, but for a given reference's.
+// The step of a way with fixed steps. Samples divide the time evenly, except those of a file.
 double step_of(const AccuracyReport& report, const Point& point) {
   return until(report) / static_cast<double>(report.reference.times.size()) / knob_at(point.way, point.level).steps;
 }
@@ -54,13 +54,13 @@ std::string advice_text(const AccuracyReport& report) {
     text += "\n";
     k = last + 1;
   }
-  if (advice.empty()) text += "  nothing that was tried is accurate to 1e-1\n";
+  if (advice.empty()) text += "  no run is accurate to 1e-1\n";
   return text;
 }
 
 using Json = nlohmann::ordered_json;
 
-// Of a point: a row each, in the files and in JSON alike.
+// The numbers of a point, a row each: columns of the CSV file and keys of the JSON.
 // clang-format off
 struct Column {
   const char* name;
@@ -98,7 +98,7 @@ Json json_of(const AccuracyReport& report, const Point& point) {
   return json;
 }
 
-// Of names only that of the way has commas.
+// Only the name of a way has commas.
 std::string csv_cell(const Json& value) {
   if (value.is_number_float()) return fmt::format("{},", value.get<double>());
   const std::string text = value.dump();
@@ -114,12 +114,12 @@ std::string csv_row(const AccuracyReport& report, const Point& point, bool best)
   return row + (best ? "1," : "0,") + (point.failure.empty() ? "" : "\"" + point.failure + "\"") + "\n";
 }
 
-// Is it the motion itself that forbids to know more?
+// Shows whether the motion itself limits the reference.
 std::string sensitivity_text(const ReferenceRun& reference) {
   const Sensitivity& s = reference.sensitivity;
   if (!s.known()) return {};
   return fmt::format(
-      "                  starts that differ by 1e-9 of their numbers end {:.1e} apart, by {:.0e}: {:.1e}\n"
+      "                  starts that differ by a relative 1e-9 end {:.1e} apart; by {:.0e}: {:.1e}\n"
       "                  {}\n",
       1e-9 * s.condition, s.slight, s.round_off, reference.verdict);
 }
@@ -140,7 +140,7 @@ std::string reference_text(const AccuracyReport& report) {
   if (apart <= wanted_agreement) return text;
   text += fmt::format("                  more than {:.0e} apart: {}\n", wanted_agreement, reference.settled);
   text += sensitivity_text(reference);
-  text += fmt::format("                  errors below {:.1e}, ten times as much, are not told apart\n",
+  text += fmt::format("                  errors below {:.1e}, ten times the disagreement, count as equal\n",
                       reference.resolution());
   const double good = reference.agreed_until(useful_agreement);
   if (apart > 1e-6 && good > 0)
@@ -157,7 +157,7 @@ std::string accuracy_text(const AccuracyReport& report) {
   text +=
       fmt::format("  error           the largest |x - x_ref| [m] or angle [rad] of a body, {} times up to {:.6g} s\n",
                   report.reference.times.size(), until(report));
-  text += fmt::format("  measured        {} ways, {} runs with an answer, {} without; medians of {} rounds in turns\n",
+  text += fmt::format("  measured        {} ways: {} runs succeeded, {} failed; medians of {} interleaved rounds\n",
                       report.ways, report.answers.size(), report.failures.size(), report.rounds);
   return text + frontier_text(report) + advice_text(report);
 }
@@ -239,7 +239,7 @@ std::string accuracy_svg(const AccuracyReport& report) {
   Diagram diagram;
   diagram.title =
       (report.scene.title.empty() ? report.scene.file : report.scene.title) + ": what accuracy costs in time";
-  diagram.subtitle = fmt::format("one thread, {:.6g} s simulated, medians of {} rounds in turns",
+  diagram.subtitle = fmt::format("one thread, {:.6g} s simulated, medians of {} interleaved rounds",
                                  report.reference.times.back(), report.rounds);
   diagram.error_label = "error in trajectory [m, rad]";
   diagram.resolution = report.reference.resolution();

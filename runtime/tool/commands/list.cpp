@@ -1,4 +1,4 @@
-// `cdot-run list`: the joints that a scene may name, with their parameters and coordinates, and the keys of a scene.
+// `cdot-run list`: the joints with their parameters and coordinates, or the keys of a scene.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -105,8 +105,8 @@ struct Options {
 };
 
 void add_options(CLI::App& line, Options& options) {
-  CLI::Option* const json = line.add_flag("--json", options.json, "as JSON");
-  line.add_flag("--keys", options.keys, "the keys of a scene file in place of the joints")->excludes(json);
+  CLI::Option* const json = line.add_flag("--json", options.json, "print JSON");
+  line.add_flag("--keys", options.keys, "list the keys of a scene file instead")->excludes(json);
 }
 
 int run(const Options& options) {

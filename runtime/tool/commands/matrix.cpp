@@ -1,3 +1,4 @@
+// The matrix of a system -> text, JSON and a picture.
 #include "runtime/tool/commands/matrix.hpp"
 
 #include <algorithm>
@@ -11,10 +12,10 @@
 namespace cdot {
 namespace {
 
-// Beyond this many columns or rows numbers are no longer for reading.
+// Larger matrices are not readable as text.
 constexpr int most_columns = 60, most_rows = 60, most_bodies = 12;
 
-// A cosine of a quarter turn reads 0, not 6e-17; all digits are in the JSON.
+// The cosine of a quarter turn shows as 0, not 6e-17. The JSON has all digits.
 double without_round_off(double entry) { return std::fabs(entry) < 1e-15 ? 0.0 : entry; }
 
 const SceneJoint& source_of(const Scene& scene, const SystemMatrix::Joint& joint) {
@@ -41,7 +42,7 @@ std::size_t joint_width(const Scene& scene, const SystemMatrix& system) {
   return width;
 }
 
-// One line per joint: a block of rows x columns where it holds a body.
+// One line per joint: a block of rows x columns for each of its bodies.
 std::string blocks_text(const Scene& scene, const SystemMatrix& system) {
   const std::size_t name_width = joint_width(scene, system);
   std::size_t width = 6;
@@ -61,7 +62,7 @@ std::string blocks_text(const Scene& scene, const SystemMatrix& system) {
   return text + "\n";
 }
 
-// The same where a column per body would be too wide: the bodies by name.
+// The same for many bodies: their names in place of columns.
 std::string list_text(const Scene& scene, const SystemMatrix& system) {
   const std::size_t name_width = joint_width(scene, system);
   std::string text = fmt::format("  {:{}}  rows  bodies", "joint", name_width);
@@ -73,7 +74,7 @@ std::string list_text(const Scene& scene, const SystemMatrix& system) {
   return text + "\n";
 }
 
-// The columns of one body of every row.
+// The numbers of D, body by body.
 std::string numbers_text(const Scene& scene, const SystemMatrix& system) {
   const char* planar[] = {"vx", "vy", "w"};
   const char* in_space[] = {"vx", "vy", "vz", "wx", "wy", "wz"};
@@ -118,17 +119,17 @@ std::string matrix_text(const Scene& scene, const SystemMatrix& system) {
                   system.rank == system.rows ? std::string("no redundant rows")
                                              : plural(system.rows - system.rank, "redundant row", "redundant rows"));
   if (frozen > 0)
-    text += fmt::format("{} of bodies that may not turn count as no freedom\n", plural(frozen, "column", "columns"));
+    text += fmt::format("{} of bodies that cannot turn: not counted as freedom\n", plural(frozen, "column", "columns"));
   text += fmt::format("K = D M^-1 D^T: {0} x {0}, {1} of {2} entries are not 0\n", system.rows, entries_of_K(system),
                       system.rows * system.rows);
   const ConflictGraph graph = conflicts(system);
-  text += fmt::format("{} of joints share a body: {} of joints that do not\n\n",
+  text += fmt::format("{} of joints share a body: {} without shared bodies\n\n",
                       plural(static_cast<int>(graph.edges.size()), "pair", "pairs"),
                       plural(graph.colours, "group", "groups"));
   const bool narrow = static_cast<int>(system.bodies.size()) <= most_bodies;
   text += narrow ? blocks_text(scene, system) : list_text(scene, system);
   if (system.rows > most_rows || system.columns > most_columns)
-    return text + "\nThe numbers are too many to read; --json has them all.\n";
+    return text + "\nToo many numbers to show; --json prints all.\n";
   return text + numbers_text(scene, system);
 }
 
@@ -176,8 +177,7 @@ std::string name_of(const Scene& scene, const SystemMatrix& system, std::size_t 
   return escaped(scene.joints[index].name);
 }
 
-// A square per entry that is not 0; the diagonal block of each joint in its colour, lines between
-// joints.
+// A square per entry that is not 0, the diagonal block of each joint in its colour, lines between joints.
 std::string sparsity(const Scene& scene, const SystemMatrix& system, const ConflictGraph& graph) {
   const double cell = picture / std::max(system.rows, 1);
   std::string svg = fmt::format(

@@ -1,3 +1,4 @@
+// Options on the command line -> changes of a scene.
 #include "runtime/tool/commands/options.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@
 namespace cdot {
 
 void add_scene(CLI::App& line, SceneOptions& options) {
-  line.add_option("SCENE", options.file, "the scene, a TOML file")->required();
+  line.add_option("SCENE", options.file, "the scene: a TOML file")->required();
 }
 
 namespace {
@@ -35,7 +36,7 @@ CLI::Option* add_choice(CLI::App& line, SceneOptions& options, const std::string
 
 constexpr auto settings = &Scene::settings;
 
-// The keys of a scene's top that are options as well: --local-error for local_error, in the same words.
+// Keys of a scene that are also options, with the same help: --local-error for local_error.
 // clang-format off
 constexpr struct {
   const char* key;
@@ -56,8 +57,7 @@ constexpr struct {
 }  // namespace
 
 CLI::Option* add_until(CLI::App& line, SceneOptions& options) {
-  return add_number<&Scene::duration>(line, options, "--until",
-                                      "end at this time [s], in place of the scene's duration");
+  return add_number<&Scene::duration>(line, options, "--until", "end at this time [s] instead of the scene's duration");
 }
 
 void add_method(CLI::App& line, SceneOptions& options) {
@@ -71,7 +71,7 @@ void add_method(CLI::App& line, SceneOptions& options) {
 }
 
 void add_progress(CLI::App& line, SceneOptions& options) {
-  line.add_flag("--progress", options.progress, "show progress even where stderr is no terminal");
+  line.add_flag("--progress", options.progress, "show progress even if stderr is not a terminal");
 }
 
 Scene scene_of(const SceneOptions& options) {

@@ -1,3 +1,4 @@
+// A World -> frames, and frames between two steps.
 #include "runtime/tool/run/frame.hpp"
 
 #include <cmath>
@@ -7,8 +8,7 @@
 namespace cdot {
 namespace {
 
-// The cubic with values p, q and slopes u, v at the ends of a step of length h, at the share s of
-// it.
+// The cubic with values p, q and slopes u, v at the ends of a step h, at its share s.
 double cubic(double p, double u, double q, double v, double h, double s) {
   const double s2 = s * s, s3 = s2 * s;
   return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * h * u + (3 * s2 - 2 * s3) * q + (s3 - s2) * h * v;
@@ -31,9 +31,8 @@ spatial::Pose<double> orientation_of(const BodyState& b) {
   return spatial::oriented(0.0, 0.0, 0.0, b.e0, b.e1, b.e2, b.e3);
 }
 
-// The orientation at the share s of a step: the rotation vector from its start goes along the cubic
-// whose slopes are those of the angular velocities; at the end dr/dt = w - r x w / 2 + r x (r x w)
-// / 12, to fourth order.
+// The orientation at the share s of a step. The rotation vector r from its start follows the cubic whose slopes are the
+// angular velocities; at the end, to fourth order, dr/dt = w - r x w / 2 + r x (r x w) / 12.
 void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState& to) {
   using Vector = spatial::Vector<double>;
   const auto from = orientation_of(a);
@@ -46,7 +45,7 @@ void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState&
   to.wx = linear(a.wx, b.wx, s), to.wy = linear(a.wy, b.wy, s), to.wz = linear(a.wz, b.wz, s);
 }
 
-// How far apart two times may be and still be the same, relative to a step.
+// Relative to a step: closer times count as equal.
 constexpr double same_time = 1e-6;
 
 }  // namespace

@@ -1,3 +1,4 @@
+// Frames and texts -> files.
 #include "runtime/tool/run/output.hpp"
 
 #include <cerrno>

@@ -1,5 +1,4 @@
-// What a long run shares with the process around it: the CPU's clock, whether somebody asked it to stop, and a line
-// that says how far it is.
+// A long run and its process: the CPU's clock, Ctrl-C, and a line of progress.
 #pragma once
 
 #include <chrono>
@@ -7,22 +6,22 @@
 
 namespace cdot {
 
-double cpu_now();  // spent by this thread [s]
+double cpu_now();  // CPU time of this thread [s]
 
-// While one lives, Ctrl-C does not end the process but is noted. They do not nest.
+// While an Interrupt lives, Ctrl-C only sets asked(). Do not nest them.
 class Interrupt {
  public:
   Interrupt();
   ~Interrupt();
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
-  static bool asked();  // since the last one was made
+  static bool asked();  // since the last Interrupt was made
 
  private:
   void (*previous_)(int);
 };
 
-// A line on stderr that is written over, and goes when this does.
+// A line on stderr that is overwritten; the destructor clears it.
 class ProgressLine {
  public:
   explicit ProgressLine(bool wanted) : wanted_(wanted) {}

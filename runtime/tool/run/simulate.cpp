@@ -1,3 +1,4 @@
+// A scene -> its run.
 #include "runtime/tool/run/simulate.hpp"
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace cdot {
 namespace {
 
-// [m], [rad], and per second: what a start may be off unreported, and how well it is projected.
+// [m], [rad], and per second: error of a start that is not reported, and tolerance of its projection.
 template <class T>
 constexpr double start_tolerance = std::is_same_v<T, float> ? 1e-4 : 1e-6;
 template <class T>
@@ -42,8 +43,7 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
   result.interrupted = Interrupt::asked();
 }
 
-// A method that chooses its steps gives the state at any time by its own interpolant: none has to be guessed between
-// two.
+// A method that chooses its steps interpolates by itself: its steps end at every requested time.
 std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
   std::vector<double> ends = every(scene.step, scene.duration);
   ends.push_back(scene.duration);
@@ -51,7 +51,7 @@ std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
     for (double time : *times)
       if (time <= scene.duration) ends.push_back(time);
   std::sort(ends.begin(), ends.end());
-  // Times that only round-off tells apart are one.
+  // Times that differ by round-off count as one.
   const double same = 1e-9 * scene.duration;
   ends.erase(std::unique(ends.begin(), ends.end(), [&](double a, double b) { return b - a < same; }), ends.end());
   return ends;
@@ -59,12 +59,12 @@ std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
 
 constexpr double same_time = 1e-9;  // of the duration
 
-// The times at which steps end: those of a run that goes on from a state are those of the run that it was taken from.
+// The times at which steps end. A run that continues from a state keeps the times of the run that saved it.
 class Steps {
  public:
   Steps(const Scene& scene, const RunOptions& options) : step_(scene.step), start_(options.from.time()) {
     if (!(start_ < scene.duration * (1 - 1e-12)))
-      throw Error(fmt::format("the state is that at {:.6g} s and the run ends at {:.6g} s: nothing is left to do",
+      throw Error(fmt::format("the state is from {:.6g} s, but the run ends at {:.6g} s. Likely fix: a later --until",
                               start_, scene.duration));
     if (scene.settings.local_error > 0) {
       ends_ = own_ends(scene, options);
@@ -79,7 +79,7 @@ class Steps {
     }
   }
   long long count() const { return count_; }
-  // Of the end of so many steps.
+  // After k steps.
   double time(long long k) const {
     return ends_.empty() ? offset_ + static_cast<double>(first_ + k) * step_
                          : ends_[static_cast<std::size_t>(first_ + k)];
@@ -92,7 +92,7 @@ class Steps {
   long long first_ = 0, count_ = 0;
 };
 
-// Those that a run from there on still meets.
+// The times from `start` on.
 std::vector<double> from_time(std::vector<double> times, double start, double step) {
   times.erase(times.begin(), std::lower_bound(times.begin(), times.end(), start - 1e-6 * step));
   return times;
@@ -140,7 +140,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (every_step) options.row(after);
     rows.step(before, after);
     film.step(before, after);
-    if (options.keep_state && result.state.empty() && after.time >= *options.keep_state * (1 - 1e-12))
+    if (options.save_at && result.state.empty() && after.time >= *options.save_at * (1 - 1e-12))
       result.state = world.snapshot();
     const auto due =
         std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
@@ -152,7 +152,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     result.cpu += cpu_now() - start;
     if (!step) {
       result.failed_step = step;
-      if (options.keep_state && result.state.empty()) result.state = world.snapshot();
+      if (options.save_at && result.state.empty()) result.state = world.snapshot();
       if (!options.diagnose_times.empty()) look(scene, world, result);
       break;
     }
@@ -173,8 +173,8 @@ template <class S>
 BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
   BasicWorld<S> world = build_world_in<S>(scene);
   if (scene.project && !world.project(start_projected<typename S::Scalar>)) {
-    warnings +=
-        fmt::format("{}: warning: the start could not be projected: joints contradict each other\n", scene.file);
+    warnings += fmt::format("{}: warning: the start could not be projected onto C = 0: joints contradict each other\n",
+                            scene.file);
   }
   warnings += inconsistency_report(scene, world, start_tolerance<typename S::Scalar>);
   world.prepare();

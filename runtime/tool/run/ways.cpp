@@ -1,3 +1,4 @@
+// The table of integrators -> the ways to compare.
 #include "runtime/tool/run/ways.hpp"
 
 #include <cmath>
@@ -14,14 +15,14 @@ constexpr int most_exact_digits = 15;  // of a local error
 constexpr auto direct = Solver::direct, iterative = Solver::iterative;
 constexpr auto none = Drift::none, baumgarte = Drift::baumgarte, projection = Drift::projection;
 
-// Of first order drift correction is a choice of its own; the plainest such method stands for it at length.
+// Methods of first order may choose their drift correction; the plain ones show every choice.
 bool first_order(const IntegratorRow& row) { return row.order == 1; }
 bool plain(const IntegratorRow& row) { return row.order == 1 && !row.stiffens; }
 bool not_stiffening(const IntegratorRow& row) { return !row.stiffens; }
 bool chooses_steps(const IntegratorRow& row) { return row.level == Level::acceleration; }
 bool any(const IntegratorRow&) { return true; }
 
-// The ways of every integrator that suits them.
+// Each row is a way for every integrator that it suits.
 // clang-format off
 constexpr struct {
   bool (*suits)(const IntegratorRow&);
@@ -87,7 +88,7 @@ Scene solved_by(const Way& way, const Knob& knob, Scene scene) {
   if (sweeps(way.solver)) settings.iterations = way.iterations;
   settings.substeps = 1;
   scene.single = way.single;
-  settings.sleep_after = 0;  // sleep is an error of its own, and none of a solver or an integrator
+  settings.sleep_after = 0;  // sleep is an error, but not of a solver or an integrator
   return scene;
 }
 

@@ -1,4 +1,4 @@
-// The worst that is found of each island over a run, and what it means for the scene's method.
+// The worst diagnosis of each island over a run, and its meaning for the scene's method.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,16 +9,16 @@
 
 namespace cdot {
 
-// Each number is the worst of the run, with the time at which it was [s].
+// Each number is the worst of the run, with its time [s].
 struct WorstOfIsland {
   Diagnosis::Island island;
   double condition_time = 0, rank_time = 0, stiffest_time = 0, spin_time = 0;
 };
 
-// Adds what is found at one time; islands are known again by their first body.
+// Adds the diagnosis at one time. Islands are identified by their first body.
 void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>& worst);
 
-// In the words of the scene, without repetition. `warnings_only`: without notes.
+// With the names of the scene, each once. `warnings_only`: without notes.
 std::vector<Concern> concerns_about(const Scene& scene, const std::vector<WorstOfIsland>& worst, bool warnings_only);
 
 nlohmann::ordered_json concerns_json(const std::vector<Concern>& concerns);

@@ -1,5 +1,5 @@
-// The [[body]] entries of a scene. In the plane a direction has two numbers and a turn has one; in space a turn has
-// three, an orientation is a quaternion or an axis and an angle, and an inertia may be a tensor.
+// The [[body]] entries of a scene -> definitions of bodies. In the plane a direction has two numbers and a rotation
+// one. In space a rotation has three, and an inertia may be a tensor.
 #include <cmath>
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 namespace cdot {
 namespace {
 
-// In the plane, too, the numbers go into the definition in space: of turns into the first of the three.
+// Also in the plane the numbers go into the definition in space; a rotation uses the first of three.
 struct Reading {
   Dimension dimension;
   std::map<std::string, Span>& names;
@@ -154,19 +154,19 @@ constexpr Key<Reading> body_keys[] = {
     {"inertia", "about the centre of mass [kg m^2]; in space a number, three or a tensor", "of the shape, if uniform", read_inertia},
     {"position", "of the centre of mass at the start [m]", "0", read_vector_of<&Definition::x, &Definition::y, &Definition::z>},
     {"orientation", "of the body's frame, a quaternion of any length", "[1, 0, 0, 0]", read_quaternion, Where::in_space},
-    {"axis", "with angle, the same as a rotation about an axis", "", read_axis, Where::in_space},
+    {"axis", "with angle: the orientation as a rotation about this axis", "", read_axis, Where::in_space},
     {"angle", "of the body's frame at the start [rad]", "0", read_angle},
     {"velocity", "[m/s]", "0", read_vector_of<&Definition::vx, &Definition::vy, &Definition::vz>},
     {"spin", "[rad/s]", "0", read_turn<&Definition::wx, &Definition::wy, &Definition::wz, true>},
     {"force", "constant, at the centre of mass [N]", "0", read_vector_of<&Definition::force_x, &Definition::force_y, &Definition::force_z>},
     {"torque", "constant [N m]", "0", read_turn<&Definition::torque_x, &Definition::torque_y, &Definition::torque_z, false>},
     {"linear_damping", "force = -mass damping velocity [1/s]", "0", read_number<Sign::not_negative, body_part, spatial_part, &Definition::linear_damping>},
-    {"angular_damping", "the same of turns [1/s]", "0", read_number<Sign::not_negative, body_part, spatial_part, &Definition::angular_damping>},
-    {"trace", "true or a point of the body: its path is drawn", "the last body's", read_trace},
+    {"angular_damping", "torque = -inertia damping spin [1/s]", "0", read_number<Sign::not_negative, body_part, spatial_part, &Definition::angular_damping>},
+    {"trace", "true for the centre, or a point of the body: the viewer draws its path", "the last body's", read_trace},
 };
 // clang-format on
 
-// About the centre, of uniform density; in the plane.
+// Planar moment of inertia about the centre, of uniform density.
 double uniform_moment(const Shape& shape, double mass) {
   switch (shape.kind) {
     case Shape::rod: return mass * shape.length * shape.length / 12;
@@ -178,9 +178,9 @@ double uniform_moment(const Shape& shape, double mass) {
   return 0;
 }
 
-// The same in space: a rod is a cylinder along x, a disc one about z.
+// The same in space: a rod is a cylinder along x, a disc a cylinder about z.
 Inertia uniform_inertia(const Shape& shape, double mass) {
-  const auto cylinder = [&](double radius, double height) {  // along it, across it
+  const auto cylinder = [&](double radius, double height) {  // along and across its axis
     return std::pair{mass * square(radius) / 2, mass * (3 * square(radius) + square(height)) / 12};
   };
   if (shape.kind == Shape::box)
@@ -199,7 +199,7 @@ Inertia uniform_inertia(const Shape& shape, double mass) {
   return {across, across, along};
 }
 
-// Complains where a body that is to turn could not.
+// Needs an inertia of every body that may turn.
 void find_inertia(Entry& body, Reading& to) {
   Definition& numbers = to.body.spatial;
   if (numbers.is_static) return;
@@ -226,7 +226,8 @@ void find_orientation(Entry& body, Reading& to) {
   if (!to.in_space()) return;
   const bool quaternion = body.has("orientation"), axis = body.has("axis"), angle = body.has("angle");
   if (quaternion && (axis || angle))
-    body.error(body.where("orientation"), "`orientation` and `axis`, `angle` say the same", "keep one of them");
+    body.error(body.where("orientation"), "both `orientation` and `axis`, `angle` set the orientation",
+               "keep one of them");
   else if (axis != angle)
     body.error(body.where(axis ? "axis" : "angle"), axis ? "`axis` without `angle`" : "`angle` without `axis`",
                "axis = [0, 0, 1] and angle = \"30 deg\"");
@@ -234,7 +235,7 @@ void find_orientation(Entry& body, Reading& to) {
   const auto [x, y, z] = *to.axis;
   const double length = std::hypot(x, y, z);
   if (!(length > 0))
-    return body.error(body.where("axis"), "the direction `axis` has length 0", "any other length will do: [0, 0, 1]");
+    return body.error(body.where("axis"), "the direction `axis` has length 0", "any other length works: [0, 0, 1]");
   const double c = std::cos(*to.angle / 2), s = std::sin(*to.angle / 2) / length;
   Definition& numbers = to.body.spatial;
   numbers.e0 = c, numbers.e1 = s * x, numbers.e2 = s * y, numbers.e3 = s * z;

@@ -1,4 +1,4 @@
-// One table of a scene: its keys, those of its copies, and what must not be there.
+// One TOML table of a scene -> its keys as numbers and texts, those of its copies, and complaints about unknown keys.
 #include "runtime/tool/scene/entry.hpp"
 
 #include <algorithm>
@@ -61,13 +61,12 @@ std::vector<Entry> Entry::list(const std::string& key) {
   return entries;
 }
 
-// `shift` adds something from copy to copy, `each` gives a value per copy; both make sense only
-// with `repeat`.
+// `shift` adds a step from copy to copy, `each` gives one value per copy. Both need `repeat`.
 void Entry::check_repeat(int copies) {
   for (const char* key : {shift_key, each_key}) {
     const toml::node* node = find(key);
     if (!node) continue;
-    if (!repeated_) error(where(key), fmt::format("`{}` without `repeat`", key), "say how often: repeat = 10");
+    if (!repeated_) error(where(key), fmt::format("`{}` without `repeat`", key), "add repeat = 10");
     if (!node->is_table()) wrong_type(*node, key, "a table, as { position = [1, 0] }");
   }
   if (copies > most_copies) error(where(repeat_key), fmt::format("`repeat` is more than {}", most_copies));
@@ -130,7 +129,7 @@ std::optional<bool> Entry::flag(const std::string& key) {
   return value;
 }
 
-// {i}, {i+1}, {i-2} in a repeated entry stand for the number of the copy, counted from 1.
+// In a repeated entry {i}, {i+1}, {i-2} stand for the number of the copy, from 1.
 std::optional<std::string> Entry::substituted(const std::string& text, Span where) const {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
@@ -238,7 +237,7 @@ void Entry::close(const std::vector<std::string>& also_known) const {
 
 namespace {
 
-// The number at the start of a text, which then loses it.
+// Takes the number off the start of a text.
 std::optional<double> take_number(std::string_view& text) {
   double value = 0;
   const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -276,7 +275,7 @@ std::optional<double> Entry::plain_number(const toml::node& node, const std::str
   return value;
 }
 
-// What copy k adds to number `index` of `key`: k times the shift.
+// Copy k adds k times the shift to number `index` of `key`.
 std::optional<double> Entry::shift_of(const std::string& key, std::size_t index) {
   const toml::table* shift = of_copies(shift_key);
   const toml::node* node = shift ? shift->get(key) : nullptr;

@@ -1,5 +1,5 @@
-// The [[joint]] and [[spring]] entries of a scene. Which parameters and coordinates a joint has is
-// asked of the table of joint types; nothing here knows a joint by name.
+// The [[joint]] and [[spring]] entries of a scene -> definitions. The table of joint types lists parameters and
+// coordinates; no joint is known by name here.
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
@@ -50,7 +50,7 @@ const JointType* type_named(Entry& joint, Dimension dimension) {
   return nullptr;
 }
 
-// The bodies in the order of the spec; nothing if their number is wrong.
+// The bodies in the order of the spec. A wrong number is a mistake, and gives nothing.
 std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType& type, const BodyNames& names) {
   const bool one = type.bodies == 1;
   joint.required("bodies", one ? "bodies = [\"rod\"]" : "bodies = [\"world\", \"rod\"]");
@@ -62,7 +62,7 @@ std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType&
     return {};
   }
   if (type.bodies == 2 && (*bodies)[0] == (*bodies)[1]) {
-    joint.error(joint.where("bodies"), fmt::format("a joint between \"{}\" and itself", names.name((*bodies)[0])));
+    joint.error(joint.where("bodies"), fmt::format("the joint connects \"{}\" with itself", names.name((*bodies)[0])));
     return {};
   }
   return bodies;
@@ -79,8 +79,7 @@ std::optional<std::vector<double>> read_two_axes(Entry& joint, const std::string
   return numbers;
 }
 
-// The numbers of one parameter in the frame of its body; nothing if it is left to its default, or
-// wrong.
+// The numbers of one parameter in the frame of its body. Nothing if it is wrong or takes its default.
 std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter, int body,
                                                   std::optional<Vec3> at, const BodyNames& names) {
   const std::string key(parameter.name);
@@ -100,14 +99,14 @@ std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterI
     const bool direction = parameter.kind != ParameterKind::vector;
     if (direction && vector && std::hypot((*vector)[0], (*vector)[1], (*vector)[2]) == 0) {
       joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key),
-                  in_space ? "any other length will do: [1, 0, 0]" : "any other length will do: [1, 0]");
+                  in_space ? "any other length works: [1, 0, 0]" : "any other length works: [1, 0]");
     }
   }
   if (!vector) return {};
   return std::vector<double>(vector->begin(), vector->begin() + (in_space ? 3 : 2));
 }
 
-// `at`, and the parameters that the spec of the type has: points that are not given are where it says.
+// `at` and the parameters of the type. `at` gives the points that have no key of their own.
 void read_parameters(Entry& joint, const char* key, JointReading& to) {
   const BodyNames& names = to.names;
   const JointType& type = *to.type;
@@ -138,8 +137,7 @@ void read_parameters(Entry& joint, const char* key, JointReading& to) {
   }
 }
 
-// An effect on a coordinate that other joints have, but not this one: revolute, where hinge was
-// meant.
+// Refuses an effect on a coordinate of another joint type: the scene says revolute and means hinge.
 void refuse_other_coordinates(Entry& joint, const JointType& type, Dimension dimension) {
   std::map<std::string, std::vector<std::string>> owners;  // by coordinate: the joints of as many bodies
   for (const JointType& other : joint_types(dimension))
@@ -152,7 +150,7 @@ void refuse_other_coordinates(Entry& joint, const JointType& type, Dimension dim
       own += fmt::format("{}`{}`", own.empty() ? "it has " : ", ", c.name);
     joint.error(joint.where(coordinate), fmt::format("`{}` has no coordinate `{}`", type.name, coordinate),
                 fmt::format("{}{}joints that have it: {}", own, own.empty() ? "" : "; ", fmt::join(names, ", ")));
-    joint.has(coordinate);  // read now: one complaint is enough
+    joint.has(coordinate);  // read now, so that close() does not report it again
   }
 }
 
@@ -219,12 +217,12 @@ constexpr Key<JointReading> named[] = {
     {"name", "of messages and summaries", "joint1, joint2, …", read_joint_name},
     {"type", "a spec of specs/planar/ or specs/spatial/", "required", read_type},
 };
-// These depend on the type.
+// The meaning of these depends on the type.
 constexpr Key<JointReading> keys[] = {
     {"bodies", "the spec's a, b, … in this order; \"world\" never moves", "required", read_bodies_of_joint},
-    {"at", "the points that are not given by their own names, in the world at the start [m]", "", read_parameters},
+    {"at", "place in the world at the start of all points without a key of their own [m]", "", read_parameters},
     {"soft", "{ frequency, damping_ratio } or { stiffness, damping }: the joint is a spring", "exact", read_soft},
-    {"breaking", "the joint goes after a step in which it carried more [N, N m]", "never", read_number<Sign::positive, &JointReading::joint, &SceneJoint::breaking>},
+    {"breaking", "the joint breaks after a step with a larger load [N, N m]", "never", read_number<Sign::positive, &JointReading::joint, &SceneJoint::breaking>},
 };
 constexpr Key<SpringReading> spring_keys[] = {
     {"name", "of messages", "", read_spring_name},

@@ -1,4 +1,4 @@
-// The keys of a scene's tables, a row each: reading, "did you mean" and `cdot-run list --keys` go by the same rows.
+// Tables of the keys of a scene, a row each. Reading, "did you mean" and `cdot-run list --keys` use the same rows.
 #pragma once
 
 #include <string>
@@ -28,14 +28,14 @@ std::vector<std::string> choices_of() {
   return names_of(table);
 }
 
-// A key that is not asked for stays unknown to the entry, which then complains about it.
+// Keys of space stay unread in the plane, so that the entry reports them as unknown.
 template <class To, std::size_t count>
 void read_keys(Entry& entry, const Key<To> (&keys)[count], Dimension dimension, To& to) {
   for (const Key<To>& key : keys)
     if (key.where == Where::everywhere || dimension == Dimension::spatial) key.read(entry, key.name, to);
 }
 
-// --- Readers of a member, or of a member of a member: what is not given stays as it is.
+// --- Readers of a member, or of a member of a member. A key that is not given changes nothing.
 
 template <Sign sign, auto... path, class To>
 void read_number(Entry& entry, const char* key, To& to) {
@@ -49,7 +49,7 @@ template <auto... path, class To>
 void read_flag(Entry& entry, const char* key, To& to) {
   if (const auto flag = entry.flag(key)) (to.*....*path) = *flag;
 }
-// The method of that name in a table of <cdot/methods.hpp>.
+// Looks the name up in a table of <cdot/methods.hpp>.
 template <const auto& table, auto... path, class To>
 void read_choice(Entry& entry, const char* key, To& to) {
   if (const auto name = entry.choice(key, names_of(table))) (to.*....*path) = method_called(table, *name);

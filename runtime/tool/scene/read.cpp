@@ -1,4 +1,4 @@
-// The scene reader: from the text of a TOML file to a Scene, or to all that is wrong with it.
+// The text of a TOML file -> a Scene, or all its mistakes.
 #include "runtime/tool/scene/read.hpp"
 
 #include <algorithm>
@@ -17,13 +17,13 @@ bool fits_a_column(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), fits);
 }
 
-// What toml++ says, without the name of the rule that it was in.
+// The message of toml++ without the name of its grammar rule.
 std::string syntax_error(std::string_view description) {
   constexpr std::string_view rule = "Error while parsing ";
   if (description.starts_with(rule)) description.remove_prefix(rule.size());
   std::string text(description);
   if (text.starts_with("Encountered")) text[0] = 'e';
-  return "this is no TOML: " + text;
+  return "invalid TOML: " + text;
 }
 
 // From the frame of a body to the world's, at its initial pose; or back.
@@ -133,7 +133,7 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
   if (!name) return {};
   entry.rename(fmt::format("{} \"{}\"", entry.what(), entry.written("name")));
   if (!fits_a_column(*name)) {
-    entry.error(where, fmt::format("\"{}\" is no name", *name), "use letters, digits, _ and -");
+    entry.error(where, fmt::format("\"{}\" is not a valid name", *name), "use letters, digits, _ and -");
     return {};
   }
   const auto [earlier, is_new] = used.emplace(*name, where);
@@ -141,9 +141,9 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
   const Span first = earlier->second;
   const bool same_place = first == where;
   entry.error(where,
-              first.line == 0 ? fmt::format("\"{}\" is the name of what never moves", *name)
+              first.line == 0 ? fmt::format("\"{}\" is reserved for the immovable world", *name)
               : same_place    ? fmt::format("all copies are called \"{}\"", *name)
-                              : fmt::format("\"{}\" is the name of line {} already", *name, first.line),
+                              : fmt::format("line {1} already has the name \"{0}\"", *name, first.line),
               same_place && first.line > 0 ? fmt::format("name = \"{}{{i}}\"", *name) : "");
   return {};
 }
@@ -165,7 +165,7 @@ Scene read_scene(std::string_view text, const std::string& name) {
 Scene read_scene(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
-  text << file.rdbuf();  // which fails for an empty file, and that is no mistake here
+  text << file.rdbuf();  // fails for an empty file, which is no mistake here
   if (!file) throw SceneError(fmt::format("{}: error: cannot be read\n", path), 1);
   return read_scene(text.str(), path);
 }

@@ -1,6 +1,5 @@
-// How bodies and joints look. Joints are drawn by what they are made of (points, directions, rows,
-// coordinates), not by name: points that coincide are a pin, points apart a rod, a rope or a
-// spring, a free slide is a rail.
+// A planar scene -> its drawing. The look of a joint follows from its points, directions, rows and coordinates, not
+// from its name: coincident points are a pin, others a rod, a rope or a spring; a free slide is a rail.
 #include "runtime/tool/viewer/marks.hpp"
 
 #include <algorithm>
@@ -14,7 +13,7 @@ namespace cdot {
 namespace {
 
 constexpr double coincident = 1.5;    // picture units below which two points are one
-constexpr double rail_overhang = 30;  // by which a rail is longer than it is used
+constexpr double rail_overhang = 30;  // beyond the used length of a rail
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
 constexpr const char* rigid_link = R"(<line class="rigid" x2="1"/>)";
 constexpr const char* rope_link = R"(<line class="rope" x2="1"/>)";
@@ -23,7 +22,7 @@ constexpr const char* spring_link =
     R"(<polyline class="spring" points="0,0 .2,0 .25,-9 .4,9 .5,-9 .6,9 .75,-9 .8,0 1,0"/>)";
 constexpr const char* ground_mark = R"(<path class="ground" d="M0 0L-11 17H11ZM-17 17H17"/>)";
 
-// One colour for all bodies whose names differ only in their last digits: the links of a chain.
+// Bodies whose names differ only in their last digits share a colour: the links of a chain.
 class Colours {
  public:
   int of(std::string name) {
@@ -35,8 +34,7 @@ class Colours {
   std::map<std::string, int> families_;
 };
 
-// The body (of the spec's a, b, …) that a direction is fixed in: the one that a rail belongs to.
-// -1: no direction.
+// The body (a, b, … of the spec) that carries the joint's direction, and so its rail; -1: no direction.
 int carries_direction(const JointType& type) {
   for (const ParameterInfo& info : type.parameters) {
     if (info.kind == ParameterKind::unit || info.kind == ParameterKind::frame) return info.body;
@@ -157,8 +155,7 @@ class Painter {
     }
   }
 
-  // The direction in the picture, in degrees, in which a coordinate [m] grows when `body` is moved:
-  // by differences.
+  // The direction in the picture, in degrees, in which moving `body` increases the coordinate [m], by differences.
   double slide_direction(int joint, const CoordinateInfo& coordinate, int body) {
     const planar::Place pose = world_.place(body);
     const double step = 1e-3 / drawing_.view.scale, before = world_.coordinate(joint, coordinate.name);
@@ -170,7 +167,7 @@ class Painter {
     return std::atan2(-along_y, along_x) * degrees_per_radian;
   }
 
-  // A line on the body of `base` through its point, as long as `rider` uses it in the film.
+  // A line on the body of `base` through its point, over the path of `rider` in the film.
   void rail(int joint, const CoordinateInfo& coordinate, const JointPoint& base, const JointPoint& rider) {
     if (is_still(rider.anchor.body)) return;
     const auto turned_by = [&](const std::vector<Place>& places) {
@@ -193,8 +190,7 @@ class Painter {
                                        base.anchor.local[1], degrees)});
   }
 
-  // Two points apart are linked; points of bodies with as many points fixed in the world hang on a
-  // rope over those.
+  // Links two points. Two points of bodies with two points of the world hang on a rope over those.
   void between_points(int joint, const std::vector<JointPoint>& all) {
     const JointType& type = world_.joint_type(joint);
     const bool soft = scene_.joints[static_cast<std::size_t>(joint)].definition.soft.has_value();

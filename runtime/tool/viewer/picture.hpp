@@ -1,4 +1,4 @@
-// Parts that pictures share: text in an element, paths, and the points of a scene whose traces are drawn.
+// Shared by all pictures: text in an element, paths, and the points with traces.
 #pragma once
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ std::string path_through(const Points& points) {
   return path;
 }
 
-// Where at(frame) is in the picture, over the film.
+// The path of the point at(frame) over the film.
 template <class At>
 std::string trace_svg(const std::string& kind, const std::vector<Frame>& film, At at) {
   std::string svg = fmt::format("<polyline class=\"trace {}\" points=\"", kind);
@@ -31,7 +31,7 @@ std::string trace_svg(const std::string& kind, const std::vector<Frame>& film, A
   return svg + "\"/>\n";
 }
 
-// add(body, point) for the points that the scene asks for; else for the centre of the last body that can move.
+// Calls add(body, point) for the traces of the scene; without any, for the centre of the last movable body.
 template <class Add>
 void each_trace(const Scene& scene, Add add) {
   bool any = false;

@@ -1,3 +1,4 @@
+// A scene in space -> its drawing.
 #include "runtime/tool/viewer/space.hpp"
 
 #include <algorithm>
@@ -26,7 +27,7 @@ struct Box {
 
 double reach(const Shape& shape) { return std::hypot(shape.length, shape.width, shape.depth) / 2; }
 
-// The bodies of all frames; what flies off further than ten times the start is left to itself.
+// Holds the bodies of all frames, except those further away than ten times the size of the start.
 Box box_of(const Scene& scene, const std::vector<Frame>& film) {
   Box start;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
@@ -96,7 +97,7 @@ class SpacePainter {
     return scene_.bodies[body].is_static ? "still" : fmt::format("c{}", body % 8);
   }
 
-  // Faces of its shape, without one a ball; and lines to joints that lie outside.
+  // The faces of its shape, or a ball; and lines to joints outside of it.
   SpaceBody body(std::size_t k) const {
     const Shape& shape = scene_.bodies[k].shape;
     SpaceBody look;
@@ -122,7 +123,7 @@ class SpacePainter {
     return look;
   }
 
-  // Its points: pins where they coincide, linked where they are apart; its axes as short shafts.
+  // Its points as pins with a link between them; its axis as a short shaft.
   void draw_joint(int joint) {
     const std::vector<double> numbers = world_.joint_parameters(joint);
     const SceneJoint& source = scene_.joints[static_cast<std::size_t>(joint)];
@@ -161,7 +162,7 @@ class SpacePainter {
   SpaceDrawing drawing_;
 };
 
-// A square grid under everything.
+// A square grid below the mechanism.
 std::vector<SpaceLine> floor_of(const Box& box) {
   const double half = 0.75 * box.size(), z = box.low[2];
   const double x = (box.low[0] + box.high[0]) / 2, y = (box.low[1] + box.high[1]) / 2;

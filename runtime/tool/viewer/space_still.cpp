@@ -1,5 +1,5 @@
-// The still of a scene in space: the drawing seen through its camera, painted from the back to the
-// front. space.js does the same in the page, through a camera that orbits.
+// A drawing in space -> the still: projected through its camera, painted from back to front. space.js does the same in
+// the page with a camera that orbits.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace cdot {
 namespace {
 
-// X right, Y down, the depth, which grows away from the eye, and pixels per metre there.
+// X right, Y down, depth away from the eye, and pixels per metre at that depth.
 struct Seen {
   double x, y, depth, scale;
 };
@@ -63,7 +63,7 @@ double mean_depth(const std::vector<Seen>& points) {
 struct Item {
   double depth;
   std::string path, kind;
-  double opacity = 0;  // of its inside
+  double opacity = 0;  // of its fill
 };
 
 class Still {
@@ -97,7 +97,7 @@ class Still {
     for (const SpaceLine& line : look.lines) add_line({body, line[0]}, {body, line[1]}, look.kind + " line");
   }
 
-  // A face that shows its front: brighter where it looks at the eye.
+  // Only faces towards the eye are drawn, brighter the more they face it.
   void add_face(int body, const SpaceFace& face, const std::string& kind) {
     std::vector<Seen> seen;
     for (const Vec3& corner : face) seen.push_back(project_(placed(frame_, {body, corner})));
