@@ -21,26 +21,28 @@ constexpr cdot::Command commands[] = {
 constexpr const char* footer = R"(
 Examples
   cdot-run simulate specs/scenes/four_bar.toml
-  cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html     a page that plays the run
+  cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html       # a page that plays the run
   cdot-run simulate specs/scenes/four_bar.toml --step 0.0001 --every 0.1 -o four_bar.csv
   cdot-run simulate specs/scenes/four_bar.toml --until 5 --save-state at_5.state
-  cdot-run simulate specs/scenes/four_bar.toml --from-state at_5.state        continues with the same bits
-  cdot-run diagnose specs/scenes/four_bar.toml                      rank, condition, stiffness, warnings
-  cdot-run diagnose specs/scenes/four_bar.toml --matrix             the system in blocks and numbers
-  cdot-run accuracy specs/scenes/double_pendulum.toml               CPU time against error
-  cdot-run list                                                     all joints with their parameters
+  cdot-run simulate specs/scenes/four_bar.toml --from-state at_5.state    # continues with the same bits
+  cdot-run diagnose specs/scenes/four_bar.toml                            # rank, condition, stiffness, warnings
+  cdot-run diagnose specs/scenes/four_bar.toml --matrix                   # the system in blocks and numbers
+  cdot-run accuracy specs/scenes/double_pendulum.toml                     # CPU time against error
+  cdot-run list                                                           # all joints with their parameters
+  cdot-run list --keys                                                    # all keys of a scene
 
 Exit status
   0  success
   1  the run failed: the state was not finite, or |C| of a joint exceeded the tolerance
   2  wrong usage, or mistakes in the scene: each is shown with its line and a likely fix
 
-The format of scenes is described in specs/scenes/README.md.)";
+specs/scenes/README.md describes the format of scenes.)";
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Runs mechanisms: bodies, and joints whose kernels were derived from their position constraints.");
+  CLI::App app(
+      "Runs mechanisms of bodies and joints. The kernels of joints are derived from their position constraints.");
   app.name("cdot-run");
   app.require_subcommand(1);
   app.footer(footer);

@@ -94,8 +94,10 @@ std::string keys_text() {
   for (const KeyTable& table : {keys_of_the_top(), keys_of_a_body(), keys_of_a_shape(), keys_of_a_joint(),
                                 keys_of_effects(), keys_of_a_spring(), keys_of_copies()}) {
     text += fmt::format("{}{}\n\n", text.empty() ? "" : "\n", table.title);
-    for (const auto& [name, meaning, otherwise] : table.rows)
-      text += fmt::format("    {:<16} {}{}\n", name, meaning, otherwise.empty() ? "" : "; if not given: " + otherwise);
+    for (const auto& [name, meaning, otherwise] : table.rows) {
+      const char* lead = otherwise.empty() ? "" : otherwise == "required" ? "; " : "; default: ";
+      text += fmt::format("    {:<16} {}{}{}\n", name, meaning, lead, otherwise);
+    }
   }
   return text;
 }
