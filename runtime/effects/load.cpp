@@ -53,7 +53,7 @@ std::optional<EffectKind::Wrong> take_load(std::span<const EffectKind::Given> n,
 
 const EffectKind load_kind{"load",
                            "load = 5",
-                           "constant force or torque, in the direction in which the coordinate grows",
+                           "constant force or torque in the direction of the growing coordinate",
                            EffectKind::number,
                            {{"load", EffectNumber::any}},
                            take_load};

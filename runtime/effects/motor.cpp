@@ -71,13 +71,13 @@ std::optional<EffectKind::Wrong> take_friction(std::span<const EffectKind::Given
 const EffectKind motor_kind{
     "motor",
     "{ speed = 2, max = 10 }",
-    "`{ speed = …, max = … }`: the force or torque that it may use; without `max`, any",
+    "`{ speed = …, max = … }`: `max` bounds its force or torque",
     EffectKind::table,
     {{"speed", EffectNumber::as_coordinate, "speed = 2.0"}, {"max", EffectNumber::not_negative}},
     take_motor};
 const EffectKind friction_kind{"friction",
                                "friction = 3",
-                               "greatest force or torque of dry friction",
+                               "largest force or torque of dry friction",
                                EffectKind::number,
                                {{"friction", EffectNumber::not_negative}},
                                take_friction};

@@ -83,17 +83,17 @@ std::optional<EffectKind::Wrong> take_damper(std::span<const EffectKind::Given> 
 
 }  // namespace
 
-const EffectKind spring_kind{
-    "spring",
-    "{ frequency = 2, damping_ratio = 0.5 }",
-    "`{ frequency, damping_ratio, rest }` or `{ stiffness, damping, rest }`; `rest` is where it starts",
-    EffectKind::table,
-    {{"frequency", EffectNumber::positive},
-     {"damping_ratio", EffectNumber::not_negative},
-     {"stiffness", EffectNumber::not_negative},
-     {"damping", EffectNumber::not_negative},
-     {"rest", EffectNumber::as_coordinate}},
-    take_spring};
+const EffectKind spring_kind{"spring",
+                             "{ frequency = 2, damping_ratio = 0.5 }",
+                             "`{ frequency, damping_ratio, rest }` or `{ stiffness, damping, rest }`; `rest` is by "
+                             "default the value at the start",
+                             EffectKind::table,
+                             {{"frequency", EffectNumber::positive},
+                              {"damping_ratio", EffectNumber::not_negative},
+                              {"stiffness", EffectNumber::not_negative},
+                              {"damping", EffectNumber::not_negative},
+                              {"rest", EffectNumber::as_coordinate}},
+                             take_spring};
 const EffectKind damper_kind{"damper",
                              "damper = 0.5",
                              "force or torque per speed",

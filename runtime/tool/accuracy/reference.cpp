@@ -206,6 +206,8 @@ double size_of(const ReferenceRun& reference) {
 
 namespace {
 
+// --- A reference from a file of `cdot-run simulate -o`.
+
 struct Row {
   double time;
   std::vector<double> numbers;

@@ -203,6 +203,8 @@ std::string accuracy_csv(const AccuracyReport& report) {
 
 namespace {
 
+// --- The picture: a hue per integrator, a lightness and a marker per way, hollow in float.
+
 constexpr int hues[] = {215, 300, 35, 150, 0, 180, 60, 255};  // by Integrator
 
 std::size_t family_of(const Way& way) { return static_cast<std::size_t>(way.integrator) % std::size(hues); }

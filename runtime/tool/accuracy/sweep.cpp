@@ -179,6 +179,8 @@ std::vector<CostedError> costs_of(const std::vector<Point>& answers, const Refer
   return costs;
 }
 
+// --- The file of an interrupted sweep.
+
 // The file has these members; a sweep resumes without the others.
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Way, integrator, solver, drift, iterations, single, adaptive)
 NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, position, angle, C, Cdot, energy)

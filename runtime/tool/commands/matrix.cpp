@@ -36,39 +36,24 @@ int entries_of_K(const SystemMatrix& system) {
   return static_cast<int>(std::count_if(system.K.begin(), system.K.end(), [](double x) { return x != 0; }));
 }
 
-std::size_t joint_width(const Scene& scene, const SystemMatrix& system) {
-  std::size_t width = 5;
-  for (const auto& joint : system.joints) width = std::max(width, source_of(scene, joint).name.size());
-  return width;
-}
-
-// One line per joint: a block of rows x columns for each of its bodies.
-std::string blocks_text(const Scene& scene, const SystemMatrix& system) {
-  const std::size_t name_width = joint_width(scene, system);
-  std::size_t width = 6;
+// One line per joint: a block of rows x columns for each of its bodies, or their names if there are many bodies.
+std::string joints_text(const Scene& scene, const SystemMatrix& system) {
   const int bodies = static_cast<int>(system.bodies.size());
+  const bool narrow = bodies <= most_bodies;
+  std::size_t name_width = 5, width = 6;
+  for (const auto& joint : system.joints) name_width = std::max(name_width, source_of(scene, joint).name.size());
   for (int k = 0; k < bodies; ++k) width = std::max(width, body_name(scene, system, k).size() + 2);
-  std::string text = fmt::format("  {:{}}  rows ", "joint", name_width);
-  for (int k = 0; k < bodies; ++k) text += fmt::format("{:>{}}", body_name(scene, system, k), width);
+  std::string text = fmt::format("  {:{}}  rows {}", "joint", name_width, narrow ? "" : " bodies");
+  for (int k = 0; k < bodies && narrow; ++k) text += fmt::format("{:>{}}", body_name(scene, system, k), width);
   for (const auto& joint : system.joints) {
     const SceneJoint& source = source_of(scene, joint);
     text += fmt::format("\n  {:{}}  {:4} ", source.name, name_width, joint.rows);
-    for (int k = 0; k < bodies; ++k) {
+    for (int k = 0; k < bodies && narrow; ++k) {
       const bool empty = system.empty_block(joint, k);
       text += fmt::format("{:>{}}", empty ? "." : fmt::format("{}x{}", joint.rows, system.freedom), width);
     }
-    text += "  " + source.definition.type;
-  }
-  return text + "\n";
-}
-
-// The same for many bodies: their names in place of columns.
-std::string list_text(const Scene& scene, const SystemMatrix& system) {
-  const std::size_t name_width = joint_width(scene, system);
-  std::string text = fmt::format("  {:{}}  rows  bodies", "joint", name_width);
-  for (const auto& joint : system.joints) {
-    const SceneJoint& source = source_of(scene, joint);
-    text += fmt::format("\n  {:{}}  {:4}  {}", source.name, name_width, joint.rows, source.definition.type);
+    text += (narrow ? "  " : " ") + source.definition.type;
+    if (narrow) continue;
     for (int body : joint.body) text += " " + body_name(scene, system, body);
   }
   return text + "\n";
@@ -126,8 +111,7 @@ std::string matrix_text(const Scene& scene, const SystemMatrix& system) {
   text += fmt::format("{} of joints share a body: {} without shared bodies\n\n",
                       plural(static_cast<int>(graph.edges.size()), "pair", "pairs"),
                       plural(graph.colours, "group", "groups"));
-  const bool narrow = static_cast<int>(system.bodies.size()) <= most_bodies;
-  text += narrow ? blocks_text(scene, system) : list_text(scene, system);
+  text += joints_text(scene, system);
   if (system.rows > most_rows || system.columns > most_columns)
     return text + "\nToo many numbers to show; --json prints all.\n";
   return text + numbers_text(scene, system);
@@ -165,6 +149,8 @@ std::string matrix_json(const Scene& scene, const SystemMatrix& system) {
 }
 
 namespace {
+
+// --- The picture.
 
 constexpr double picture = 640, gap = 60, margin = 70;
 constexpr const char* palette[] = {"#3b82f6", "#f59e0b", "#10b981", "#ef4444",

@@ -1,4 +1,4 @@
-// One TOML table of a scene -> its keys as numbers and texts, those of its copies, and complaints about unknown keys.
+// One TOML table of a scene -> its keys as numbers and texts, with copies; unknown keys are mistakes.
 #include "runtime/tool/scene/entry.hpp"
 
 #include <algorithm>
@@ -236,6 +236,8 @@ void Entry::close(const std::vector<std::string>& also_known) const {
 }
 
 namespace {
+
+// --- Numbers: fractions, degrees, ranges, shifts.
 
 // Takes the number off the start of a text.
 std::optional<double> take_number(std::string_view& text) {
