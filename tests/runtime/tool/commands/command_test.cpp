@@ -54,8 +54,9 @@ TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
 TEST(Command, ListShowsTheKeysOfAScene) {
   const CommandResult text = cdot_run("list --keys");
   EXPECT_EQ(text.status, 0);
-  for (const char* part : {"[[body]]", "orientation      in space:", "local_error", "friction         greatest force",
-                           "load             constant force", "[[spring]]"})
+  for (const char* part :
+       {"[[body]]", "orientation      in space:", "local_error", "friction         largest force",
+        "rod              its length", "repeat           how many", "load             constant force", "[[spring]]"})
     EXPECT_NE(text.out.find(part), std::string::npos) << part << text.out;
 }
 
