@@ -1,3 +1,4 @@
+// The diagnosis of an island -> concerns about the method.
 #include "runtime/diagnose/concerns.hpp"
 
 #include <cmath>
@@ -9,10 +10,20 @@
 namespace cdot {
 namespace {
 
-constexpr double sharp_turn = 0.5;                       // [rad] per step: a chord is 1 % shorter than its arc
-constexpr double slow_turn = 0.02, needs_no_help = 0.5;  // [rad] per step
-constexpr double sweeps_per_condition = 4;               // that leave little of an error
-constexpr double float_noise = 6e-8, blurred = 0.01;
+constexpr double sharp_turn = 0.5;                        // [rad] per step: a chord is 1 % shorter than its arc
+constexpr double slow_turn = 0.02, needs_no_help = 0.5;   // [rad] per step
+constexpr double sweeps_per_condition = 4;                // after which little error is left
+constexpr double float_round_off = 6e-8, inexact = 0.01;  // relative
+
+std::string advised(Integrator integrator) {
+  return fmt::format("integrator = \"{}\"", name_of(integrators, integrator));
+}
+const std::string tension_taken = advised(most_exact([](const IntegratorRow& row) { return row.stiffens; }));
+const std::string turns_kept =
+    advised(most_exact([](const IntegratorRow& row) { return row.level == Level::velocity && !row.stiffens; }));
+const std::string own_steps =
+    advised(most_exact([](const IntegratorRow& row) { return row.level == Level::acceleration; })) +
+    " with local_error = 1e-6";
 
 std::string listed(const std::vector<int>& joints, const Names& names) {
   constexpr std::size_t most = 6;
@@ -27,8 +38,8 @@ void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Co
     if (redundant.conflicting)
       concerns.push_back(
           {true,
-           fmt::format("{} contradict each other: row {} of {} misses the others by {:.3g} m or rad; all of "
-                       "them are met as well as can be, in the sense of least squares",
+           fmt::format("{} contradict each other: row {} of {} differs by {:.3g} m or rad; steps solve them "
+                       "in the sense of least squares",
                        listed(redundant.joints, names), redundant.row.row, names.joint(redundant.row.joint),
                        std::abs(redundant.missed)),
            "correct the anchors or the lengths of one of them, or remove it"});
@@ -37,9 +48,8 @@ void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Co
   if (harmless > 0)
     concerns.push_back(
         {false,
-         fmt::format("{} row{} follow{} from others: the motion is the same without, only how the joints "
-                     "share their load is anybody's choice",
-                     harmless, harmless == 1 ? "" : "s", harmless == 1 ? "s" : ""),
+         fmt::format("{} redundant row{}: the motion is unique, the split of forces between the joints is not",
+                     harmless, harmless == 1 ? "" : "s"),
          ""});
 }
 
@@ -47,21 +57,21 @@ void on_stiffness(const Diagnosis::Island& island, const Settings& settings, dou
                   std::vector<Concern>& concerns) {
   if (settings.local_error > 0 || !(island.stiffest.square > 0)) return;
   const double omega = std::sqrt(island.stiffest.square), radians = h * omega;
-  const double stable = row_of(settings.integrator).stable_radians;  // half of that is far from exact already
+  const double stable = row_of(settings.integrator).stable_radians;  // half of this is already inaccurate
   if (!(radians > stable / 2)) return;
   const bool tension = island.stiffest.tension > 0.5 * island.stiffest.square;
   std::string fix = fmt::format("substeps = {:.0f} or more", std::ceil(radians / 0.5) * settings.substeps);
   const bool stiffens = row_of(settings.integrator).stiffens;
-  if (tension && !stiffens) fix += ", integrator = \"implicit\"";
-  // Between bodies it is rows of the direct solver.
+  if (tension && !stiffens) fix += ", " + tension_taken;
+  // Stiffening between bodies needs rows of the direct solver.
   if (tension && stiffens && sweeps(settings.solver)) fix += ", solver = \"direct\"";
-  fix += ", or integrator = \"dop853\" with local_error = 1e-6";
+  fix += ", or " + own_steps;
   concerns.push_back(
       {true,
-       fmt::format("{} makes {} swing with {:.3g} rad/s, {:.2g} rad per substep: {} {}",
+       fmt::format("{} makes {} oscillate at {:.3g} rad/s, {:.2g} rad per substep: {} {}",
                    tension ? "the tension of the joints" : "a spring", names.body(island.stiffest.body), omega, radians,
                    name_of(integrators, settings.integrator),
-                   radians > stable ? fmt::format("is unstable from {:.2g} on", stable) : "is far off there"),
+                   radians > stable ? fmt::format("is unstable above {:.2g}", stable) : "is inaccurate there"),
        fix});
 }
 
@@ -71,14 +81,13 @@ void on_spin(const Diagnosis::Island& island, const Settings& settings, double h
   if (settings.local_error > 0 || !(radians > sharp_turn)) return;
   concerns.push_back(
       {true,
-       fmt::format("{} turns by {:.2g} rad per substep: {} follows turns of less than about {}",
+       fmt::format("{} rotates by {:.2g} rad per substep: {} is accurate below about {} rad",
                    names.body(island.spinning), radians, name_of(integrators, settings.integrator), sharp_turn),
-       fmt::format("substeps = {:.0f} or more, or integrator = \"dop853\" with local_error = 1e-6",
-                   std::ceil(radians / sharp_turn) * settings.substeps)});
+       fmt::format("substeps = {:.0f} or more, or {}", std::ceil(radians / sharp_turn) * settings.substeps,
+                   own_steps)});
 }
 
-// What tension stiffens is taken as inertia by the linearly implicit step: where h omega is small without it, that only
-// slows down what turns.
+// The linearly implicit step adds tension as inertia. Where h omega is small anyway, this only slows down rotations.
 void on_damping(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
                 std::vector<Concern>& concerns) {
   if (!row_of(settings.integrator).stiffens) return;
@@ -86,10 +95,10 @@ void on_damping(const Diagnosis::Island& island, const Settings& settings, doubl
   if (radians > needs_no_help || turn < slow_turn) return;
   concerns.push_back(
       {true,
-       fmt::format("{} slows down what turns, as {} does by {:.2g} rad per substep, and no tension "
-                   "here needs it: the stiffest motion swings by {:.2g} rad per substep",
+       fmt::format("{} damps rotations, and {} rotates by {:.2g} rad per substep; the stiffest motion, "
+                   "{:.2g} rad per substep, does not need that",
                    name_of(integrators, settings.integrator), names.body(island.spinning), turn, radians),
-       "integrator = \"rattle\""});
+       turns_kept});
 }
 
 void on_condition(const Diagnosis::Island& island, const Settings& settings, bool single, const Names& names,
@@ -97,15 +106,15 @@ void on_condition(const Diagnosis::Island& island, const Settings& settings, boo
   if (sweeps(settings.solver) && island.condition > sweeps_per_condition * settings.iterations)
     concerns.push_back(
         {true,
-         fmt::format("K's condition is {:.2g}, of masses from {:.3g} to {:.3g} kg: {} sweeps of the iterative "
-                     "solver leave much of an error",
+         fmt::format("the condition of K is {:.2g}, with masses from {:.3g} to {:.3g} kg: {} iterations leave "
+                     "a large error",
                      island.condition, island.lightest, island.heaviest, settings.iterations),
          "solver = \"direct\""});
-  if (single && island.condition * float_noise > blurred)
+  if (single && island.condition * float_round_off > inexact)
     concerns.push_back(
         {true,
-         fmt::format("K's condition is {:.2g}, near {}: floats blur its forces by some {:.0e} of them",
-                     island.condition, names.joint(island.weakest.joint), island.condition * float_noise),
+         fmt::format("the condition of K is {:.2g}, near {}: in float its forces have a relative error of about {:.0e}",
+                     island.condition, names.joint(island.weakest.joint), island.condition * float_round_off),
          "precision = \"double\""});
 }
 

@@ -1,3 +1,4 @@
+// The state of a World -> rank, condition, redundant rows and stiffness of each island.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -10,7 +11,7 @@
 namespace cdot {
 namespace {
 
-// Of a row that depends on others: which of them take part.
+// Share above which a row takes part in a redundant one.
 constexpr double takes_part = 1e-6;
 constexpr int rounds = 30;
 
@@ -24,10 +25,10 @@ double normalise(std::vector<double>& x) {
 }
 
 template <class S>
-std::vector<double> any_impulses(const Equations<S>& equations) {
+std::vector<double> random_impulses(const Equations<S>& equations) {
   std::vector<double> x(equations.size());
   Arbitrary arbitrary;
-  for (size_t r = 0; r < x.size(); ++r) x[r] = equations.kept(r) ? 0.5 + arbitrary() : 0.0;
+  for (size_t r = 0; r < x.size(); ++r) x[r] = equations.independent(r) ? 0.5 + arbitrary() : 0.0;
   normalise(x);
   return x;
 }
@@ -35,11 +36,11 @@ std::vector<double> any_impulses(const Equations<S>& equations) {
 // The largest eigenvalue of S^-1 K S^-1 or, inverse, of S K^-1 S with S^2 = diag K, by power iteration.
 template <bool inverse, class S>
 double largest_eigenvalue(Equations<S>& equations) {
-  std::vector<double> x = any_impulses(equations);
+  std::vector<double> x = random_impulses(equations);
   const auto scale = [&] {
     for (size_t r = 0; r < x.size(); ++r) {
       const double root = std::sqrt(equations.diagonal(r));
-      x[r] = !equations.kept(r) ? 0.0 : inverse ? x[r] * root : x[r] / root;
+      x[r] = !equations.independent(r) ? 0.0 : inverse ? x[r] * root : x[r] / root;
     }
   };
   double value = 1;
@@ -52,8 +53,8 @@ double largest_eigenvalue(Equations<S>& equations) {
   return value;
 }
 
-// Row d = sum of shares of the kept rows: K_II shares = K_Id. Who takes part is found for so many rows, and for all
-// that conflict.
+// Row d = sum of shares of the independent rows: K_II shares = K_Id. The joints are listed for conflicting rows, and
+// for this many others.
 constexpr int most_explained = 64;
 
 template <class S>
@@ -68,23 +69,23 @@ std::vector<int> joints_of_row(Equations<S>& equations, size_t d) {
   return {joints.begin(), joints.end()};
 }
 
-// What C of the dropped rows has beside their shares of the others' C: C_d - K_dI K_II^-1 C_I.
+// The residual of C in redundant rows beyond their shares of the others: C_d - K_dI K_II^-1 C_I.
 template <class S>
 std::vector<double> missed_by_rows(Equations<S>& equations) {
   std::vector<double> C(equations.size());
-  for (size_t r = 0; r < C.size(); ++r) C[r] = equations.kept(r) ? equations.C(r) : 0.0;
+  for (size_t r = 0; r < C.size(); ++r) C[r] = equations.independent(r) ? equations.C(r) : 0.0;
   std::vector<double> missed = equations.multiply(equations.solve(C));
   for (size_t r = 0; r < C.size(); ++r) missed[r] = equations.C(r) - missed[r];
   return missed;
 }
 
 template <class S>
-void look_at_dependent_rows(Equations<S>& equations, std::vector<Diagnosis::Redundant>& redundant) {
+void find_redundant_rows(Equations<S>& equations, std::vector<Diagnosis::Redundant>& redundant) {
   if (equations.rank() == equations.rows()) return;
   const std::vector<double> missed = missed_by_rows(equations);
   double largest = 0;
   for (size_t r = 0; r < equations.size(); ++r) largest = std::max(largest, std::abs(equations.C(r)));
-  const double least = std::max(double(Equations<S>::slight), 1e-9 * largest);
+  const double least = std::max(double(Equations<S>::resolution), 1e-9 * largest);
   for (size_t r = 0; r < equations.size(); ++r) {
     if (!equations.dependent(r)) continue;
     const bool conflicting = !(std::abs(missed[r]) <= least);
@@ -96,12 +97,12 @@ void look_at_dependent_rows(Equations<S>& equations, std::vector<Diagnosis::Redu
 }
 
 template <class S>
-void look_at_rows(Equations<S>& equations, Diagnosis::Island& found) {
+void measure_rows(Equations<S>& equations, Diagnosis::Island& found) {
   found.rows = equations.rows();
   found.rank = equations.rank();
-  look_at_dependent_rows(equations, found.redundant);
+  find_redundant_rows(equations, found.redundant);
   for (size_t r = 0; r < equations.size(); ++r) {
-    if (!equations.kept(r)) continue;
+    if (!equations.independent(r)) continue;
     const double share = equations.pivot(r) / equations.diagonal(r);
     if (found.weakest.joint >= 0 && share >= found.smallest_pivot) continue;
     found.smallest_pivot = share;
@@ -120,7 +121,7 @@ double spin_of(const typename S::Velocity& velocity) {
 }
 
 template <class S>
-void look_at_bodies(const WorldState<S>& world, const Island<S>& island, Diagnosis::Island& found) {
+void measure_bodies(const WorldState<S>& world, const Island<S>& island, Diagnosis::Island& found) {
   found.bodies = island.bodies;
   found.size = double(island.size);
   for (int body : island.bodies) {
@@ -147,8 +148,8 @@ Diagnosis diagnose(BasicWorld<S>& world, double h) {
   for (Island<S>& island : world.state().islands) {
     Equations<S> equations(world.state(), island);
     Diagnosis::Island& found = diagnosis.islands.emplace_back();
-    look_at_bodies(world.state(), island, found);
-    look_at_rows(equations, found);
+    measure_bodies(world.state(), island, found);
+    measure_rows(equations, found);
     found.stiffest = stiffest_motion(world.state(), island, equations, typename S::Scalar(h));
   }
   world.restore(before);

@@ -1,5 +1,4 @@
-// K of an island's joints at the present poses, factored, and its products, for diagnoses: effects are left out, and
-// inequalities that do not touch.
+// An island -> K of its joints at the present poses, factored. Effects and inactive inequalities are left out.
 #pragma once
 
 #include <cmath>
@@ -34,11 +33,11 @@ class Equations {
     dependent_ = system_.factor();
   }
 
-  // [m, rad]: joints that miss each other by less are not said to contradict.
-  static constexpr T slight = T(by_precision<T>(1e-5, 1e-9));
+  // [m, rad]: a smaller residual is no contradiction.
+  static constexpr T resolution = T(by_precision<T>(1e-5, 1e-9));
 
   static bool takes_part(const Batch<S>& batch, int i) {
-    return is_joint(batch) && (batch.kinds[i % batch.ops->rows] != RowKind::inequality || batch.C[i] <= slight);
+    return is_joint(batch) && (batch.kinds[i % batch.ops->rows] != RowKind::inequality || batch.C[i] <= resolution);
   }
 
   const std::vector<Segment<S>>& segments() const { return segments_; }
@@ -49,8 +48,8 @@ class Equations {
   double C(size_t row) const { return C_[row]; }
   bool out(size_t row) const { return system_.fixed[row] != System<S>::free; }
   bool dependent(size_t row) const { return !out(row) && system_.dependent(static_cast<int>(row)); }
-  bool kept(size_t row) const { return !out(row) && !dependent(row); }
-  // K_ii, and what elimination leaves of it.
+  bool independent(size_t row) const { return !out(row) && !dependent(row); }
+  // K_ii, before and after elimination.
   double diagonal(size_t row) const { return system_.diagonal(static_cast<int>(row)); }
   double pivot(size_t row) const { return system_.pivot(static_cast<int>(row)); }
 
@@ -59,13 +58,13 @@ class Equations {
     if (rows_ > 0) system_.multiply(x.data(), y.data());
     return y;
   }
-  // Of the kept rows; the others are 0.
+  // For the independent rows; the others are 0.
   std::vector<double> solve(std::vector<double> b) {
     for (size_t r = 0; r < size(); ++r)
-      if (!kept(r)) b[r] = 0;
+      if (!independent(r)) b[r] = 0;
     if (rows_ > 0) system_.solve_factored(b.data());
     for (size_t r = 0; r < size(); ++r)
-      if (!kept(r)) b[r] = 0;
+      if (!independent(r)) b[r] = 0;
     return b;
   }
 
@@ -91,7 +90,7 @@ class Equations {
   int rows_ = 0, dependent_ = 0;
 };
 
-// The stiffest motion of the island; the step's length decides what a linearly implicit step takes off it.
+// The stiffest motion of the island in steps of h: the linearly implicit step reduces its stiffness.
 template <class S>
 Diagnosis::Stiffest stiffest_motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations,
                                     typename S::Scalar h);

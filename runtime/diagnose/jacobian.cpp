@@ -1,3 +1,4 @@
+// The state of a World -> the matrix of its whole system, and its conflict graph.
 #include <Eigen/QR>
 #include <algorithm>
 
@@ -9,7 +10,7 @@
 namespace cdot {
 namespace {
 
-// Below this share of the largest pivot a row says nothing new.
+// A row with a pivot below this share of the largest is redundant.
 constexpr double rank_tolerance = 1e-10;
 
 template <class S>
@@ -61,7 +62,7 @@ void add_joint(const WorldState<S>& world, int joint, SystemMatrix& system, std:
 
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Columns in which nothing can move count neither for the rank nor as freedom.
+// Columns in which nothing can move add neither to the rank nor to the freedom.
 void find_rank(SystemMatrix& system) {
   Matrix D = Eigen::Map<const Matrix>(system.D.data(), system.rows, system.columns);
   int free = 0;

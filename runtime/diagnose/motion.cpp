@@ -1,9 +1,9 @@
-// How fast forces turn round that a step takes as they are at its start. Within the joints, M dv/dt = f(q) + J(q)^T
-// lambda with the lambda of now; a small motion w then feels -G w with
+// Stiffness of the forces that a step takes from its start. Within the joints, M dv/dt = f(q) + J(q)^T lambda with the
+// present lambda. A small motion w feels -G w with
 //
 //   G w = -d/de [f(q + e w) + J(q + e w)^T lambda],  w <- P M^-1 G w,  P onto J w = 0,
 //
-// whose largest eigenvalue is omega^2 of the stiffest oscillation. An explicit step h follows it while h omega < 2.
+// The largest eigenvalue is omega^2 of the stiffest oscillation. An explicit step h is stable while h omega < 2.
 #include "runtime/motion/motion.hpp"
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace cdot {
 namespace {
 
 constexpr int most_rounds = 200;
-constexpr double settled = 1e-3;  // of omega^2, from one round to the next ten
+constexpr double settled = 1e-3;  // relative change of omega^2 in ten rounds
 
 template <class S>
 class Motion {
@@ -29,13 +29,13 @@ class Motion {
 
   Motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations)
       : world_(world), island_(island), equations_(equations), pose_(world.bodies.pose) {
-    // Euler's methods solve for the forces of springs on coordinates; the others take them as they are.
+    // Euler's methods solve for the forces of springs on coordinates. For others they are known forces.
     if (!row_of(world.settings.integrator).forces_springs) return;
     for (const Segment<S>& segment : island.segments)
       if (segment.batch->law && segment.batch->law->force) coordinate_springs_.push_back(segment);
   }
 
-  // The forces that the joints exert now: J dv/dt = gamma.
+  // The present forces of the joints: J dv/dt = gamma.
   void find_forces(T h) {
     free_accelerations(world_, island_);
     Velocities rate = world_.bodies.velocity_rate;
@@ -48,7 +48,7 @@ class Motion {
     equations_.each_row(
         [&](int row, Batch<S>& batch, int i) { b[row] = double(batch.bias[i]) - double(batch.rate[i]); });
     const std::vector<double> force = equations_.solve(b);
-    // stiffen_bodies() wants the impulses of a step.
+    // stiffen_bodies() takes the impulses of a step.
     equations_.each_row(
         [&](int row, Batch<S>& batch, int i) { batch.lambda[i] = T(force[row]) * h, batch.correction[i] = 0; });
     solves_as_step_ = island_.stiffened && island_.solver->exact;
@@ -60,7 +60,7 @@ class Motion {
     island_.system.factor();
   }
 
-  // P M^-1 G w, at a distance that C's curvature bears and round-off does not disturb.
+  // P M^-1 G w by central differences, over a distance between the curvature of C and round-off.
   Velocities stiffened(const Velocities& w, bool tension, bool springs) {
     const T e = T(1e-3) * island_.size / std::max(T(largest(w)), T(1e-30));
     const Velocities ahead = rates(w, e, tension, springs), behind = rates(w, -e, tension, springs);
@@ -85,7 +85,7 @@ class Motion {
     return change;
   }
 
-  // Turns count by what they move at the mechanism's size.
+  // Rotations count with the size of the mechanism as arm.
   double product(const Velocities& v, const Velocities& w) const {
     double sum = 0;
     for (int i : island_.bodies) sum += product(v[i], w[i]);
@@ -153,7 +153,7 @@ class Motion {
   Equations<S>& equations_;
   std::vector<Segment<S>> coordinate_springs_;
   const std::vector<typename S::Pose> pose_;
-  bool solves_as_step_ = false;  // by the system of the linearly implicit step, what tension stiffens included
+  bool solves_as_step_ = false;  // by the system of the linearly implicit step
 };
 
 template <class S>

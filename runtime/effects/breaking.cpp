@@ -1,5 +1,4 @@
-// The breaking load. It needs no row: only a look at the joint's own impulses after each substep,
-// in Worlds that asked.
+// The breaking load of a joint. It adds no row: after each substep it reads the impulses of the joint's own rows.
 #include <algorithm>
 #include <cmath>
 
@@ -22,8 +21,7 @@ struct SwapSlots {
   }
 };
 
-// Every slot of the joint changes places with the last one of its segment, which then ends before it. Nothing is
-// allocated.
+// Swaps every slot of the joint with the last one of its segment, and shortens the segment. It does not allocate.
 template <class S>
 void break_joint(WorldState<S>& world, int joint) {
   JointRecord& record = world.joints[joint];

@@ -1,18 +1,14 @@
-// Limits of a coordinate, and the lock that both ends at one place make.
-#include <array>
+// A limit on a coordinate: lower <= C <= upper. Equal ends make a lock.
 #include <cmath>
 #include <fmt/format.h>
 
-#include <cdot/effects.hpp>
-
-#include "runtime/effects/set_constants.hpp"
+#include "runtime/effects/effect.hpp"
 #include "runtime/rows/laws.hpp"
 
 namespace cdot {
 namespace {
 
-// --- limit: lower <= C <= upper. Constants: lower, upper. One row serves both sides, the nearer
-// one at a time.
+// --- limit: lower <= C <= upper. Constants: lower, upper. One row serves the nearer side.
 
 template <class T>
 bool nearer_to_lower(T C, const T* limits) {
@@ -51,7 +47,7 @@ void guard_limit(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* gua
                                       : Guard<T>{C - limits[1], T(0), -T(unlimited), T(0)};
 }
 
-// --- lock, a limit whose ends are one: C = at. Constants: at.
+// --- lock: C = at. Constants: at.
 
 template <class S>
 void fill_lock(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings& settings) {
@@ -76,7 +72,9 @@ constexpr Law<S> limit_law{2, false, fill_limit<S>, error_limit<S>, nullptr, nul
 template <class S>
 constexpr Law<S> lock_law{1, false, fill_lock<S>, error_lock<S>, nullptr, nullptr, guard_lock<S>};
 
-std::array<double, 2> constants_of(const Limit& limit) {
+}  // namespace
+
+static std::array<double, 2> constants_of(const Limit& limit) {
   const double lower = limit.lower.value_or(-unlimited), upper = limit.upper.value_or(unlimited);
   if (!(lower <= upper))
     throw Error(fmt::format("a limit's lower end {} must not lie above its upper end {}", lower, upper));
@@ -84,30 +82,18 @@ std::array<double, 2> constants_of(const Limit& limit) {
   return {lower, upper};
 }
 
-}  // namespace
-
 template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit) {
-  const auto constants = constants_of(limit);
-  if (constants[0] == constants[1])
-    return add_coordinate_row(world.state(), joint, coordinate, &lock_law<S>, std::span(constants).first(1));
-  return add_coordinate_row(world.state(), joint, coordinate, &limit_law<S>, constants);
-}
-
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Limit& limit) {
-  const auto constants = constants_of(limit);
-  if (constants[0] == constants[1])
-    set_constants(world, joint, effect, lock_law<S>, "lock (a limit that was added with equal ends)",
-                  std::span(constants).first(1));
-  else set_constants(world, joint, effect, limit_law<S>, "limit with two ends", constants);
+static NamedLaw<S> law_of(const Limit& limit) {
+  const auto [lower, upper] = constants_of(limit);
+  if (lower == upper) return {lock_law<S>, "lock (a limit that was added with equal ends)"};
+  return {limit_law<S>, "limit with two ends"};
 }
 
 #define CDOT_INSTANTIATE(S) CDOT_INSTANTIATE_EFFECT(S, Limit)
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
-#ifndef CDOT_EXTENDED  // how a scene writes them is one for all precisions
+#ifndef CDOT_EXTENDED  // the keys of a scene are the same in every precision
 namespace {
 
 std::optional<EffectKind::Wrong> take_limit(std::span<const EffectKind::Given> n, CoordinateEffects& effects) {

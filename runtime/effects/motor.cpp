@@ -1,16 +1,12 @@
-// Motor and dry friction: a row with bounds on its force.
-#include <array>
+// Motor and dry friction: a row J v = speed with bounds on its force.
 #include <cmath>
 
-#include <cdot/effects.hpp>
-
-#include "runtime/effects/set_constants.hpp"
+#include "runtime/effects/effect.hpp"
 
 namespace cdot {
 namespace {
 
-// --- motor: J v = speed, as far as its force reaches. Constants: speed, largest force.
-// --- dry friction is a motor of speed 0.
+// Constants: speed, largest force. Dry friction is a motor of speed 0.
 
 template <class S>
 void fill_motor(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings&) {
@@ -31,44 +27,33 @@ void guard_motor(const Batch<S>& batch, int slot, Guard<typename S::Scalar>* gua
 template <class S>
 constexpr Law<S> motor_law{2, false, fill_motor<S>, nullptr, nullptr, nullptr, guard_motor<S>};
 
-std::array<double, 2> constants_of(const Motor& motor) {
+}  // namespace
+
+template <class S>
+static NamedLaw<S> law_of(const Motor&) {
+  return {motor_law<S>, "motor"};
+}
+template <class S>
+static NamedLaw<S> law_of(const DryFriction&) {
+  return {motor_law<S>, "dry friction"};
+}
+
+static std::array<double, 2> constants_of(const Motor& motor) {
   if (!std::isfinite(motor.speed)) throw Error("a motor's speed must be finite");
   if (!(motor.max_force >= 0)) throw Error("a motor's largest force must be >= 0");
   return {motor.speed, motor.max_force};
 }
 
-std::array<double, 2> constants_of(const DryFriction& friction) {
+static std::array<double, 2> constants_of(const DryFriction& friction) {
   if (!(friction.max_force >= 0)) throw Error("the largest force of dry friction must be >= 0");
   return {0, friction.max_force};
-}
-
-}  // namespace
-
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor) {
-  return add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants_of(motor));
-}
-
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const DryFriction& friction) {
-  return add_coordinate_row(world.state(), joint, coordinate, &motor_law<S>, constants_of(friction));
-}
-
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Motor& motor) {
-  set_constants(world, joint, effect, motor_law<S>, "motor", constants_of(motor));
-}
-
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const DryFriction& friction) {
-  set_constants(world, joint, effect, motor_law<S>, "dry friction", constants_of(friction));
 }
 
 #define CDOT_INSTANTIATE(S) CDOT_INSTANTIATE_EFFECT(S, Motor) CDOT_INSTANTIATE_EFFECT(S, DryFriction)
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
-#ifndef CDOT_EXTENDED  // how a scene writes them is one for all precisions
+#ifndef CDOT_EXTENDED  // the keys of a scene are the same in every precision
 namespace {
 
 std::optional<EffectKind::Wrong> take_motor(std::span<const EffectKind::Given> n, CoordinateEffects& effects) {
@@ -86,13 +71,13 @@ std::optional<EffectKind::Wrong> take_friction(std::span<const EffectKind::Given
 const EffectKind motor_kind{
     "motor",
     "{ speed = 2, max = 10 }",
-    "`{ speed = …, max = … }`: the force or torque that it may use; without `max`, any",
+    "`{ speed = …, max = … }`: `max` bounds its force or torque",
     EffectKind::table,
     {{"speed", EffectNumber::as_coordinate, "speed = 2.0"}, {"max", EffectNumber::not_negative}},
     take_motor};
 const EffectKind friction_kind{"friction",
                                "friction = 3",
-                               "greatest force or torque of dry friction",
+                               "largest force or torque of dry friction",
                                EffectKind::number,
                                {{"friction", EffectNumber::not_negative}},
                                take_friction};

@@ -1,10 +1,7 @@
-// Spring and damper on a coordinate.
-#include <array>
+// A spring with damping on a coordinate; a damper is a spring of stiffness 0.
 #include <cmath>
 
-#include <cdot/effects.hpp>
-
-#include "runtime/effects/set_constants.hpp"
+#include "runtime/effects/effect.hpp"
 #include "runtime/rows/laws.hpp"
 
 namespace cdot {
@@ -38,7 +35,14 @@ void force_of_spring(const Batch<S>& batch, int slot, const typename S::Scalar* 
 template <class S>
 constexpr Law<S> spring_law{4, false, fill_spring<S>, nullptr, energy_spring<S>, force_of_spring<S>, nullptr};
 
-std::array<double, 4> constants_of(const CoordinateSpring& spring) {
+}  // namespace
+
+template <class S>
+static NamedLaw<S> law_of(const CoordinateSpring&) {
+  return {spring_law<S>, "spring"};
+}
+
+static std::array<double, 4> constants_of(const CoordinateSpring& spring) {
   std::array<double, 4> constants;
   spring_constants(spring.softness, constants.data());
   if (!spring.rest || !std::isfinite(*spring.rest)) throw Error("a spring's rest position must be finite");
@@ -46,25 +50,18 @@ std::array<double, 4> constants_of(const CoordinateSpring& spring) {
   return constants;
 }
 
-}  // namespace
-
 template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const CoordinateSpring& spring) {
+static CoordinateSpring at_pose(BasicWorld<S>& world, int joint, std::string_view coordinate,
+                                const CoordinateSpring& spring) {
   check_joint(world.state(), joint);
-  const double rest = spring.rest ? *spring.rest : world.coordinate(joint, coordinate);
-  return add_coordinate_row(world.state(), joint, coordinate, &spring_law<S>, constants_of({spring.softness, rest}));
-}
-
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const CoordinateSpring& spring) {
-  set_constants(world, joint, effect, spring_law<S>, "spring", constants_of(spring));
+  return {spring.softness, spring.rest ? *spring.rest : world.coordinate(joint, coordinate)};
 }
 
 #define CDOT_INSTANTIATE(S) CDOT_INSTANTIATE_EFFECT(S, CoordinateSpring)
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
-#ifndef CDOT_EXTENDED  // how a scene writes them is one for all precisions
+#ifndef CDOT_EXTENDED  // the keys of a scene are the same in every precision
 namespace {
 
 std::optional<EffectKind::Wrong> take_spring(std::span<const EffectKind::Given> n, CoordinateEffects& effects) {
@@ -86,17 +83,17 @@ std::optional<EffectKind::Wrong> take_damper(std::span<const EffectKind::Given> 
 
 }  // namespace
 
-const EffectKind spring_kind{
-    "spring",
-    "{ frequency = 2, damping_ratio = 0.5 }",
-    "`{ frequency, damping_ratio, rest }` or `{ stiffness, damping, rest }`; `rest` is where it starts",
-    EffectKind::table,
-    {{"frequency", EffectNumber::positive},
-     {"damping_ratio", EffectNumber::not_negative},
-     {"stiffness", EffectNumber::not_negative},
-     {"damping", EffectNumber::not_negative},
-     {"rest", EffectNumber::as_coordinate}},
-    take_spring};
+const EffectKind spring_kind{"spring",
+                             "{ frequency = 2, damping_ratio = 0.5 }",
+                             "`{ frequency, damping_ratio, rest }` or `{ stiffness, damping, rest }`; `rest` is by "
+                             "default the value at the start",
+                             EffectKind::table,
+                             {{"frequency", EffectNumber::positive},
+                              {"damping_ratio", EffectNumber::not_negative},
+                              {"stiffness", EffectNumber::not_negative},
+                              {"damping", EffectNumber::not_negative},
+                              {"rest", EffectNumber::as_coordinate}},
+                             take_spring};
 const EffectKind damper_kind{"damper",
                              "damper = 0.5",
                              "force or torque per speed",

@@ -9,11 +9,11 @@ namespace {
 
 // clang-format off
 constexpr cdot::Command commands[] = {
-    {"simulate", "Run a scene and say how it went", cdot::simulate_command},
-    {"diagnose", "Run a scene and say what its equations are like: rank, redundant and conflicting rows, condition, "
-                 "stiffness; and where the scene's method is the wrong one", cdot::diagnose_command},
-    {"accuracy", "Solve a scene in every way at every step, and show what accuracy costs in time", cdot::accuracy_command},
-    {"list", "Show the joints that a scene may name, with their parameters", cdot::list_command},
+    {"simulate", "Run a scene; report errors, energy and CPU time", cdot::simulate_command},
+    {"diagnose", "Run a scene; report rank, redundant and conflicting rows, condition and stiffness of its equations, "
+                 "and warn where the method does not suit them", cdot::diagnose_command},
+    {"accuracy", "Solve a scene in many ways; show the CPU time of every accuracy", cdot::accuracy_command},
+    {"list", "List the joints with their parameters, or the keys of a scene", cdot::list_command},
     {"jacobian", "", cdot::moved_to_diagnose},
 };
 // clang-format on
@@ -21,26 +21,28 @@ constexpr cdot::Command commands[] = {
 constexpr const char* footer = R"(
 Examples
   cdot-run simulate specs/scenes/four_bar.toml
-  cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html then open the page
+  cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html       # a page that plays the run
   cdot-run simulate specs/scenes/four_bar.toml --step 0.0001 --every 0.1 -o four_bar.csv
   cdot-run simulate specs/scenes/four_bar.toml --until 5 --save-state at_5.state
-  cdot-run simulate specs/scenes/four_bar.toml --from-state at_5.state        goes on as if nothing had been between
-  cdot-run diagnose specs/scenes/four_bar.toml                      rank, condition, stiffness, and what they advise
-  cdot-run diagnose specs/scenes/four_bar.toml --matrix             the system in blocks and numbers
-  cdot-run accuracy specs/scenes/double_pendulum.toml               what accuracy costs in time
-  cdot-run list                                                     the joints that a scene may name
+  cdot-run simulate specs/scenes/four_bar.toml --from-state at_5.state    # continues with the same bits
+  cdot-run diagnose specs/scenes/four_bar.toml                            # rank, condition, stiffness, warnings
+  cdot-run diagnose specs/scenes/four_bar.toml --matrix                   # the system in blocks and numbers
+  cdot-run accuracy specs/scenes/double_pendulum.toml                     # CPU time against error
+  cdot-run list                                                           # all joints with their parameters
+  cdot-run list --keys                                                    # all keys of a scene
 
 Exit status
-  0  all well
-  1  the answer is no: the run was not finite, or a joint was off by more than the tolerance
-  2  bad usage, or a scene with mistakes; each is shown with its line and the likely fix
+  0  success
+  1  the run failed: the state was not finite, or |C| of a joint exceeded the tolerance
+  2  wrong usage, or mistakes in the scene: each is shown with its line and a likely fix
 
-The format of scenes is described in specs/scenes/README.md.)";
+specs/scenes/README.md describes the format of scenes.)";
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Runs mechanisms: bodies, and joints whose kernels were derived from their position constraints.");
+  CLI::App app(
+      "Runs mechanisms of bodies and joints. The kernels of joints are derived from their position constraints.");
   app.name("cdot-run");
   app.require_subcommand(1);
   app.footer(footer);

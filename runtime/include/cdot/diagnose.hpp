@@ -1,6 +1,5 @@
-// What is known about the equations of each island at the present poses: rank, condition, rows that say nothing new,
-// and those among them that contradict the others; how stiff the motion is that forces and tensions make. The World's
-// state stays as it was.
+// The equations of each island at the present poses: rank, condition, redundant and contradicting rows, and the
+// stiffness of the motion. The World's state does not change.
 #pragma once
 
 #include <vector>
@@ -13,41 +12,41 @@ struct Diagnosis {
   struct Row {
     int joint = -1, row = -1;
   };
-  // A row that depends on others: what it says follows from theirs, or contradicts it.
+  // A row that follows from others, or contradicts them.
   struct Redundant {
     Row row;
-    std::vector<int> joints;  // it and the others that take part, ascending
-    double missed = 0;        // [m, rad]: of C, what stays however the bodies are moved, to first order
+    std::vector<int> joints;  // its own and the others that take part, ascending
+    double missed = 0;        // [m, rad]: part of C that no motion of the bodies removes, to first order
     bool conflicting = false;
   };
-  // Small oscillations about the present motion, within the joints, under forces that are taken as they are at the
-  // start of a step: gravity, springs between points (but for Euler's methods also those on coordinates), and the
-  // tensions in the joints, whose directions turn with the bodies.
+  // Small oscillations about the present motion, within the joints, by the forces that a step takes from its start:
+  // gravity, springs between points, for other than Euler's methods springs on coordinates, and the tensions of joints,
+  // whose directions turn with the bodies.
   struct Stiffest {
-    double square = 0;   // [1/s^2] omega^2, the largest in size; negative where it grows in place of oscillating
-    int body = -1;       // that moves most in it
-    double tension = 0;  // of omega^2, the share of the joints' forces; the rest is the springs'
+    double square = 0;   // [1/s^2] omega^2, the largest in size; negative if the motion grows instead of oscillating
+    int body = -1;       // the one that moves most
+    double tension = 0;  // part of omega^2 from the joints' forces; springs make the rest
   };
   struct Island {
     std::vector<int> bodies;  // movable ones
-    int rows = 0, rank = 0;   // of inequalities those that touch
-    // The largest over the smallest eigenvalue of K with every row scaled to K_ii = 1, of its independent rows:
-    // estimated from below by a few iterations with K and its factors.
+    int rows = 0, rank = 0;   // of inequalities the active ones
+    // Largest over smallest eigenvalue of K, of its independent rows scaled to K_ii = 1. A power iteration with K and
+    // its factors estimates it from below.
     double condition = 1;
-    double smallest_pivot = 1;  // of L D L^T of that K, among the rows that were kept
-    Row weakest;                // that pivot's
+    double smallest_pivot = 1;  // of L D L^T of that K, among its independent rows
+    Row weakest;                // of that pivot
     std::vector<Redundant> redundant;
     Stiffest stiffest;
     double lightest = 0, heaviest = 0;  // [kg]
     double fastest_spin = 0;            // [rad/s]
     int spinning = -1;                  // the body that has it
     double size = 1;                    // [m] its longest arm or distance between joined bodies
-    double farthest = 0;                // [m] of its bodies from where poses are counted
+    double farthest = 0;                // [m] of its bodies from the origin of poses
   };
   std::vector<Island> islands;
 };
 
-// `h`: of the substeps to come [s].
+// `h`: length of the next substeps [s].
 template <class S>
 Diagnosis diagnose(BasicWorld<S>& world, double h);
 

@@ -1,7 +1,6 @@
-// What a scene may ask of a joint's free coordinates. Each effect is one row of the coordinate with
-// its own bias, softness and bounds; a World in which nobody calls these functions has no trace of
-// them in step(). `coordinate` is a name from the joint's spec ("angle", "slide"). All throw
-// cdot::Error on misuse.
+// Effects on the free coordinates of a joint. Each effect is one row of the coordinate with its own bias, softness and
+// bounds. A World without effects spends nothing on them in step(). `coordinate` is a name of the joint's spec
+// ("angle", "slide"). All functions throw cdot::Error on misuse.
 //
 // A kind of effect is a struct here, its member and its kind in the lists below, and one file, effects/<kind>.cpp.
 #pragma once
@@ -20,7 +19,7 @@ namespace cdot {
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
 struct Limit {
-  std::optional<double> lower, upper;  // [m] or [rad]; one or both; equal: the coordinate is locked
+  std::optional<double> lower, upper;  // [m] or [rad], one or both; equal ends lock the coordinate
   bool acts_one_way() const { return true; }
 };
 
@@ -32,7 +31,7 @@ struct Motor {
 
 struct CoordinateSpring {
   Softness softness;                 // a damper alone: stiffness 0 and a damping
-  std::optional<double> rest = 0.0;  // [m] or [rad]; none: where the coordinate is when the spring is added
+  std::optional<double> rest = 0.0;  // [m] or [rad]; none: the coordinate's value when the spring is added
   bool acts_one_way() const { return softness.damping > 0 || softness.damping_ratio > 0; }
 };
 
@@ -46,7 +45,7 @@ struct Load {
   bool acts_one_way() const { return false; }
 };
 
-// All that acts on one coordinate of a joint.
+// All effects on one coordinate of a joint.
 struct CoordinateEffects {
   std::string coordinate;
   std::optional<Limit> limit{};
@@ -66,50 +65,33 @@ struct CoordinateEffects {
   }
 };
 
-// Adds an effect. Returns its number among those of its joint; -1 where the joint connects only immovable bodies.
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Limit& limit);
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Motor& motor);
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const CoordinateSpring& spring);
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const DryFriction& friction);
-template <class S>
-int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Load& load);
+// Adds one of these effects. Returns its number among those of the joint; -1 if all bodies of the joint are immovable.
+template <class S, class Effect>
+int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Effect& effect);
 
-// While a World runs: other numbers for the effect of that number, from the next step on. Wakes the joint's island. A
-// motor whose largest force is 0 is switched off, and so is a limit from -unlimited to unlimited; a limit with two ends
-// and a locked coordinate do not become each other.
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Limit& limit);
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Motor& motor);
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const CoordinateSpring& spring);
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const DryFriction& friction);
-template <class S>
-void set_effect(BasicWorld<S>& world, int joint, int effect, const Load& load);
+// Changes the constants of an effect from the next step on, and wakes the joint's island. A largest force of 0 switches
+// a motor off, ends at -unlimited and unlimited a limit. A limit with two ends cannot become a lock, nor a lock a
+// limit.
+template <class S, class Effect>
+void set_effect(BasicWorld<S>& world, int joint, int number, const Effect& effect);
 
-// The joint disappears after the first step in which the norm of its row forces exceeds the load
-// [N, N m].
+// The joint breaks after the first step in which the norm of its row forces exceeds the load [N, N m].
 template <class S>
 void set_breaking_load(BasicWorld<S>& world, int joint, double load);
 
 // --- The kinds, as a scene writes them: angle.motor = { speed = 2, max = 10 }.
 
 struct EffectNumber {
-  enum Range { as_coordinate, any, positive, not_negative };  // as_coordinate: of any sign, an angle if that is one
+  enum Range { as_coordinate, any, positive, not_negative };  // as_coordinate: any sign, and an angle like it
   const char* key = nullptr;
   Range range = any;
-  const char* example = nullptr;  // of a number that must be given
+  const char* example = nullptr;  // of a required number
 };
 
 struct EffectKind {
-  // A number by itself, a table of numbers, or one that may be a pair.
+  // A number, a table of numbers, or a table that may be written as a pair.
   enum Form { number, table, pair };
-  // A number as it was read: it may be written and wrong.
+  // A number as read: written without a value, it is wrong.
   struct Given {
     bool written = false;
     std::optional<double> value;
@@ -119,7 +101,7 @@ struct EffectKind {
   };
   const char *key, *example, *meaning;
   Form form;
-  EffectNumber numbers[5];  // up to the first without a key
+  EffectNumber numbers[5];  // ends at the first without a key
   std::optional<Wrong> (*take)(std::span<const Given> numbers, CoordinateEffects& effects);
 };
 

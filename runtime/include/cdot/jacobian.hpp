@@ -1,5 +1,4 @@
-// The whole system's D with D v = 0: rows by joint, columns by movable body, in blocks and in
-// numbers. Apart from the solvers, which never build it.
+// The matrix D of the whole system, D v = 0: rows by joint, columns by movable body. Solvers never build it.
 #pragma once
 
 #include <string>
@@ -18,14 +17,14 @@ struct SystemMatrix {
   };
   int freedom;                // columns of a body: 3 in the plane, 6 in space
   std::vector<int> bodies;    // movable ones, in the order of the World
-  std::vector<Joint> joints;  // that hold a movable body
+  std::vector<Joint> joints;  // joints of a movable body
   int rows = 0, columns = 0;
   std::vector<double> D, K;  // [rows][columns], [rows][rows]: K = D M^-1 D^T
-  std::vector<char> frozen;  // by column: 1 where its body cannot move that way
+  std::vector<char> frozen;  // by column: 1 if its body cannot move that way
   int rank = 0, degrees_of_freedom = 0;
 
   double entry(int row, int column) const { return D[row * columns + column]; }
-  // True if the joint says nothing about the body's motion (position in `bodies`).
+  // True if the joint leaves the motion of that body free (position in `bodies`).
   bool empty_block(const Joint& joint, int body) const;
 };
 
@@ -33,8 +32,8 @@ struct SystemMatrix {
 template <class S>
 SystemMatrix system_matrix(BasicWorld<S>& world);
 
-// Pairs of joints that hold the same movable body, and so cannot be solved at once; and colours
-// such that no two joints of a pair share one, first come first served.
+// Pairs of joints that share a movable body and so cannot be solved at once; and a greedy colouring in which the joints
+// of a pair differ.
 struct ConflictGraph {
   std::vector<std::pair<int, int>> edges;  // positions in SystemMatrix::joints, ascending
   std::vector<int> colour;

@@ -1,13 +1,13 @@
+// A scene and options -> a sweep, its files and its text.
 #include "runtime/tool/accuracy/command.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fmt/format.h>
 
-#include "runtime/tool/accuracy/state.hpp"
+#include "runtime/tool/accuracy/sweep.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/simulate.hpp"
@@ -34,55 +34,13 @@ Effort effort_of(const AccuracyOptions& options) {
   return effort;
 }
 
-// What is shown and kept on the way, both at most a few times a second.
-class Companion {
- public:
-  Companion(const std::string& path, const Fingerprint& fingerprint, const SweepState& state, bool shown)
-      : path_(path), fingerprint_(fingerprint), state_(&state), shown_(shown), start_(Clock::now()), last_(start_) {}
-  ~Companion() { clear(); }
-
-  void grown(double used, double planned, const std::string& doing) {
-    const auto now = Clock::now();
-    if (first_used_ < 0) first_used_ = used;
-    if (now - last_ < std::chrono::milliseconds(500)) return;
-    last_ = now;
-    write_state(path_, fingerprint_, *state_);
-    if (!shown_) return;
-    const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const double pace = used > first_used_ ? elapsed / (used - first_used_) : 0;
-    fmt::print(stderr, "\r{:78}\r{:3.0f} %  about {:.0f} s left  {}", "", std::min(100.0, 100 * used / planned),
-               std::ceil(pace * std::max(planned - used, 0.0)), doing);
-    std::fflush(stderr);
-    printed_ = true;
-  }
-  void say(const std::string& doing) {
-    if (!shown_) return;
-    fmt::print(stderr, "\r{:78}\r{}", "", doing);
-    std::fflush(stderr);
-    printed_ = true;
-  }
-  void clear() {
-    if (printed_) fmt::print(stderr, "\r{:78}\r", "");
-    printed_ = false;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  std::string path_;
-  Fingerprint fingerprint_;
-  const SweepState* state_;
-  bool shown_, printed_ = false;
-  double first_used_ = -1;
-  Clock::time_point start_, last_;
-};
-
 SweepOptions chosen(const AccuracyOptions& options) {
   SweepOptions sweep = options.sweep;
   std::erase_if(sweep.ways, [&](const Way& way) { return name_of(way).find(options.only) == std::string::npos; });
   if (!sweep.ways.empty()) return sweep;
   std::string known;
   for (const Way& way : options.sweep.ways) known += "\n  " + name_of(way);
-  throw Error(fmt::format("no way of solving has \"{}\" in its name; there are{}", options.only, known));
+  throw Error(fmt::format("no way has \"{}\" in its name; known ways:{}", options.only, known));
 }
 
 void write_files(const std::string& output, const AccuracyReport& report) {
@@ -91,11 +49,10 @@ void write_files(const std::string& output, const AccuracyReport& report) {
   write_file(output + ".svg", accuracy_svg(report));
 }
 
-// What there is to say about the start of a scene, once: the ways share it.
+// Warnings about the start of a scene. All ways share them.
 std::string warnings_of(const Scene& scene) {
   std::string warnings;
-  if (scene.dimension == Dimension::planar) world_at_start<Planar<double>>(scene, warnings);
-  else world_at_start<Spatial<double>>(scene, warnings);
+  in_space_of<double>(scene, [&]<class S>(S) { world_at_start<S>(scene, warnings); });
   return warnings;
 }
 
@@ -122,21 +79,27 @@ AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& opti
 
   const Interrupt interrupt;
   const Stop stop = [] { return Interrupt::asked(); };
-  Companion companion(state_path, fingerprint, state, options.progress);
+  ProgressLine line(options.progress);
   if (state.reference.frames.empty()) {
-    companion.say("making the reference");
+    line.show("making the reference");
     state.reference = options.reference.empty() ? make_reference_run(scene, effort_of(options), stop)
                                                 : read_reference_run(options.reference, scene);
     if (stop()) state.reference = {};  // half of one is none
   }
-  const SweepHooks hooks{
-      stop, [&](double used, double planned, const std::string& doing) { companion.grown(used, planned, doing); }};
-  const bool finished = !stop() && sweep(scene, ways, state, hooks);
-  companion.clear();
+  std::optional<double> first_used;
+  const auto grown = [&](double used, double planned, const std::string& doing) {
+    if (!first_used) first_used = used;
+    if (!line.due()) return;
+    write_state(state_path, fingerprint, state);
+    const double pace = used > *first_used ? line.elapsed() / (used - *first_used) : 0;
+    line.show(fmt::format("{:3.0f} %  about {:.0f} s left  {}", std::min(100.0, 100 * used / planned),
+                          std::ceil(pace * std::max(planned - used, 0.0)), doing));
+  };
+  const bool finished = !stop() && sweep(scene, ways, state, {stop, grown});
+  line.clear();
   if (!finished) {
     write_state(state_path, fingerprint, state);
-    fmt::print(stderr, "interrupted: {} runs are kept in {}; --resume goes on from there\n", state.points.size(),
-               state_path);
+    fmt::print(stderr, "interrupted: {} runs are saved in {}; --resume continues\n", state.points.size(), state_path);
     return {};
   }
   const AccuracyReport report = report_of(scene, ways, state);

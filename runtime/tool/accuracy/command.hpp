@@ -1,4 +1,4 @@
-// `cdot-run accuracy`: what accuracy costs in time, as text, CSV, JSON and a picture.
+// `cdot-run accuracy`: CPU time against error, as text, CSV, JSON and a picture.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 namespace cdot {
 
 struct AccuracyOptions {
-  std::string reference;  // a CSV file; empty: made here
-  std::string output;     // <output>.csv, .json, .svg; empty: <scene>.accuracy in the present folder
+  std::string reference;  // a CSV file; empty: computed here
+  std::string output;     // <output>.csv, .json, .svg; empty: <scene>.accuracy in the working directory
   std::string only;       // ways whose name contains this; empty: all
   SweepOptions sweep;
   bool resume = false, json = false, progress = false;
 };
 
-inline constexpr double noticeable = 0.05;  // an error smaller by less is no gain
+inline constexpr double noticeable = 0.05;  // a gain in error below this share does not count
 
-// All that was found, ready to be shown.
+// All results, ready for output.
 struct AccuracyReport {
   Scene scene;
   ReferenceRun reference;
@@ -29,7 +29,7 @@ struct AccuracyReport {
 };
 AccuracyReport report_of(const Scene& scene, const SweepOptions& options, const SweepState& state);
 
-std::string reference_text(const AccuracyReport& report);  // how far it can be trusted
+std::string reference_text(const AccuracyReport& report);  // how exact the reference is
 std::string accuracy_text(const AccuracyReport& report);
 std::string accuracy_json(const AccuracyReport& report);
 std::string accuracy_csv(const AccuracyReport& report);
@@ -39,7 +39,7 @@ std::string knob_text(const AccuracyReport& report, const Point& point);
 
 struct AccuracyOutcome {
   bool finished = false;  // false: interrupted, `out` is empty
-  bool answered = false;  // some way of solving the scene has an answer
+  bool answered = false;  // at least one way has an answer
   std::string out;        // for stdout
 };
 AccuracyOutcome measure_accuracy(const Scene& scene, const AccuracyOptions& options);

@@ -1,3 +1,4 @@
+// Errors and costs -> the frontier, and advice from it.
 #include "runtime/tool/accuracy/frontier.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// What the errors are measured against: a trajectory that two different methods agree on, or one that was given.
+// The reference for errors: a trajectory on which two different methods agree, or one from a file.
 #pragma once
 
 #include <string>
@@ -9,53 +9,53 @@
 namespace cdot {
 
 inline constexpr int sample_count = 16;
-inline constexpr double wanted_agreement = 1e-12;  // [m, rad], of a reference that is made here
+inline constexpr double wanted_agreement = 1e-12;  // [m, rad], of a computed reference
 
-// How far a change of the start takes the motion, at its worst sample.
+// The growth of a change of the start, at the worst sample.
 struct Sensitivity {
-  double condition = 0;   // the growth of a change by 1e-9 of the largest place, speed and spin, and 1e-9 rad
-  double round_off = 0;   // [m, rad] what one by `slight` of them comes to, on the way through round-off
-  double slight = 1e-15;  // in extended precision less
+  double condition = 0;   // factor of growth of a change by 1e-9 of the largest place, speed and spin, and 1e-9 rad
+  double round_off = 0;   // [m, rad] the same of a change by `slight`, with round-off on the way
+  double slight = 1e-15;  // smaller in extended precision
   bool known() const { return condition > 0; }
 };
 
-// What is to blame for it that methods disagree by so much.
+// The cause of a disagreement.
 std::string verdict_on(double disagreement, const Sensitivity& sensitivity, bool finer_would_help);
 
 struct ReferenceRun {
   std::vector<double> times;
   std::vector<Frame> frames;
   std::string made_by;  // "dop853 and composed rattle", "four_bar.csv"
-  std::string settled;  // by how much each of the two still changed
-  // At each time, by how much the two methods do, and by how much each changes that no finer step mends [m, rad]; empty
-  // if it was given.
+  std::string settled;  // how much each of the two still changed
+  // At each time, the disagreement of the two methods, or the change that finer steps do not reduce [m, rad]. Empty if
+  // the reference is from a file.
   std::vector<double> disagree;
-  Sensitivity sensitivity;  // where they disagree by more than is wanted,
-  std::string verdict;      // and what is to blame for it, in words
-  // Errors below this are not told apart: ten times what the methods disagree by, 0 if it was given.
+  Sensitivity sensitivity;  // where they disagree by more than wanted_agreement
+  std::string verdict;      // the cause, then
+  // Errors below this count as equal: ten times the disagreement; 0 if the reference is from a file.
   double resolution() const;
   double disagreement() const;  // the largest
-  // The last time at which the two agreed to within `bound`; 0 if never.
+  // The last time up to which the two agree to within `bound`; 0 if never.
   double agreed_until(double bound) const;
 };
 
-// Made by two methods, each refined until it changes no more or has used up its effort; in extended precision where
-// doubles do not agree as wanted.
+// Computes a reference by two methods. Each is refined until it changes no more or has spent its effort. Where doubles
+// do not agree to wanted_agreement, both run in extended precision.
 ReferenceRun make_reference_run(const Scene& scene, const Effort& effort = {}, const Stop& stop = {});
 
-// As `cdot-run simulate -o` writes it; its last row ends the comparison. Throws cdot::Error.
+// Reads a file of `cdot-run simulate -o`; its last row ends the comparison. Throws cdot::Error.
 ReferenceRun read_reference_run(const std::string& path, const Scene& scene);
 
 struct Errors {
   double position = 0, angle = 0;  // from the reference [m], [rad]
-  double C = 0, Cdot = 0;          // the largest of any joint, as far as the trajectory was watched
-  double energy = 0;               // from the reference [J]; where that keeps its energy, whenever it was watched
+  double C = 0, Cdot = 0;          // the largest of any joint, at the times checked
+  double energy = 0;               // from the reference [J]; between its samples too, if its energy is constant
   double trajectory() const { return position > angle ? position : angle; }
   bool operator==(const Errors&) const = default;
 };
 Errors errors_of(const Trajectory& trajectory, const ReferenceRun& reference, const Scene& scene);
 
-// How large the motion is [m]: an error beyond it says nothing any more. At least 1.
+// The extent of the motion [m], at least 1. Larger errors mean failure.
 double size_of(const ReferenceRun& reference);
 
 }  // namespace cdot

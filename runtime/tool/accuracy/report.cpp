@@ -1,4 +1,4 @@
-// What `cdot-run accuracy` says, for people and for programs.
+// The results of a sweep -> text, CSV, JSON and a picture.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -7,15 +7,16 @@
 #include <cdot/methods.hpp>
 
 #include "runtime/tool/accuracy/command.hpp"
+#include "runtime/tool/accuracy/work_precision.hpp"
 
 namespace cdot {
 namespace {
 
-constexpr double useful_agreement = 1e-9;  // up to where two references agreed so well, a run may be judged
+constexpr double useful_agreement = 1e-9;  // a reference serves up to the time of this agreement
 
 double until(const AccuracyReport& report) { return report.reference.times.back(); }
 
-// The step of a fixed-step way; the samples divide the time evenly, but for a given reference's.
+// The step of a way with fixed steps. Samples divide the time evenly, except those of a file.
 double step_of(const AccuracyReport& report, const Point& point) {
   return until(report) / static_cast<double>(report.reference.times.size()) / knob_at(point.way, point.level).steps;
 }
@@ -53,43 +54,72 @@ std::string advice_text(const AccuracyReport& report) {
     text += "\n";
     k = last + 1;
   }
-  if (advice.empty()) text += "  nothing that was tried is accurate to 1e-1\n";
+  if (advice.empty()) text += "  no run is accurate to 1e-1\n";
   return text;
 }
 
-nlohmann::ordered_json json_of(const AccuracyReport& report, const Point& point) {
-  const Way& way = point.way;
-  nlohmann::ordered_json json = {
-      {"method", name_of(way)},
-      {"integrator", name_of(integrators, way.integrator)},
-      {"solver", name_of(solvers, way.solver)},
-      {"drift", name_of(drifts, way.drift)},
-      {"iterations", sweeps(way.solver) ? way.iterations : 0},
-      {"precision", way.single ? "float" : "double"},
-      {"step", way.adaptive ? 0 : step_of(report, point)},
-      {"local_error", knob_at(way, point.level).local_error},
-      {"failure", point.failure},
-  };
+using Json = nlohmann::ordered_json;
+
+// The numbers of a point, a row each: columns of the CSV file and keys of the JSON.
+// clang-format off
+struct Column {
+  const char* name;
+  Json (*value)(const AccuracyReport& report, const Point& point);
+};
+constexpr Column columns_of_way[] = {
+    {"method",      [](auto&, auto& p) { return Json(name_of(p.way)); }},
+    {"integrator",  [](auto&, auto& p) { return Json(name_of(integrators, p.way.integrator)); }},
+    {"solver",      [](auto&, auto& p) { return Json(name_of(solvers, p.way.solver)); }},
+    {"drift",       [](auto&, auto& p) { return Json(name_of(drifts, p.way.drift)); }},
+    {"iterations",  [](auto&, auto& p) { return Json(sweeps(p.way.solver) ? p.way.iterations : 0); }},
+    {"precision",   [](auto&, auto& p) { return Json(name_of(precisions, p.way.single)); }},
+    {"step",        [](auto& report, auto& p) { return Json(p.way.adaptive ? 0 : step_of(report, p)); }},
+    {"local_error", [](auto&, auto& p) { return Json(knob_at(p.way, p.level).local_error); }},
+};
+constexpr Column columns_of_answer[] = {
+    {"error",          [](auto&, auto& p) { return Json(p.errors.trajectory()); }},
+    {"position_error", [](auto&, auto& p) { return Json(p.errors.position); }},
+    {"angle_error",    [](auto&, auto& p) { return Json(p.errors.angle); }},
+    {"C",              [](auto&, auto& p) { return Json(p.errors.C); }},
+    {"Cdot",           [](auto&, auto& p) { return Json(p.errors.Cdot); }},
+    {"energy_error",   [](auto&, auto& p) { return Json(p.errors.energy); }},
+    {"cpu_per_second", [](auto&, auto& p) { return Json(p.cost()); }},
+    {"cpu_spread",     [](auto&, auto& p) { return Json(p.spread()); }},
+};
+// clang-format on
+
+Json json_of(const AccuracyReport& report, const Point& point) {
+  Json json;
+  for (const auto& [name, value] : columns_of_way) json[name] = value(report, point);
+  json["failure"] = point.failure;
   if (!point.failure.empty()) return json;
-  const Errors& errors = point.errors;
-  json["error"] = errors.trajectory();
-  json["position_error"] = errors.position;
-  json["angle_error"] = errors.angle;
-  json["C"] = errors.C;
-  json["Cdot"] = errors.Cdot;
-  json["energy_error"] = errors.energy;
-  json["cpu_per_second"] = point.cost();
-  json["cpu_spread"] = point.spread();
+  for (const auto& [name, value] : columns_of_answer) json[name] = value(report, point);
   json["rounds"] = point.rounds;
   return json;
 }
 
-// Is it the motion itself that forbids to know more?
+// Only the name of a way has commas.
+std::string csv_cell(const Json& value) {
+  if (value.is_number_float()) return fmt::format("{},", value.get<double>());
+  const std::string text = value.dump();
+  const bool plain = value.is_string() && text.find(',') == std::string::npos;
+  return (plain ? value.get<std::string>() : text) + ",";
+}
+
+std::string csv_row(const AccuracyReport& report, const Point& point, bool best) {
+  std::string row;
+  for (const auto& [name, value] : columns_of_way) row += csv_cell(value(report, point));
+  for (const auto& [name, value] : columns_of_answer)
+    row += point.failure.empty() ? csv_cell(value(report, point)) : ",";
+  return row + (best ? "1," : "0,") + (point.failure.empty() ? "" : "\"" + point.failure + "\"") + "\n";
+}
+
+// Shows whether the motion itself limits the reference.
 std::string sensitivity_text(const ReferenceRun& reference) {
   const Sensitivity& s = reference.sensitivity;
   if (!s.known()) return {};
   return fmt::format(
-      "                  starts that differ by 1e-9 of their numbers end {:.1e} apart, by {:.0e}: {:.1e}\n"
+      "                  starts that differ by a relative 1e-9 end {:.1e} apart; by {:.0e}: {:.1e}\n"
       "                  {}\n",
       1e-9 * s.condition, s.slight, s.round_off, reference.verdict);
 }
@@ -110,7 +140,7 @@ std::string reference_text(const AccuracyReport& report) {
   if (apart <= wanted_agreement) return text;
   text += fmt::format("                  more than {:.0e} apart: {}\n", wanted_agreement, reference.settled);
   text += sensitivity_text(reference);
-  text += fmt::format("                  errors below {:.1e}, ten times as much, are not told apart\n",
+  text += fmt::format("                  errors below {:.1e}, ten times the disagreement, count as equal\n",
                       reference.resolution());
   const double good = reference.agreed_until(useful_agreement);
   if (apart > 1e-6 && good > 0)
@@ -127,20 +157,20 @@ std::string accuracy_text(const AccuracyReport& report) {
   text +=
       fmt::format("  error           the largest |x - x_ref| [m] or angle [rad] of a body, {} times up to {:.6g} s\n",
                   report.reference.times.size(), until(report));
-  text += fmt::format("  measured        {} ways, {} runs with an answer, {} without; medians of {} rounds in turns\n",
+  text += fmt::format("  measured        {} ways: {} runs succeeded, {} failed; medians of {} interleaved rounds\n",
                       report.ways, report.answers.size(), report.failures.size(), report.rounds);
   return text + frontier_text(report) + advice_text(report);
 }
 
 std::string accuracy_json(const AccuracyReport& report) {
-  nlohmann::ordered_json points = nlohmann::ordered_json::array(), failures = points, advice = points;
+  Json points = Json::array(), failures = points, advice = points;
   for (const Point& point : report.answers) points.push_back(json_of(report, point));
   for (const Point& point : report.failures) failures.push_back(json_of(report, point));
   for (const Advice& a : report.advice) {
     advice.push_back({{"error", std::pow(10.0, a.decade)}, {"point", a.point}});
     if (a.factor) advice.back()["ten_times_more_accuracy_costs"] = *a.factor;
   }
-  const nlohmann::ordered_json json = {
+  const Json json = {
       {"scene", report.scene.file},
       {"title", report.scene.title},
       {"until", until(report)},
@@ -161,26 +191,63 @@ std::string accuracy_json(const AccuracyReport& report) {
 }
 
 std::string accuracy_csv(const AccuracyReport& report) {
-  std::string text =
-      "method,integrator,solver,drift,iterations,precision,step,local_error,error,position_error,angle_error,C,Cdot,"
-      "energy_error,cpu_per_second,cpu_spread,frontier,failure\n";
-  const auto begin = [&](const Point& point) {
-    const Way& way = point.way;
-    const double local = knob_at(way, point.level).local_error;
-    return fmt::format("\"{}\",{},{},{},{},{},{},{}", name_of(way), name_of(integrators, way.integrator),
-                       name_of(solvers, way.solver), name_of(drifts, way.drift),
-                       sweeps(way.solver) ? way.iterations : 0, way.single ? "float" : "double",
-                       local > 0 ? 0 : step_of(report, point), local);
-  };
+  std::string text;
+  for (const Column& column : columns_of_way) text += fmt::format("{},", column.name);
+  for (const Column& column : columns_of_answer) text += fmt::format("{},", column.name);
+  text += "frontier,failure\n";
+  for (std::size_t k = 0; k < report.answers.size(); ++k)
+    text += csv_row(report, report.answers[k], std::ranges::count(report.frontier, k) > 0);
+  for (const Point& point : report.failures) text += csv_row(report, point, false);
+  return text;
+}
+
+namespace {
+
+// --- The picture: a hue per integrator, a lightness and a marker per way, hollow in float.
+
+constexpr int hues[] = {215, 300, 35, 150, 0, 180, 60, 255};  // by Integrator
+
+std::size_t family_of(const Way& way) { return static_cast<std::size_t>(way.integrator) % std::size(hues); }
+
+// The ways of one integrator, from the first to the last of `count`.
+std::string colour_of(std::size_t family, int index, int count) {
+  return fmt::format("hsl({} 75% {}%)", hues[family], count < 2 ? 50 : 38 + 28 * index / (count - 1));
+}
+
+// The answers come by way.
+std::vector<DiagramSeries> series_of(const AccuracyReport& report) {
+  std::vector<DiagramSeries> all;
+  std::vector<std::size_t> families;
+  int count[std::size(hues)] = {};
   for (std::size_t k = 0; k < report.answers.size(); ++k) {
     const Point& point = report.answers[k];
-    const Errors& e = point.errors;
-    const bool best = std::find(report.frontier.begin(), report.frontier.end(), k) != report.frontier.end();
-    text += fmt::format("{},{},{},{},{},{},{},{},{},{},\n", begin(point), e.trajectory(), e.position, e.angle, e.C,
-                        e.Cdot, e.energy, point.cost(), point.spread(), best ? 1 : 0);
+    const std::size_t family = family_of(point.way);
+    if (k == 0 || !(point.way == report.answers[k - 1].way)) {
+      all.push_back({name_of(point.way), "", count[family]++, point.way.single, {}, {}});
+      families.push_back(family);
+    }
+    all.back().points.push_back(report.costs[k]);
+    all.back().notes.push_back(fmt::format("{}: {:.1e}, {:.3g} us", knob_text(report, point), report.costs[k].error,
+                                           1e6 * report.costs[k].cost));
   }
-  for (const Point& point : report.failures) text += fmt::format("{},,,,,,,,,0,\"{}\"\n", begin(point), point.failure);
-  return text;
+  for (std::size_t k = 0; k < all.size(); ++k)
+    all[k].colour = colour_of(families[k], all[k].marker, count[families[k]]);
+  return all;
+}
+
+}  // namespace
+
+std::string accuracy_svg(const AccuracyReport& report) {
+  Diagram diagram;
+  diagram.title =
+      (report.scene.title.empty() ? report.scene.file : report.scene.title) + ": what accuracy costs in time";
+  diagram.subtitle = fmt::format("one thread, {:.6g} s simulated, medians of {} interleaved rounds",
+                                 report.reference.times.back(), report.rounds);
+  diagram.error_label = "error in trajectory [m, rad]";
+  diagram.resolution = report.reference.resolution();
+  diagram.margin = noticeable;
+  diagram.series = series_of(report);
+  return work_precision_svg(diagram);
 }
 
 }  // namespace cdot

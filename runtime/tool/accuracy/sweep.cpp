@@ -1,26 +1,30 @@
+// Explores and times points; writes and reads the state of a sweep.
 #include "runtime/tool/accuracy/sweep.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "runtime/number/hash.hpp"
+#include "runtime/tool/run/output.hpp"
 #include "runtime/tool/run/process.hpp"
 
 namespace cdot {
 namespace {
 
-constexpr double least_timed = 2e-3;     // [s] that one timing of a point takes at least
-constexpr int patience = 4;              // levels without progress after which a way has reached its floor
-constexpr double progress = 0.9;         // an error below this share of the best so far
-constexpr double adaptive_growth = 1.6;  // of the cost, per decade of the local error: at most that of fourth order
+constexpr double least_timed = 2e-3;     // [s]: a timing of a point takes at least this long
+constexpr int patience = 4;              // levels without progress that end a way
+constexpr double progress = 0.9;         // error of progress, as a share of the best so far
+constexpr double adaptive_growth = 1.6;  // of the cost per decade of local error; the bound is fourth order
 
 double timed(const Point& point, int rounds) {
   return point.failure.empty() ? rounds * std::max(point.explored, least_timed) : 0;
 }
 
-// What is known of one way.
+// The progress of one way, and a prediction for its next level.
 struct Progress {
   int next_level = 0;
   double predicted = 0;  // CPU time of the next level [s],
@@ -82,7 +86,7 @@ struct Next {
   Progress progress;
 };
 
-// The cheapest that is left and fits into the budget.
+// The cheapest level left that fits the budget.
 std::optional<Next> next_of(const SweepState& state, const SweepOptions& options) {
   std::optional<Next> next;
   for (const Way& way : options.ways) {
@@ -90,8 +94,8 @@ std::optional<Next> next_of(const SweepState& state, const SweepOptions& options
     if (progress.open && (!next || progress.predicted < next->progress.predicted)) next = {way, progress};
   }
   if (!next) return {};
-  const double dearer = (1 + options.rounds) * next->progress.predicted + next->progress.looking;
-  if (spent(state, options) + dearer > options.budget) return {};
+  const double price = (1 + options.rounds) * next->progress.predicted + next->progress.looking;
+  if (spent(state, options) + price > options.budget) return {};
   return next;
 }
 
@@ -173,6 +177,46 @@ std::vector<CostedError> costs_of(const std::vector<Point>& answers, const Refer
   for (const Point& point : answers)
     costs.push_back({std::max(point.errors.trajectory(), reference.resolution()), point.cost()});
   return costs;
+}
+
+// --- The file of an interrupted sweep.
+
+// The file has these members; a sweep resumes without the others.
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Way, integrator, solver, drift, iterations, single, adaptive)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Errors, position, angle, C, Cdot, energy)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Point, way, level, failure, errors, explored, looking, rounds)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(BodyState, x, y, angle, vx, vy, w, z, vz, e0, e1, e2, e3, wx, wy, wz)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Frame, time, energy, bodies)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Sensitivity, condition, round_off, slight)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(ReferenceRun, made_by, settled, times, disagree, sensitivity, verdict, frames)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(SweepState, reference, points)
+NLOHMANN_DEFINE_TYPE_NON_INTRUSIVE(Fingerprint, program, scene)
+
+std::string hash_of(const std::string& text) {
+  Hash hash;
+  hash.bytes(text.data(), text.size());
+  return fmt::format("{:016x}", hash.value);
+}
+
+std::string hash_of_program() { return hash_of(read_file("/proc/self/exe")); }
+
+void write_state(const std::string& path, const Fingerprint& fingerprint, const SweepState& state) {
+  write_file(path, nlohmann::json{{"of", fingerprint}, {"state", state}}.dump() + "\n");
+}
+
+SweepState read_state(const std::string& path, const Fingerprint& fingerprint) {
+  const std::string text = read_file(path);
+  try {
+    const auto json = nlohmann::json::parse(text);
+    const Fingerprint of = json.at("of");
+    if (of.scene != fingerprint.scene)
+      throw Error(path + ": the scene, its duration or its reference has changed since: start again without --resume");
+    if (of.program != fingerprint.program)
+      throw Error(path + ": another build of cdot-run wrote it: start again without --resume");
+    return json.at("state");
+  } catch (const nlohmann::json::exception&) {
+    throw Error(path + ": not the state of an interrupted sweep");
+  }
 }
 
 }  // namespace cdot

@@ -1,5 +1,5 @@
-// The sweep: every way at ever finer knobs, cheapest first, until the budget is spent; then rounds of timing in turns.
-// All that it knows is in SweepState, so that it goes on where it was interrupted.
+// Ways and a budget -> measured points: ever finer knobs, cheapest first, then rounds of timing in turns. SweepState
+// holds all progress: an interrupted sweep resumes from it.
 #pragma once
 
 #include <functional>
@@ -10,14 +10,13 @@
 #include "runtime/tool/accuracy/reference.hpp"
 
 namespace cdot {
-
 struct Point {
   Way way;
   int level = 0;
-  std::string failure;  // why it is no answer: "not finite"; then nothing below says anything
+  std::string failure;  // why there is no answer: "not finite"; the members below are then void
   Errors errors;
   double explored = 0;         // CPU time of the run that found the errors, in step() [s]
-  double looking = 0;          // and to find them [s]
+  double looking = 0;          // CPU time to find them [s]
   std::vector<double> rounds;  // CPU seconds per simulated second, one per round of timing
 
   double cost() const;    // the median round
@@ -33,16 +32,16 @@ struct SweepOptions {
 
 struct SweepState {
   ReferenceRun reference;
-  std::vector<Point> points;  // in the order in which they were explored
+  std::vector<Point> points;  // in the order of exploration
 };
 
 struct SweepHooks {
-  Stop stop;  // asked often: shall the sweep end here?
-  // Called whenever the state has grown; `used` of `planned` seconds of CPU time are spent.
+  Stop stop;  // called often: true ends the sweep
+  // Called after every change of the state, with CPU time used and planned [s].
   std::function<void(double used, double planned, const std::string& doing)> grown;
 };
 
-// False if it was stopped. `state` has a reference, and what an earlier, interrupted sweep found.
+// False if it was stopped. `state` has a reference, and the points of an interrupted sweep.
 bool sweep(const Scene& scene, const SweepOptions& options, SweepState& state, const SweepHooks& hooks);
 
 // The points that are answers, timed, by way in the order of `ways` and by level; and those that fail.
@@ -50,5 +49,19 @@ std::vector<Point> answers_of(const SweepState& state, const std::vector<Way>& w
 std::vector<Point> failures_of(const SweepState& state, const std::vector<Way>& ways);
 
 std::vector<CostedError> costs_of(const std::vector<Point>& answers, const ReferenceRun& reference);
+
+// Identifies the program, and the scene with its reference: points of others are void.
+struct Fingerprint {
+  std::string program, scene;
+  bool operator==(const Fingerprint&) const = default;
+};
+// Of the running program's file; of the scene's text and all that decides the result.
+std::string hash_of_program();
+std::string hash_of(const std::string& text);
+
+void write_state(const std::string& path, const Fingerprint& fingerprint, const SweepState& state);
+
+// Throws cdot::Error if there is no such file, or if it belongs to another sweep.
+SweepState read_state(const std::string& path, const Fingerprint& fingerprint);
 
 }  // namespace cdot

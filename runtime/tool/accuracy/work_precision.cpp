@@ -1,19 +1,20 @@
+// A diagram -> SVG.
 #include "runtime/tool/accuracy/work_precision.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
-#include "runtime/tool/viewer/text.hpp"
+#include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
 namespace {
 
 constexpr double left = 84, top = 72, plot_width = 560, plot_height = 470, bottom = 62;
 constexpr double row_height = 21, letter = 7.6;  // of the names at the right
-constexpr double least_error = 1e-17;            // where an error of 0 is drawn
-constexpr std::size_t least_letters = 27;        // the frontier's own name, which is bold
-constexpr std::size_t few = 10;                  // so many names are led to their lines
+constexpr double least_error = 1e-17;            // an error of 0 is drawn here
+constexpr std::size_t least_letters = 27;        // of the frontier's name, in bold
+constexpr std::size_t few = 10;                  // up to so many names have leaders to their lines
 constexpr const char* markers[] = {
     "M-4 0a4 4 0 1 0 8 0a4 4 0 1 0 -8 0z",  // circle
     "M-3.6 -3.6h7.2v7.2h-7.2z",             // square
@@ -58,7 +59,7 @@ struct Axis {
   }
 };
 
-// Decades that hold all values; `value` is of one point.
+// The decades of all values; value(point) gives one.
 template <class F>
 std::pair<int, int> decades(const std::vector<CostedError>& points, F value) {
   if (points.empty()) return {0, 1};
@@ -70,12 +71,6 @@ std::pair<int, int> decades(const std::vector<CostedError>& points, F value) {
 
 double error_shown(const CostedError& point) { return std::max(point.error, least_error); }
 double microseconds(const CostedError& point) { return 1e6 * point.cost; }
-
-std::string line_through(const std::vector<Spot>& spots) {
-  std::string path;
-  for (const Spot& spot : spots) path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? 'M' : 'L', spot.x, spot.y);
-  return path;
-}
 
 std::string power(double x, double y, const char* anchor, int decade) {
   return fmt::format(
@@ -101,9 +96,9 @@ class Drawing {
     for (const DiagramSeries& series : diagram.series)
       all_.insert(all_.end(), series.points.begin(), series.points.end());
     const auto [finest, coarsest] = decades(all_, error_shown);
-    const auto [cheapest, dearest] = decades(all_, microseconds);
+    const auto [cheapest, most_expensive] = decades(all_, microseconds);
     x_ = {coarsest, finest, left, left + plot_width};
-    y_ = {cheapest, dearest, top + plot_height, top};
+    y_ = {cheapest, most_expensive, top + plot_height, top};
     std::size_t longest = 0;
     for (const DiagramSeries& series : diagram.series) longest = std::max(longest, series.name.size());
     width_ = left + plot_width + 74 + letter * static_cast<double>(std::max(longest, least_letters));
@@ -145,14 +140,14 @@ class Drawing {
     const double x = x_.at(diagram_.resolution);
     return fmt::format(
         "<path class=\"limit\" d=\"M{0:.1f} {1}v{2}\"/>\n<text class=\"small\" transform=\"translate({3:.1f} {4}) "
-        "rotate(-90)\">the reference tells no more</text>\n",
+        "rotate(-90)\">resolution of the reference</text>\n",
         x, top, plot_height, x - 6, top + plot_height - 8);
   }
 
   std::string frontier() const {
     const std::vector<Spot> spots = spots_of(all_);
     if (spots.empty()) return {};
-    std::string svg = fmt::format("<path class=\"frontier\" d=\"{}\"/>\n", line_through(spots));
+    std::string svg = fmt::format("<path class=\"frontier\" d=\"{}\"/>\n", path_through(spots));
     for (const Spot& spot : spots) svg += ring(spot);
     return svg;
   }
@@ -163,7 +158,7 @@ class Drawing {
       for (const CostedError& point : series.points)
         svg += fmt::format("<circle class=\"dot\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2\" fill=\"{}\"/>\n",
                            spot_of(point).x, spot_of(point).y, series.colour);
-      svg += fmt::format("<path class=\"curve\" d=\"{}\" stroke=\"{}\"/>\n", line_through(spots_of(series.points)),
+      svg += fmt::format("<path class=\"curve\" d=\"{}\" stroke=\"{}\"/>\n", path_through(spots_of(series.points)),
                          series.colour);
       for (const std::size_t k : best_of(series.points))
         svg += mark(series, spot_of(series.points[k]), k < series.notes.size() ? series.notes[k] : "");
@@ -171,7 +166,7 @@ class Drawing {
     return svg;
   }
 
-  // At the right, as high as their lines end, pushed apart.
+  // At the right, at the height of their lines' ends, moved apart.
   std::string names() const {
     struct Name {
       const DiagramSeries* series;
@@ -185,7 +180,7 @@ class Drawing {
     std::string svg;
     double above = top - row_height / 2;
     for (std::size_t k = 0; k < all.size(); ++k) {
-      const auto below = static_cast<double>(all.size() - k);  // rows that still need room, the frontier's two too
+      const auto below = static_cast<double>(all.size() - k);  // rows still to place, with two of the frontier
       const double y = std::max(std::min(all[k].end.y, height_ - 20 - row_height * (below + 2)), above + row_height);
       if (all.size() <= few)
         svg += fmt::format("<path class=\"lead\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\" stroke=\"{}\"/>\n",

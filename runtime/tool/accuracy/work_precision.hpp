@@ -1,5 +1,5 @@
-// The work-precision diagram: error to the right, ever smaller, CPU time upwards, both by decades. Plain data in, SVG
-// out; `cdot-run accuracy` and the comparison with other engines draw the same one.
+// Errors and costs -> the work-precision diagram as SVG: error falls to the right, CPU time grows upwards, both by
+// decades.
 #pragma once
 
 #include <string>
@@ -9,24 +9,24 @@
 
 namespace cdot {
 
-// One method or engine: all that was measured of it are pale dots, what of it nothing else of it beats is its line.
+// One method or engine. All its points are pale dots; its own frontier is its line.
 struct DiagramSeries {
   std::string name, colour;  // the colour as CSS has it
   int marker = 0;            // 0, 1, 2, …: circle, square, diamond, …
   bool hollow = false;
   std::vector<CostedError> points;
-  std::vector<std::string> notes;  // of each point, where somebody points at it
+  std::vector<std::string> notes;  // of each point, as tooltips
 };
 
 struct Diagram {
   std::string title, subtitle;
   std::string error_label;  // "error in trajectory [m, rad]"
-  double resolution = 0;    // errors below it are not told apart: a line says so
-  double margin = 0;        // an error smaller by less than this share is no gain
+  double resolution = 0;    // errors below it count as equal; a line marks it
+  double margin = 0;        // a gain in error below this share does not count
   std::vector<DiagramSeries> series;
 };
 
-// The frontier of all series lies under them, broad, its points ringed.
+// The frontier of all series is a broad line below them, its points ringed.
 std::string work_precision_svg(const Diagram& diagram);
 
 }  // namespace cdot

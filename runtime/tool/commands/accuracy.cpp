@@ -16,20 +16,20 @@ void add_options(CLI::App& line, Options& options) {
   AccuracyOptions& accuracy = options.accuracy;
   add_scene(line, options.scene);
   add_until(line, options.scene);
-  line.add_option("--budget", accuracy.sweep.budget, "CPU time to spend [s]; more of it: finer steps")
+  line.add_option("--budget", accuracy.sweep.budget, "CPU time to spend [s]; more allows finer steps")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  line.add_option("--rounds", accuracy.sweep.rounds, "how often each run is timed, in turns")
+  line.add_option("--rounds", accuracy.sweep.rounds, "timings per run, interleaved")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
-  line.add_option("--levels", accuracy.sweep.levels, "steps or local errors to try per way, at most")
+  line.add_option("--levels", accuracy.sweep.levels, "largest number of steps or local errors per way")
       ->check(CLI::PositiveNumber);
   line.add_option("--only", accuracy.only, "only ways with this in their name: direct, rk4, float");
   line.add_option("--reference", accuracy.reference,
-                  "a trajectory to measure against, as `simulate -o` writes it; else one is made by two methods");
+                  "a reference trajectory from `simulate -o`; without it, two methods compute one");
   line.add_option("-o,--output", accuracy.output,
-                  "write PREFIX.csv, PREFIX.json and PREFIX.svg; else the scene's name with .accuracy");
-  line.add_flag("--resume", accuracy.resume, "go on where this command was interrupted");
+                  "write PREFIX.csv, PREFIX.json and PREFIX.svg; default: the scene's name with .accuracy");
+  line.add_flag("--resume", accuracy.resume, "continue an interrupted run of this command");
   line.add_flag("--json", accuracy.json, "print JSON");
   add_progress(line, options.scene);
 }

@@ -15,13 +15,13 @@ using Run = std::function<int()>;
 
 struct Command {
   const char *name, *summary;
-  Run (*add_options)(CLI::App&);  // to its command line; the result runs the command with those that were given
+  Run (*add_options)(CLI::App&);  // adds to the command line; the result runs the command
 };
 
 Run simulate_command(CLI::App& line);
 Run diagnose_command(CLI::App& line);
 Run accuracy_command(CLI::App& line);
 Run list_command(CLI::App& line);
-Run moved_to_diagnose(CLI::App& line);  // `jacobian`, which says so
+Run moved_to_diagnose(CLI::App& line);  // the former `jacobian`
 
 }  // namespace cdot

@@ -1,4 +1,4 @@
-// `cdot-run diagnose`: the equations of a run, or with --matrix those of its start in numbers.
+// `cdot-run diagnose`: the equations of a run; with --matrix, D of its start.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -132,7 +132,7 @@ std::string diagnosis_text(const Scene& scene, const RunResult& result) {
   }
   const std::string why = failure(scene, result);
   if (!why.empty()) text += fmt::format("FAILED: {}\n", why);
-  if (concerns.empty() && why.empty()) text += "nothing speaks against this method\n";
+  if (concerns.empty() && why.empty()) text += "no warnings: the method suits this scene\n";
   return text;
 }
 
@@ -162,17 +162,16 @@ void add_options(CLI::App& line, Options& options) {
   CLI::Option* const until = add_until(line, options.scene);
   add_method(line, options.scene);
   CLI::Option* const at =
-      line.add_option("--at", options.time, "look at this time [s] only; else at many from start to end")
+      line.add_option("--at", options.time, "diagnose only at this time [s]; without it, throughout the run")
           ->check(CLI::NonNegativeNumber)
           ->excludes(until);
   CLI::Option* const matrix =
-      line.add_flag("--matrix", options.matrix,
-                    "show the whole system's D with D v = 0 at the scene's start, without a run")
+      line.add_flag("--matrix", options.matrix, "show D of the whole system, D v = 0, at the start, without a run")
           ->excludes(until)
           ->excludes(at);
   line.add_option("--svg", options.svg, "write a picture: the sparsity of K, and which joints share a body")
       ->needs(matrix);
-  line.add_flag("--json", options.json, "as JSON, with all islands; of the matrix, with all numbers of D and K");
+  line.add_flag("--json", options.json, "print JSON, with all islands; with --matrix all numbers of D and K");
   add_progress(line, options.scene);
 }
 
@@ -188,7 +187,7 @@ int run(const Options& options) {
   if (options.matrix) return show_matrix(options, scene);
   RunOptions run;
   run.progress = progress_shown(options.scene);
-  run.diagnose_times = diagnose_times(scene.duration, poses_diagnosed);
+  run.diagnose_times = equal_times(scene.duration, poses_diagnosed, 0);
   if (options.time) {
     check_within(*options.time, scene.duration);
     run.diagnose_times = {*options.time};
@@ -209,7 +208,7 @@ Run diagnose_command(CLI::App& line) { return with_options<Options>(line, add_op
 
 Run moved_to_diagnose(CLI::App& line) {
   line.group("")->allow_extras()->set_help_flag();
-  return []() -> int { throw Error("`jacobian` is a part of `diagnose` now: use diagnose --matrix"); };
+  return []() -> int { throw Error("`jacobian` has moved: use diagnose --matrix"); };
 }
 
 }  // namespace cdot

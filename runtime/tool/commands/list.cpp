@@ -1,4 +1,4 @@
-// `cdot-run list`: the joints that a scene may name, with their parameters and coordinates, and the keys of a scene.
+// `cdot-run list`: the joints with their parameters and coordinates, or the keys of a scene.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -91,11 +91,13 @@ std::string list_json() {
 
 std::string keys_text() {
   std::string text;
-  for (const KeyTable& table :
-       {keys_of_the_top(), keys_of_a_body(), keys_of_a_joint(), keys_of_effects(), keys_of_a_spring()}) {
+  for (const KeyTable& table : {keys_of_the_top(), keys_of_a_body(), keys_of_a_shape(), keys_of_a_joint(),
+                                keys_of_effects(), keys_of_a_spring(), keys_of_copies()}) {
     text += fmt::format("{}{}\n\n", text.empty() ? "" : "\n", table.title);
-    for (const auto& [name, meaning, otherwise] : table.rows)
-      text += fmt::format("    {:<16} {}{}\n", name, meaning, otherwise.empty() ? "" : "; if not given: " + otherwise);
+    for (const auto& [name, meaning, otherwise] : table.rows) {
+      const char* lead = otherwise.empty() ? "" : otherwise == "required" ? "; " : "; default: ";
+      text += fmt::format("    {:<16} {}{}{}\n", name, meaning, lead, otherwise);
+    }
   }
   return text;
 }
@@ -105,8 +107,8 @@ struct Options {
 };
 
 void add_options(CLI::App& line, Options& options) {
-  CLI::Option* const json = line.add_flag("--json", options.json, "as JSON");
-  line.add_flag("--keys", options.keys, "the keys of a scene file in place of the joints")->excludes(json);
+  CLI::Option* const json = line.add_flag("--json", options.json, "print JSON");
+  line.add_flag("--keys", options.keys, "list the keys of a scene file instead")->excludes(json);
 }
 
 int run(const Options& options) {

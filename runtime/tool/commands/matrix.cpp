@@ -1,17 +1,21 @@
+// The matrix of a system -> text, JSON and a picture.
 #include "runtime/tool/commands/matrix.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
 namespace {
 
-// Beyond this many columns or rows numbers are no longer for reading.
+// Larger matrices are not readable as text.
 constexpr int most_columns = 60, most_rows = 60, most_bodies = 12;
 
-// A cosine of a quarter turn reads 0, not 6e-17; all digits are in the JSON.
+// The cosine of a quarter turn shows as 0, not 6e-17. The JSON has all digits.
 double without_round_off(double entry) { return std::fabs(entry) < 1e-15 ? 0.0 : entry; }
 
 const SceneJoint& source_of(const Scene& scene, const SystemMatrix::Joint& joint) {
@@ -32,45 +36,30 @@ int entries_of_K(const SystemMatrix& system) {
   return static_cast<int>(std::count_if(system.K.begin(), system.K.end(), [](double x) { return x != 0; }));
 }
 
-std::size_t joint_width(const Scene& scene, const SystemMatrix& system) {
-  std::size_t width = 5;
-  for (const auto& joint : system.joints) width = std::max(width, source_of(scene, joint).name.size());
-  return width;
-}
-
-// One line per joint: a block of rows x columns where it holds a body.
-std::string blocks_text(const Scene& scene, const SystemMatrix& system) {
-  const std::size_t name_width = joint_width(scene, system);
-  std::size_t width = 6;
+// One line per joint: a block of rows x columns for each of its bodies, or their names if there are many bodies.
+std::string joints_text(const Scene& scene, const SystemMatrix& system) {
   const int bodies = static_cast<int>(system.bodies.size());
+  const bool narrow = bodies <= most_bodies;
+  std::size_t name_width = 5, width = 6;
+  for (const auto& joint : system.joints) name_width = std::max(name_width, source_of(scene, joint).name.size());
   for (int k = 0; k < bodies; ++k) width = std::max(width, body_name(scene, system, k).size() + 2);
-  std::string text = fmt::format("  {:{}}  rows ", "joint", name_width);
-  for (int k = 0; k < bodies; ++k) text += fmt::format("{:>{}}", body_name(scene, system, k), width);
+  std::string text = fmt::format("  {:{}}  rows {}", "joint", name_width, narrow ? "" : " bodies");
+  for (int k = 0; k < bodies && narrow; ++k) text += fmt::format("{:>{}}", body_name(scene, system, k), width);
   for (const auto& joint : system.joints) {
     const SceneJoint& source = source_of(scene, joint);
     text += fmt::format("\n  {:{}}  {:4} ", source.name, name_width, joint.rows);
-    for (int k = 0; k < bodies; ++k) {
+    for (int k = 0; k < bodies && narrow; ++k) {
       const bool empty = system.empty_block(joint, k);
       text += fmt::format("{:>{}}", empty ? "." : fmt::format("{}x{}", joint.rows, system.freedom), width);
     }
-    text += "  " + source.definition.type;
-  }
-  return text + "\n";
-}
-
-// The same where a column per body would be too wide: the bodies by name.
-std::string list_text(const Scene& scene, const SystemMatrix& system) {
-  const std::size_t name_width = joint_width(scene, system);
-  std::string text = fmt::format("  {:{}}  rows  bodies", "joint", name_width);
-  for (const auto& joint : system.joints) {
-    const SceneJoint& source = source_of(scene, joint);
-    text += fmt::format("\n  {:{}}  {:4}  {}", source.name, name_width, joint.rows, source.definition.type);
+    text += (narrow ? "  " : " ") + source.definition.type;
+    if (narrow) continue;
     for (int body : joint.body) text += " " + body_name(scene, system, body);
   }
   return text + "\n";
 }
 
-// The columns of one body of every row.
+// The numbers of D, body by body.
 std::string numbers_text(const Scene& scene, const SystemMatrix& system) {
   const char* planar[] = {"vx", "vy", "w"};
   const char* in_space[] = {"vx", "vy", "vz", "wx", "wy", "wz"};
@@ -99,12 +88,10 @@ std::string numbers_text(const Scene& scene, const SystemMatrix& system) {
 }  // namespace
 
 SystemMatrix system_matrix(const Scene& scene) {
-  if (scene.dimension == Dimension::planar) {
-    auto world = build_world_in<Planar<double>>(scene);
+  return in_space_of<double>(scene, [&]<class S>(S) {
+    auto world = build_world_in<S>(scene);
     return system_matrix(world);
-  }
-  auto world = build_world_in<Spatial<double>>(scene);
-  return system_matrix(world);
+  });
 }
 
 std::string matrix_text(const Scene& scene, const SystemMatrix& system) {
@@ -117,17 +104,16 @@ std::string matrix_text(const Scene& scene, const SystemMatrix& system) {
                   system.rank == system.rows ? std::string("no redundant rows")
                                              : plural(system.rows - system.rank, "redundant row", "redundant rows"));
   if (frozen > 0)
-    text += fmt::format("{} of bodies that may not turn count as no freedom\n", plural(frozen, "column", "columns"));
+    text += fmt::format("{} of bodies that cannot turn: not counted as freedom\n", plural(frozen, "column", "columns"));
   text += fmt::format("K = D M^-1 D^T: {0} x {0}, {1} of {2} entries are not 0\n", system.rows, entries_of_K(system),
                       system.rows * system.rows);
   const ConflictGraph graph = conflicts(system);
-  text += fmt::format("{} of joints share a body: {} of joints that do not\n\n",
+  text += fmt::format("{} of joints share a body: {} without shared bodies\n\n",
                       plural(static_cast<int>(graph.edges.size()), "pair", "pairs"),
                       plural(graph.colours, "group", "groups"));
-  const bool narrow = static_cast<int>(system.bodies.size()) <= most_bodies;
-  text += narrow ? blocks_text(scene, system) : list_text(scene, system);
+  text += joints_text(scene, system);
   if (system.rows > most_rows || system.columns > most_columns)
-    return text + "\nThe numbers are too many to read; --json has them all.\n";
+    return text + "\nToo many numbers to show; --json prints all.\n";
   return text + numbers_text(scene, system);
 }
 
@@ -160,6 +146,100 @@ std::string matrix_json(const Scene& scene, const SystemMatrix& system) {
   add_rows("D", system.D, system.columns);
   add_rows("K", system.K, system.rows);
   return json.dump() + "\n";
+}
+
+namespace {
+
+// --- The picture.
+
+constexpr double picture = 640, gap = 60, margin = 70;
+constexpr const char* palette[] = {"#3b82f6", "#f59e0b", "#10b981", "#ef4444",
+                                   "#8b5cf6", "#06b6d4", "#84cc16", "#ec4899"};
+
+const char* colour(const ConflictGraph& graph, std::size_t joint) { return palette[graph.colour[joint] % 8]; }
+
+std::string name_of(const Scene& scene, const SystemMatrix& system, std::size_t joint) {
+  const auto index = static_cast<std::size_t>(system.joints[joint].joint);
+  return escaped(scene.joints[index].name);
+}
+
+// A square per entry that is not 0, the diagonal block of each joint in its colour, lines between joints.
+std::string sparsity(const Scene& scene, const SystemMatrix& system, const ConflictGraph& graph) {
+  const double cell = picture / std::max(system.rows, 1);
+  std::string svg = fmt::format(
+      "<g transform=\"translate({} {})\">\n<rect width=\"{:.0f}\" height=\"{:.0f}\" "
+      "class=\"paper\"/>\n",
+      margin, margin, picture, picture);
+  for (std::size_t i = 0; i < system.joints.size(); ++i) {
+    const auto& joint = system.joints[i];
+    const double at = cell * joint.first, size = cell * joint.rows;
+    svg += fmt::format(
+        "<rect x=\"{0:.2f}\" y=\"{0:.2f}\" width=\"{1:.2f}\" height=\"{1:.2f}\" fill=\"{2}\" "
+        "opacity=\".25\"/>\n",
+        at, size, colour(graph, i));
+    svg += fmt::format("<path class=\"line\" d=\"M0 {0:.2f}H{1:.0f}M{0:.2f} 0V{1:.0f}\"/>\n", at, picture);
+    if (size >= 10)
+      svg += fmt::format("<text x=\"-8\" y=\"{:.2f}\" text-anchor=\"end\">{}</text>\n", at + size / 2 + 4,
+                         name_of(scene, system, i));
+  }
+  std::string cells;
+  for (int r = 0; r < system.rows; ++r)
+    for (int c = 0; c < system.rows; ++c)
+      if (system.K[static_cast<std::size_t>(r) * static_cast<std::size_t>(system.rows) + static_cast<std::size_t>(c)] !=
+          0)
+        cells +=
+            fmt::format("M{0:.2f} {1:.2f}h{2:.2f}v{2:.2f}h-{2:.2f}z", cell * (c + 0.1), cell * (r + 0.1), 0.8 * cell);
+  return svg + fmt::format("<path class=\"entry\" d=\"{}\"/>\n</g>\n", cells);
+}
+
+std::string graph_svg(const Scene& scene, const SystemMatrix& system, const ConflictGraph& graph) {
+  const std::size_t count = system.joints.size();
+  const double radius = picture / 2 - 20;
+  const auto place = [&](std::size_t i) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(i) / static_cast<double>(count);
+    return std::pair{radius * std::sin(angle), -radius * std::cos(angle)};
+  };
+  std::string svg = fmt::format("<g transform=\"translate({:.0f} {:.0f})\">\n",
+                                margin + picture + gap + margin + picture / 2, margin + picture / 2);
+  for (const auto& [a, b] : graph.edges) {
+    const auto [x, y] = place(static_cast<std::size_t>(a));
+    const auto [u, v] = place(static_cast<std::size_t>(b));
+    svg += fmt::format("<path class=\"edge\" d=\"M{:.1f} {:.1f}L{:.1f} {:.1f}\"/>\n", x, y, u, v);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto [x, y] = place(i);
+    svg += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>\n", x, y, count > 60 ? 4 : 9,
+                       colour(graph, i));
+    if (count <= 60)
+      svg += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"middle\">{}</text>\n", x * 1.09, y * 1.09 + 4,
+                         name_of(scene, system, i));
+  }
+  return svg + "</g>\n";
+}
+
+}  // namespace
+
+std::string matrix_svg(const Scene& scene, const SystemMatrix& system) {
+  const ConflictGraph graph = conflicts(system);
+  const double width = 2 * picture + gap + 3 * margin, height = picture + 2 * margin;
+  std::string svg = fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" viewBox=\"0 0 {0:.0f} "
+      "{1:.0f}\">\n",
+      width, height);
+  svg += R"(<style>
+svg { --ink: #1f2328; --paper: #fff; font: 12px sans-serif; }
+@media (prefers-color-scheme: dark) { svg { --ink: #e6edf3; --paper: #0d1117; } }
+text, .entry { fill: var(--ink); }
+.paper { fill: var(--paper); stroke: var(--ink); }
+.line, .edge { stroke: var(--ink); stroke-width: .5; opacity: .35; fill: none; }
+.edge { stroke-width: 1; }
+</style>
+)";
+  svg += fmt::format("<text x=\"{:.0f}\" y=\"30\">K = D M^-1 D^T, {} x {}</text>\n", margin, system.rows, system.rows);
+  svg += fmt::format("<text x=\"{:.0f}\" y=\"30\">joints that share a body, in {} groups without</text>\n",
+                     margin + picture + gap + margin, graph.colours);
+  svg += sparsity(scene, system, graph) + graph_svg(scene, system, graph);
+  return svg + "</svg>\n";
 }
 
 }  // namespace cdot

@@ -1,4 +1,4 @@
-// `cdot-run diagnose --matrix`: the system's D with D v = 0 at the start of a scene, as text, as JSON and as a picture.
+// `cdot-run diagnose --matrix`: a scene -> D of its start, D v = 0, as text, JSON and a picture.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ SystemMatrix system_matrix(const Scene& scene);
 
 std::string matrix_text(const Scene& scene, const SystemMatrix& system);
 std::string matrix_json(const Scene& scene, const SystemMatrix& system);
-// Where K has entries, joint by joint, and beside it the conflict graph of the joints.
+// The sparsity of K, and the conflict graph of the joints on a circle, each joint in its colour.
 std::string matrix_svg(const Scene& scene, const SystemMatrix& system);
 
 }  // namespace cdot

@@ -1,59 +1,82 @@
+// Options on the command line -> changes of a scene.
 #include "runtime/tool/commands/options.hpp"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <cdot/methods.hpp>
 
+#include "runtime/tool/scene/keys.hpp"
+
 namespace cdot {
 
 void add_scene(CLI::App& line, SceneOptions& options) {
-  line.add_option("SCENE", options.file, "the scene, a TOML file")->required();
+  line.add_option("SCENE", options.file, "the scene: a TOML file")->required();
 }
 
+namespace {
+
+template <auto... path>
+CLI::Option* add_number(CLI::App& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
+  using Number = std::remove_cvref_t<decltype((std::declval<Scene>().*....*path))>;
+  const auto change = [&options](const Number& x) {
+    options.changes.push_back([x](Scene& scene) { (scene.*....*path) = x; });
+  };
+  return line.add_option_function<Number>(flag, change, meaning)->check(CLI::PositiveNumber);
+}
+
+template <const auto& table, auto... path>
+CLI::Option* add_choice(CLI::App& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
+  const auto change = [&options](const std::string& name) {
+    options.changes.push_back([name](Scene& scene) { (scene.*....*path) = method_called(table, name); });
+  };
+  return line.add_option_function<std::string>(flag, change, meaning)->check(CLI::IsMember(names_of(table)));
+}
+
+constexpr auto settings = &Scene::settings;
+
+// Keys of a scene that are also options, with the same help: --local-error for local_error.
+// clang-format off
+constexpr struct {
+  const char* key;
+  CLI::Option* (*add)(CLI::App&, SceneOptions&, const std::string& flag, const std::string& meaning);
+} method_keys[] = {
+    {"step",        add_number<&Scene::step>},
+    {"solver",      add_choice<solvers, settings, &Settings::solver>},
+    {"integrator",  add_choice<integrators, settings, &Settings::integrator>},
+    {"local_error", add_number<settings, &Settings::local_error>},
+    {"kernels",     add_choice<kernel_forms, settings, &Settings::kernels>},
+    {"precision",   add_choice<precisions, &Scene::single>},
+    {"drift",       add_choice<drifts, settings, &Settings::drift>},
+    {"iterations",  add_number<settings, &Settings::iterations>},
+    {"substeps",    add_number<settings, &Settings::substeps>},
+};
+// clang-format on
+
+}  // namespace
+
 CLI::Option* add_until(CLI::App& line, SceneOptions& options) {
-  return line.add_option("--until", options.until, "end at this time [s], in place of the scene's duration")
-      ->check(CLI::PositiveNumber);
+  return add_number<&Scene::duration>(line, options, "--until", "end at this time [s] instead of the scene's duration");
 }
 
 void add_method(CLI::App& line, SceneOptions& options) {
-  line.add_option("--step", options.step, "the time step [s]")->check(CLI::PositiveNumber);
-  line.add_option("--solver", options.solver, "direct or iterative")->check(CLI::IsMember(names_of(solvers)));
-  line.add_option("--integrator", options.integrator,
-                  "euler, implicit (heavy loads on light chains), rattle (long runs), rk4 or dop853 (accuracy)")
-      ->check(CLI::IsMember(names_of(integrators)));
-  line.add_option("--local-error", options.local_error,
-                  "let rk4 or dop853 choose its steps: the estimated error of one [m, rad, and per s]")
-      ->check(CLI::PositiveNumber);
-  line.add_option("--kernels", options.kernels,
-                  "how the iterative solver solves the rows of one joint together: fast, balanced or robust")
-      ->check(CLI::IsMember(names_of(kernel_forms)));
-  line.add_option("--precision", options.precision, "compute in double or float")
-      ->check(CLI::IsMember(names_of(precisions)));
-  line.add_option("--drift", options.drift, "what keeps joints together: projection, baumgarte or none")
-      ->check(CLI::IsMember(names_of(drifts)));
-  line.add_option("--iterations", options.iterations, "of the iterative solver, per substep")
-      ->check(CLI::PositiveNumber);
-  line.add_option("--substeps", options.substeps, "per step")->check(CLI::PositiveNumber);
+  const KeyTable top = keys_of_the_top();
+  for (const auto& [key, add] : method_keys) {
+    const auto row = std::ranges::find(top.rows, key, &KeyTable::Row::name);
+    std::string flag = "--" + row->name;
+    std::ranges::replace(flag, '_', '-');
+    add(line, options, flag, row->meaning);
+  }
 }
 
 void add_progress(CLI::App& line, SceneOptions& options) {
-  line.add_flag("--progress", options.progress, "show progress even where stderr is no terminal");
+  line.add_flag("--progress", options.progress, "show progress even if stderr is not a terminal");
 }
 
 Scene scene_of(const SceneOptions& options) {
   Scene scene = read_scene(options.file);
-  Settings& settings = scene.settings;
-  if (options.until > 0) scene.duration = options.until;
-  if (options.step > 0) scene.step = options.step;
-  if (options.iterations > 0) settings.iterations = options.iterations;
-  if (options.substeps > 0) settings.substeps = options.substeps;
-  if (options.local_error > 0) settings.local_error = options.local_error;
-  if (!options.solver.empty()) settings.solver = method_called(solvers, options.solver);
-  if (!options.integrator.empty()) settings.integrator = method_called(integrators, options.integrator);
-  if (!options.drift.empty()) settings.drift = method_called(drifts, options.drift);
-  if (!options.kernels.empty()) settings.kernels = method_called(kernel_forms, options.kernels);
-  if (!options.precision.empty()) scene.single = method_called(precisions, options.precision);
+  for (const auto& change : options.changes) change(scene);
   return scene;
 }
 

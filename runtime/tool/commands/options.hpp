@@ -1,4 +1,4 @@
-// Options that several commands have.
+// Options of several commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,12 +10,10 @@
 
 namespace cdot {
 
-// They take the place of the scene's own settings.
+// They replace the scene's own settings.
 struct SceneOptions {
   std::string file;
-  double until = 0, step = 0, local_error = 0;
-  std::string solver, integrator, drift, kernels, precision;
-  int iterations = 0, substeps = 0;
+  std::vector<std::function<void(Scene&)>> changes;
   bool progress = false;
 };
 
@@ -27,10 +25,10 @@ void add_progress(CLI::App& line, SceneOptions& options);
 Scene scene_of(const SceneOptions& options);
 bool progress_shown(const SceneOptions& options);
 
-// Throws Error where a run that ends at `end` has no state at `--at`.
+// Throws Error if a run that ends at `end` has no state at `--at`.
 void check_within(double at, double end);
 
-// Adds the options of a command, which run() gets when they have been read.
+// Adds the options of a command. run() gets their values.
 template <class Options>
 Run with_options(CLI::App& line, void (*add)(CLI::App&, Options&), int (*run)(const Options&)) {
   auto options = std::make_shared<Options>();

@@ -1,11 +1,10 @@
-// `cdot-run simulate`: runs a scene and writes what was asked for.
+// `cdot-run simulate`: runs a scene and writes the requested files.
 #include "runtime/tool/run/simulate.hpp"
 
 #include <fmt/format.h>
 
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/run/output.hpp"
-#include "runtime/tool/run/state.hpp"
 #include "runtime/tool/viewer/viewer.hpp"
 
 namespace cdot {
@@ -26,36 +25,34 @@ void add_options(CLI::App& line, Options& options) {
   add_scene(line, options.scene);
   add_until(line, options.scene);
   add_method(line, options.scene);
-  line.add_option("--accuracy", options.accuracy,
-                  "choose the method such that the trajectory is as exact as that [m, rad]")
+  line.add_option("--accuracy", options.accuracy, "choose a method that reaches this trajectory error [m, rad]")
       ->check(CLI::PositiveNumber)
       ->excludes("--integrator")
       ->excludes("--local-error")
       ->excludes("--solver")
       ->excludes("--kernels")
       ->excludes("--precision");
-  line.add_option("--tolerance", options.tolerance, "joint error from which the run has failed [m, rad]")
+  line.add_option("--tolerance", options.tolerance, "joint error above which the run has failed [m, rad]")
       ->check(CLI::PositiveNumber);
-  line.add_flag("--project", options.project, "move a start that does not fit onto its joints");
+  line.add_flag("--project", options.project, "project an inconsistent start onto C = 0");
   line.add_option("-o,--output", options.csv,
                   "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name; in space x, y, "
                   "z, e0..e3, vx, vy, vz, wx, wy, wz");
-  auto* every = line.add_option("--every", options.every, "a CSV row each so many seconds; else one per step")
+  auto* every = line.add_option("--every", options.every, "interval of CSV rows [s]; without it, one per step")
                     ->check(CLI::PositiveNumber);
   line.add_option("--times", options.times, "CSV rows at these times: 0,0.5,2")
       ->delimiter(',')
       ->check(CLI::NonNegativeNumber)
       ->excludes(every);
-  line.add_option("--html", options.html, "write a page that plays the mechanism, all in one file");
+  line.add_option("--html", options.html, "write a self-contained page that plays the mechanism");
   line.add_option("--svg", options.svg, "write a picture of the mechanism at several times, with its traces");
-  auto* save = line.add_option("--save-state", options.save_state,
-                               "write the state at the end to a file, for --from-state to go on from");
+  auto* save = line.add_option("--save-state", options.save_state, "write the final state to a file for --from-state");
   line.add_option("--at", options.state_time, "save the state at this time [s] instead")
       ->check(CLI::NonNegativeNumber)
       ->needs(save);
   line.add_option("--from-state", options.from_state,
-                  "go on from a saved state of this scene, with the bits of a run that was never interrupted");
-  line.add_flag("--json", options.json, "the summary as JSON");
+                  "continue from a saved state of this scene, with the same bits as an uninterrupted run");
+  line.add_flag("--json", options.json, "print the summary as JSON");
   add_progress(line, options.scene);
 }
 
@@ -69,12 +66,12 @@ RunOptions run_options(const Options& options, const Scene& scene, OutputFile* c
   std::sort(run.row_times.begin(), run.row_times.end());
   if (options.every > 0) run.row_times = every(options.every, scene.duration);
   if (!options.html.empty() || !options.svg.empty()) run.film_times = film_times(scene);
-  run.diagnose_times = diagnose_times(scene.duration, poses_diagnosed);
+  run.diagnose_times = equal_times(scene.duration, poses_diagnosed, 0);
   run.progress = progress_shown(options.scene);
   if (!options.from_state.empty()) run.from = read_state(options.from_state);
   if (options.save_state.empty()) return run;
-  run.keep_state = options.state_time.value_or(scene.duration);
-  check_within(*run.keep_state, scene.duration);
+  run.save_at = options.state_time.value_or(scene.duration);
+  check_within(*run.save_at, scene.duration);
   return run;
 }
 
@@ -92,7 +89,7 @@ int run(const Options& options) {
   if (result.interrupted) return stopped;
 
   if (csv) csv->commit();
-  if (!result.state.empty()) write_state(options.save_state, result.state);
+  if (!result.state.empty()) write_file(options.save_state, result.state.text());
   if (!options.html.empty()) write_file(options.html, html_page(scene, result.film));
   if (!options.svg.empty()) write_file(options.svg, svg_still(scene, result.film));
   fmt::print("{}", options.json ? summary_json(scene, result) : summary_text(scene, result));

@@ -1,5 +1,4 @@
-// What a scene's `accuracy` is turned into: an integrator and its local error, found by runs whose results are
-// compared.
+// A scene's `accuracy` -> an integrator and its local error. Trial runs find them.
 #pragma once
 
 #include "runtime/tool/scene/scene.hpp"
@@ -7,19 +6,19 @@
 namespace cdot {
 
 struct Choice {
-  Integrator integrator = Integrator::dop853;
+  Integrator integrator{};
   double local_error = 0;
-  // [m, rad] how far the run chosen is from one of a hundredth of its local error, over the samples of the run.
+  // [m, rad] distance of the chosen run from one with a hundredth of its local error, over the samples.
   double achieved = 0;
-  bool reached = false;  // that is within the accuracy asked for
-  // Of accelerations, of the run chosen: what the choice went by, since it is the same on every machine.
+  bool reached = false;  // the distance is within the accuracy
+  // Evaluations of accelerations in the chosen run. They decide, since they are the same on every machine.
   long long evaluations = 0;
 };
 
-// The scene must ask for an accuracy. Runs it a few times.
+// Of the integrators that choose their steps. The scene must ask for an accuracy. Runs it a few times.
 Choice choose_method(const Scene& scene);
 
-// A run is looked at so often, at least: those that compare as well as the run itself end a step there.
+// Number of samples. Trial runs and the run itself end a step at each.
 inline constexpr int looks_for_accuracy = 64;
 
 // The scene with that method.

@@ -1,3 +1,4 @@
+// A World -> frames, and frames between two steps.
 #include "runtime/tool/run/frame.hpp"
 
 #include <cmath>
@@ -7,8 +8,7 @@
 namespace cdot {
 namespace {
 
-// The cubic with values p, q and slopes u, v at the ends of a step of length h, at the share s of
-// it.
+// The cubic with values p, q and slopes u, v at the ends of a step h, at its share s.
 double cubic(double p, double u, double q, double v, double h, double s) {
   const double s2 = s * s, s3 = s2 * s;
   return (2 * s3 - 3 * s2 + 1) * p + (s3 - 2 * s2 + s) * h * u + (3 * s2 - 2 * s3) * q + (s3 - s2) * h * v;
@@ -31,9 +31,8 @@ spatial::Pose<double> orientation_of(const BodyState& b) {
   return spatial::oriented(0.0, 0.0, 0.0, b.e0, b.e1, b.e2, b.e3);
 }
 
-// The orientation at the share s of a step: the rotation vector from its start goes along the cubic
-// whose slopes are those of the angular velocities; at the end dr/dt = w - r x w / 2 + r x (r x w)
-// / 12, to fourth order.
+// The orientation at the share s of a step. The rotation vector r from its start follows the cubic whose slopes are the
+// angular velocities; at the end, to fourth order, dr/dt = w - r x w / 2 + r x (r x w) / 12.
 void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState& to) {
   using Vector = spatial::Vector<double>;
   const auto from = orientation_of(a);
@@ -46,10 +45,21 @@ void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState&
   to.wx = linear(a.wx, b.wx, s), to.wy = linear(a.wy, b.wy, s), to.wz = linear(a.wz, b.wz, s);
 }
 
-// How far apart two times may be and still be the same, relative to a step.
+// Relative to a step: closer times count as equal.
 constexpr double same_time = 1e-6;
 
 }  // namespace
+
+std::span<const StateColumn> state_columns(Dimension dimension) {
+  using B = BodyState;
+  static constexpr StateColumn planar[] = {{"x", &B::x},   {"y", &B::y},   {"angle", &B::angle},
+                                           {"vx", &B::vx}, {"vy", &B::vy}, {"omega", &B::w}};
+  static constexpr StateColumn in_space[] = {
+      {"x", &B::x},   {"y", &B::y},   {"z", &B::z},   {"e0", &B::e0}, {"e1", &B::e1}, {"e2", &B::e2}, {"e3", &B::e3},
+      {"vx", &B::vx}, {"vy", &B::vy}, {"vz", &B::vz}, {"wx", &B::wx}, {"wy", &B::wy}, {"wz", &B::wz}};
+  if (dimension == Dimension::planar) return planar;
+  return in_space;
+}
 
 template <class S>
 Frame frame_of(const BasicWorld<S>& world, double time, int bodies) {
@@ -113,6 +123,12 @@ std::vector<double> every(double dt, double until) {
   std::vector<double> times;
   const auto last = static_cast<long long>(std::floor(until / dt * (1 + 1e-12)));
   for (long long k = 0; k <= last; ++k) times.push_back(static_cast<double>(k) * dt);
+  return times;
+}
+
+std::vector<double> equal_times(double until, int count, int first) {
+  std::vector<double> times;
+  for (int k = first; k < first + count; ++k) times.push_back(until * k / count);
   return times;
 }
 

@@ -1,8 +1,9 @@
-// The state of a scene at one time, and frames picked at the times that somebody asked for. Steps
-// are never shortened to hit such a time: what is written does not change what is simulated.
+// The state of a scene at one time, and frames at requested times. Interpolation gives these: output never shortens a
+// step.
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include <cdot/world.hpp>
@@ -10,32 +11,39 @@
 namespace cdot {
 
 struct BodyState {
-  double x, y, angle, vx, vy, w;  // in space without meaning: angle, w
-  double z = 0, vz = 0;           // and the rest only in space
+  double x, y, angle, vx, vy, w;  // angle and w: only in the plane
+  double z = 0, vz = 0;           // these and the rest: only in space
   double e0 = 1, e1 = 0, e2 = 0, e3 = 0, wx = 0, wy = 0, wz = 0;
 };
+
+// The numbers of a state in a file, by the names of their columns.
+struct StateColumn {
+  const char* name;
+  double BodyState::*number;
+};
+std::span<const StateColumn> state_columns(Dimension dimension);
 
 struct Frame {
   double time = 0;
   std::vector<BodyState> bodies;
   double energy = 0;  // [J]
-  WorstError worst;   // |C| of the joint that is off most [m], [rad]
+  WorstError worst;   // the largest |C| of a joint [m], [rad]
 };
 
 template <class S>
 Frame frame_of(const BasicWorld<S>& world, double time, int bodies);
 bool finite(const Frame& frame);
 
-// Between two steps: positions by the cubic that has both ends' positions and velocities, the rest
-// linear. Its error is of fourth order in the step, that of the step itself of first.
+// Between two steps: positions by the cubic through both ends' positions and velocities, the rest linear. The error is
+// of fourth order in the step.
 Frame between(const Frame& before, const Frame& after, double time);
 
-// Hands on the frames at given times as the steps go by.
+// Calls back with the frames at given times as the run proceeds.
 class Sampler {
  public:
   using Take = std::function<void(const Frame&)>;
   Sampler(std::vector<double> ascending_times, Take take);
-  // `before` and `after` are the ends of a step, equal at the start.
+  // `before` and `after` are the ends of a step; at the start they are equal.
   void step(const Frame& before, const Frame& after);
 
  private:
@@ -46,5 +54,7 @@ class Sampler {
 
 // 0, dt, 2 dt, … up to `until`.
 std::vector<double> every(double dt, double until);
+// `count` multiples of until / count, from number `first` on.
+std::vector<double> equal_times(double until, int count, int first = 1);
 
 }  // namespace cdot

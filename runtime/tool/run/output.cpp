@@ -1,3 +1,4 @@
+// Frames and texts -> files.
 #include "runtime/tool/run/output.hpp"
 
 #include <cerrno>
@@ -50,35 +51,29 @@ std::string read_file(const std::string& path) {
   return text.str();
 }
 
-namespace {
-
-std::vector<const char*> columns(const Scene& scene) {
-  if (scene.dimension == Dimension::planar) return {"x", "y", "angle", "vx", "vy", "omega"};
-  return {"x", "y", "z", "e0", "e1", "e2", "e3", "vx", "vy", "vz", "wx", "wy", "wz"};
-}
-
-}  // namespace
-
 std::string csv_head(const Scene& scene) {
   std::string head = "time";
-  for (const SceneBody& body : scene.bodies) {
-    for (const char* column : columns(scene)) head += fmt::format(",{}.{}", body.name, column);
-  }
+  for (const SceneBody& body : scene.bodies)
+    for (const StateColumn& column : state_columns(scene.dimension))
+      head += fmt::format(",{}.{}", body.name, column.name);
   return head + "\n";
 }
 
 std::string csv_row(const Scene& scene, const Frame& frame) {
-  const bool in_space = scene.dimension == Dimension::spatial;
-  std::string row;
-  auto out = fmt::format_to(std::back_inserter(row), "{}", frame.time);
-  for (const BodyState& b : frame.bodies) {
-    if (in_space)
-      out = fmt::format_to(out, ",{},{},{},{},{},{},{},{},{},{},{},{},{}", b.x, b.y, b.z, b.e0, b.e1, b.e2, b.e3, b.vx,
-                           b.vy, b.vz, b.wx, b.wy, b.wz);
-    else out = fmt::format_to(out, ",{},{},{},{},{},{}", b.x, b.y, b.angle, b.vx, b.vy, b.w);
+  std::string row = fmt::format("{}", frame.time);
+  for (const BodyState& body : frame.bodies)
+    for (const StateColumn& column : state_columns(scene.dimension))
+      fmt::format_to(std::back_inserter(row), ",{}", body.*column.number);
+  return row + "\n";
+}
+
+Snapshot read_state(const std::string& path) {
+  const std::string text = read_file(path);
+  try {
+    return Snapshot::read(text);
+  } catch (const Error& error) {
+    throw Error(fmt::format("{}: {}", path, error.what()));
   }
-  row += '\n';
-  return row;
 }
 
 }  // namespace cdot

@@ -1,21 +1,22 @@
-// Files that appear whole or not at all, and the rows of a trajectory.
+// Output files, which appear whole or not at all; rows of a trajectory; saved states.
 #pragma once
 
 #include <cstdio>
 #include <string>
 #include <string_view>
 
+#include <cdot/snapshot.hpp>
+
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
 namespace cdot {
 
-// Writes beside the path and takes its name when all is there. Throws cdot::Error when the disk
-// does not obey.
+// Writes a temporary file and renames it when it is complete. Throws cdot::Error if the disk refuses.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);
-  ~OutputFile();  // without commit() nothing is left behind
+  ~OutputFile();  // removes the file unless commit() was called
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
@@ -31,9 +32,11 @@ class OutputFile {
 void write_file(const std::string& path, std::string_view text);
 std::string read_file(const std::string& path);
 
-// time, then of every body by name x, y, angle, vx, vy, omega: "rod.x"; in space x, y, z, e0 to e3,
-// vx, vy, vz, wx, wy, wz. Numbers read back to the same bits.
+// time, then the state_columns() of every body by name: "rod.x". Numbers read back to the same bits.
 std::string csv_head(const Scene& scene);
 std::string csv_row(const Scene& scene, const Frame& frame);
+
+// The state of a run, from which another continues. Throws cdot::Error with the path if the file is not a state.
+Snapshot read_state(const std::string& path);
 
 }  // namespace cdot

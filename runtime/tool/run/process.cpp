@@ -2,6 +2,7 @@
 
 #include <csignal>
 #include <ctime>
+#include <fmt/format.h>
 
 namespace cdot {
 namespace {
@@ -23,5 +24,24 @@ Interrupt::Interrupt() {
 }
 Interrupt::~Interrupt() { std::signal(SIGINT, previous_); }
 bool Interrupt::asked() { return interrupted != 0; }
+
+bool ProgressLine::due() {
+  const auto now = Clock::now();
+  if (now - last_ < std::chrono::milliseconds(500)) return false;
+  last_ = now;
+  return true;
+}
+
+void ProgressLine::show(const std::string& text) {
+  if (!wanted_) return;
+  fmt::print(stderr, "\r{:78}\r{}", "", text);
+  std::fflush(stderr);
+  shown_ = true;
+}
+
+void ProgressLine::clear() {
+  if (shown_) fmt::print(stderr, "\r{:78}\r", "");
+  shown_ = false;
+}
 
 }  // namespace cdot

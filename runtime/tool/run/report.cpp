@@ -1,4 +1,4 @@
-// What cdot-run says at the end of a run, for people and for programs.
+// The result of a run -> a summary for people and for programs.
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -9,13 +9,6 @@
 namespace cdot {
 
 namespace {
-
-// The name of a body or a joint; empty if there is none.
-template <class List>
-std::string name_in(const List& list, int index) {
-  const bool known = index >= 0 && static_cast<std::size_t>(index) < list.size();
-  return known ? list[static_cast<std::size_t>(index)].name : std::string();
-}
 
 std::string failed_step_text(const Scene& scene, const StepResult& step) {
   return fmt::format("{}. Likely fix: {}",
@@ -38,13 +31,15 @@ nlohmann::ordered_json failed_step_json(const Scene& scene, const StepResult& st
 
 std::string failure(const Scene& scene, const RunResult& result) {
   if (result.failed_step) return failed_step_text(scene, *result.failed_step);
-  if (!result.finite) return fmt::format("unstable: not finite at t = {:.6g} s", result.time);
+  if (!result.finite)
+    return fmt::format("unstable: the state is not finite at t = {:.6g} s. Likely fix: a shorter step", result.time);
   if (result.worst_error > scene.tolerance) {
-    return fmt::format("joint \"{}\" is off by {:.3g} at t = {:.6g} s, more than the tolerance of {:.3g}",
-                       result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance);
+    return fmt::format(
+        "|C| of joint \"{}\" is {:.3g} at t = {:.6g} s, above the tolerance of {:.3g}. Likely fix: a shorter step",
+        result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance);
   }
   if (result.choice && !result.choice->reached)
-    return fmt::format("the accuracy of {:.1e} was not reached: two runs differ by {:.1e}; a shorter run may reach it",
+    return fmt::format("accuracy {:.1e} not reached: two runs differ by {:.1e}. Likely fix: a shorter run",
                        scene.accuracy, result.choice->achieved);
   return {};
 }
@@ -61,7 +56,7 @@ std::string own_steps_text(const StepCounts& counts) {
 
 std::string choice_text(const Scene& scene, const Choice& choice) {
   return fmt::format(
-      "  accuracy        {:.1e} asked for: {}, local error {:.1e}; {:.1e} achieved, from a run of a hundredth of "
+      "  accuracy        {:.1e} asked for: {}, local error {:.1e}; {:.1e} achieved, against a run with a hundredth of "
       "that{}\n",
       scene.accuracy, name_of(integrators, choice.integrator), choice.local_error, choice.achieved,
       choice.reached ? "" : ": NOT reached");
@@ -86,7 +81,7 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
   if (scene.single) text += "  precision       float\n";
   if (own_steps) text += own_steps_text(result.counts);
   if (result.counts.rescued > 0)
-    text += fmt::format("  left to Euler   {} times a step that passed events without end, or whose error was absurd\n",
+    text += fmt::format("  Euler fallback  {} steps, for endless events or a useless error estimate\n",
                         result.counts.rescued);
   if (result.choice) text += choice_text(scene, *result.choice);
   text += fmt::format("  CPU             {:.4g} s, {:.3g} us per step\n", result.cpu,
@@ -95,12 +90,13 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
     text += fmt::format("  worst |C|       {:.3g} (joint \"{}\", t = {:.6g} s)\n", result.worst_error,
                         result.worst_joint, result.worst_error_time);
   }
-  text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, at most {:.3g} J apart\n",
+  text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, largest change {:.3g} J\n",
                       result.energy_start, result.energy_end, result.energy_drift);
   if (result.redundant_rows > 0) text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
   if (result.counts.retried > 0)
-    text += fmt::format("  retried         {} step{} failed and went well in parts, {} of them by the direct solver\n",
-                        result.counts.retried, result.counts.retried == 1 ? "" : "s", result.counts.direct);
+    text += fmt::format(
+        "  retried         {} failed step{} succeeded in shorter parts, {} of them with the direct solver\n",
+        result.counts.retried, result.counts.retried == 1 ? "" : "s", result.counts.direct);
   for (const std::string& joint : result.broken_joints) text += fmt::format("  broken          \"{}\"\n", joint);
   for (const std::string& note : result.notes) text += fmt::format("  note            {}\n", note);
   for (const Concern& concern : concerns_about(scene, result.diagnosis, true))

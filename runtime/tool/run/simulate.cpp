@@ -1,8 +1,8 @@
+// A scene -> its run.
 #include "runtime/tool/run/simulate.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <fmt/format.h>
 
 #include "runtime/tool/run/process.hpp"
@@ -10,36 +10,11 @@
 namespace cdot {
 namespace {
 
-// [m], [rad], and per second: what a start may be off unreported, and how well it is projected.
+// [m], [rad], and per second: error of a start that is not reported, and tolerance of its projection.
 template <class T>
 constexpr double start_tolerance = std::is_same_v<T, float> ? 1e-4 : 1e-6;
 template <class T>
 constexpr double start_projected = by_precision<T>(1e-5, 1e-12);
-
-// A line on stderr that is written over, at most a few times a second.
-class Progress {
- public:
-  Progress(bool wanted, double until) : wanted_(wanted), until_(until) {}
-  ~Progress() {
-    if (shown_) fmt::print(stderr, "\r{:60}\r", "");
-  }
-  void at(double time) {
-    if (!wanted_ || ++calls_ % 64 != 0) return;
-    const std::time_t now = std::time(nullptr);
-    if (now == last_) return;
-    if (last_ != 0) {
-      fmt::print(stderr, "\r{:3.0f} %  {:.4g} s of {:.4g} s", 100 * time / until_, time, until_);
-      shown_ = true;
-    }
-    last_ = now;
-  }
-
- private:
-  bool wanted_, shown_ = false;
-  double until_;
-  unsigned calls_ = 0;
-  std::time_t last_ = 0;
-};
 
 void judge(const Scene& scene, const Frame& frame, RunResult& result) {
   const WorstError& worst = frame.worst;
@@ -68,8 +43,7 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
   result.interrupted = Interrupt::asked();
 }
 
-// A method that chooses its steps gives the state at any time by its own interpolant: none has to be guessed between
-// two.
+// A method that chooses its steps interpolates by itself: its steps end at every requested time.
 std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
   std::vector<double> ends = every(scene.step, scene.duration);
   ends.push_back(scene.duration);
@@ -77,7 +51,7 @@ std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
     for (double time : *times)
       if (time <= scene.duration) ends.push_back(time);
   std::sort(ends.begin(), ends.end());
-  // Times that only round-off tells apart are one.
+  // Times that differ by round-off count as one.
   const double same = 1e-9 * scene.duration;
   ends.erase(std::unique(ends.begin(), ends.end(), [&](double a, double b) { return b - a < same; }), ends.end());
   return ends;
@@ -85,12 +59,12 @@ std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
 
 constexpr double same_time = 1e-9;  // of the duration
 
-// The times at which steps end: those of a run that goes on from a state are those of the run that it was taken from.
+// The times at which steps end. A run that continues from a state keeps the times of the run that saved it.
 class Steps {
  public:
   Steps(const Scene& scene, const RunOptions& options) : step_(scene.step), start_(options.from.time()) {
     if (!(start_ < scene.duration * (1 - 1e-12)))
-      throw Error(fmt::format("the state is that at {:.6g} s and the run ends at {:.6g} s: nothing is left to do",
+      throw Error(fmt::format("the state is from {:.6g} s, but the run ends at {:.6g} s. Likely fix: a later --until",
                               start_, scene.duration));
     if (scene.settings.local_error > 0) {
       ends_ = own_ends(scene, options);
@@ -105,7 +79,7 @@ class Steps {
     }
   }
   long long count() const { return count_; }
-  // Of the end of so many steps.
+  // After k steps.
   double time(long long k) const {
     return ends_.empty() ? offset_ + static_cast<double>(first_ + k) * step_
                          : ends_[static_cast<std::size_t>(first_ + k)];
@@ -118,7 +92,7 @@ class Steps {
   long long first_ = 0, count_ = 0;
 };
 
-// Those that a run from there on still meets.
+// The times from `start` on.
 std::vector<double> from_time(std::vector<double> times, double start, double step) {
   times.erase(times.begin(), std::lower_bound(times.begin(), times.end(), start - 1e-6 * step));
   return times;
@@ -153,7 +127,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   Sampler film(from_time(options.film_times, result.start, scene.step),
                [&](const Frame& frame) { result.film.push_back(frame); });
   const bool every_step = options.row && options.row_times.empty();
-  Progress progress(options.progress, scene.duration);
+  ProgressLine progress(options.progress);
   const Interrupt interrupt;
 
   const int bodies = static_cast<int>(scene.bodies.size());
@@ -166,7 +140,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (every_step) options.row(after);
     rows.step(before, after);
     film.step(before, after);
-    if (options.keep_state && result.state.empty() && after.time >= *options.keep_state * (1 - 1e-12))
+    if (options.save_at && result.state.empty() && after.time >= *options.save_at * (1 - 1e-12))
       result.state = world.snapshot();
     const auto due =
         std::upper_bound(next_diagnosis, options.diagnose_times.end(), after.time + same_time * scene.duration);
@@ -178,14 +152,16 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     result.cpu += cpu_now() - start;
     if (!step) {
       result.failed_step = step;
-      if (options.keep_state && result.state.empty()) result.state = world.snapshot();
+      if (options.save_at && result.state.empty()) result.state = world.snapshot();
       if (!options.diagnose_times.empty()) look(scene, world, result);
       break;
     }
     result.steps = k + 1;
     std::swap(before, after);
     after = frame_of(world, steps.time(k + 1), bodies);
-    progress.at(after.time);
+    if (progress.due())
+      progress.show(fmt::format("{:3.0f} %  {:.4g} s of {:.4g} s", 100 * after.time / scene.duration, after.time,
+                                scene.duration));
   }
   finish(scene, world, result);
   return result;
@@ -197,8 +173,8 @@ template <class S>
 BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
   BasicWorld<S> world = build_world_in<S>(scene);
   if (scene.project && !world.project(start_projected<typename S::Scalar>)) {
-    warnings +=
-        fmt::format("{}: warning: the start could not be projected: joints contradict each other\n", scene.file);
+    warnings += fmt::format("{}: warning: the start could not be projected onto C = 0: joints contradict each other\n",
+                            scene.file);
   }
   warnings += inconsistency_report(scene, world, start_tolerance<typename S::Scalar>);
   world.prepare();
@@ -213,11 +189,8 @@ RunResult simulate(const Scene& scene, const RunOptions& options, std::string& w
     result.choice = choice;
     return result;
   }
-  if (scene.dimension == Dimension::planar)
-    return scene.single ? simulate_in<Planar<float>>(scene, options, warnings)
-                        : simulate_in<Planar<double>>(scene, options, warnings);
-  return scene.single ? simulate_in<Spatial<float>>(scene, options, warnings)
-                      : simulate_in<Spatial<double>>(scene, options, warnings);
+  const auto run = [&]<class S>(S) { return simulate_in<S>(scene, options, warnings); };
+  return scene.single ? in_space_of<float>(scene, run) : in_space_of<double>(scene, run);
 }
 
 #define CDOT_INSTANTIATE(S) template BasicWorld<S> world_at_start(const Scene&, std::string&);

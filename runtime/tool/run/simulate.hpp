@@ -1,4 +1,4 @@
-// Runs a scene from start to end: rows and film frames on the way, a verdict at the end.
+// A scene -> its run: rows and film frames on the way, a verdict at the end.
 #pragma once
 
 #include <optional>
@@ -15,23 +15,23 @@
 namespace cdot {
 
 struct RunOptions {
-  std::function<void(const Frame&)> row;  // called for every row of the trajectory, if set
-  std::vector<double> row_times;          // when; empty: after every step
+  std::function<void(const Frame&)> row;  // called with every row of the trajectory
+  std::vector<double> row_times;          // empty: after every step
   std::vector<double> film_times;
-  std::vector<double> diagnose_times;  // after the first step that ends then or later, and before one that fails
+  std::vector<double> diagnose_times;  // at the first step that ends then or later, and before a step that fails
   bool progress = false;               // on stderr
-  Snapshot from;                       // goes on from there; empty: from the scene's start
-  // When to keep the state in RunResult::state: after the first step that ends then or later.
-  std::optional<double> keep_state;
+  Snapshot from;                       // to continue from; empty: the scene's start
+  // When to save RunResult::state: at the first step that ends then or later.
+  std::optional<double> save_at;
 };
 
 struct RunResult {
-  std::optional<Choice> choice;  // of a scene that asks for an accuracy
-  StepCounts counts;             // of rk4 and dop853
-  double time = 0;               // reached [s]
-  double start = 0;              // [s]; above 0 if the run went on from a state
+  std::optional<Choice> choice;  // if the scene has an accuracy
+  StepCounts counts;             // of integrators on accelerations
+  double time = 0;               // at the end [s]
+  double start = 0;              // [s]; above 0 if the run continued from a state
   long long steps = 0;
-  Snapshot state;  // the one that was to be kept
+  Snapshot state;  // saved at RunOptions::save_at
   double cpu = 0;  // spent in step() [s]
   double worst_error = 0, worst_error_time = 0;
   std::string worst_joint;
@@ -40,21 +40,20 @@ struct RunResult {
   int redundant_rows = 0;
   std::vector<std::string> broken_joints, notes;
   bool finite = true, interrupted = false;
-  std::optional<StepResult> failed_step;  // the run ends before it
+  std::optional<StepResult> failed_step;  // the run ended before it
   std::vector<WorstOfIsland> diagnosis;
-  int diagnoses = 0;  // of how many times that is
+  int diagnoses = 0;  // number of times diagnosed
   std::vector<Frame> film;
 };
 
-// The world at the start, moved onto its joints if the scene asks for it, and prepared.
+// The World at the start, prepared; projected onto C = 0 if the scene says project.
 template <class S>
 BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings);
 
-// `warnings` receives what was odd but not wrong (an inconsistent start), in the lines of the
-// scene.
+// `warnings` receives warnings in the lines of the scene, such as an inconsistent start.
 RunResult simulate(const Scene& scene, const RunOptions& options, std::string& warnings);
 
-// Why the answer is no; empty if the run stayed finite and its joints held.
+// Why the run failed; empty if it did not.
 std::string failure(const Scene& scene, const RunResult& result);
 
 std::string summary_text(const Scene& scene, const RunResult& result);

@@ -1,3 +1,4 @@
+// A scene and a way -> a trajectory.
 #include "runtime/tool/run/trajectory.hpp"
 
 #include <algorithm>
@@ -12,11 +13,10 @@
 namespace cdot {
 namespace {
 
-constexpr double least_measured = 2e-3;  // [s]: a shorter run is repeated,
-constexpr int most_repeats = 16;         // but no more often: every run builds a World, which may cost more than it
+constexpr double least_measured = 2e-3;  // [s]: a shorter run is repeated
+constexpr int most_repeats = 16;         // since building the World may cost more than the run
 
-// Calls after_step() after every step(h), and at_sample(time, cpu so far) at every one of the times, until that returns
-// false.
+// Calls after_step() after every step(h), and at_sample(time, cpu so far) at every time until it returns false.
 template <class S, class F, class G>
 void run(BasicWorld<S>& world, const Knob& knob, const std::vector<double>& times, F after_step, G at_sample) {
   double from = 0, cpu = 0;
@@ -34,15 +34,15 @@ void run(BasicWorld<S>& world, const Knob& knob, const std::vector<double>& time
 }
 
 template <class T, class Random>
-void move_body(World<T>& world, int body, const Nudge& by, Random off) {
+void move_body(World<T>& world, int body, const Perturbation& by, Random off) {
   const auto q = world.place(body);
   const auto v = world.velocity(body);
   world.set_velocity(body, {v.x + by.speed * off(), v.y + by.speed * off(), v.w + by.spin * off()});
   world.set_pose(body, {q.x + by.position * off(), q.y + by.position * off(), q.angle + by.angle * off()});
 }
-// The velocity first: a body whose tensor turns with it takes its momentum from both.
+// The velocity comes first: the momentum of a body whose tensor turns follows from velocity and pose.
 template <class T, class Random>
-void move_body(SpatialWorld<T>& world, int body, const Nudge& by, Random off) {
+void move_body(SpatialWorld<T>& world, int body, const Perturbation& by, Random off) {
   const auto q = world.place(body);
   const auto v = world.velocity(body);
   const auto turned =
@@ -54,22 +54,22 @@ void move_body(SpatialWorld<T>& world, int body, const Nudge& by, Random off) {
 }
 
 template <class S>
-void move_start(BasicWorld<S>& world, int bodies, const Nudge& by) {
+void move_start(BasicWorld<S>& world, int bodies, const Perturbation& by) {
   if (by.position == 0 && by.angle == 0 && by.speed == 0 && by.spin == 0) return;
   std::mt19937 random(by.seed);
-  // -1 to 1, of the generator's own bits: the same with every library.
+  // -1 to 1 from the generator's bits: the same with every library.
   const auto off = [&] { return 2 * (static_cast<double>(random()) / 4294967295.0) - 1; };
   for (int body = 0; body < bodies; ++body)
     if (!world.is_static(body)) move_body(world, body, by, off);
   world.project(0);
 }
 
-// What joints and energy are off by, at worst.
+// Collects the largest errors of joints and the range of the energy.
 template <class S>
-class Onlooker {
+class ErrorMonitor {
  public:
-  Onlooker(const BasicWorld<S>& world, Trajectory& trajectory) : world_(world), trajectory_(trajectory) {}
-  void look() {
+  ErrorMonitor(const BasicWorld<S>& world, Trajectory& trajectory) : world_(world), trajectory_(trajectory) {}
+  void check() {
     const double start = cpu_now();
     trajectory_.C = std::max(trajectory_.C, world_.worst_position_error().value);
     trajectory_.Cdot = std::max(trajectory_.Cdot, world_.worst_velocity_error().value);
@@ -89,20 +89,20 @@ class Onlooker {
 }  // namespace
 
 Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
-                         const Stop& stop, const Nudge& nudge, bool watched) {
+                         const Stop& stop, const Perturbation& perturbation, bool watched) {
   return in_space_of(scene, way, [&]<class S>(S) {
     Trajectory trajectory;
-    std::string warnings;  // the caller has seen them: they are the scene's, not the way's
+    std::string warnings;  // the caller has them: they concern the scene, not the way
     BasicWorld<S> world = world_at_start<S>(solved_by(way, knob, scene), warnings);
     const int bodies = static_cast<int>(scene.bodies.size());
-    move_start(world, bodies, nudge);
-    Onlooker<S> onlooker(world, trajectory);
+    move_start(world, bodies, perturbation);
+    ErrorMonitor<S> monitor(world, trajectory);
     const auto after_step = [&] {
-      if (watched) onlooker.look();
+      if (watched) monitor.check();
     };
     run(world, knob, times, after_step, [&](double time, double cpu) {
       trajectory.cpu = watched ? cpu - trajectory.looking : cpu;
-      if (!watched) onlooker.look();
+      if (!watched) monitor.check();
       trajectory.counts = world.step_counts();
       const Frame frame = frame_of(world, time, bodies);
       trajectory.finite = finite(frame);
@@ -149,12 +149,6 @@ Apart apart(const Frame& a, const Frame& b, Dimension dimension) {
     worst.angle = std::max(worst.angle, turned);
   }
   return worst;
-}
-
-std::vector<double> equal_times(double until, int count) {
-  std::vector<double> times;
-  for (int k = 1; k <= count; ++k) times.push_back(until * k / count);
-  return times;
 }
 
 }  // namespace cdot

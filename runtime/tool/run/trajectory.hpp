@@ -1,4 +1,4 @@
-// One run of a scene in one way: the trajectory at given times, what it cost, and how far it is from another.
+// A scene and a way -> the trajectory at given times, its cost, and its distance from another.
 #pragma once
 
 #include <functional>
@@ -9,51 +9,45 @@
 
 namespace cdot {
 
-using Stop = std::function<bool()>;  // asked at every sample: shall the run end here?
+using Stop = std::function<bool()>;  // called at every sample: true ends the run
 
 struct Trajectory {
-  std::vector<Frame> frames;                 // at the sample times, until it was stopped or not finite any more
-  double C = 0, Cdot = 0;                    // the largest at the samples, or after any step(h) [m, rad], [m/s, rad/s]
-  double least_energy = 0, most_energy = 0;  // then [J]
+  std::vector<Frame> frames;                 // at the samples, until it stopped or was not finite
+  double C = 0, Cdot = 0;                    // the largest of those checked [m, rad], [m/s, rad/s]
+  double least_energy = 0, most_energy = 0;  // of those checked [J]
   double cpu = 0;                            // spent in step() [s]
-  double looking = 0;                        // and between steps, to find what is above [s]
-  StepCounts counts;                         // of rk4 and dop853; of composed RATTLE its steps as evaluations
+  double looking = 0;                        // CPU time of these checks [s]
+  StepCounts counts;                         // of a composed method, evaluations are its steps
   bool finite = true, stopped = false;
 };
 
-// f(space) for the space and precision in which the way computes.
+// f(space) for the scene's dimension and the way's precision.
 template <class F>
 auto in_space_of(const Scene& scene, const Way& way, F f) {
-  const bool planar = scene.dimension == Dimension::planar;
-  if (way.extended) return planar ? f(Planar<long double>{}) : f(Spatial<long double>{});
-  if (way.single) return planar ? f(Planar<float>{}) : f(Spatial<float>{});
-  return planar ? f(Planar<double>{}) : f(Spatial<double>{});
+  if (way.extended) return in_space_of<long double>(scene, f);
+  return way.single ? in_space_of<float>(scene, f) : in_space_of<double>(scene, f);
 }
 
-// A start beside the scene's: every number of every body off by up to as much, then back onto the joints.
-struct Nudge {
+// A perturbed start: every number of every body changes by at most this, then the start is projected onto C = 0.
+struct Perturbation {
   double position = 0, angle = 0, speed = 0, spin = 0;  // [m], [rad], [m/s], [rad/s]
   unsigned seed = 0;
 };
 
-// `times` ascend and are greater than 0. `watched`: joints and energy are looked at after every step(h), not only at
-// the times.
+// `times` ascend from above 0. `watched`: C, Cdot and energy are checked after every step(h), not only at the times.
 Trajectory trajectory_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
-                         const Stop& stop = {}, const Nudge& nudge = {}, bool watched = false);
+                         const Stop& stop = {}, const Perturbation& perturbation = {}, bool watched = false);
 
-// CPU time that step() takes for the whole run [s], nothing looked at on the way. Short runs are repeated until
-// their time can be measured.
+// CPU time of step() over the whole run [s], without checks. Short runs are repeated until the clock can measure them.
 double cpu_of(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
               const Stop& stop = {});
 
-// The largest differences over the bodies at one time, [m] and [rad]; in space the angle of the turn between.
+// The largest differences over the bodies at one time, [m] and [rad]. In space the angle is that of the relative
+// rotation.
 struct Apart {
   double position = 0, angle = 0;
   double larger() const { return position > angle ? position : angle; }
 };
 Apart apart(const Frame& a, const Frame& b, Dimension dimension);
-
-// n + 1 ends of n equal stretches of [0, until], less the first.
-std::vector<double> equal_times(double until, int count);
 
 }  // namespace cdot

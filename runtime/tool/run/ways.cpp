@@ -1,3 +1,4 @@
+// The table of integrators -> the ways to compare.
 #include "runtime/tool/run/ways.hpp"
 
 #include <cmath>
@@ -14,35 +15,42 @@ constexpr int most_exact_digits = 15;  // of a local error
 constexpr auto direct = Solver::direct, iterative = Solver::iterative;
 constexpr auto none = Drift::none, baumgarte = Drift::baumgarte, projection = Drift::projection;
 
-bool first_order(Integrator integrator) { return row_of(integrator).order == 1; }
+// Methods of first order may choose their drift correction; the plain ones show every choice.
+bool first_order(const IntegratorRow& row) { return row.order == 1; }
+bool plain(const IntegratorRow& row) { return row.order == 1 && !row.stiffens; }
+bool not_stiffening(const IntegratorRow& row) { return !row.stiffens; }
+bool chooses_steps(const IntegratorRow& row) { return row.level == Level::acceleration; }
+bool any(const IntegratorRow&) { return true; }
 
-// Those of first order, for which the drift correction is a choice of its own.
-const std::vector<Way> first_order_ways = {
-    {Integrator::euler, direct, none, 0},
-    {Integrator::euler, direct, baumgarte, 0},
-    {Integrator::euler, direct, projection, 0},
-    {Integrator::euler, direct, projection, 0, true},
-    {Integrator::euler, iterative, baumgarte, 4},
-    {Integrator::euler, iterative, baumgarte, 20},
-    {Integrator::euler, iterative, projection, 4},
-    {Integrator::euler, iterative, projection, 20},
-    {Integrator::implicit, direct, baumgarte, 0},
-    {Integrator::implicit, direct, projection, 0},
-    {Integrator::implicit, iterative, projection, 20},
+// Each row is a way for every integrator that it suits.
+// clang-format off
+constexpr struct {
+  bool (*suits)(const IntegratorRow&);
+  Solver solver;
+  Drift drift;
+  int iterations;
+  bool single, adaptive;
+} way_rows[] = {
+    {plain,          direct,    none,       0,  false, false},
+    {first_order,    direct,    baumgarte,  0,  false, false},
+    {any,            direct,    projection, 0,  false, false},
+    {not_stiffening, direct,    projection, 0,  true,  false},
+    {plain,          iterative, baumgarte,  4,  false, false},
+    {plain,          iterative, baumgarte,  20, false, false},
+    {plain,          iterative, projection, 4,  false, false},
+    {any,            iterative, projection, 20, false, false},
+    {chooses_steps,  direct,    projection, 0,  false, true},
 };
+// clang-format on
 
 }  // namespace
 
 const std::vector<Way>& all_ways() {
   static const std::vector<Way> ways = [] {
-    std::vector<Way> ways = first_order_ways;
-    for (const IntegratorRow& row : integrator_rows) {
-      if (row.order == 1) continue;
-      ways.push_back({row.integrator, direct, projection, 0});
-      ways.push_back({row.integrator, direct, projection, 0, true});
-      ways.push_back({row.integrator, iterative, projection, 20});
-      if (row.level == Level::acceleration) ways.push_back({row.integrator, direct, projection, 0, false, true});
-    }
+    std::vector<Way> ways;
+    for (const IntegratorRow& row : integrator_rows)
+      for (const auto& [suits, solver, drift, iterations, single, adaptive] : way_rows)
+        if (suits(row)) ways.push_back({row.integrator, solver, drift, iterations, single, adaptive});
     return ways;
   }();
   return ways;
@@ -50,7 +58,8 @@ const std::vector<Way>& all_ways() {
 
 std::string name_of(const Way& way) {
   std::string name(name_of(integrators, way.integrator));
-  if (first_order(way.integrator) && way.drift != none) name += fmt::format(" + {}", name_of(drifts, way.drift));
+  if (first_order(row_of(way.integrator)) && way.drift != none)
+    name += fmt::format(" + {}", name_of(drifts, way.drift));
   name += sweeps(way.solver) ? fmt::format(", {} iterations", way.iterations) : ", direct";
   if (way.adaptive) name += ", adaptive";
   if (way.single) name += ", float";
@@ -60,12 +69,12 @@ std::string name_of(const Way& way) {
 
 bool has_level(const Way& way, int level) {
   if (way.adaptive) return level < most_exact_digits;
-  return level <= most_doublings * (first_order(way.integrator) ? 1 : 2);
+  return level <= most_doublings * (first_order(row_of(way.integrator)) ? 1 : 2);
 }
 
 Knob knob_at(const Way& way, int level) {
   if (way.adaptive) return {1, std::pow(10.0, -1 - level)};
-  if (first_order(way.integrator)) return {1 << level, 0};
+  if (first_order(row_of(way.integrator))) return {1 << level, 0};
   if (level == 0) return {1, 0};
   return {level % 2 == 1 ? 1 << (level + 1) / 2 : 3 << (level / 2 - 1), 0};
 }
@@ -79,7 +88,7 @@ Scene solved_by(const Way& way, const Knob& knob, Scene scene) {
   if (sweeps(way.solver)) settings.iterations = way.iterations;
   settings.substeps = 1;
   scene.single = way.single;
-  settings.sleep_after = 0;  // sleep is an error of its own, and none of a solver or an integrator
+  settings.sleep_after = 0;  // sleep is an error, but not of a solver or an integrator
   return scene;
 }
 

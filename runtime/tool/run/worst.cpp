@@ -1,3 +1,4 @@
+// Diagnoses at several times -> the worst of each island.
 #include "runtime/tool/run/worst.hpp"
 
 #include <algorithm>
@@ -11,38 +12,32 @@ Names names_of(const Scene& scene) {
 }
 
 void add_island(const Diagnosis::Island& now, double time, WorstOfIsland& worst) {
-  Diagnosis::Island& kept = worst.island;
-  if (now.rank < kept.rank || now.redundant.size() > kept.redundant.size()) {
-    kept.rows = now.rows, kept.rank = now.rank, kept.redundant = now.redundant;
+  Diagnosis::Island& so_far = worst.island;
+  if (now.rank < so_far.rank || now.redundant.size() > so_far.redundant.size()) {
+    so_far.rows = now.rows, so_far.rank = now.rank, so_far.redundant = now.redundant;
     worst.rank_time = time;
   }
-  if (now.condition > kept.condition) {
-    kept.condition = now.condition, kept.smallest_pivot = now.smallest_pivot, kept.weakest = now.weakest;
+  if (now.condition > so_far.condition) {
+    so_far.condition = now.condition, so_far.smallest_pivot = now.smallest_pivot, so_far.weakest = now.weakest;
     worst.condition_time = time;
   }
-  if (now.stiffest.square > kept.stiffest.square) kept.stiffest = now.stiffest, worst.stiffest_time = time;
-  if (now.fastest_spin > kept.fastest_spin) {
-    kept.fastest_spin = now.fastest_spin, kept.spinning = now.spinning;
+  if (now.stiffest.square > so_far.stiffest.square) so_far.stiffest = now.stiffest, worst.stiffest_time = time;
+  if (now.fastest_spin > so_far.fastest_spin) {
+    so_far.fastest_spin = now.fastest_spin, so_far.spinning = now.spinning;
     worst.spin_time = time;
   }
-  kept.farthest = std::max(kept.farthest, now.farthest);
+  so_far.farthest = std::max(so_far.farthest, now.farthest);
 }
 
 }  // namespace
 
 std::string body_name(const Scene& scene, int body) {
-  const auto at = static_cast<std::size_t>(body);
-  return body >= 0 && at < scene.bodies.size() ? "\"" + scene.bodies[at].name + "\"" : "nothing";
+  const std::string name = name_in(scene.bodies, body);
+  return name.empty() ? "nothing" : "\"" + name + "\"";
 }
 std::string joint_name(const Scene& scene, int joint) {
-  const auto at = static_cast<std::size_t>(joint);
-  return joint >= 0 && at < scene.joints.size() ? "\"" + scene.joints[at].name + "\"" : "no joint";
-}
-
-std::vector<double> diagnose_times(double duration, int count) {
-  std::vector<double> times;
-  for (int k = 0; k < count; ++k) times.push_back(duration * k / count);
-  return times;
+  const std::string name = name_in(scene.joints, joint);
+  return name.empty() ? "no joint" : "\"" + name + "\"";
 }
 
 void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>& worst) {

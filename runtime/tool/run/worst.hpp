@@ -1,4 +1,4 @@
-// The worst that is found of each island over a run, and what it means for the scene's method.
+// The worst diagnosis of each island over a run, and its meaning for the scene's method.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -9,24 +9,27 @@
 
 namespace cdot {
 
-// Each number is the worst of the run, with the time at which it was [s].
+// Each number is the worst of the run, with its time [s].
 struct WorstOfIsland {
   Diagnosis::Island island;
   double condition_time = 0, rank_time = 0, stiffest_time = 0, spin_time = 0;
 };
 
-// So many from 0 on, equally apart; the last before the end.
-std::vector<double> diagnose_times(double duration, int count);
-
-// Adds what is found at one time; islands are known again by their first body.
+// Adds the diagnosis at one time. Islands are identified by their first body.
 void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>& worst);
 
-// In the words of the scene, without repetition. `warnings_only`: without notes.
+// With the names of the scene, each once. `warnings_only`: without notes.
 std::vector<Concern> concerns_about(const Scene& scene, const std::vector<WorstOfIsland>& worst, bool warnings_only);
 
 nlohmann::ordered_json concerns_json(const std::vector<Concern>& concerns);
 
-// Of the scene, in quotes; "nothing" and "no joint" of -1.
+// The name of a body or a joint; empty if there is none.
+template <class List>
+std::string name_in(const List& list, int index) {
+  const bool known = index >= 0 && static_cast<std::size_t>(index) < list.size();
+  return known ? list[static_cast<std::size_t>(index)].name : std::string();
+}
+// In quotes; "nothing" and "no joint" of -1.
 std::string body_name(const Scene& scene, int body);
 std::string joint_name(const Scene& scene, int joint);
 

@@ -1,5 +1,5 @@
-// The [[body]] entries of a scene. In the plane a direction has two numbers and a turn has one; in space a turn has
-// three, an orientation is a quaternion or an axis and an angle, and an inertia may be a tensor.
+// The [[body]] entries of a scene -> definitions of bodies. In the plane a direction has two numbers and a rotation
+// one. In space a rotation has three, and an inertia may be a tensor.
 #include <cmath>
 #include <fmt/format.h>
 
@@ -9,20 +9,20 @@
 namespace cdot {
 namespace {
 
-// The numbers of an entry, before they become a definition.
+// Also in the plane the numbers go into the definition in space; a rotation uses the first of three.
 struct Reading {
   Dimension dimension;
   std::map<std::string, Span>& names;
   SceneBody body{};
-  bool fixed_rotation = false;
-  double mass = 0, linear_damping = 0, angular_damping = 0;
   std::optional<Inertia> inertia{};
-  Vec3 position{}, velocity{}, force{}, spin{}, torque{};  // of turns in the plane the first number
   std::optional<Vec3> axis{};
   std::optional<double> angle{};
-  std::array<double, 4> e{1, 0, 0, 0};
   bool in_space() const { return dimension == Dimension::spatial; }
 };
+using Definition = SpatialBodyDefinition;
+using Member = double Definition::*;
+constexpr auto spatial_part = &SceneBody::spatial;
+constexpr auto body_part = &Reading::body;
 
 double square(double x) { return x * x; }
 
@@ -30,33 +30,62 @@ void read_body_name(Entry& body, const char*, Reading& to) {
   to.body.name = read_name(body, to.names, std::nullopt).value_or("");
 }
 
-// { rod = length, width = … }, { box = [along, across] } or { disc = radius }; in space as well
-// { box = [x, y, z] }, { disc = radius, width = … } and { ball = radius }
+struct ShapeReading {
+  bool in_space, takes_width;
+  Shape shape{};
+};
+
+void read_rod(Entry& entry, const char* key, ShapeReading& to) {
+  if (const auto length = entry.number(key, {Sign::positive}))
+    to.shape = {Shape::rod, *length, 0.06 * *length, 0.06 * *length};
+}
+
+void read_box(Entry& entry, const char* key, ShapeReading& to) {
+  if (const auto sides = entry.numbers(key, to.in_space ? 3 : 2, {Sign::positive}))
+    to.shape = {Shape::box, (*sides)[0], (*sides)[1], to.in_space ? (*sides)[2] : 0};
+}
+
+void read_disc(Entry& entry, const char* key, ShapeReading& to) {
+  if (const auto radius = entry.number(key, {Sign::positive}))
+    to.shape = {Shape::disc, 2 * *radius, 2 * *radius, 0.2 * *radius};
+}
+
+void read_ball(Entry& entry, const char* key, ShapeReading& to) {
+  if (const auto radius = entry.number(key, {Sign::positive}))
+    to.shape = {Shape::ball, 2 * *radius, 2 * *radius, 2 * *radius};
+}
+
+void read_width(Entry& entry, const char* key, ShapeReading& to) {
+  const auto width = entry.number(key, {Sign::positive});
+  if (!width) return;
+  if (!to.takes_width) entry.error(entry.where(key), "`width` belongs to a rod");
+  (entry.has("rod") ? to.shape.width : to.shape.depth) = *width;
+}
+
+// clang-format off
+constexpr Key<ShapeReading> shape_keys[] = {
+    {"rod", "its length along x [m]", "", read_rod},
+    {"box", "its sides along x and y, in space x, y and z [m]", "", read_box},
+    {"disc", "its radius; in space about z [m]", "", read_disc},
+    {"ball", "its radius [m]", "", read_ball, Where::in_space},
+    {"width", "of a rod across x; in space also a disc's thickness [m]", "0.06 of a rod's length, 0.1 of a disc's", read_width},
+};
+// clang-format on
+
 void read_shape(Entry& body, const char* key, Reading& to) {
   const bool in_space = to.in_space();
-  Shape& shape = to.body.shape;
   std::optional<Entry> entry =
       body.table(key, in_space ? "shape = { rod = 1.0 }, { box = [1, 0.5, 0.2] } or { ball = 0.2 }"
                                : "shape = { rod = 1.0 }, { box = [1, 0.5] } or { disc = 0.2 }");
   if (!entry) return;
-  const bool rod = entry->has("rod"), box = entry->has("box"), disc = entry->has("disc"),
-             ball = in_space && entry->has("ball");
-  if (rod + box + disc + ball != 1) {
+  const bool rod = entry->has("rod"), disc = entry->has("disc");
+  if (rod + entry->has("box") + disc + (in_space && entry->has("ball")) != 1)
     entry->error(entry->header(),
                  in_space ? "a shape is one of rod, box, disc and ball" : "a shape is one of rod, box and disc",
                  "shape = { rod = 1.0 }");
-  }
-  const Quantity size{Sign::positive};
-  if (const auto length = entry->number("rod", size)) shape = {Shape::rod, *length, 0.06 * *length, 0.06 * *length};
-  if (const auto sides = entry->numbers("box", in_space ? 3 : 2, size))
-    shape = {Shape::box, (*sides)[0], (*sides)[1], in_space ? (*sides)[2] : 0};
-  if (const auto radius = entry->number("disc", size)) shape = {Shape::disc, 2 * *radius, 2 * *radius, 0.2 * *radius};
-  if (const auto radius = ball ? entry->number("ball", size) : std::nullopt)
-    shape = {Shape::ball, 2 * *radius, 2 * *radius, 2 * *radius};
-  if (const auto width = entry->number("width", size)) {
-    if (!rod && !(in_space && disc)) entry->error(entry->where("width"), "`width` belongs to a rod");
-    (rod ? shape.width : shape.depth) = *width;
-  }
+  ShapeReading read{in_space, rod || (in_space && disc)};
+  read_keys(*entry, shape_keys, to.dimension, read);
+  to.body.shape = read.shape;
   entry->close();
 }
 
@@ -76,19 +105,22 @@ void read_inertia(Entry& body, const char* key, Reading& to) {
   }
 }
 
-template <Vec3 Reading::*vector>
+template <Member x, Member y, Member z>
 void read_vector_of(Entry& body, const char* key, Reading& to) {
-  to.*vector = read_vector(body, key, to.dimension).value_or(Vec3{});
+  const Vec3 vector = read_vector(body, key, to.dimension).value_or(Vec3{});
+  Definition& numbers = to.body.spatial;
+  numbers.*x = vector[0], numbers.*y = vector[1], numbers.*z = vector[2];
 }
 
 // One number in the plane, three in space.
-template <Vec3 Reading::*turn, bool angle>
+template <Member x, Member y, Member z, bool angle>
 void read_turn(Entry& body, const char* key, Reading& to) {
   const Quantity quantity{Sign::any, angle};
+  Definition& numbers = to.body.spatial;
   if (!to.in_space()) {
-    to.*turn = {body.number(key, quantity).value_or(0), 0, 0};
-  } else if (const auto numbers = body.numbers(key, 3, quantity)) {
-    to.*turn = {(*numbers)[0], (*numbers)[1], (*numbers)[2]};
+    numbers.*x = body.number(key, quantity).value_or(0);
+  } else if (const auto read = body.numbers(key, 3, quantity)) {
+    numbers.*x = (*read)[0], numbers.*y = (*read)[1], numbers.*z = (*read)[2];
   }
 }
 
@@ -101,7 +133,8 @@ void read_quaternion(Entry& body, const char* key, Reading& to) {
   if (!e) return;
   const double length = std::sqrt(square((*e)[0]) + square((*e)[1]) + square((*e)[2]) + square((*e)[3]));
   if (!(length > 1e-50)) body.error(body.where(key), "the quaternion has length 0", "[1, 0, 0, 0]");
-  to.e = {(*e)[0], (*e)[1], (*e)[2], (*e)[3]};
+  Definition& numbers = to.body.spatial;
+  numbers.e0 = (*e)[0], numbers.e1 = (*e)[1], numbers.e2 = (*e)[2], numbers.e3 = (*e)[3];
 }
 
 // trace = true for the centre, [x, y] for a point of the body
@@ -112,28 +145,28 @@ void read_trace(Entry& body, const char* key, Reading& to) {
 }
 
 // clang-format off
-constexpr Key<Reading> keys[] = {
+constexpr Key<Reading> body_keys[] = {
     {"name", "letters, digits, _ and -; names the CSV columns: rod.x", "required", read_body_name},
     {"shape", "{ rod = length }, { box = [along x, along y] } or { disc = radius }, in space also { ball = radius } [m]", "a stick figure", read_shape},
-    {"static", "never moves; needs no mass", "false", read_flag<&Reading::body, &SceneBody::is_static>},
-    {"fixed_rotation", "never turns; needs no inertia", "false", read_flag<&Reading::fixed_rotation>},
-    {"mass", "[kg]", "required", read_number<Sign::positive, &Reading::mass>},
+    {"static", "never moves; needs no mass", "false", read_flag<body_part, spatial_part, &Definition::is_static>},
+    {"fixed_rotation", "never turns; needs no inertia", "false", read_flag<body_part, spatial_part, &Definition::fixed_rotation>},
+    {"mass", "[kg]", "required", read_number<Sign::positive, body_part, spatial_part, &Definition::mass>},
     {"inertia", "about the centre of mass [kg m^2]; in space a number, three or a tensor", "of the shape, if uniform", read_inertia},
-    {"position", "of the centre of mass at the start [m]", "0", read_vector_of<&Reading::position>},
+    {"position", "of the centre of mass at the start [m]", "0", read_vector_of<&Definition::x, &Definition::y, &Definition::z>},
     {"orientation", "of the body's frame, a quaternion of any length", "[1, 0, 0, 0]", read_quaternion, Where::in_space},
-    {"axis", "with angle, the same as a rotation about an axis", "", read_axis, Where::in_space},
+    {"axis", "with angle: the orientation as a rotation about this axis", "", read_axis, Where::in_space},
     {"angle", "of the body's frame at the start [rad]", "0", read_angle},
-    {"velocity", "[m/s]", "0", read_vector_of<&Reading::velocity>},
-    {"spin", "[rad/s]", "0", read_turn<&Reading::spin, true>},
-    {"force", "constant, at the centre of mass [N]", "0", read_vector_of<&Reading::force>},
-    {"torque", "constant [N m]", "0", read_turn<&Reading::torque, false>},
-    {"linear_damping", "force = -mass damping velocity [1/s]", "0", read_number<Sign::not_negative, &Reading::linear_damping>},
-    {"angular_damping", "the same of turns [1/s]", "0", read_number<Sign::not_negative, &Reading::angular_damping>},
-    {"trace", "true or a point of the body: its path is drawn", "the last body's", read_trace},
+    {"velocity", "[m/s]", "0", read_vector_of<&Definition::vx, &Definition::vy, &Definition::vz>},
+    {"spin", "[rad/s]", "0", read_turn<&Definition::wx, &Definition::wy, &Definition::wz, true>},
+    {"force", "constant, at the centre of mass [N]", "0", read_vector_of<&Definition::force_x, &Definition::force_y, &Definition::force_z>},
+    {"torque", "constant [N m]", "0", read_turn<&Definition::torque_x, &Definition::torque_y, &Definition::torque_z, false>},
+    {"linear_damping", "force = -mass damping velocity [1/s]", "0", read_number<Sign::not_negative, body_part, spatial_part, &Definition::linear_damping>},
+    {"angular_damping", "torque = -inertia damping spin [1/s]", "0", read_number<Sign::not_negative, body_part, spatial_part, &Definition::angular_damping>},
+    {"trace", "true for the centre, or a point of the body: the viewer draws its path", "the last body's", read_trace},
 };
 // clang-format on
 
-// About the centre, of uniform density; in the plane.
+// Planar moment of inertia about the centre, of uniform density.
 double uniform_moment(const Shape& shape, double mass) {
   switch (shape.kind) {
     case Shape::rod: return mass * shape.length * shape.length / 12;
@@ -145,9 +178,9 @@ double uniform_moment(const Shape& shape, double mass) {
   return 0;
 }
 
-// The same in space: a rod is a cylinder along x, a disc one about z.
+// The same in space: a rod is a cylinder along x, a disc a cylinder about z.
 Inertia uniform_inertia(const Shape& shape, double mass) {
-  const auto cylinder = [&](double radius, double height) {  // along it, across it
+  const auto cylinder = [&](double radius, double height) {  // along and across its axis
     return std::pair{mass * square(radius) / 2, mass * (3 * square(radius) + square(height)) / 12};
   };
   if (shape.kind == Shape::box)
@@ -166,21 +199,22 @@ Inertia uniform_inertia(const Shape& shape, double mass) {
   return {across, across, along};
 }
 
-// Complains where a body that is to turn could not.
+// Needs an inertia of every body that may turn.
 void find_inertia(Entry& body, Reading& to) {
-  if (to.body.is_static) return;
+  Definition& numbers = to.body.spatial;
+  if (numbers.is_static) return;
   if (!body.has("mass")) body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
   if (body.has("inertia")) {
-    if (!to.inertia || to.fixed_rotation) return;
+    if (!to.inertia || numbers.fixed_rotation) return;
     const char* wrong = to.in_space() ? wrong_with(*to.inertia) : nullptr;
     if (wrong) body.error(body.where("inertia"), wrong);
     if (to.inertia->xx == 0)
       body.error(body.where("inertia"), "`inertia` is 0, but the body is free to turn",
                  "a point mass on a pin needs fixed_rotation = true");
   } else if (to.body.shape.kind != Shape::none) {
-    const double planar = uniform_moment(to.body.shape, to.mass);
-    to.inertia = to.in_space() ? uniform_inertia(to.body.shape, to.mass) : Inertia{planar, planar, planar};
-  } else if (!to.fixed_rotation) {
+    const double planar = uniform_moment(to.body.shape, numbers.mass);
+    to.inertia = to.in_space() ? uniform_inertia(to.body.shape, numbers.mass) : Inertia{planar, planar, planar};
+  } else if (!numbers.fixed_rotation) {
     body.error(body.header(), body.what() + " has no `inertia`",
                fmt::format("inertia = {}, a shape to work it out from, or fixed_rotation = true",
                            to.in_space() ? "[Ixx, Iyy, Izz]" : "…"));
@@ -192,7 +226,8 @@ void find_orientation(Entry& body, Reading& to) {
   if (!to.in_space()) return;
   const bool quaternion = body.has("orientation"), axis = body.has("axis"), angle = body.has("angle");
   if (quaternion && (axis || angle))
-    body.error(body.where("orientation"), "`orientation` and `axis`, `angle` say the same", "keep one of them");
+    body.error(body.where("orientation"), "both `orientation` and `axis`, `angle` set the orientation",
+               "keep one of them");
   else if (axis != angle)
     body.error(body.where(axis ? "axis" : "angle"), axis ? "`axis` without `angle`" : "`angle` without `axis`",
                "axis = [0, 0, 1] and angle = \"30 deg\"");
@@ -200,47 +235,43 @@ void find_orientation(Entry& body, Reading& to) {
   const auto [x, y, z] = *to.axis;
   const double length = std::hypot(x, y, z);
   if (!(length > 0))
-    return body.error(body.where("axis"), "the direction `axis` has length 0", "any other length will do: [0, 0, 1]");
+    return body.error(body.where("axis"), "the direction `axis` has length 0", "any other length works: [0, 0, 1]");
   const double c = std::cos(*to.angle / 2), s = std::sin(*to.angle / 2) / length;
-  to.e = {c, s * x, s * y, s * z};
+  Definition& numbers = to.body.spatial;
+  numbers.e0 = c, numbers.e1 = s * x, numbers.e2 = s * y, numbers.e3 = s * z;
 }
 
 // Refuses a velocity or spin of a body that cannot move or turn.
-void check_motion(Entry& body, const Reading& read) {
-  const bool moves = read.velocity != Vec3{}, turns = read.spin != Vec3{};
-  if (read.body.is_static && moves)
-    body.error(body.where("velocity"), "a static body cannot move: `velocity` is not 0");
-  if (read.body.is_static && turns) body.error(body.where("spin"), "a static body cannot move: `spin` is not 0");
+void check_motion(Entry& body, const Definition& read) {
+  const bool moves = read.vx != 0 || read.vy != 0 || read.vz != 0, turns = read.wx != 0 || read.wy != 0 || read.wz != 0;
+  if (read.is_static && moves) body.error(body.where("velocity"), "a static body cannot move: `velocity` is not 0");
+  if (read.is_static && turns) body.error(body.where("spin"), "a static body cannot move: `spin` is not 0");
   if (read.fixed_rotation && turns)
     body.error(body.where("spin"), "a body with fixed_rotation cannot turn: `spin` is not 0");
 }
 
-// The numbers that a definition has in the plane and in space.
-template <class Definition>
-void define(const Reading& read, Definition& body) {
-  body.is_static = read.body.is_static, body.fixed_rotation = read.fixed_rotation, body.mass = read.mass;
-  body.x = read.position[0], body.y = read.position[1];
-  body.vx = read.velocity[0], body.vy = read.velocity[1];
-  body.force_x = read.force[0], body.force_y = read.force[1];
-  body.linear_damping = read.linear_damping, body.angular_damping = read.angular_damping;
-}
-
 SceneBody defined(const Reading& read) {
   SceneBody body = read.body;
-  if (!read.in_space()) {
-    BodyDefinition& to = body.definition;
-    define(read, to);
-    to.angle = read.angle.value_or(0), to.w = read.spin[0], to.torque = read.torque[0];
-    if (read.inertia && !to.is_static) to.inertia = read.inertia->zz;
-    return body;
-  }
-  SpatialBodyDefinition& to = body.spatial;
-  define(read, to);
-  to.z = read.position[2], to.vz = read.velocity[2], to.force_z = read.force[2];
-  to.e0 = read.e[0], to.e1 = read.e[1], to.e2 = read.e[2], to.e3 = read.e[3];
-  to.wx = read.spin[0], to.wy = read.spin[1], to.wz = read.spin[2];
-  to.torque_x = read.torque[0], to.torque_y = read.torque[1], to.torque_z = read.torque[2];
-  if (read.inertia && !to.is_static) to.inertia = *read.inertia;
+  Definition& all = body.spatial;
+  body.is_static = all.is_static;
+  if (read.inertia && !all.is_static) all.inertia = *read.inertia;
+  if (read.in_space()) return body;
+  body.definition = {all.x,
+                     all.y,
+                     read.angle.value_or(0),
+                     all.vx,
+                     all.vy,
+                     all.wx,
+                     all.mass,
+                     all.inertia.zz,
+                     all.is_static,
+                     all.fixed_rotation,
+                     all.force_x,
+                     all.force_y,
+                     all.torque_x,
+                     all.linear_damping,
+                     all.angular_damping};
+  body.spatial = {};
   return body;
 }
 
@@ -250,16 +281,17 @@ void read_bodies(Entry& top, Scene& scene) {
   std::map<std::string, Span> used{{"world", {}}};
   for (Entry& entry : top.list("body")) {
     Reading read{scene.dimension, used};
-    read_keys(entry, keys, scene.dimension, read);
+    read_keys(entry, body_keys, scene.dimension, read);
     find_inertia(entry, read);
     find_orientation(entry, read);
-    check_motion(entry, read);
+    check_motion(entry, read.body.spatial);
     entry.close();
     scene.bodies.push_back(defined(read));
   }
   if (!top.has("body")) top.error({}, "a scene needs at least one body", "start with a line [[body]]");
 }
 
-KeyTable keys_of_a_body() { return table_of("[[body]]", keys); }
+KeyTable keys_of_a_body() { return table_of("[[body]]", body_keys); }
+KeyTable keys_of_a_shape() { return table_of("`shape` of a body, one of", shape_keys); }
 
 }  // namespace cdot

@@ -1,5 +1,4 @@
-// From a scene to a World: the names are gone, what the World refuses is reported in the lines of
-// the scene.
+// A scene -> a World. Errors of the World are reported in the lines of the scene.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -26,7 +25,7 @@ void add_spring(BasicWorld<S>& world, SpringDefinition spring) {
   world.add_spring(spring);
 }
 
-// "C2 = -0.25, Cdot1 = -3": positions first; rows are numbered where there are several.
+// "C2 = -0.25, Cdot1 = -3": positions first; several rows are numbered.
 std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::size_t joint_rows) {
   std::string list;
   for (const bool velocity : {false, true}) {
@@ -39,15 +38,10 @@ std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::si
   return list;
 }
 
-constexpr int most_told = 5;  // joints that the start does not fit; of others their number
+constexpr int most_reported = 5;  // joints that the start violates; the others are counted
 
-// A scene whose bodies are all far away, against how far they are apart, is counted from among them.
+// If all bodies are this many times further away than they are apart, the origin moves among them.
 constexpr double far_away = 1000;
-
-Vec3 position_of(const SceneBody& body, Dimension dimension) {
-  if (dimension == Dimension::planar) return {body.definition.x, body.definition.y, 0};
-  return {body.spatial.x, body.spatial.y, body.spatial.z};
-}
 
 template <class S>
 void choose_origin(const Scene& scene, BasicWorld<S>& world) {
@@ -69,6 +63,11 @@ void choose_origin(const Scene& scene, BasicWorld<S>& world) {
 }
 
 }  // namespace
+
+Vec3 position_of(const SceneBody& body, Dimension dimension) {
+  if (dimension == Dimension::planar) return {body.definition.x, body.definition.y, 0};
+  return {body.spatial.x, body.spatial.y, body.spatial.z};
+}
 
 template <class S>
 BasicWorld<S> build_world_in(const Scene& scene) {
@@ -98,19 +97,19 @@ template <class S>
 std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world, double tolerance) {
   std::string report;
   const std::vector<Inconsistency> rows = world.inconsistencies(tolerance);
-  int told = 0;
+  int violated = 0;
   for (int joint = 0; joint < world.joint_count(); ++joint) {
     const SceneJoint& source = scene.joints[static_cast<std::size_t>(joint)];
     const std::string list = rows_text(rows, joint, world.joint_type(joint).row_kinds.size());
-    if (list.empty() || ++told > most_told) continue;
+    if (list.empty() || ++violated > most_reported) continue;
     report += scene.source->paragraph(
         "warning", source.where,
-        fmt::format("the start does not fit {} \"{}\": {}", source.definition.type, source.name, list),
-        "correct the pose or velocity, or let project = true move the bodies onto their joints");
+        fmt::format("the start violates {} \"{}\": {}", source.definition.type, source.name, list),
+        "correct the pose or velocity, or set project = true");
   }
-  if (told > most_told)
-    report +=
-        fmt::format("warning: nor does it fit {} more joint{}\n", told - most_told, told == most_told + 1 ? "" : "s");
+  if (violated > most_reported)
+    report += fmt::format("warning: the start violates {} more joint{}\n", violated - most_reported,
+                          violated == most_reported + 1 ? "" : "s");
   return report;
 }
 

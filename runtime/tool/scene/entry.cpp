@@ -1,9 +1,13 @@
-// One table of a scene: its keys, those of its copies, and what must not be there.
+// One TOML table of a scene -> its keys as numbers and texts, with copies; unknown keys are mistakes.
 #include "runtime/tool/scene/entry.hpp"
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fmt/format.h>
+#include <numbers>
+
+#include "runtime/tool/scene/keys.hpp"
 
 namespace cdot {
 namespace {
@@ -11,6 +15,13 @@ namespace {
 constexpr int most_copies = 100000;
 
 }  // namespace
+
+KeyTable keys_of_copies() {
+  return {"Copies of a [[body]], [[joint]] or [[spring]]; {i}, {i+1}, {i-1} in a text are the copy's number, from 1",
+          {{Entry::repeat_key, "how many there are", "1"},
+           {Entry::shift_key, "{ position = [1, 0] }: each copy's numbers differ from the one before by that", ""},
+           {Entry::each_key, "{ name = [\"a\", \"b\"] }: the values of a key, one a copy", ""}}};
+}
 
 Span span_of(const toml::source_region& region) {
   const int line = static_cast<int>(region.begin.line), begin = static_cast<int>(region.begin.column);
@@ -42,26 +53,24 @@ std::vector<Entry> Entry::list(const std::string& key) {
   }
   for (const toml::node& element : *node->as_array()) {
     Entry entry(*element.as_table(), span_of(element.source()), fmt::format("[[{}]]", key), *mistakes_);
-    const toml::node* repeat = entry.find("repeat");
-    const int copies = repeat ? entry.whole("repeat", 1).value_or(1) : 1;
-    entry.repeated_ = repeat != nullptr;
+    const int copies = entry.whole(repeat_key, 1).value_or(1);
+    entry.repeated_ = entry.has(repeat_key);
     entry.check_repeat(copies);
     for (entry.copy_ = 0; entry.copy_ < std::min(copies, most_copies); ++entry.copy_) entries.push_back(entry);
   }
   return entries;
 }
 
-// `shift` adds something from copy to copy, `each` gives a value per copy; both make sense only
-// with `repeat`.
+// `shift` adds a step from copy to copy, `each` gives one value per copy. Both need `repeat`.
 void Entry::check_repeat(int copies) {
-  for (const char* key : {"shift", "each"}) {
+  for (const char* key : {shift_key, each_key}) {
     const toml::node* node = find(key);
     if (!node) continue;
-    if (!repeated_) error(where(key), fmt::format("`{}` without `repeat`", key), "say how often: repeat = 10");
+    if (!repeated_) error(where(key), fmt::format("`{}` without `repeat`", key), "add repeat = 10");
     if (!node->is_table()) wrong_type(*node, key, "a table, as { position = [1, 0] }");
   }
-  if (copies > most_copies) error(where("repeat"), fmt::format("`repeat` is more than {}", most_copies));
-  const toml::table* each = table_->get_as<toml::table>("each");
+  if (copies > most_copies) error(where(repeat_key), fmt::format("`repeat` is more than {}", most_copies));
+  const toml::table* each = table_->get_as<toml::table>(each_key);
   if (!each) return;
   for (auto&& [key, values] : *each) {
     const std::string name = fmt::format("each.{}", key.str());
@@ -74,9 +83,13 @@ void Entry::check_repeat(int copies) {
   }
 }
 
+const toml::table* Entry::of_copies(const char* key) const {
+  return repeated_ ? table_->get_as<toml::table>(key) : nullptr;
+}
+
 const toml::node* Entry::find(const std::string& key) {
   asked_.insert(key);
-  const toml::table* each = repeated_ ? table_->get_as<toml::table>("each") : nullptr;
+  const toml::table* each = of_copies(each_key);
   const toml::array* values = each ? each->get_as<toml::array>(key) : nullptr;
   if (values && copy_ < static_cast<int>(values->size())) return values->get(static_cast<std::size_t>(copy_));
   return table_->get(key);
@@ -90,9 +103,7 @@ bool Entry::leaves_table_unread(const std::string& key) const {
 
 Span Entry::where(const std::string& key) const {
   const toml::node* node = table_->get(key);
-  if (!node && repeated_) {
-    if (const toml::table* each = table_->get_as<toml::table>("each")) node = each->get(key);
-  }
+  if (const toml::table* each = node ? nullptr : of_copies(each_key)) node = each->get(key);
   return node ? span_of(node->source()) : header_;
 }
 
@@ -118,7 +129,7 @@ std::optional<bool> Entry::flag(const std::string& key) {
   return value;
 }
 
-// {i}, {i+1}, {i-2} in a repeated entry stand for the number of the copy, counted from 1.
+// In a repeated entry {i}, {i+1}, {i-2} stand for the number of the copy, from 1.
 std::optional<std::string> Entry::substituted(const std::string& text, Span where) const {
   std::string result;
   for (std::size_t at = 0; at < text.size();) {
@@ -157,24 +168,20 @@ std::optional<std::string> Entry::text(const std::string& key) {
 
 std::string Entry::written(const std::string& key) {
   const toml::node* node = find(key);
-  return node ? node->value<std::string>().value_or("") : "";
+  return toml::node_view(node).value_or(std::string());
 }
 
 std::optional<std::vector<std::string>> Entry::texts(const std::string& key) {
   const toml::node* node = find(key);
   if (!node) return {};
-  std::vector<std::string> result;
-  const toml::array* array = node->as_array();
-  if (!array) {
+  if (!node->is_array()) {
     wrong_type(*node, key, "a list of texts, as [\"a\", \"b\"]");
     return {};
   }
-  for (const toml::node& element : *array) {
-    if (!element.is_string()) {
-      wrong_type(element, key, "a list of texts");
-      return {};
-    }
-    const std::optional<std::string> text = plain_text(element);
+  std::vector<std::string> result;
+  for (const toml::node& element : *node->as_array()) {
+    if (!element.is_string()) wrong_type(element, key, "a list of texts");
+    const auto text = element.is_string() ? plain_text(element) : std::nullopt;
     if (!text) return {};
     result.push_back(*text);
   }
@@ -189,15 +196,9 @@ std::optional<Entry> Entry::table(const std::string& key, const std::string& exa
   return {};
 }
 
-bool Entry::is_array(const std::string& key) {
-  const toml::node* node = find(key);
-  return node && node->is_array();
-}
+bool Entry::is_array(const std::string& key) { return toml::node_view(find(key)).is_array(); }
 
-bool Entry::is_array_of_arrays(const std::string& key) {
-  const toml::node* node = find(key);
-  return node && node->is_array() && node->as_array()->get(0) && node->as_array()->get(0)->is_array();
-}
+bool Entry::is_array_of_arrays(const std::string& key) { return toml::node_view(find(key))[0].is_array(); }
 
 std::optional<std::string> Entry::choice(const std::string& key, const std::vector<std::string>& allowed) {
   const std::optional<std::string> value = text(key);
@@ -213,7 +214,7 @@ void Entry::required(const std::string& key, const std::string& fix) {
 void Entry::close(const std::vector<std::string>& also_known) const {
   std::vector<std::string> known(also_known);
   for (const std::string& key : asked_) {
-    const bool only_repeated = key == "shift" || key == "each";
+    const bool only_repeated = key == shift_key || key == each_key;
     if (!only_repeated || repeated_) known.push_back(key);
   }
   for (auto&& [key, node] : *table_) {
@@ -222,8 +223,8 @@ void Entry::close(const std::vector<std::string>& also_known) const {
     error(span_of(key.source()), fmt::format("unknown key `{}` in {}", name, what_), did_you_mean(name, known));
   }
   const std::vector<std::string> shiftable(asked_.begin(), asked_.end());
-  for (const char* list : {"shift", "each"}) {
-    const toml::table* inner = repeated_ ? table_->get_as<toml::table>(list) : nullptr;
+  for (const char* list : {shift_key, each_key}) {
+    const toml::table* inner = of_copies(list);
     if (!inner) continue;
     for (auto&& [key, node] : *inner) {
       const std::string name(key.str());
@@ -232,6 +233,136 @@ void Entry::close(const std::vector<std::string>& also_known) const {
             did_you_mean(name, shiftable));
     }
   }
+}
+
+namespace {
+
+// --- Numbers: fractions, degrees, ranges, shifts.
+
+// Takes the number off the start of a text.
+std::optional<double> take_number(std::string_view& text) {
+  double value = 0;
+  const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{}) return {};
+  text.remove_prefix(static_cast<std::size_t>(rest - text.data()));
+  return value;
+}
+
+// "1/60", and "30 deg" in radians; nothing if the text is neither.
+std::optional<double> number_in_text(std::string_view text, bool angle) {
+  std::optional<double> value = take_number(text);
+  if (value && text.starts_with("/")) {
+    text.remove_prefix(1);
+    const std::optional<double> divisor = take_number(text);
+    if (!divisor) return {};
+    *value /= *divisor;
+  }
+  if (value && angle && text == " deg") return *value * std::numbers::pi / 180;
+  return text.empty() ? value : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<double> Entry::plain_number(const toml::node& node, const std::string& key, Quantity quantity) {
+  if (node.is_number()) return node.value<double>();
+  if (!node.is_string()) {
+    wrong_type(node, key, "a number");
+    return {};
+  }
+  const std::optional<double> value = number_in_text(*node.value<std::string_view>(), quantity.angle);
+  if (!value) {
+    error(span_of(node.source()), fmt::format("`{}` must be a number, but is a text", key),
+          quantity.angle ? "0.5 (rad) or \"30 deg\"" : "0.5, or a fraction as \"1/60\"");
+  }
+  return value;
+}
+
+// Copy k adds k times the shift to number `index` of `key`.
+std::optional<double> Entry::shift_of(const std::string& key, std::size_t index) {
+  const toml::table* shift = of_copies(shift_key);
+  const toml::node* node = shift ? shift->get(key) : nullptr;
+  if (!node) return 0;
+  const toml::array* array = node->as_array();
+  const toml::node* element = array ? array->get(index) : index == 0 ? node : nullptr;
+  if (!element) {
+    wrong_type(*node, "shift." + key, "shaped as `" + key + "`");
+    return {};
+  }
+  const std::optional<double> step = plain_number(*element, "shift." + key, {Sign::any, true});
+  if (!step) return {};
+  return *step * copy_;
+}
+
+// `node` as a number in its range; `index` says which element of a list it is.
+std::optional<double> Entry::shifted_number(const toml::node& node, const std::string& key, std::size_t index,
+                                            Quantity quantity) {
+  const std::optional<double> start = plain_number(node, key, quantity), shift = shift_of(key, index);
+  if (!start || !shift) return {};
+  const double value = *start + *shift;
+  const char* wrong = nullptr;
+  if (quantity.sign == Sign::positive && value <= 0) wrong = "greater than 0";
+  if (quantity.sign == Sign::not_negative && value < 0) wrong = "0 or more";
+  if (!std::isfinite(value)) wrong = "finite";
+  if (!wrong) return value;
+  error(span_of(node.source()), fmt::format("`{}` is {}: it must be {}", key, value, wrong));
+  return {};
+}
+
+std::optional<double> Entry::number(const std::string& key, Quantity quantity) {
+  const toml::node* node = find(key);
+  if (!node) return {};
+  return shifted_number(*node, key, 0, quantity);
+}
+
+std::optional<std::vector<double>> Entry::numbers(const std::string& key, std::size_t size, Quantity quantity) {
+  const toml::node* node = find(key);
+  if (!node) return {};
+  const toml::array* array = node->as_array();
+  if (!array || array->size() != size) {
+    const std::string found = array ? fmt::format("has {}", array->size()) : "is " + type_of(*node);
+    error(span_of(node->source()), fmt::format("`{}` must be a list of {} numbers, but {}", key, size, found));
+    return {};
+  }
+  std::vector<double> values;
+  for (std::size_t k = 0; k < size; ++k) {
+    const std::optional<double> value = shifted_number(*array->get(k), key, k, quantity);
+    if (!value) return {};
+    values.push_back(*value);
+  }
+  return values;
+}
+
+std::optional<std::vector<double>> Entry::rows(const std::string& key, std::size_t count) {
+  const toml::node* node = find(key);
+  if (!node) return {};
+  std::vector<double> values;
+  const toml::array* lists = node->as_array();
+  for (std::size_t i = 0; lists && i < lists->size(); ++i) {
+    const toml::array* row = lists->get(i)->as_array();
+    for (std::size_t j = 0; row && row->size() == 3 && j < 3; ++j) {
+      const std::optional<double> value = plain_number(*row->get(j), key, {});
+      if (!value) return {};
+      values.push_back(*value);
+    }
+  }
+  if (values.size() == 3 * count && lists->size() == count) return values;
+  error(span_of(node->source()), fmt::format("`{}` must be {} lists of three numbers", key, count));
+  return {};
+}
+
+std::optional<int> Entry::whole(const std::string& key, int least) {
+  const toml::node* node = find(key);
+  if (!node) return {};
+  const std::optional<std::int64_t> value = node->value_exact<std::int64_t>();
+  if (!value && node->is_number()) {
+    error(span_of(node->source()), fmt::format("`{}` is {}: it must be a whole number", key, *node->value<double>()));
+  } else if (!value) {
+    wrong_type(*node, key, "a whole number");
+  }
+  if (!value) return {};
+  if (*value >= least && *value <= 1'000'000'000) return static_cast<int>(*value);
+  error(span_of(node->source()), fmt::format("`{}` is {}: it must be {} or more", key, *value, least));
+  return {};
 }
 
 }  // namespace cdot

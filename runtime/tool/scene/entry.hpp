@@ -1,6 +1,5 @@
-// One table of a scene file, read key by key: types, ranges, `repeat`, and the keys that nobody
-// asked for. The only place that knows toml++; the reader asks for "a positive number called mass"
-// and says what it is for.
+// One table of a scene file, read key by key: it checks types, ranges and `repeat`, and complains about unknown keys.
+// Nothing else knows toml++.
 #pragma once
 
 #include <optional>
@@ -15,7 +14,7 @@
 
 namespace cdot {
 
-// What a number may be. Any may be written "1/60", angles also "30 deg".
+// The range of a number. A file may write any number as "1/60", an angle also as "30 deg".
 enum class Sign { any, positive, not_negative };
 struct Quantity {
   Sign sign = Sign::any;
@@ -27,15 +26,18 @@ std::string type_of(const toml::node& node);  // "a string", "an array", as a me
 
 class Entry {
  public:
-  // `what` names the table in messages: "[[body]]". Copy k of a repeated entry counts from 0.
+  // `what` names the table in messages: "[[body]]". Copies count from 0.
   Entry(const toml::table& table, Span header, std::string what, Mistakes& mistakes, int copy = 0);
 
-  // The entries of the array of tables `key`, each repeated as it asks.
+  // Of the copies of a repeated entry.
+  static constexpr const char *repeat_key = "repeat", *shift_key = "shift", *each_key = "each";
+
+  // The entries of the array of tables `key`, with their copies.
   std::vector<Entry> list(const std::string& key);
 
   bool has(const std::string& key);
-  bool leaves_table_unread(const std::string& key) const;   // nobody has asked for it
-  Span where(const std::string& key) const;                 // of its value; of the entry's header if it is absent
+  bool leaves_table_unread(const std::string& key) const;   // an unread table
+  Span where(const std::string& key) const;                 // of its value, or of the header if it is absent
   Span element(const std::string& key, std::size_t index);  // of one value of a list
   Span header() const { return header_; }
   const std::string& what() const { return what_; }
@@ -45,23 +47,24 @@ class Entry {
   std::optional<int> whole(const std::string& key, int least);
   std::optional<bool> flag(const std::string& key);
   std::optional<std::string> text(const std::string& key);
-  std::string written(const std::string& key);  // the text as it stands, {i} and all; empty if there is none
+  std::string written(const std::string& key);  // the text before {i} is replaced; empty if there is none
   std::optional<std::vector<std::string>> texts(const std::string& key);
   std::optional<std::vector<double>> numbers(const std::string& key, std::size_t size, Quantity = {});
   // `count` lists of three numbers, one after the other.
   std::optional<std::vector<double>> rows(const std::string& key, std::size_t count);
-  // Nothing if it is no table, which is a mistake if there is an example of one.
+  // Nothing if the value is not a table; with an `example` that is a mistake.
   std::optional<Entry> table(const std::string& key, const std::string& example = "");
   bool is_array(const std::string& key);
   bool is_array_of_arrays(const std::string& key);
   std::optional<std::string> choice(const std::string& key, const std::vector<std::string>& allowed);
-  void required(const std::string& key, const std::string& fix);  // complains if it is absent
+  void required(const std::string& key, const std::string& fix);  // a mistake if it is absent
 
   void error(Span where, const std::string& cause, const std::string& fix = {}) const;
-  // Complains about every key that was not asked for; call it when all is read.
+  // Reports every key that nobody has read. Call it last.
   void close(const std::vector<std::string>& also_known = {}) const;
 
  private:
+  const toml::table* of_copies(const char* key) const;  // `shift` or `each` of a repeated entry
   const toml::node* find(const std::string& key);
   std::optional<double> plain_number(const toml::node& node, const std::string& key, Quantity);
   std::optional<std::string> plain_text(const toml::node& node);

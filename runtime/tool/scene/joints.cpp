@@ -1,5 +1,5 @@
-// The [[joint]] and [[spring]] entries of a scene. Which parameters and coordinates a joint has is
-// asked of the table of joint types; nothing here knows a joint by name.
+// The [[joint]] and [[spring]] entries of a scene -> definitions. The table of joint types lists parameters and
+// coordinates; no joint is known by name here.
 #include <cmath>
 #include <fmt/format.h>
 #include <map>
@@ -50,7 +50,7 @@ const JointType* type_named(Entry& joint, Dimension dimension) {
   return nullptr;
 }
 
-// The bodies in the order of the spec; nothing if their number is wrong.
+// The bodies in the order of the spec. A wrong number is a mistake, and gives nothing.
 std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType& type, const BodyNames& names) {
   const bool one = type.bodies == 1;
   joint.required("bodies", one ? "bodies = [\"rod\"]" : "bodies = [\"world\", \"rod\"]");
@@ -62,7 +62,7 @@ std::optional<std::vector<int>> read_joint_bodies(Entry& joint, const JointType&
     return {};
   }
   if (type.bodies == 2 && (*bodies)[0] == (*bodies)[1]) {
-    joint.error(joint.where("bodies"), fmt::format("a joint between \"{}\" and itself", names.name((*bodies)[0])));
+    joint.error(joint.where("bodies"), fmt::format("the joint connects \"{}\" with itself", names.name((*bodies)[0])));
     return {};
   }
   return bodies;
@@ -79,8 +79,7 @@ std::optional<std::vector<double>> read_two_axes(Entry& joint, const std::string
   return numbers;
 }
 
-// The numbers of one parameter in the frame of its body; nothing if it is left to its default, or
-// wrong.
+// The numbers of one parameter in the frame of its body. Nothing if it is wrong or takes its default.
 std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterInfo& parameter, int body,
                                                   std::optional<Vec3> at, const BodyNames& names) {
   const std::string key(parameter.name);
@@ -93,21 +92,21 @@ std::optional<std::vector<double>> read_parameter(Entry& joint, const ParameterI
     return read_two_axes(joint, key);
   std::optional<Vec3> vector;
   if (parameter.kind == ParameterKind::point) {
-    vector = read_point(joint, key, body, names);
+    vector = read_of_body(joint, key, body, names, &BodyNames::to_body);
     if (!joint.has(key) && at) vector = names.to_body(body, *at);
   } else {
-    vector = read_direction(joint, key, body, names);
+    vector = read_of_body(joint, key, body, names, &BodyNames::turned_to_body);
     const bool direction = parameter.kind != ParameterKind::vector;
     if (direction && vector && std::hypot((*vector)[0], (*vector)[1], (*vector)[2]) == 0) {
       joint.error(joint.where(key), fmt::format("the direction `{}` has length 0", key),
-                  in_space ? "any other length will do: [1, 0, 0]" : "any other length will do: [1, 0]");
+                  in_space ? "any other length works: [1, 0, 0]" : "any other length works: [1, 0]");
     }
   }
   if (!vector) return {};
   return std::vector<double>(vector->begin(), vector->begin() + (in_space ? 3 : 2));
 }
 
-// `at`, and the parameters that the spec of the type has: points that are not given are where it says.
+// `at` and the parameters of the type. `at` gives the points that have no key of their own.
 void read_parameters(Entry& joint, const char* key, JointReading& to) {
   const BodyNames& names = to.names;
   const JointType& type = *to.type;
@@ -138,25 +137,20 @@ void read_parameters(Entry& joint, const char* key, JointReading& to) {
   }
 }
 
-// An effect on a coordinate that other joints have, but not this one: revolute, where hinge was
-// meant.
+// Refuses an effect on a coordinate of another joint type: the scene says revolute and means hinge.
 void refuse_other_coordinates(Entry& joint, const JointType& type, Dimension dimension) {
-  std::map<std::string, std::string> owners;  // by coordinate: the joints of as many bodies
-  for (const JointType& other : joint_types(dimension)) {
-    if (other.bodies != type.bodies) continue;
-    for (const CoordinateInfo& coordinate : other.coordinates) {
-      std::string& names = owners[std::string(coordinate.name)];
-      names += fmt::format("{}`{}`", names.empty() ? "" : ", ", other.name);
-    }
-  }
+  std::map<std::string, std::vector<std::string>> owners;  // by coordinate: the joints of as many bodies
+  for (const JointType& other : joint_types(dimension))
+    for (const CoordinateInfo& coordinate : other.coordinates)
+      if (other.bodies == type.bodies) owners[std::string(coordinate.name)].push_back(fmt::format("`{}`", other.name));
   for (const auto& [coordinate, names] : owners) {
     if (!joint.leaves_table_unread(coordinate)) continue;
     std::string own;
     for (const CoordinateInfo& c : type.coordinates)
       own += fmt::format("{}`{}`", own.empty() ? "it has " : ", ", c.name);
     joint.error(joint.where(coordinate), fmt::format("`{}` has no coordinate `{}`", type.name, coordinate),
-                fmt::format("{}{}joints that have it: {}", own, own.empty() ? "" : "; ", names));
-    joint.has(coordinate);  // read now: one complaint is enough
+                fmt::format("{}{}joints that have it: {}", own, own.empty() ? "" : "; ", fmt::join(names, ", ")));
+    joint.has(coordinate);  // read now, so that close() does not report it again
   }
 }
 
@@ -172,10 +166,6 @@ void read_bodies_of_joint(Entry& joint, const char*, JointReading& to) {
 
 void read_soft(Entry& joint, const char* key, JointReading& to) {
   to.joint.definition.soft = read_softness(joint, key);
-}
-
-void read_breaking(Entry& joint, const char* key, JointReading& to) {
-  to.joint.breaking = joint.number(key, {Sign::positive});
 }
 
 struct SpringReading {
@@ -197,16 +187,13 @@ void read_bodies_of_spring(Entry& spring, const char* key, SpringReading& to) {
   to.spring.body_b = two ? (*bodies)[1] : world_body;
 }
 
-void read_pa(Entry& spring, const char* key, SpringReading& to) {
-  const Vec3 p = read_point(spring, key, to.spring.body_a, to.names).value_or(Vec3{});
-  to.spring.ax = p[0], to.spring.ay = p[1], to.spring.az = p[2];
-  to.from = to.names.to_world(to.spring.body_a, p);
-}
-
-void read_pb(Entry& spring, const char* key, SpringReading& to) {
-  const Vec3 p = read_point(spring, key, to.spring.body_b, to.names).value_or(Vec3{});
-  to.spring.bx = p[0], to.spring.by = p[1], to.spring.bz = p[2];
-  to.to = to.names.to_world(to.spring.body_b, p);
+using Number = double SpringDefinition::*;
+template <int SpringDefinition::*of, Number x, Number y, Number z, Vec3 SpringReading::*in_world>
+void read_end(Entry& spring, const char* key, SpringReading& to) {
+  const int body = to.spring.*of;
+  const Vec3 p = read_of_body(spring, key, body, to.names, &BodyNames::to_body).value_or(Vec3{});
+  to.spring.*x = p[0], to.spring.*y = p[1], to.spring.*z = p[2];
+  to.*in_world = to.names.to_world(body, p);
 }
 
 void read_rest(Entry& spring, const char* key, SpringReading& to) {
@@ -221,18 +208,21 @@ void read_stiffness(Entry& spring, const char* key, SpringReading& to) {
 }
 
 constexpr auto spring = &SpringReading::spring;
+using Spring = SpringDefinition;
+constexpr auto read_pa = read_end<&Spring::body_a, &Spring::ax, &Spring::ay, &Spring::az, &SpringReading::from>;
+constexpr auto read_pb = read_end<&Spring::body_b, &Spring::bx, &Spring::by, &Spring::bz, &SpringReading::to>;
 
 // clang-format off
 constexpr Key<JointReading> named[] = {
     {"name", "of messages and summaries", "joint1, joint2, …", read_joint_name},
     {"type", "a spec of specs/planar/ or specs/spatial/", "required", read_type},
 };
-// These depend on the type.
+// The meaning of these depends on the type.
 constexpr Key<JointReading> keys[] = {
     {"bodies", "the spec's a, b, … in this order; \"world\" never moves", "required", read_bodies_of_joint},
-    {"at", "the points that are not given by their own names, in the world at the start [m]", "", read_parameters},
+    {"at", "place in the world at the start of all points without a key of their own [m]", "", read_parameters},
     {"soft", "{ frequency, damping_ratio } or { stiffness, damping }: the joint is a spring", "exact", read_soft},
-    {"breaking", "the joint goes after a step in which it carried more [N, N m]", "never", read_breaking},
+    {"breaking", "the joint breaks after a step with a larger load [N, N m]", "never", read_number<Sign::positive, &JointReading::joint, &SceneJoint::breaking>},
 };
 constexpr Key<SpringReading> spring_keys[] = {
     {"name", "of messages", "", read_spring_name},
@@ -273,9 +263,7 @@ void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
 }
 
 KeyTable keys_of_a_joint() {
-  KeyTable table = table_of("[[joint]], beside the parameters and coordinates of its type", named);
-  for (const KeyTable::Row& row : table_of("", keys).rows) table.rows.push_back(row);
-  return table;
+  return table_of("[[joint]], beside the parameters and coordinates of its type", named, keys);
 }
 
 KeyTable keys_of_a_spring() { return table_of("[[spring]]", spring_keys); }

@@ -1,4 +1,4 @@
-// The keys of a scene's tables, a row each: reading, "did you mean" and `cdot-run list --keys` go by the same rows.
+// Tables of the keys of a scene, a row each. Reading, "did you mean" and `cdot-run list --keys` use the same rows.
 #pragma once
 
 #include <string>
@@ -20,16 +20,22 @@ struct Key {
   const char* otherwise;       // if the key is not given
   void (*read)(Entry& entry, const char* key, To& to);
   Where where = Where::everywhere;
+  std::vector<std::string> (*choices)() = nullptr;  // the texts that it may be
 };
 
-// A key that is not asked for stays unknown to the entry, which then complains about it.
+template <const auto& table>
+std::vector<std::string> choices_of() {
+  return names_of(table);
+}
+
+// Keys of space stay unread in the plane, so that the entry reports them as unknown.
 template <class To, std::size_t count>
 void read_keys(Entry& entry, const Key<To> (&keys)[count], Dimension dimension, To& to) {
   for (const Key<To>& key : keys)
     if (key.where == Where::everywhere || dimension == Dimension::spatial) key.read(entry, key.name, to);
 }
 
-// --- Readers of a member, or of a member of a member: what is not given stays as it is.
+// --- Readers of a member, or of a member of a member. A key that is not given changes nothing.
 
 template <Sign sign, auto... path, class To>
 void read_number(Entry& entry, const char* key, To& to) {
@@ -43,7 +49,7 @@ template <auto... path, class To>
 void read_flag(Entry& entry, const char* key, To& to) {
   if (const auto flag = entry.flag(key)) (to.*....*path) = *flag;
 }
-// The method of that name in a table of <cdot/methods.hpp>.
+// Looks the name up in a table of <cdot/methods.hpp>.
 template <const auto& table, auto... path, class To>
 void read_choice(Entry& entry, const char* key, To& to) {
   if (const auto name = entry.choice(key, names_of(table))) (to.*....*path) = method_called(table, *name);
@@ -59,18 +65,27 @@ struct KeyTable {
   std::vector<Row> rows;
 };
 
-template <class To, std::size_t count>
-KeyTable table_of(std::string title, const Key<To> (&keys)[count]) {
+// "direct or iterative", "a, b or c"
+std::string listed(const std::vector<std::string>& choices);  // tool/scene/settings.cpp
+
+template <class... Keys>
+KeyTable table_of(std::string title, const Keys&... parts) {
   KeyTable table{std::move(title), {}};
-  for (const Key<To>& key : keys)
-    table.rows.push_back({key.name,
-                          key.where == Where::in_space ? std::string("in space: ") + key.meaning : key.meaning,
-                          key.otherwise});
+  const auto add = [&](const auto& keys) {
+    for (const auto& key : keys)
+      table.rows.push_back({key.name,
+                            (key.where == Where::in_space ? "in space: " : "") + std::string(key.meaning) +
+                                (key.choices ? ": " + listed(key.choices()) : ""),
+                            key.otherwise});
+  };
+  (add(parts), ...);
   return table;
 }
 
 KeyTable keys_of_the_top();   // tool/scene/settings.cpp
+KeyTable keys_of_copies();    // tool/scene/entry.cpp
 KeyTable keys_of_a_body();    // tool/scene/bodies.cpp
+KeyTable keys_of_a_shape();   // tool/scene/bodies.cpp
 KeyTable keys_of_a_joint();   // tool/scene/joints.cpp
 KeyTable keys_of_a_spring();  // tool/scene/joints.cpp
 KeyTable keys_of_effects();   // tool/scene/effects.cpp

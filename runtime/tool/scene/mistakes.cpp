@@ -1,3 +1,4 @@
+// Places, causes and fixes -> the text of a report with carets.
 #include "runtime/tool/scene/mistakes.hpp"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ namespace {
 
 constexpr int most_reported = 50;
 
-// A long line is cut to a window that starts a little before the mistake.
+// Of a long line the report shows a window that starts a little before the mistake.
 constexpr text::Look look{100,
                           "…",
                           "",
@@ -30,7 +31,7 @@ std::vector<std::string> split_lines(std::string_view text) {
   return lines;
 }
 
-// The byte at which a character begins, counted from 1; beyond the last one the end of the line.
+// The byte at which character number `character` begins; beyond the last one the end of the line.
 std::size_t byte_of(std::string_view line, int character) {
   std::size_t at = 0;
   for (int k = 1; k < character && at < line.size(); ++k)
@@ -44,7 +45,7 @@ bool same_start(std::string_view word, std::string_view candidate) {
   return common >= 4 && 2 * common >= candidate.size();
 }
 
-// What other engines and other people call what a scene calls otherwise.
+// Words of other engines, and the word that a scene uses.
 std::string_view called_here(std::string_view word) {
   constexpr std::pair<std::string_view, std::string_view> words[] = {
       {"omega", "spin"},       {"angular_velocity", "spin"},
@@ -77,7 +78,7 @@ void Mistakes::add(Span where, std::string cause, std::string fix) {
   found_.push_back({where, std::move(cause), std::move(fix)});
 }
 
-// The copies of a repeated entry share their lines: what is wrong in all of them is said once.
+// Copies of an entry share their lines: the report shows a mistake of all copies once.
 std::vector<Mistakes::Mistake> Mistakes::ordered() const {
   std::vector<Mistake> result = found_;
   std::sort(result.begin(), result.end());
@@ -114,7 +115,7 @@ std::string Mistakes::paragraph(std::string_view kind, Span where, std::string_v
 std::string did_you_mean(std::string_view word, std::span<const std::string> known) {
   const std::string_view elsewhere = called_here(word);
   if (std::find(known.begin(), known.end(), elsewhere) != known.end())
-    return fmt::format("here that is `{}`", elsewhere);
+    return fmt::format("a scene calls it `{}`", elsewhere);
   // Words of one or two letters resemble everything.
   std::string best = text::nearest(word, known, word.size() < 2 ? 0 : word.size() < 3 ? 1 : 1 + word.size() / 4);
   for (auto k = known.begin(); best.empty() && k != known.end(); ++k)

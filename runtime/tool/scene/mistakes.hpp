@@ -1,6 +1,4 @@
-// The text of a scene file and the mistakes found in it: every mistake has a place, a cause and,
-// where one can be guessed, a fix. Kept apart from the reader so that what a mistake looks like is
-// decided in one place.
+// The mistakes in the text of a scene file -> a report. Each has a place, a cause and, where one is likely, a fix.
 #pragma once
 
 #include <span>
@@ -10,8 +8,7 @@
 
 namespace cdot {
 
-// A stretch of one line, columns counted in characters from 1, `end` one past the last. Line 0: the
-// file as a whole.
+// A part of one line. Columns count characters from 1; `end` is one past the last. Line 0 stands for the whole file.
 struct Span {
   int line = 0, begin = 0, end = 0;
   auto operator<=>(const Span&) const = default;
@@ -25,8 +22,7 @@ class Mistakes {
   bool none() const { return found_.empty(); }
   int count() const;
 
-  // All mistakes in the order of the file, each with its line and a caret span under the part that
-  // is wrong.
+  // All mistakes in the order of the file, each with its line and carets under the wrong part.
   std::string report() const;
   // One such paragraph: `kind` is "error" or "warning".
   std::string paragraph(std::string_view kind, Span where, std::string_view cause, std::string_view fix) const;
@@ -44,8 +40,7 @@ class Mistakes {
   std::vector<Mistake> found_;
 };
 
-// "did you mean `angle`?" for the known word that is nearest to `word`; else "one of: ...", or
-// nothing if none is known.
+// "did you mean `angle`?" for the known word nearest to `word`; else the list of known words, if there are any.
 std::string did_you_mean(std::string_view word, std::span<const std::string> known);
 
 }  // namespace cdot

@@ -1,4 +1,4 @@
-// The scene reader: from the text of a TOML file to a Scene, or to all that is wrong with it.
+// The text of a TOML file -> a Scene, or all its mistakes.
 #include "runtime/tool/scene/read.hpp"
 
 #include <algorithm>
@@ -17,24 +17,27 @@ bool fits_a_column(const std::string& name) {
   return !name.empty() && std::all_of(name.begin(), name.end(), fits);
 }
 
-// What toml++ says, without the name of the rule that it was in.
+// The message of toml++ without the name of its grammar rule.
 std::string syntax_error(std::string_view description) {
-  if (description.starts_with("Error while parsing ")) {
-    description.remove_prefix(std::string_view("Error while parsing ").size());
-  }
+  constexpr std::string_view rule = "Error while parsing ";
+  if (description.starts_with(rule)) description.remove_prefix(rule.size());
   std::string text(description);
   if (text.starts_with("Encountered")) text[0] = 'e';
-  return "this is no TOML: " + text;
+  return "invalid TOML: " + text;
 }
 
-Vec3 turned(Vec3 v, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  return {c * v[0] - s * v[1], s * v[0] + c * v[1], 0};
-}
-
-spatial::Pose<double> pose_of(const SceneBody& body) {
+// From the frame of a body to the world's, at its initial pose; or back.
+Vec3 turned(const SceneBody& body, Dimension dimension, const Vec3& v, bool to_world) {
+  if (dimension == Dimension::planar) {
+    const double angle = to_world ? body.definition.angle : -body.definition.angle;
+    const double c = std::cos(angle), s = std::sin(angle);
+    return {c * v[0] - s * v[1], s * v[0] + c * v[1], 0};
+  }
   using Space = Spatial<double>;
-  return Space::placed(Space::place_of(body.spatial));
+  const auto pose = Space::placed(Space::place_of(body.spatial));
+  const spatial::Vector<double> from{v[0], v[1], v[2]};
+  const auto to = to_world ? spatial::to_world(pose, from) : spatial::to_body(pose, from);
+  return {to.x, to.y, to.z};
 }
 
 void read_all(const toml::table& table, Mistakes& mistakes, Scene& scene) {
@@ -82,36 +85,22 @@ const std::string& BodyNames::name(int body) const {
   return body == world_body ? world : scene_->bodies[static_cast<std::size_t>(body)].name;
 }
 
-Vec3 BodyNames::centre(int body) const {
-  const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
-  if (dimension() == Dimension::planar) return {source.definition.x, source.definition.y, 0};
-  return {source.spatial.x, source.spatial.y, source.spatial.z};
+Vec3 BodyNames::turned_to_body(int body, const Vec3& direction) const {
+  if (body == world_body) return direction;
+  return turned(scene_->bodies[static_cast<std::size_t>(body)], dimension(), direction, false);
 }
 
-Vec3 BodyNames::to_body(int body, Vec3 position) const {
+Vec3 BodyNames::to_body(int body, const Vec3& position) const {
   if (body == world_body) return position;
-  const Vec3 c = centre(body);
+  const Vec3 c = position_of(scene_->bodies[static_cast<std::size_t>(body)], dimension());
   return turned_to_body(body, {position[0] - c[0], position[1] - c[1], position[2] - c[2]});
 }
 
-Vec3 BodyNames::turned_to_body(int body, Vec3 direction) const {
-  if (body == world_body) return direction;
-  const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
-  if (dimension() == Dimension::planar) return turned(direction, -source.definition.angle);
-  const auto v = spatial::to_body(pose_of(source), {direction[0], direction[1], direction[2]});
-  return {v.x, v.y, v.z};
-}
-
-Vec3 BodyNames::to_world(int body, Vec3 position) const {
+Vec3 BodyNames::to_world(int body, const Vec3& position) const {
   if (body == world_body) return position;
   const SceneBody& source = scene_->bodies[static_cast<std::size_t>(body)];
-  const Vec3 c = centre(body);
-  if (dimension() == Dimension::planar) {
-    const Vec3 arm = turned(position, source.definition.angle);
-    return {c[0] + arm[0], c[1] + arm[1], 0};
-  }
-  const auto arm = spatial::to_world(pose_of(source), {position[0], position[1], position[2]});
-  return {c[0] + arm.x, c[1] + arm.y, c[2] + arm.z};
+  const Vec3 c = position_of(source, dimension()), arm = turned(source, dimension(), position, true);
+  return {c[0] + arm[0], c[1] + arm[1], c[2] + arm[2]};
 }
 
 std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension dimension) {
@@ -121,31 +110,16 @@ std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension 
   return Vec3{(*values)[0], (*values)[1], size == 3 ? (*values)[2] : 0};
 }
 
-namespace {
-
-// [x, y] as it stands, or { world = [x, y] } through `from_world`.
-template <class FromWorld>
-std::optional<Vec3> in_body_or_world(Entry& entry, const std::string& key, Dimension dimension, FromWorld from_world) {
+std::optional<Vec3> read_of_body(Entry& entry, const std::string& key, int body, const BodyNames& names,
+                                 Vec3 (BodyNames::*from_world)(int, const Vec3&) const) {
   std::optional<Entry> table = entry.table(key);
-  if (!table) return read_vector(entry, key, dimension);
-  const std::optional<Vec3> world = read_vector(*table, "world", dimension);
+  if (!table) return read_vector(entry, key, names.dimension());
+  const std::optional<Vec3> world = read_vector(*table, "world", names.dimension());
   if (!table->has("world"))
     table->error(table->header(), fmt::format("`{}` has no `world`", key),
-                 dimension == Dimension::planar ? "{ world = [x, y] }" : "{ world = [x, y, z] }");
+                 names.dimension() == Dimension::planar ? "{ world = [x, y] }" : "{ world = [x, y, z] }");
   table->close();
-  if (!world) return {};
-  return from_world(*world);
-}
-
-}  // namespace
-
-std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names) {
-  return in_body_or_world(entry, key, names.dimension(), [&](Vec3 position) { return names.to_body(body, position); });
-}
-
-std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names) {
-  return in_body_or_world(entry, key, names.dimension(),
-                          [&](Vec3 direction) { return names.turned_to_body(body, direction); });
+  return world ? std::optional((names.*from_world)(body, *world)) : std::nullopt;
 }
 
 std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
@@ -159,7 +133,7 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
   if (!name) return {};
   entry.rename(fmt::format("{} \"{}\"", entry.what(), entry.written("name")));
   if (!fits_a_column(*name)) {
-    entry.error(where, fmt::format("\"{}\" is no name", *name), "use letters, digits, _ and -");
+    entry.error(where, fmt::format("\"{}\" is not a valid name", *name), "use letters, digits, _ and -");
     return {};
   }
   const auto [earlier, is_new] = used.emplace(*name, where);
@@ -167,9 +141,9 @@ std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& 
   const Span first = earlier->second;
   const bool same_place = first == where;
   entry.error(where,
-              first.line == 0 ? fmt::format("\"{}\" is the name of what never moves", *name)
+              first.line == 0 ? fmt::format("\"{}\" is reserved for the immovable world", *name)
               : same_place    ? fmt::format("all copies are called \"{}\"", *name)
-                              : fmt::format("\"{}\" is the name of line {} already", *name, first.line),
+                              : fmt::format("line {1} already has the name \"{0}\"", *name, first.line),
               same_place && first.line > 0 ? fmt::format("name = \"{}{{i}}\"", *name) : "");
   return {};
 }
@@ -191,10 +165,8 @@ Scene read_scene(std::string_view text, const std::string& name) {
 Scene read_scene(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::stringstream text;
-  text << file.rdbuf();  // which fails for an empty file, and that is no mistake here
-  if (!file) {
-    throw SceneError(fmt::format("{}: error: cannot be read\n", path), 1);
-  }
+  text << file.rdbuf();  // fails for an empty file, which is no mistake here
+  if (!file) throw SceneError(fmt::format("{}: error: cannot be read\n", path), 1);
   return read_scene(text.str(), path);
 }
 

@@ -1,5 +1,4 @@
-// What the parts of the scene reader share: the names of the bodies, and points given in one frame
-// or another.
+// Shared by the parts of the scene reader: the names of the bodies, and points in the frame of the world or a body.
 #pragma once
 
 #include <map>
@@ -12,23 +11,20 @@
 
 namespace cdot {
 
-// The bodies read so far by name. A body with mistakes is known all the same, so that joints to it
-// are no mistakes.
+// The bodies by name. It also knows bodies with mistakes, so that joints to them cause no second mistake.
 class BodyNames {
  public:
   explicit BodyNames(const Scene& scene);
-  // The index of each name in `key`; nothing, and a complaint, if one is unknown. "world" is
-  // world_body.
+  // The index of each name in `key`; world_body for "world". An unknown name is a mistake, and gives nothing.
   std::optional<std::vector<int>> find(Entry& entry, const std::string& key) const;
   const std::string& name(int body) const;
   // A world position or direction in the frame of a body at its initial pose.
-  Vec3 to_body(int body, Vec3 world_position) const;
-  Vec3 turned_to_body(int body, Vec3 world_direction) const;
-  Vec3 to_world(int body, Vec3 body_position) const;
+  Vec3 to_body(int body, const Vec3& world_position) const;
+  Vec3 turned_to_body(int body, const Vec3& world_direction) const;
+  Vec3 to_world(int body, const Vec3& body_position) const;
   Dimension dimension() const { return scene_->dimension; }
 
  private:
-  Vec3 centre(int body) const;
   const Scene* scene_;
   std::map<std::string, int> index_;
   std::vector<std::string> known_;
@@ -37,22 +33,21 @@ class BodyNames {
 // [x, y], in space [x, y, z].
 std::optional<Vec3> read_vector(Entry& entry, const std::string& key, Dimension dimension);
 
-// A point of a body: [x, y] in its frame, or { world = [x, y] } where it is at the start.
-std::optional<Vec3> read_point(Entry& entry, const std::string& key, int body, const BodyNames& names);
-std::optional<Vec3> read_direction(Entry& entry, const std::string& key, int body, const BodyNames& names);
+// A point of a body, or a direction: [x, y] in its frame; or { world = [x, y] } at the start, which to_body() or
+// turned_to_body() takes there.
+std::optional<Vec3> read_of_body(Entry& entry, const std::string& key, int body, const BodyNames& names,
+                                 Vec3 (BodyNames::*from_world)(int, const Vec3&) const);
 
-// A name that a CSV column can carry, unused so far; `fallback` if the entry has none and that is
-// allowed.
+// A name that is new and fits a CSV column; `fallback` if the entry has none.
 std::optional<std::string> read_name(Entry& entry, std::map<std::string, Span>& used,
                                      const std::optional<std::string>& fallback);
 
-// The effects on the coordinates of a joint; and `soft`, which makes it a spring itself.
+// The effects on the coordinates of a joint, and `soft`, which makes the joint itself a spring.
 void read_effects(Entry& joint, const JointType& type, std::vector<CoordinateEffects>& to);  // tool/scene/effects.cpp
 std::optional<Softness> read_softness(Entry& joint, const char* key);
 
 void read_settings(Entry& top, Scene& scene);                         // tool/scene/settings.cpp
 void read_bodies(Entry& top, Scene& scene);                           // tool/scene/bodies.cpp
-void read_spatial_body(Entry& entry, SceneBody& body);                // tool/scene/bodies_spatial.cpp
 void read_joints(Entry& top, const BodyNames& names, Scene& scene);   // tool/scene/joints.cpp
 void read_springs(Entry& top, const BodyNames& names, Scene& scene);  // tool/scene/joints.cpp
 

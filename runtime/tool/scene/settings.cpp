@@ -1,5 +1,7 @@
-// The top of a scene file: what is simulated, for how long, and how.
+// The top of a scene file -> the settings, duration and step of a Scene.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <span>
 
 #include <cdot/methods.hpp>
 
@@ -26,7 +28,7 @@ void read_gravity(Entry& top, const char* key, Scene& scene) {
   scene.settings.gravity_z = gravity[2];
 }
 
-// With a local error the step is only how often the run is looked at.
+// With a local error the step is only the interval between outputs.
 void read_step(Entry& top, const char* key, Scene& scene) {
   const double step = top.has("local_error") ? scene.duration / 64 : scene.step;
   scene.step = top.number(key, {Sign::positive}).value_or(step);
@@ -43,23 +45,23 @@ constexpr Key<Scene> keys[] = {
     {"dimension", "2, or 3: in space", "2", read_dimension},
     {"gravity", "[m/s^2]", "[0, -9.81], in space [0, 0, -9.81]", read_gravity},
     {"duration", "[s]", "10", read_number<Sign::positive, &Scene::duration>},
-    {"step", "[s]; the run ends with the first step at or after duration", "0.001", read_step},
-    {"solver", "direct (exact) or iterative (sequential impulses)", "direct", read_choice<solvers, settings, &Settings::solver>},
-    {"integrator", "euler, implicit, rattle, rk4 or dop853", "euler", read_choice<integrators, settings, &Settings::integrator>},
-    {"local_error", "rk4 and dop853 choose their steps: the estimated error of one [m, rad, m/s, rad/s]", "fixed steps", read_number<Sign::positive, settings, &Settings::local_error>},
-    {"drift", "what keeps joints together: projection, baumgarte or none", "projection", read_choice<drifts, settings, &Settings::drift>},
+    {"step", "time step [s]; the run ends with the first step at or after duration", "0.001", read_step},
+    {"solver", "solver of the impulses", "direct", read_choice<solvers, settings, &Settings::solver>, Where::everywhere, choices_of<solvers>},
+    {"integrator", "method of a step", "euler", read_choice<integrators, settings, &Settings::integrator>, Where::everywhere, choices_of<integrators>},
+    {"local_error", "the integrator chooses its steps, each with this estimated error [m, rad, m/s, rad/s]", "fixed steps", read_number<Sign::positive, settings, &Settings::local_error>},
+    {"drift", "correction of C", "projection", read_choice<drifts, settings, &Settings::drift>, Where::everywhere, choices_of<drifts>},
     {"baumgarte", "share of the error removed per step", "0.2", read_number<Sign::positive, settings, &Settings::baumgarte>},
-    {"iterations", "of the iterative solver", "10", read_count<settings, &Settings::iterations>},
-    {"warm_start", "of the iterative solver", "true", read_flag<settings, &Settings::warm_start>},
-    {"kernels", "rows of one joint together in the iterative solver: fast, balanced or robust", "balanced", read_choice<kernel_forms, settings, &Settings::kernels>},
-    {"substeps", "every step is taken as so many shorter ones", "1", read_count<settings, &Settings::substeps>},
-    {"precision", "double or float", "double", read_choice<precisions, &Scene::single>},
-    {"accuracy", "of the trajectory, by a method that the run chooses [m, rad]", "the method as given", read_number<Sign::positive, &Scene::accuracy>},
-    {"sleep_after", "bodies at rest for so long sleep [s]; 0: never", "0", read_number<Sign::not_negative, settings, &Settings::sleep_after>},
-    {"sleep_speed", "the speed that counts as rest [m/s, rad/s]", "0.001", read_number<Sign::positive, settings, &Settings::sleep_speed>},
-    {"tolerance", "joint error from which the run has failed [m, rad]", "0.01", read_number<Sign::positive, &Scene::tolerance>},
-    {"project", "move a start that does not fit onto its joints", "false", read_flag<&Scene::project>},
-    {"on_failure", "of a step: stop or retry", "stop", read_choice<failure_answers, &Scene::on_failure>},
+    {"iterations", "sweeps of the iterative solver per substep", "10", read_count<settings, &Settings::iterations>},
+    {"warm_start", "the iterative solver starts from the last impulses", "true", read_flag<settings, &Settings::warm_start>},
+    {"kernels", "block solve of the rows of a joint in the iterative solver", "balanced", read_choice<kernel_forms, settings, &Settings::kernels>, Where::everywhere, choices_of<kernel_forms>},
+    {"substeps", "number of equal parts of a step", "1", read_count<settings, &Settings::substeps>},
+    {"precision", "floating-point precision", "double", read_choice<precisions, &Scene::single>, Where::everywhere, choices_of<precisions>},
+    {"accuracy", "error of the trajectory; the run chooses the method [m, rad]", "the method as set", read_number<Sign::positive, &Scene::accuracy>},
+    {"sleep_after", "bodies sleep after this time at rest [s]; 0: never", "0", read_number<Sign::not_negative, settings, &Settings::sleep_after>},
+    {"sleep_speed", "largest speed at rest [m/s, rad/s]", "0.001", read_number<Sign::positive, settings, &Settings::sleep_speed>},
+    {"tolerance", "joint error above which the run has failed [m, rad]", "0.01", read_number<Sign::positive, &Scene::tolerance>},
+    {"project", "project an inconsistent start onto C = 0", "false", read_flag<&Scene::project>},
+    {"on_failure", "reaction to a step that fails", "stop", read_choice<failure_answers, &Scene::on_failure>, Where::everywhere, choices_of<failure_answers>},
 };
 // clang-format on
 
@@ -70,14 +72,15 @@ void check_method(Entry& top, const Settings& chosen) {
     top.error(top.where("baumgarte"), "`baumgarte` is the share of the error removed per step: at most 1");
 }
 
-// An accuracy stands in the place of a method.
+// An accuracy replaces a method.
 void check_accuracy(Entry& top) {
   if (!top.has("accuracy")) return;
   for (const char* key :
        {"step", "solver", "integrator", "local_error", "drift", "substeps", "iterations", "kernels", "precision"})
     if (top.has(key))
-      top.error(top.where(key), fmt::format("`accuracy` chooses the method: `{}` has no say beside it", key),
-                fmt::format("leave out `{}`, or `accuracy`", key));
+      top.error(top.where(key),
+                fmt::format("`{}` and `accuracy` exclude each other: `accuracy` chooses the method", key),
+                fmt::format("remove `{}` or `accuracy`", key));
 }
 
 }  // namespace
@@ -86,6 +89,11 @@ void read_settings(Entry& top, Scene& scene) {
   read_keys(top, keys, scene.dimension, scene);
   check_method(top, scene.settings);
   check_accuracy(top);
+}
+
+std::string listed(const std::vector<std::string>& choices) {
+  const std::span most(choices.data(), choices.size() - 1);
+  return fmt::format("{} or {}", fmt::join(most, ", "), choices.back());
 }
 
 KeyTable keys_of_the_top() { return table_of("The top of the file", keys); }

@@ -1,5 +1,5 @@
-// The viewer's files as text: viewer_assets.cpp is made of them by CMake. A page's script is the
-// film, then the drawing of the plane or of space, then the player.
+// The viewer's files as text; CMake makes viewer_assets.cpp from them. The script of a page is the film, the drawing of
+// the plane or of space, and the player.
 #pragma once
 
 #include <string_view>

@@ -1,5 +1,4 @@
-// The film in #run, and what the other scripts of the page share. It is drawn by plane.js or
-// space.js (`drawing`), and played by page.js.
+// The film in #run, and helpers of the other scripts: plane.js or space.js draws it (`drawing`), page.js plays it.
 'use strict';
 const run = JSON.parse(document.getElementById('run').textContent);
 const root = document.documentElement;
@@ -9,7 +8,7 @@ const last = run.times.length - 1, duration = run.times[last] || 1e-9;
 const speeds = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4];
 let time = 0, playing = false, speed = run.speed, clockBefore = 0;
 
-// The frame at or before a time, and how far the time is towards the next.
+// The frame at or before a time, and the share of the way to the next.
 function frameAt(t) {
   let low = 0, high = last;
   while (low < high) {

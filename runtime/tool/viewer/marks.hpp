@@ -1,5 +1,5 @@
-// What is drawn of a scene: marks that ride on bodies, links stretched between two points, traces.
-// In picture coordinates: x right, y down, the longer side of the mechanism about a thousand wide.
+// The drawing of a planar scene: marks on bodies, links between two points, traces. Picture coordinates: x right, y
+// down, the longer side of the mechanism about 1000 wide.
 #pragma once
 
 #include <string>
@@ -7,14 +7,13 @@
 
 #include "runtime/tool/run/frame.hpp"
 #include "runtime/tool/scene/scene.hpp"
-#include "runtime/tool/viewer/text.hpp"
+#include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
 
 using Vec2 = std::array<double, 2>;
 
-// World to picture: X = scale (x - left), Y = scale (top - y); angles turn the other way and are in
-// degrees.
+// World to picture: X = scale (x - left), Y = scale (top - y); angles change sign and are in degrees.
 struct View {
   double left = 0, top = 0, scale = 1;
   double width = 0, height = 0;  // of the picture
@@ -38,7 +37,7 @@ struct Mark {
   std::string svg;
 };
 
-// Drawn from (0, 0) to (1, 0) and placed by its ends: scale(length, 1) keeps the strokes' width.
+// A drawing from (0, 0) to (1, 0), placed by its ends: scale(length, 1) leaves the stroke width.
 struct Link {
   Anchor from, to;
   std::string svg;
@@ -46,7 +45,7 @@ struct Link {
 
 struct Trace {
   Anchor point;
-  int colour;  // that of its body
+  int colour;  // of its body
 };
 
 struct Drawing {

@@ -1,5 +1,4 @@
-// The page that plays a film, and the still: the drawing of tool/viewer/marks.cpp placed once per frame
-// or snapshot.
+// A drawing and a film -> the page, with the poses of every frame, and the still, with a few snapshots.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -35,7 +34,7 @@ std::string group(const Mark& mark, const std::vector<Place>& places) {
                      transform(places[static_cast<std::size_t>(mark.body)]), mark.svg);
 }
 
-// All marks at one time; of a snapshot among others only what moves.
+// All marks at one time, with or without those of the world.
 std::string placed(const Drawing& drawing, const std::vector<Place>& places, bool with_world = true) {
   std::string svg;
   for (std::size_t k = 0; k < drawing.links.size(); ++k) {
@@ -50,7 +49,7 @@ std::string placed(const Drawing& drawing, const std::vector<Place>& places, boo
   return svg;
 }
 
-// Slow enough to see: a film lasts at least six seconds.
+// A film lasts at least six seconds.
 double playing_speed(double duration) {
   constexpr double speeds[] = {0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1};
   double best = speeds[0];
@@ -60,7 +59,7 @@ double playing_speed(double duration) {
   return best;
 }
 
-// The poses of the bodies that move, frame by frame, and what the page plots.
+// The poses of movable bodies frame by frame, and the curves of the plots.
 template <class NumbersOf>
 void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf numbers_of, Json& run) {
   Json moving = Json::array(), times = Json::array(), poses = Json::array(), energy = Json::array(),
@@ -135,14 +134,14 @@ Json spatial_run(const Scene& scene, const SpaceDrawing& drawing, const std::vec
   return run;
 }
 
-// "</script>" in a name must not end the element.
+// "</script>" in a name would end the element.
 std::string in_a_script(const Json& json) {
   std::string text = json.dump();
   for (std::size_t at = 0; (at = text.find('<', at)) != std::string::npos;) text.replace(at, 1, "\\u003c");
   return text;
 }
 
-// Fills the places {{name}} of the template, each once and from left to right.
+// Fills each {{name}} of the template.
 std::string filled(std::string_view page, const std::vector<std::pair<std::string, std::string>>& values) {
   std::string result;
   while (!page.empty()) {
@@ -172,8 +171,7 @@ std::string still_head(double width, double height) {
              viewer_marks_css);
 }
 
-// The mechanism at several times, older ones fainter; `at` draws a frame, and whether it is the
-// last, which alone shows what never moves.
+// The mechanism at several times, older ones fainter. at(frame, last) draws one; only the last shows immovable bodies.
 template <class At>
 std::string snapshots_of(const std::vector<Frame>& film, At at) {
   std::string svg;
@@ -188,14 +186,11 @@ std::string snapshots_of(const std::vector<Frame>& film, At at) {
 
 std::string planar_still(const Drawing& drawing, const std::vector<Frame>& film) {
   std::string svg = still_head(drawing.view.width, drawing.view.height);
-  for (const Trace& trace : drawing.traces) {
-    svg += fmt::format("<polyline class=\"trace c{}\" points=\"", trace.colour);
-    for (const Frame& frame : film) {
+  for (const Trace& trace : drawing.traces)
+    svg += trace_svg(fmt::format("c{}", trace.colour), film, [&](const Frame& frame) {
       const Vec2 at = position(trace.point, places_of(drawing.view, frame));
-      svg += fmt::format("{:.1f},{:.1f} ", at[0], at[1]);
-    }
-    svg += "\"/>\n";
-  }
+      return Place{at[0], at[1], 0};
+    });
   return svg + snapshots_of(film, [&](const Frame& frame, bool last) {
            return placed(drawing, places_of(drawing.view, frame), last);
          });

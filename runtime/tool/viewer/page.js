@@ -1,4 +1,4 @@
-// Plays the film: plots, time, controls. What a frame looks like is `drawing`.
+// Plays the film: plots, time, controls. `drawing` draws a frame.
 
 // --- plots -------------------------------------------------------------------------------------
 

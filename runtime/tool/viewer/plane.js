@@ -1,4 +1,4 @@
-// Draws a planar film: moves the groups that the page came with. No drawing is decided here.
+// Draws a planar film: moves the groups of the page, which marks.cpp has drawn.
 
 // --- places ------------------------------------------------------------------------------------
 

@@ -1,9 +1,12 @@
+// A scene in space -> its drawing.
 #include "runtime/tool/viewer/space.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <numbers>
+
+#include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
 namespace {
@@ -24,7 +27,7 @@ struct Box {
 
 double reach(const Shape& shape) { return std::hypot(shape.length, shape.width, shape.depth) / 2; }
 
-// The bodies of all frames; what flies off further than ten times the start is left to itself.
+// Holds the bodies of all frames, except those further away than ten times the size of the start.
 Box box_of(const Scene& scene, const std::vector<Frame>& film) {
   Box start;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
@@ -83,7 +86,9 @@ class SpacePainter {
                                 {spring.body_b, {spring.bx, spring.by, spring.bz}},
                                 "spring"});
     for (std::size_t k = 0; k < scene_.bodies.size(); ++k) drawing_.bodies.push_back(body(k));
-    add_traces();
+    each_trace(scene_, [&](int body, const Vec3& p) {
+      drawing_.traces.push_back({{body, p}, kind(static_cast<std::size_t>(body))});
+    });
     return drawing_;
   }
 
@@ -92,7 +97,7 @@ class SpacePainter {
     return scene_.bodies[body].is_static ? "still" : fmt::format("c{}", body % 8);
   }
 
-  // Faces of its shape, without one a ball; and lines to joints that lie outside.
+  // The faces of its shape, or a ball; and lines to joints outside of it.
   SpaceBody body(std::size_t k) const {
     const Shape& shape = scene_.bodies[k].shape;
     SpaceBody look;
@@ -118,7 +123,7 @@ class SpacePainter {
     return look;
   }
 
-  // Its points: pins where they coincide, linked where they are apart; its axes as short shafts.
+  // Its points as pins with a link between them; its axis as a short shaft.
   void draw_joint(int joint) {
     const std::vector<double> numbers = world_.joint_parameters(joint);
     const SceneJoint& source = scene_.joints[static_cast<std::size_t>(joint)];
@@ -151,24 +156,13 @@ class SpacePainter {
     return body < 0 ? world_body : joint.definition.bodies[static_cast<std::size_t>(body)];
   }
 
-  // What the scene asks for; else the centre of the last body that can move.
-  void add_traces() {
-    const auto add = [&](std::size_t k, const Vec3& p) {
-      drawing_.traces.push_back({{static_cast<int>(k), p}, kind(k)});
-    };
-    for (std::size_t k = 0; k < scene_.bodies.size(); ++k)
-      for (const Vec3& point : scene_.bodies[k].traces) add(k, point);
-    for (std::size_t k = scene_.bodies.size(); k-- > 0 && drawing_.traces.empty();)
-      if (!scene_.bodies[k].is_static) add(k, {});
-  }
-
   const Scene& scene_;
   double size_;
   SpatialWorld<double> world_;
   SpaceDrawing drawing_;
 };
 
-// A square grid under everything.
+// A square grid below the mechanism.
 std::vector<SpaceLine> floor_of(const Box& box) {
   const double half = 0.75 * box.size(), z = box.low[2];
   const double x = (box.low[0] + box.high[0]) / 2, y = (box.low[1] + box.high[1]) / 2;

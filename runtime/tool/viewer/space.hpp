@@ -1,5 +1,5 @@
-// What is drawn of a scene in space: faces and lines on bodies, links between points, pins, traces
-// and a floor to see the depth by. The page projects it in the reader's browser, the still here.
+// The drawing of a scene in space: faces and lines on bodies, links between points, pins, traces, and a floor for
+// depth. The browser projects it for the page, space_still.cpp for the still.
 #pragma once
 
 #include <array>
@@ -36,7 +36,7 @@ struct SpaceTrace {
   std::string colour;
 };
 
-// Turned by yaw about the vertical and tilted down by pitch [rad].
+// Rotated by yaw about the vertical, tilted down by pitch [rad].
 struct Camera {
   double yaw = -0.9, pitch = 0.42, zoom = 1;
 };
@@ -55,8 +55,8 @@ struct SpaceDrawing {
 
 SpaceDrawing draw_in_space(const Scene& scene, const std::vector<Frame>& film);
 
-// What stands between the tags of an SVG of the drawing's size: the floor and the traces of a film,
-// and the mechanism at one frame, or only the bodies of it that move.
+// Content of an SVG of the drawing's size: the floor with the traces of a film, and the mechanism at one frame, with or
+// without bodies that never move.
 std::string space_background(const SpaceDrawing& drawing, const std::vector<Frame>& film);
 std::string space_snapshot(const SpaceDrawing& drawing, const Frame& frame, bool with_still);
 

@@ -1,5 +1,5 @@
-// Draws a film in space: faces, lines and points of bodies through a camera that orbits. The still
-// (space_still.cpp) is the same through the camera of the start.
+// Draws a film in space: faces, lines and points of bodies through a camera that orbits. space_still.cpp does the same
+// through the camera of the start.
 
 // --- places ------------------------------------------------------------------------------------
 
@@ -34,7 +34,7 @@ const placeAt = (frame, body) => run.moving.includes(body) ?
     placeOf(numbersAt(frame, run.moving.indexOf(body))) :
     places[body];
 
-// Between two frames the quaternion goes straight, the shorter way, and is normalised.
+// Between two frames the quaternion is interpolated linearly, the shorter way, and normalised.
 function setPlaces(frame, share) {
   const next = Math.min(frame + 1, last);
   run.moving.forEach((body, k) => {
@@ -79,7 +79,7 @@ const circle = ([x, y], r) =>
     `M${x - r} ${y}a${r} ${r} 0 1 0 ${2 * r} 0a${r} ${r} 0 1 0 ${-2 * r} 0Z`;
 const mean = points => points.reduce((sum, p) => sum + p[2], 0) / points.length;
 
-// A face that shows its front: brighter where it looks at the eye.
+// Only faces towards the eye are drawn, brighter the more they face it.
 function addFace(items, body, points) {
   const seen = points.map(p => project(placed(places[body], p)));
   let area = 0, size = 0;

@@ -1,17 +1,18 @@
-// The still of a scene in space: the drawing seen through its camera, painted from the back to the
-// front. space.js does the same in the page, through a camera that orbits.
+// A drawing in space -> the still: projected through its camera, painted from back to front. space.js does the same in
+// the page with a camera that orbits.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 
 #include <cdot/rotation.hpp>
 
+#include "runtime/tool/viewer/picture.hpp"
 #include "runtime/tool/viewer/space.hpp"
 
 namespace cdot {
 namespace {
 
-// X right, Y down, the depth, which grows away from the eye, and pixels per metre there.
+// X right, Y down, depth away from the eye, and pixels per metre at that depth.
 struct Seen {
   double x, y, depth, scale;
 };
@@ -48,12 +49,6 @@ Vec3 placed(const Frame& frame, const SpacePoint& p) {
   return {b.x + r.x, b.y + r.y, b.z + r.z};
 }
 
-std::string path_of(const std::vector<Seen>& points, bool closed) {
-  std::string d;
-  for (const Seen& p : points) d += fmt::format("{}{:.1f} {:.1f}", d.empty() ? 'M' : 'L', p.x, p.y);
-  return closed ? d + 'Z' : d;
-}
-
 std::string circle(const Seen& p, double r) {
   return fmt::format("M{0:.1f} {1:.1f}a{2:.1f} {2:.1f} 0 1 0 {3:.1f} 0a{2:.1f} {2:.1f} 0 1 0 {4:.1f} 0Z", p.x - r, p.y,
                      r, 2 * r, -2 * r);
@@ -68,7 +63,7 @@ double mean_depth(const std::vector<Seen>& points) {
 struct Item {
   double depth;
   std::string path, kind;
-  double opacity = 0;  // of its inside
+  double opacity = 0;  // of its fill
 };
 
 class Still {
@@ -102,7 +97,7 @@ class Still {
     for (const SpaceLine& line : look.lines) add_line({body, line[0]}, {body, line[1]}, look.kind + " line");
   }
 
-  // A face that shows its front: brighter where it looks at the eye.
+  // Only faces towards the eye are drawn, brighter the more they face it.
   void add_face(int body, const SpaceFace& face, const std::string& kind) {
     std::vector<Seen> seen;
     for (const Vec3& corner : face) seen.push_back(project_(placed(frame_, {body, corner})));
@@ -114,12 +109,12 @@ class Still {
     }
     if (area >= 0) return;
     const double shade = std::min(1.0, -area / (size * size) * 8);
-    items_.push_back({mean_depth(seen), path_of(seen, true), kind, 0.25 + 0.5 * shade});
+    items_.push_back({mean_depth(seen), path_through(seen) + "Z", kind, 0.25 + 0.5 * shade});
   }
 
   void add_line(const SpacePoint& from, const SpacePoint& to, const std::string& kind) {
     const std::vector<Seen> seen = {project_(placed(frame_, from)), project_(placed(frame_, to))};
-    items_.push_back({mean_depth(seen), path_of(seen, false), kind});
+    items_.push_back({mean_depth(seen), path_through(seen), kind});
   }
 
   const SpaceDrawing& drawing_;
@@ -133,16 +128,10 @@ class Still {
 std::string space_background(const SpaceDrawing& drawing, const std::vector<Frame>& film) {
   const Projection project(drawing);
   std::string floor;
-  for (const SpaceLine& line : drawing.floor) floor += path_of({project(line[0]), project(line[1])}, false);
+  for (const SpaceLine& line : drawing.floor) floor += path_through(std::array{project(line[0]), project(line[1])});
   std::string svg = fmt::format("<path class=\"floor\" d=\"{}\"/>\n", floor);
-  for (const SpaceTrace& trace : drawing.traces) {
-    svg += fmt::format("<polyline class=\"trace {}\" points=\"", trace.colour);
-    for (const Frame& frame : film) {
-      const Seen at = project(placed(frame, trace.point));
-      svg += fmt::format("{:.1f},{:.1f} ", at.x, at.y);
-    }
-    svg += "\"/>\n";
-  }
+  for (const SpaceTrace& trace : drawing.traces)
+    svg += trace_svg(trace.colour, film, [&](const Frame& frame) { return project(placed(frame, trace.point)); });
   return svg;
 }
 

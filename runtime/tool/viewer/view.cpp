@@ -1,4 +1,4 @@
-// Where things are in a picture: the view that shows a whole film, and places in it.
+// A film -> the view that shows all of it; poses -> places in that view.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -32,7 +32,7 @@ Box box_of(const Scene& scene, const Frame& frame) {
   return box;
 }
 
-// The points of joints and springs that are fixed in the world.
+// Adds the points of joints and springs that are fixed in the world.
 void add_world_points(const Scene& scene, Box& box) {
   for (const SceneJoint& joint : scene.joints) {
     const JointType* type = find_joint_type(Dimension::planar, joint.definition.type);
@@ -54,8 +54,7 @@ void add_world_points(const Scene& scene, Box& box) {
 
 }  // namespace
 
-// The box of all frames, but what flies away to more than ten times the start's size is left to
-// itself.
+// The box of all frames, limited to ten times the size of the start on each side.
 View view_of(const Scene& scene, const std::vector<Frame>& film) {
   Box start = box_of(scene, film.front());
   add_world_points(scene, start);

@@ -1,5 +1,4 @@
-// Pictures of a run: a page that plays it, and a still. Both are made of one list of marks (what is
-// drawn on which body), so that a mechanism looks the same in both.
+// A film -> a page that plays it, and a still. Both use the same drawing.
 #pragma once
 
 #include <string>
@@ -10,10 +9,10 @@
 
 namespace cdot {
 
-// When the frames of a film are taken: densely enough to look smooth, few enough for a page.
+// The times of the frames: dense enough to look smooth, few enough for a page.
 std::vector<double> film_times(const Scene& scene);
 
-// One page with everything in it: no other file, no network.
+// One self-contained page: no other file, no network.
 std::string html_page(const Scene& scene, const std::vector<Frame>& film);
 
 // The mechanism at several times, older ones fainter, with the traces.

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 #include <random>
 
-#include "runtime/tool/accuracy/state.hpp"
 #include "runtime/tool/accuracy/sweep.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "tests/methods.hpp"
@@ -272,12 +271,12 @@ TEST(Sweep, AStateOfSomethingElseIsRefused) {
   };
   EXPECT_EQ(refusal({"p", "s"}), path + ": cannot be read");
   write_file(path, "{}");
-  EXPECT_EQ(refusal({"p", "s"}), path + ": this is no interrupted sweep");
+  EXPECT_EQ(refusal({"p", "s"}), path + ": not the state of an interrupted sweep");
   write_state(path, {"p", "s"}, {});
   EXPECT_EQ(refusal({"p", "s"}), "accepted");
   EXPECT_EQ(refusal({"p", "other"}),
-            path + ": the scene, its duration or its reference has changed since: start anew, without --resume");
-  EXPECT_EQ(refusal({"other", "s"}), path + ": written by another build of cdot-run: start anew, without --resume");
+            path + ": the scene, its duration or its reference has changed since: start again without --resume");
+  EXPECT_EQ(refusal({"other", "s"}), path + ": another build of cdot-run wrote it: start again without --resume");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "runtime/tool/accuracy/compose.hpp"
+#include "runtime/tool/accuracy/refine.hpp"
 #include "tests/runtime/tool/accuracy/pendulum.hpp"
 #include "tests/runtime/tool/support.hpp"
 
@@ -156,7 +156,7 @@ TEST(AccuracyReference, SaysThatRoundOffForbidsMore) {
   EXPECT_GT(made.sensitivity.condition, 3e6);
   EXPECT_LT(made.sensitivity.condition, 5e7);
   EXPECT_LT(made.sensitivity.slight, 1e-18);
-  EXPECT_EQ(made.verdict, "round-off forbids more");
+  EXPECT_EQ(made.verdict, "round-off sets this limit");
 }
 
 TEST(AccuracyReference, SaysThatItMayBeFiner) {
@@ -169,7 +169,7 @@ TEST(AccuracyReference, SaysThatItMayBeFiner) {
   ASSERT_NE(between, std::string::npos);
   for (const std::string& method : {made.made_by.substr(0, between), made.made_by.substr(between + 5)})
     EXPECT_NE(made.settled.find(method + " still changes by"), std::string::npos) << method;
-  EXPECT_EQ(made.verdict, "the methods are not fine enough yet: --budget");
+  EXPECT_EQ(made.verdict, "the methods need finer steps: raise --budget");
 }
 
 // A four-bar that lies flat could go on in two ways there, and of its hinges in space some are redundant. dop853 goes
@@ -184,9 +184,9 @@ TEST(AccuracyReference, BelievesTheTwoThatAgreeBest) {
 }
 
 TEST(AccuracyReference, KnowsWhatIsToBlame) {
-  EXPECT_EQ(verdict_on(2e-12, {10, 1e-13}, true), "round-off forbids more");
-  EXPECT_EQ(verdict_on(1e-11, {10, 1e-13}, true), "the methods are not fine enough yet: --budget");
-  EXPECT_TRUE(verdict_on(1e-11, {10, 1e-13}, false).starts_with("no step mends it"));
+  EXPECT_EQ(verdict_on(2e-12, {10, 1e-13}, true), "round-off sets this limit");
+  EXPECT_EQ(verdict_on(1e-11, {10, 1e-13}, true), "the methods need finer steps: raise --budget");
+  EXPECT_TRUE(verdict_on(1e-11, {10, 1e-13}, false).starts_with("finer steps do not help"));
 }
 
 // --- composed RATTLE ---

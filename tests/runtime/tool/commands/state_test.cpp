@@ -1,5 +1,4 @@
 // cdot-run simulate --save-state and --from-state: a run in two parts writes the rows of one in a single part.
-#include "runtime/tool/run/state.hpp"
 
 #include <fmt/format.h>
 #include <fstream>
@@ -57,7 +56,7 @@ TEST(State, TheEndIsSavedUnlessATimeIsGiven) {
   EXPECT_NEAR(read_state(state.string()).time(), 0.5, 1e-9);
   const CommandResult over = cdot_run("simulate " + scene("four_bar") + " --until 0.5 --from-state " + quoted(state));
   EXPECT_EQ(over.status, 2);
-  EXPECT_NE(over.err.find("the state is that at 0.5 s and the run ends at 0.5 s"), std::string::npos) << over.err;
+  EXPECT_NE(over.err.find("the state is from 0.5 s, but the run ends at 0.5 s"), std::string::npos) << over.err;
   const CommandResult late =
       cdot_run("simulate " + scene("four_bar") + " --until 0.5 --at 2 --save-state " + quoted(folder / "no.state"));
   EXPECT_EQ(late.status, 2);

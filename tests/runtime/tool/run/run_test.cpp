@@ -31,11 +31,10 @@ TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
   std::string warnings;
   simulate(scene_of(with(pendulum, "[0.5, 0]", "[0.5, 0.25]\nvelocity = [3, 0]")), {}, warnings);
   EXPECT_EQ(warnings,
-            "test.toml:8:1: warning: the start does not fit revolute \"pivot\": C2 = -0.25, Cdot1 = -3\n"
+            "test.toml:8:1: warning: the start violates revolute \"pivot\": C2 = -0.25, Cdot1 = -3\n"
             "    8 | [[joint]]\n"
             "      | ^^^^^^^^^\n"
-            "  fix: correct the pose or velocity, or let project = true move the bodies onto their "
-            "joints\n");
+            "  fix: correct the pose or velocity, or set project = true\n");
 }
 
 // A chain that starts off its joints is no page of paragraphs for each link.
@@ -48,10 +47,10 @@ TEST(Run, OfManyInconsistentJointsTheFirstAreTold) {
   std::string warnings;
   simulate(scene, {}, warnings);
   std::size_t told = 0;
-  for (std::size_t at = 0; (at = warnings.find("does not fit", at)) != std::string::npos; ++at) ++told;
+  for (std::size_t at = 0; (at = warnings.find("the start violates revolute", at)) != std::string::npos; ++at) ++told;
   EXPECT_EQ(told, 5u) << warnings;
   EXPECT_NE(warnings.find("\"pivot5\""), std::string::npos) << warnings;
-  EXPECT_NE(warnings.find("warning: nor does it fit 35 more joints\n"), std::string::npos) << warnings;
+  EXPECT_NE(warnings.find("warning: the start violates 35 more joints\n"), std::string::npos) << warnings;
 }
 
 TEST(Run, ProjectionMakesTheStartConsistent) {

@@ -1,4 +1,5 @@
-#include "runtime/effects/set_constants.hpp"
+// Changes the constants of an effect of a running World.
+#include "runtime/effects/effect.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +8,7 @@
 namespace cdot {
 
 template <class S>
-void set_constants(BasicWorld<S>& world, int joint, int effect, const Law<S>& law, const char* name,
+void set_constants(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S>& named,
                    std::span<const double> constants) {
   WorldState<S>& state = world.state();
   check_joint(state, joint);
@@ -17,17 +18,19 @@ void set_constants(BasicWorld<S>& world, int joint, int effect, const Law<S>& la
   if (effect < 1 || place >= record.places.size())
     throw Error(fmt::format("joint number {} has no effect number {}", joint, effect));
   Batch<S>& batch = *state.batches[record.places[place].batch];
-  if (batch.law != &law) throw Error(fmt::format("effect number {} of joint number {} is no {}", effect, joint, name));
-  for (size_t k = 0; k < constants.size(); ++k)
-    batch.constants[slot_of(state, record.places[place]) * constants.size() + k] = typename S::Scalar(constants[k]);
+  if (batch.law != &named.law)
+    throw Error(fmt::format("effect number {} of joint number {} is no {}", effect, joint, named.name));
+  const auto count = static_cast<size_t>(named.law.constants);
+  for (size_t k = 0; k < count; ++k)
+    batch.constants[slot_of(state, record.places[place]) * count + k] = typename S::Scalar(constants[k]);
   const int body = movable_body(state, record);
-  if (law.error)  // of where the bodies shall be
+  if (named.law.error)  // the law concerns positions
     wake(state, body);
   else wake_pushed(state, body);
 }
 
 #define CDOT_INSTANTIATE(S) \
-  template void set_constants(BasicWorld<S>&, int, int, const Law<S>&, const char*, std::span<const double>);
+  template void set_constants(BasicWorld<S>&, int, int, const NamedLaw<S>&, std::span<const double>);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 
