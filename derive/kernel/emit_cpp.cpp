@@ -15,7 +15,7 @@ constexpr const char* parameter_kinds[] = {"point", "vector", "unit", "frame", "
 const char* text(RowKind kind) { return row_kinds[static_cast<int>(kind)]; }
 const char* text(ParameterKind kind) { return parameter_kinds[static_cast<int>(kind)]; }
 
-std::string quoted(const std::string& s) {
+std::string literal(const std::string& s) {
   std::string out = "\"";
   for (const char c : s) {
     if (c == '"' || c == '\\') out += '\\';
@@ -88,17 +88,17 @@ class KernelWriter {
     while (s.size() > most) {
       const std::size_t space = s.rfind(' ', most);
       if (space == std::string::npos) break;
-      out_ += indent(depth) + quoted(s.substr(0, space + 1)) + '\n';
+      out_ += indent(depth) + literal(s.substr(0, space + 1)) + '\n';
       s.erase(0, space + 1);
     }
-    out_ += indent(depth) + quoted(s) + ";\n";
+    out_ += indent(depth) + literal(s) + ";\n";
   }
 
   void metadata() {
     std::string names;
-    for (const std::string& body : joint_.bodies) names += (names.empty() ? "" : ", ") + quoted(body);
+    for (const std::string& body : joint_.bodies) names += (names.empty() ? "" : ", ") + literal(body);
     line("static_assert(kernel_contract == 2);", 1);
-    line("static constexpr std::string_view name = " + quoted(joint_.name) + ";", 1);
+    line("static constexpr std::string_view name = " + literal(joint_.name) + ";", 1);
     line("static constexpr std::string_view title =", 1);
     string_literal(joint_.title, 3);
     line(fmt::format("static constexpr std::array<std::string_view, {}> body_names = {{{}}};", joint_.bodies.size(),
@@ -129,8 +129,8 @@ class KernelWriter {
     int offset = 0;
     for (const Parameter& p : joint_.parameters) {
       const int size = static_cast<int>(fields_of(joint_, p).size());
-      line(fmt::format("{{{}, ParameterKind::{}, {}, {}, {}, {}, {}}},", quoted(p.name), text(p.kind), p.body,
-                       quoted(derive::text(p.unit)), offset, size, p.default_value ? "true" : "false"),
+      line(fmt::format("{{{}, ParameterKind::{}, {}, {}, {}, {}, {}}},", literal(p.name), text(p.kind), p.body,
+                       literal(derive::text(p.unit)), offset, size, p.default_value ? "true" : "false"),
            3);
       offset += size;
     }
@@ -160,7 +160,7 @@ class KernelWriter {
   void row_metadata(const Block& block, std::size_t rows, int depth) {
     std::string names, kinds;
     for (const ScalarRow& row : block.rows) {
-      names += (names.empty() ? "" : ", ") + quoted(row.name);
+      names += (names.empty() ? "" : ", ") + literal(row.name);
       kinds += (kinds.empty() ? "" : ", ") + std::string("RowKind::") + text(row.kind);
     }
     line(fmt::format("static constexpr int bodies = {}, rows = {};", joint_.bodies.size(), rows), depth);
@@ -205,8 +205,8 @@ class KernelWriter {
     comment(1, fmt::format("The coordinate {} [{}] = {}, left free: what effects act on.", found->name,
                            derive::text(found->unit), found->text));
     line("struct " + coordinate.name + " {", 1);
-    line("static constexpr std::string_view name = " + quoted(coordinate.name) + ";", 2);
-    line("static constexpr std::string_view unit = " + quoted(derive::text(found->unit)) + ";", 2);
+    line("static constexpr std::string_view name = " + literal(coordinate.name) + ";", 2);
+    line("static constexpr std::string_view unit = " + literal(derive::text(found->unit)) + ";", 2);
     block(coordinate, nullptr, 2);
     tuple("Immovable", coordinate.variants, 2);
     line("};", 1);

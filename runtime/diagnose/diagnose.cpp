@@ -121,7 +121,7 @@ double spin_of(const typename S::Velocity& velocity) {
 }
 
 template <class S>
-void measure_bodies(const WorldState<S>& world, const Island<S>& island, Diagnosis::Island& found) {
+void measure_bodies(const WorldData<S>& world, const Island<S>& island, Diagnosis::Island& found) {
   found.bodies = island.bodies;
   found.size = double(island.size);
   for (int body : island.bodies) {
@@ -145,12 +145,12 @@ Diagnosis diagnose(BasicWorld<S>& world, double h) {
   world.prepare();
   const Snapshot before = world.snapshot();
   Diagnosis diagnosis;
-  for (Island<S>& island : world.state().islands) {
-    Equations<S> equations(world.state(), island);
+  for (Island<S>& island : world.data().islands) {
+    Equations<S> equations(world.data(), island);
     Diagnosis::Island& found = diagnosis.islands.emplace_back();
-    measure_bodies(world.state(), island, found);
+    measure_bodies(world.data(), island, found);
     measure_rows(equations, found);
-    found.stiffest = stiffest_motion(world.state(), island, equations, typename S::Scalar(h));
+    found.stiffest = stiffest_motion(world.data(), island, equations, typename S::Scalar(h));
   }
   world.restore(before);
   return diagnosis;

@@ -6,7 +6,7 @@
 #include <cdot/diagnose.hpp>
 
 #include "runtime/number/arbitrary.hpp"
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
@@ -15,7 +15,7 @@ class Equations {
  public:
   using T = typename S::Scalar;
 
-  Equations(WorldState<S>& world, Island<S>& island) : world_(world) {
+  Equations(WorldData<S>& world, Island<S>& island) : world_(world) {
     for (const Segment<S>& segment : island.segments)
       if (is_joint(*segment.batch) && segment.batch->ops->rows > 0 && segment.begin < segment.end)
         segments_.push_back(segment);
@@ -82,7 +82,7 @@ class Equations {
  private:
   static bool is_joint(const Batch<S>& batch) { return !batch.law || batch.law->reported; }
 
-  WorldState<S>& world_;
+  WorldData<S>& world_;
   std::vector<Segment<S>> segments_;
   System<S> system_;
   std::vector<Diagnosis::Row> joints_;
@@ -92,7 +92,7 @@ class Equations {
 
 // The stiffest motion of the island in steps of h: the linearly implicit step reduces its stiffness.
 template <class S>
-Diagnosis::Stiffest stiffest_motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations,
+Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations,
                                     typename S::Scalar h);
 
 }  // namespace cdot

@@ -14,7 +14,7 @@ namespace {
 constexpr double rank_tolerance = 1e-10;
 
 template <class S>
-void list_bodies(const WorldState<S>& world, SystemMatrix& system) {
+void list_bodies(const WorldData<S>& world, SystemMatrix& system) {
   using T = typename S::Scalar;
   using Velocity = typename S::Velocity;
   static_assert(sizeof(Velocity) == S::freedom * sizeof(T));
@@ -33,7 +33,7 @@ void list_bodies(const WorldState<S>& world, SystemMatrix& system) {
 
 // Its rows of D and of (M^-1 D^T)^T.
 template <class S>
-void add_joint(const WorldState<S>& world, int joint, SystemMatrix& system, std::vector<double>& weighted) {
+void add_joint(const WorldData<S>& world, int joint, SystemMatrix& system, std::vector<double>& weighted) {
   const JointRecord& record = world.joints[joint];
   Probe<S> probe(world);
   probe.look_at(record);
@@ -89,13 +89,13 @@ bool SystemMatrix::empty_block(const Joint& joint, int at) const {
 
 template <class S>
 SystemMatrix system_matrix(BasicWorld<S>& world) {
-  const WorldState<S>& state = world.state();
+  const WorldData<S>& data = world.data();
   SystemMatrix system;
   system.freedom = S::freedom;
-  list_bodies(state, system);
+  list_bodies(data, system);
   std::vector<double> weighted;
   for (int joint = 0; joint < world.joint_count(); ++joint)
-    if (!state.joints[joint].places.empty() && !state.joints[joint].broken) add_joint(state, joint, system, weighted);
+    if (!data.joints[joint].places.empty() && !data.joints[joint].broken) add_joint(data, joint, system, weighted);
   const Eigen::Map<const Matrix> D(system.D.data(), system.rows, system.columns);
   const Eigen::Map<const Matrix> W(weighted.data(), system.rows, system.columns);
   system.K.resize(static_cast<size_t>(system.rows) * static_cast<size_t>(system.rows));

@@ -27,7 +27,7 @@ class Motion {
   using T = typename S::Scalar;
   using Velocities = std::vector<typename S::Velocity>;
 
-  Motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations)
+  Motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations)
       : world_(world), island_(island), equations_(equations), pose_(world.bodies.pose) {
     // Euler's methods solve for the forces of springs on coordinates. For others they are known forces.
     if (!row_of(world.settings.integrator).forces_springs) return;
@@ -148,7 +148,7 @@ class Motion {
                      world_.bodies.velocity_rate.data());
   }
 
-  WorldState<S>& world_;
+  WorldData<S>& world_;
   Island<S>& island_;
   Equations<S>& equations_;
   std::vector<Segment<S>> coordinate_springs_;
@@ -157,7 +157,7 @@ class Motion {
 };
 
 template <class S>
-std::vector<typename S::Velocity> any_motion(const WorldState<S>& world, const Island<S>& island) {
+std::vector<typename S::Velocity> any_motion(const WorldData<S>& world, const Island<S>& island) {
   std::vector<typename S::Velocity> w(world.bodies.pose.size());
   Arbitrary arbitrary;
   for (int i : island.bodies) {
@@ -171,7 +171,7 @@ std::vector<typename S::Velocity> any_motion(const WorldState<S>& world, const I
 }  // namespace
 
 template <class S>
-Diagnosis::Stiffest stiffest_motion(WorldState<S>& world, Island<S>& island, Equations<S>& equations,
+Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations,
                                     typename S::Scalar h) {
   using T = typename S::Scalar;
   Motion<S> motion(world, island, equations);
@@ -200,7 +200,7 @@ Diagnosis::Stiffest stiffest_motion(WorldState<S>& world, Island<S>& island, Equ
 }
 
 #define CDOT_INSTANTIATE(S) \
-  template Diagnosis::Stiffest stiffest_motion(WorldState<S>&, Island<S>&, Equations<S>&, S::Scalar);
+  template Diagnosis::Stiffest stiffest_motion(WorldData<S>&, Island<S>&, Equations<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

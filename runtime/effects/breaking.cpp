@@ -23,7 +23,7 @@ struct SwapSlots {
 
 // Swaps every slot of the joint with the last one of its segment, and shortens the segment. It does not allocate.
 template <class S>
-void break_joint(WorldState<S>& world, int joint) {
+void break_joint(WorldData<S>& world, int joint) {
   JointRecord& record = world.joints[joint];
   record.broken = true;
   Island<S>& island = world.islands[world.island_of[movable_body(world, record)]];
@@ -46,7 +46,7 @@ void break_joint(WorldState<S>& world, int joint) {
 }
 
 template <class S>
-double force_of(const WorldState<S>& world, const JointRecord& record, double h) {
+double force_of(const WorldData<S>& world, const JointRecord& record, double h) {
   const Place& place = record.places[0];
   const Batch<S>& batch = *world.batches[place.batch];
   double square = 0;
@@ -59,7 +59,7 @@ double force_of(const WorldState<S>& world, const JointRecord& record, double h)
 }
 
 template <class S>
-void break_overloaded(WorldState<S>& world, typename S::Scalar h) {
+void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
   for (const auto& [joint, load] : world.breaking_loads) {
     const JointRecord& record = world.joints[joint];
     if (!record.broken && force_of(world, record, double(h)) > load) break_joint(world, joint);
@@ -70,12 +70,13 @@ void break_overloaded(WorldState<S>& world, typename S::Scalar h) {
 
 template <class S>
 void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
-  auto& state = world.state();
-  check_joint(state, joint);
+  auto& data = world.data();
+  check_joint(data, joint);
   if (!(load > 0)) throw Error("a breaking load must be > 0");
-  if (state.joints[joint].places.empty()) return;
-  if (state.breaking_loads.empty()) state.after_substep.push_back(break_overloaded<S>);
-  state.breaking_loads.emplace_back(joint, load);
+  if (data.joints[joint].places.empty()) return;
+  if (data.breaking_loads.empty()) data.after_substep.push_back(break_overloaded<S>);
+  data.breaking_loads.emplace_back(joint, load);
+  if (data.prepared) settle_state(data);  // its island has more to lose in a step now
 }
 
 #define CDOT_INSTANTIATE(S) template void set_breaking_load(BasicWorld<S>&, int, double);

@@ -10,23 +10,23 @@ namespace cdot {
 template <class S>
 void set_constants(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S>& named,
                    std::span<const double> constants) {
-  WorldState<S>& state = world.state();
-  check_joint(state, joint);
-  const JointRecord& record = state.joints[joint];
+  WorldData<S>& data = world.data();
+  check_joint(data, joint);
+  const JointRecord& record = data.joints[joint];
   if (record.places.empty()) return;
   const auto place = static_cast<size_t>(effect);
   if (effect < 1 || place >= record.places.size())
     throw Error(fmt::format("joint number {} has no effect number {}", joint, effect));
-  Batch<S>& batch = *state.batches[record.places[place].batch];
+  Batch<S>& batch = *data.batches[record.places[place].batch];
   if (batch.law != &named.law)
     throw Error(fmt::format("effect number {} of joint number {} is no {}", effect, joint, named.name));
   const auto count = static_cast<size_t>(named.law.constants);
   for (size_t k = 0; k < count; ++k)
-    batch.constants[slot_of(state, record.places[place]) * count + k] = typename S::Scalar(constants[k]);
-  const int body = movable_body(state, record);
+    batch.constants[slot_of(data, record.places[place]) * count + k] = typename S::Scalar(constants[k]);
+  const int body = movable_body(data, record);
   if (named.law.error)  // the law concerns positions
-    wake(state, body);
-  else wake_pushed(state, body);
+    wake(data, body);
+  else wake_pushed(data, body);
 }
 
 #define CDOT_INSTANTIATE(S) \

@@ -11,7 +11,7 @@
 #include <cdot/effects.hpp>
 
 #include "runtime/state/add_rows.hpp"
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
@@ -36,7 +36,7 @@ template <class S, class Effect>
 int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Effect& effect) {
   const auto constants = constants_of(at_pose(world, joint, coordinate, effect));
   const Law<S>& law = law_of<S>(effect).law;
-  return add_coordinate_row(world.state(), joint, coordinate, &law,
+  return add_coordinate_row(world.data(), joint, coordinate, &law,
                             std::span(constants).first(static_cast<size_t>(law.constants)));
 }
 

@@ -53,7 +53,7 @@ static std::array<double, 4> constants_of(const CoordinateSpring& spring) {
 template <class S>
 static CoordinateSpring at_pose(BasicWorld<S>& world, int joint, std::string_view coordinate,
                                 const CoordinateSpring& spring) {
-  check_joint(world.state(), joint);
+  check_joint(world.data(), joint);
   return {spring.softness, spring.rest ? *spring.rest : world.coordinate(joint, coordinate)};
 }
 

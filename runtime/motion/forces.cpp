@@ -26,7 +26,7 @@ void pull(const Bodies<S>& all, const typename S::PointSpring& spring, typename 
 }  // namespace
 
 template <class S>
-void push_free_bodies(WorldState<S>& world, Island<S>& island) {
+void push_free_bodies(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.velocity_rate[i] = all.acceleration[i];
@@ -38,7 +38,7 @@ void push_free_bodies(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void free_accelerations(WorldState<S>& world, Island<S>& island) {
+void free_accelerations(WorldData<S>& world, Island<S>& island) {
   push_free_bodies(world, island);
   if constexpr (S::has_gyroscopes) {
     Bodies<S>& all = world.bodies;
@@ -49,7 +49,7 @@ void free_accelerations(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void apply_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   // dv/dt = -d v, implicitly: v / (1 + h d) never overshoots 0. Before the forces, so that it does
@@ -67,10 +67,10 @@ void apply_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar h)
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                     \
-  template void push_free_bodies(WorldState<S>&, Island<S>&);   \
-  template void free_accelerations(WorldState<S>&, Island<S>&); \
-  template void apply_forces(WorldState<S>&, Island<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                    \
+  template void push_free_bodies(WorldData<S>&, Island<S>&);   \
+  template void free_accelerations(WorldData<S>&, Island<S>&); \
+  template void apply_forces(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

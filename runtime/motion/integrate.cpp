@@ -8,7 +8,7 @@
 namespace cdot {
 
 template <class S>
-void turn_inertias(WorldState<S>& world, Island<S>& island) {
+void turn_inertias(WorldData<S>& world, Island<S>& island) {
   Bodies<S>& all = world.bodies;
   for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
     S::turn(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
@@ -19,7 +19,7 @@ void turn_inertias(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void set_inertias(WorldState<S>& world, Island<S>& island) {
+void set_inertias(WorldData<S>& world, Island<S>& island) {
   Bodies<S>& all = world.bodies;
   for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
     S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
@@ -29,7 +29,7 @@ void set_inertias(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void integrate(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
   if constexpr (S::has_gyroscopes)
     for_each_gyroscope(world, island,
@@ -42,12 +42,12 @@ void integrate(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
   island.evaluated = island.factored = false;
 }
 
-#define CDOT_INSTANTIATE(T)                                                  \
-  template void turn_inertias(WorldState<Spatial<T>>&, Island<Spatial<T>>&); \
-  template void set_inertias(WorldState<Spatial<T>>&, Island<Spatial<T>>&);
+#define CDOT_INSTANTIATE(T)                                                 \
+  template void turn_inertias(WorldData<Spatial<T>>&, Island<Spatial<T>>&); \
+  template void set_inertias(WorldData<Spatial<T>>&, Island<Spatial<T>>&);
 CDOT_FOR_EACH_NUMBER(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
-#define CDOT_INSTANTIATE(S) template void integrate(WorldState<S>&, Island<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S) template void integrate(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

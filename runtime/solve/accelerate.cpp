@@ -8,7 +8,7 @@
 
 namespace cdot {
 template <class S>
-void find_known_forces(WorldState<S>& world, Batch<S>& batch, int begin, int end, typename S::Scalar* force) {
+void find_known_forces(WorldData<S>& world, Batch<S>& batch, int begin, int end, typename S::Scalar* force) {
   using T = typename S::Scalar;
   const int rows = batch.ops->rows;
   batch.ops->effective_mass(batch, begin, end, world.bodies);
@@ -21,7 +21,7 @@ void find_known_forces(WorldState<S>& world, Batch<S>& batch, int begin, int end
 }
 
 template <class S>
-void ask_for_gamma(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+void ask_for_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   ++world.counts->evaluations;
   free_accelerations(world, island);
   for (const Segment<S>& segment : island.segments) {
@@ -37,15 +37,15 @@ void ask_for_gamma(WorldState<S>& world, Island<S>& island, typename S::Scalar t
 }
 
 template <class S>
-void accelerate(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+void accelerate(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   ask_for_gamma(world, island, time);
   island.solver->accelerations(world, island);
 }
 
-#define CDOT_INSTANTIATE(S)                                                         \
-  template void find_known_forces(WorldState<S>&, Batch<S>&, int, int, S::Scalar*); \
-  template void ask_for_gamma(WorldState<S>&, Island<S>&, S::Scalar);               \
-  template void accelerate(WorldState<S>&, Island<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                                        \
+  template void find_known_forces(WorldData<S>&, Batch<S>&, int, int, S::Scalar*); \
+  template void ask_for_gamma(WorldData<S>&, Island<S>&, S::Scalar);               \
+  template void accelerate(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

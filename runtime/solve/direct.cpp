@@ -28,19 +28,19 @@ bool has_error(const Batch<S>& batch, int i) {
 }
 
 template <class S>
-[[gnu::always_inline]] inline void exert_solution(const WorldState<S>& world, const Island<S>& island,
-                                                  System<S>& system, typename S::Velocity* to) {
+[[gnu::always_inline]] inline void exert_solution(const WorldData<S>& world, const Island<S>& island, System<S>& system,
+                                                  typename S::Velocity* to) {
   system.store([](Batch<S>& batch, int i, auto lambda) { batch.lambda[i] = typename S::Scalar(lambda); });
   exert(world, island, system, &BatchState<S>::lambda, to);
 }
 
 template <class S>
-void forget_factor(WorldState<S>&, Island<S>& island) {
+void forget_factor(WorldData<S>&, Island<S>& island) {
   island.factored = false;
 }
 
 template <class S>
-void factor(WorldState<S>& world, Island<S>& island) {
+void factor(WorldData<S>& world, Island<S>& island) {
   System<S>& system = island.at_work();
   system.choose([](const Batch<S>&, int) { return true; });
   system.assemble(world.bodies);
@@ -49,7 +49,7 @@ void factor(WorldState<S>& world, Island<S>& island) {
 
 // K lambda = -(J v + bias), lambda within its bounds.
 template <class S>
-void solve_velocities(WorldState<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar) {
+void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar) {
   System<S>& system = island.at_work();
   if (system.rows() == 0) return;
   load_rates(island, system, v);
@@ -67,7 +67,7 @@ void solve_velocities(WorldState<S>& world, Island<S>& island, typename S::Veloc
 
 // K lambda = gamma - J dv/dt without joints, known forces being given.
 template <class S>
-void solve_accelerations(WorldState<S>& world, Island<S>& island) {
+void solve_accelerations(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   if (system.rows() == 0) return;
@@ -86,7 +86,7 @@ void solve_accelerations(WorldState<S>& world, Island<S>& island) {
 
 // K lambda = -C, q += M^-1 J^T lambda.
 template <class S>
-void move_by_newton(WorldState<S>& world, Island<S>& island, System<S>& system) {
+void move_by_newton(WorldData<S>& world, Island<S>& island, System<S>& system) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   load_errors(system, T(-1));
@@ -102,7 +102,7 @@ void move_by_newton(WorldState<S>& world, Island<S>& island, System<S>& system) 
 // `fresh`: J and K are not yet those of the step. Where they leave more than `enough` of the error they are renewed,
 // and where new ones do not halve it the joints contradict each other, round-off is reached, or the step went too far.
 template <class S>
-void solve_positions(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
+void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   T before = std::numeric_limits<T>::infinity();
@@ -132,7 +132,7 @@ void solve_positions(WorldState<S>& world, Island<S>& island, typename S::Scalar
 }
 
 template <class S>
-void project(WorldState<S>& world, Island<S>& island) {
+void project(WorldData<S>& world, Island<S>& island) {
   System<S>& system = island.at_work();
   load_rates(island, system, world.bodies.velocity.data());
   system.choose(is_held<S>);
@@ -153,8 +153,7 @@ void factor_rows_with_errors(System<S>& system) {
 
 // What brings a state of continuous time back onto its joints is the method's error, not an impulse of theirs.
 template <class S>
-void exert_correction(const WorldState<S>& world, const Island<S>& island, System<S>& system,
-                      typename S::Velocity* to) {
+void exert_correction(const WorldData<S>& world, const Island<S>& island, System<S>& system, typename S::Velocity* to) {
   using T = typename S::Scalar;
   system.store([&](Batch<S>& batch, int i, auto lambda) {
     batch.impulse[i] = T(lambda);
@@ -175,9 +174,9 @@ const RowSolver<S>& direct_solver() {
   return solver;
 }
 
-#define CDOT_INSTANTIATE(S)                                                                         \
-  template void factor_rows_with_errors(System<S>&);                                                \
-  template void exert_correction(const WorldState<S>&, const Island<S>&, System<S>&, S::Velocity*); \
+#define CDOT_INSTANTIATE(S)                                                                        \
+  template void factor_rows_with_errors(System<S>&);                                               \
+  template void exert_correction(const WorldData<S>&, const Island<S>&, System<S>&, S::Velocity*); \
   template const RowSolver<S>& direct_solver();
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

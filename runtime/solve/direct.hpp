@@ -5,7 +5,7 @@
 // Inline: to a small island a call would cost as much as what it does.
 #pragma once
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
@@ -26,7 +26,7 @@ template <class S>
 
 // to += M^-1 J^T x, x being an array of the batches; what tension adds to the rows is part of it.
 template <class S, class Array>
-[[gnu::always_inline]] inline void exert(const WorldState<S>& world, const Island<S>& island, const System<S>& system,
+[[gnu::always_inline]] inline void exert(const WorldData<S>& world, const Island<S>& island, const System<S>& system,
                                          Array x, typename S::Velocity* to) {
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world.bodies, (segment.batch->*x).data(), to);
@@ -40,6 +40,6 @@ void factor_rows_with_errors(System<S>& system);
 // The solution becomes the batches' impulse of this round of a projection, is added to their correction, and acts on
 // `to`.
 template <class S>
-void exert_correction(const WorldState<S>& world, const Island<S>& island, System<S>& system, typename S::Velocity* to);
+void exert_correction(const WorldData<S>& world, const Island<S>& island, System<S>& system, typename S::Velocity* to);
 
 }  // namespace cdot

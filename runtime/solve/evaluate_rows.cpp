@@ -10,7 +10,7 @@
 namespace cdot {
 
 template <class S>
-void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+void stiffen_bodies(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
   using T = typename S::Scalar;
   const T share = last_step > 0 ? h * (h / T(last_step)) : h;
   Bodies<S>& all = world.bodies;
@@ -29,7 +29,7 @@ void stiffen_bodies(WorldState<S>& world, Island<S>& island, typename S::Scalar 
 }
 
 template <class S>
-void factorize_rows(WorldState<S>& world, Island<S>& island) {
+void factorize_rows(WorldData<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     // The direct solver builds its own K; a law looks at K's diagonal whatever the solver.
@@ -40,7 +40,7 @@ void factorize_rows(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (!island.evaluated)
     for (const Segment<S>& segment : island.segments)
@@ -62,10 +62,10 @@ void evaluate_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                    \
-  template void stiffen_bodies(WorldState<S>&, Island<S>&, S::Scalar, double); \
-  template void factorize_rows(WorldState<S>&, Island<S>&);                    \
-  template void evaluate_rows(WorldState<S>&, Island<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                                   \
+  template void stiffen_bodies(WorldData<S>&, Island<S>&, S::Scalar, double); \
+  template void factorize_rows(WorldData<S>&, Island<S>&);                    \
+  template void evaluate_rows(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -13,13 +13,13 @@ namespace cdot {
 namespace {
 
 template <class S>
-void renew(WorldState<S>& world, Island<S>& island) {
+void renew(WorldData<S>& world, Island<S>& island) {
   island.factored = false;
   factorize_rows(world, island);
 }
 
 template <class S>
-void sweep_velocities(WorldState<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
+void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
   using T = typename S::Scalar;
   const bool warm = world.settings.warm_start;
   if (!warm) share = 0;
@@ -40,7 +40,7 @@ void sweep_velocities(WorldState<S>& world, Island<S>& island, typename S::Veloc
 }
 
 template <class S>
-void sweep_accelerations(WorldState<S>& world, Island<S>& island) {
+void sweep_accelerations(WorldData<S>& world, Island<S>& island) {
   factorize_rows(world, island);
   sweep_velocities(world, island, world.bodies.velocity_rate.data(), typename S::Scalar(1));
 }
@@ -60,7 +60,7 @@ typename S::Scalar errors_met(const Island<S>& island) {
 
 // In continuous time only where a row is held: one that is out of reach must be seen to pass.
 template <class S>
-void sweep_lawful_poses(WorldState<S>& world, const Island<S>& island, const Segment<S>& segment,
+void sweep_lawful_poses(WorldData<S>& world, const Island<S>& island, const Segment<S>& segment,
                         typename S::Scalar time) {
   Batch<S>& batch = *segment.batch;
   if (!batch.law->error) return;
@@ -74,7 +74,7 @@ void sweep_lawful_poses(WorldState<S>& world, const Island<S>& island, const Seg
 
 // Where a sweep meets larger errors than the one before, the directions of the step's J mislead: they are renewed.
 template <class S>
-void sweep_positions(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
+void sweep_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   using T = typename S::Scalar;
   const auto renew_directions = [&] {
     evaluate_anew(world, island, time);
@@ -115,7 +115,7 @@ void bound_for_projection(const Island<S>& island) {
 }
 
 template <class S>
-void sweep_projection(WorldState<S>& world, Island<S>& island) {
+void sweep_projection(WorldData<S>& world, Island<S>& island) {
   renew(world, island);
   auto* const v = world.bodies.velocity.data();
   if (island.continuous) bound_for_projection(island);

@@ -46,7 +46,7 @@ void add_wanted_rates(const Island<S>& island, typename S::Scalar share) {
 
 // Round-off in C from numbers of the size of the poses, at most about.
 template <class S>
-typename S::Scalar round_off(const WorldState<S>& world, const Island<S>& island) {
+typename S::Scalar round_off(const WorldData<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;
   T farthest = 0, numbers[S::pose_numbers];
   for (int i : island.bodies) {
@@ -59,7 +59,7 @@ typename S::Scalar round_off(const WorldState<S>& world, const Island<S>& island
 }  // namespace
 
 template <class S>
-void clear_correction(WorldState<S>& world, Island<S>& island) {
+void clear_correction(WorldData<S>& world, Island<S>& island) {
   for (int i : island.bodies) world.bodies.displacement[i] = {};
   for (const Segment<S>& segment : island.segments) {
     auto& correction = segment.batch->correction;
@@ -70,7 +70,7 @@ void clear_correction(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-typename S::Scalar find_errors(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+typename S::Scalar find_errors(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
   T worst = 0;
   for (const Segment<S>& segment : island.segments) {
@@ -88,7 +88,7 @@ typename S::Scalar find_errors(WorldState<S>& world, Island<S>& island, typename
 }
 
 template <class S>
-void evaluate_anew(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+void evaluate_anew(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   if constexpr (S::has_gyroscopes) {
     if (island.continuous) set_inertias(world, island);
     else turn_inertias(world, island);
@@ -116,14 +116,14 @@ void scale_corrections(const Island<S>& island, typename S::Scalar by) {
 }
 
 template <class S>
-void add_corrections(WorldState<S>& world, Island<S>& island, typename S::Scalar per_time) {
+void add_corrections(WorldData<S>& world, Island<S>& island, typename S::Scalar per_time) {
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.displacement[i], per_time);
   scale_corrections(island, per_time);
 }
 
 template <class S>
-bool left_the_joints(const WorldState<S>& world, const Island<S>& island, typename S::Scalar at_start) {
+bool left_the_joints(const WorldData<S>& world, const Island<S>& island, typename S::Scalar at_start) {
   using T = typename S::Scalar;
   const bool meant_to_close = world.settings.drift == Drift::projection && island.solver->exact;
   if (!meant_to_close || island.segments.empty() || island.residual <= T(2) * at_start) return false;
@@ -132,7 +132,7 @@ bool left_the_joints(const WorldState<S>& world, const Island<S>& island, typena
 }
 
 template <class S>
-void fail_if_open(const WorldState<S>& world, Island<S>& island, typename S::Scalar at_start) {
+void fail_if_open(const WorldData<S>& world, Island<S>& island, typename S::Scalar at_start) {
   if (!left_the_joints(world, island, at_start)) return;
   typename System<S>::Real shared = 0;
   for (int r = 0; r < island.at_work().rows(); ++r) shared = std::max(shared, std::abs(island.at_work().unmet(r)));
@@ -140,7 +140,7 @@ void fail_if_open(const WorldState<S>& world, Island<S>& island, typename S::Sca
 }
 
 template <class S>
-bool correction_is_small(const WorldState<S>& world, const Island<S>& island, double h) {
+bool correction_is_small(const WorldData<S>& world, const Island<S>& island, double h) {
   const Bodies<S>& all = world.bodies;
   double moved = 0, way = 0;
   for (int i : island.bodies) {
@@ -152,7 +152,7 @@ bool correction_is_small(const WorldState<S>& world, const Island<S>& island, do
 }
 
 template <class S>
-void project_velocities(WorldState<S>& world, Island<S>& island) {
+void project_velocities(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   if (island.continuous) add_wanted_rates(island, T(-1));
   island.solver->projection(world, island);
@@ -160,7 +160,7 @@ void project_velocities(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void project_start(WorldState<S>& world, Island<S>& island) {
+void project_start(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
   if (!(island.residual > foreign<T> * island.scale)) return;
@@ -173,7 +173,7 @@ void project_start(WorldState<S>& world, Island<S>& island) {
 // projected onto J v = -dC/dt at the new poses. Moving the poses alone would drain energy at first order: every step
 // turns the velocity out of the tangent plane, and what the next solve cuts off is gone.
 template <class S>
-void project_step(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
   const T time = T(world.time) + h;
@@ -195,19 +195,19 @@ void project_step(WorldState<S>& world, Island<S>& island, typename S::Scalar h)
   island.factored &= !island.at_work().lawful();
 }
 
-#define CDOT_INSTANTIATE(S)                                                          \
-  template void clear_correction(WorldState<S>&, Island<S>&);                        \
-  template S::Scalar find_errors(WorldState<S>&, Island<S>&, S::Scalar);             \
-  template void fill_lambda(const Island<S>&, S::Scalar);                            \
-  template void scale_corrections(const Island<S>&, S::Scalar);                      \
-  template void add_corrections(WorldState<S>&, Island<S>&, S::Scalar);              \
-  template void evaluate_anew(WorldState<S>&, Island<S>&, S::Scalar);                \
-  template bool left_the_joints(const WorldState<S>&, const Island<S>&, S::Scalar);  \
-  template void fail_if_open(const WorldState<S>&, Island<S>&, S::Scalar);           \
-  template bool correction_is_small(const WorldState<S>&, const Island<S>&, double); \
-  template void project_velocities(WorldState<S>&, Island<S>&);                      \
-  template void project_start(WorldState<S>&, Island<S>&);                           \
-  template void project_step(WorldState<S>&, Island<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                                         \
+  template void clear_correction(WorldData<S>&, Island<S>&);                        \
+  template S::Scalar find_errors(WorldData<S>&, Island<S>&, S::Scalar);             \
+  template void fill_lambda(const Island<S>&, S::Scalar);                           \
+  template void scale_corrections(const Island<S>&, S::Scalar);                     \
+  template void add_corrections(WorldData<S>&, Island<S>&, S::Scalar);              \
+  template void evaluate_anew(WorldData<S>&, Island<S>&, S::Scalar);                \
+  template bool left_the_joints(const WorldData<S>&, const Island<S>&, S::Scalar);  \
+  template void fail_if_open(const WorldData<S>&, Island<S>&, S::Scalar);           \
+  template bool correction_is_small(const WorldData<S>&, const Island<S>&, double); \
+  template void project_velocities(WorldData<S>&, Island<S>&);                      \
+  template void project_start(WorldData<S>&, Island<S>&);                           \
+  template void project_step(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -2,7 +2,7 @@
 // here knows of joints or of an integrator.
 #pragma once
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
@@ -16,21 +16,21 @@ struct RowSolver {
   bool exact;
 
   // J has changed: an old factor is forgotten, or the blocks get theirs anew.
-  void (*renew)(WorldState<S>&, Island<S>&);
+  void (*renew)(WorldData<S>&, Island<S>&);
   // The same at once, for whoever begins with the factor of all rows.
-  void (*factor)(WorldState<S>&, Island<S>&);
+  void (*factor)(WorldData<S>&, Island<S>&);
   // Adds impulses to v such that J v = -bias, within the bounds of rows under a law. Sweeps start from `share` of the
   // impulses at hand, unless warm starting is off.
-  void (*velocities)(WorldState<S>&, Island<S>&, Velocity* v, T share);
+  void (*velocities)(WorldData<S>&, Island<S>&, Velocity* v, T share);
   // Adds forces to dv/dt such that J dv/dt = -bias, in rows under a law that are held; the others have the force
   // between their bounds, which are one number.
-  void (*accelerations)(WorldState<S>&, Island<S>&);
+  void (*accelerations)(WorldData<S>&, Island<S>&);
   // Moves the poses onto C = 0: with the factor at hand, or, if `fresh`, with J and K at the present poses. Leaves the
   // moves in Bodies::displacement, the rest of C in Island::residual.
-  void (*positions)(WorldState<S>&, Island<S>&, T time, bool fresh);
+  void (*positions)(WorldData<S>&, Island<S>&, T time, bool fresh);
   // Projects the velocities onto J v = -bias, where C and J were just evaluated: exact rows and those that are held.
   // Afterwards Island::factored says whether the factor of these rows is at hand.
-  void (*projection)(WorldState<S>&, Island<S>&);
+  void (*projection)(WorldData<S>&, Island<S>&);
 };
 
 template <class S>

@@ -9,7 +9,7 @@ namespace cdot {
 namespace {
 
 template <class S>
-std::vector<std::vector<int>> joints_by_body(const WorldState<S>& world) {
+std::vector<std::vector<int>> joints_by_body(const WorldData<S>& world) {
   std::vector<std::vector<int>> joints(static_cast<size_t>(world.bodies.count()));
   for (size_t joint = 0; joint < world.joints.size(); ++joint)
     if (!world.joints[joint].broken)
@@ -19,7 +19,7 @@ std::vector<std::vector<int>> joints_by_body(const WorldState<S>& world) {
 
 // What stands still first, then the heaviest.
 template <class S>
-std::vector<int> roots(const WorldState<S>& world) {
+std::vector<int> roots(const WorldData<S>& world) {
   std::vector<int> bodies(static_cast<size_t>(world.bodies.count()));
   std::iota(bodies.begin(), bodies.end(), 0);
   const auto& m = world.bodies.inverse_mass;
@@ -31,7 +31,7 @@ std::vector<int> roots(const WorldState<S>& world) {
 
 // Depth first, each chain to its end before the next: read backwards, from the tips to the roots.
 template <class S>
-std::vector<int> sweep_places(const WorldState<S>& world) {
+std::vector<int> sweep_places(const WorldData<S>& world) {
   struct Visit {
     int body;
     size_t next;  // of its joints
@@ -64,7 +64,7 @@ std::vector<int> sweep_places(const WorldState<S>& world) {
   return places;
 }
 
-#define CDOT_INSTANTIATE(S) template std::vector<int> sweep_places(const WorldState<S>&);
+#define CDOT_INSTANTIATE(S) template std::vector<int> sweep_places(const WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -1,7 +1,7 @@
 // In which order the iterative solver goes through the joints of an island.
 #pragma once
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
@@ -10,6 +10,6 @@ namespace cdot {
 // links, hanging, thrown or between two supports, and on trees: the gap is half of what a shuffled order leaves, and a
 // tenth less than from the roots to the tips. Meshes do not care.
 template <class S>
-std::vector<int> sweep_places(const WorldState<S>& world);
+std::vector<int> sweep_places(const WorldData<S>& world);
 
 }  // namespace cdot

@@ -99,7 +99,7 @@ Bodies<S> elsewhere(const Bodies<S>& all, typename S::Scalar size) {
 // Of a slot that couples displacements, and beside these own turnings only. Others (what slides along an axis that
 // turns) stay with the own turnings.
 template <class S>
-int rows_of(const WorldState<S>& world, const Batch<S>& batch, int slot, const Bodies<S>& at) {
+int rows_of(const WorldData<S>& world, const Batch<S>& batch, int slot, const Bodies<S>& at) {
   using T = typename S::Scalar;
   T lambda[most_rows];
   std::fill_n(lambda, most_rows, T(1));
@@ -123,7 +123,7 @@ void leave_to_row(typename S::Stiffness& own, const double* w, double pivot) {
 }  // namespace
 
 template <class S>
-std::vector<int> tension_rows(const WorldState<S>& world, const Island<S>& island) {
+std::vector<int> tension_rows(const WorldData<S>& world, const Island<S>& island) {
   const IntegratorRow& method = row_of(world.settings.integrator);
   if (!method.stiffens && method.level != Level::acceleration) return {};
   const Bodies<S> at = elsewhere(world.bodies, island.size);
@@ -135,7 +135,7 @@ std::vector<int> tension_rows(const WorldState<S>& world, const Island<S>& islan
 }
 
 template <class S>
-void tighten_tensions(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void tighten_tensions(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   system.slacken();
@@ -160,9 +160,9 @@ void tighten_tensions(WorldState<S>& world, Island<S>& island, typename S::Scala
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                       \
-  template std::vector<int> tension_rows(const WorldState<S>&, const Island<S>&); \
-  template void tighten_tensions(WorldState<S>&, Island<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                                      \
+  template std::vector<int> tension_rows(const WorldData<S>&, const Island<S>&); \
+  template void tighten_tensions(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -9,17 +9,17 @@
 // it: with J at the end, where reactions are asked for, J^T lambda is all that the joint exerts.
 #pragma once
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
 // How many such rows every slot with rows has, in the order of the segments; empty where none has any.
 template <class S>
-std::vector<int> tension_rows(const WorldState<S>& world, const Island<S>& island);
+std::vector<int> tension_rows(const WorldData<S>& world, const Island<S>& island);
 
 // W and D from the impulses of the last step, h their share; what they take over leaves Bodies::stiffness. Only for the
 // direct solver.
 template <class S>
-void tighten_tensions(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+void tighten_tensions(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
 }  // namespace cdot

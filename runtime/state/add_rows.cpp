@@ -13,7 +13,7 @@ namespace cdot {
 namespace {
 
 template <class S>
-int find_batch(WorldState<S>& world, const BlockOps<S>* ops, const Law<S>* law, const std::vector<RowKind>& kinds) {
+int find_batch(WorldData<S>& world, const BlockOps<S>* ops, const Law<S>* law, const std::vector<RowKind>& kinds) {
   for (size_t i = 0; i < world.batches.size(); ++i)
     if (world.batches[i]->ops == ops && world.batches[i]->law == law) return static_cast<int>(i);
   world.batches.push_back(std::make_unique<Batch<S>>());
@@ -35,7 +35,7 @@ void grow(StateArray<Item>& column, int by, Item value = Item{}) {
 }  // namespace
 
 template <class S>
-void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law, std::vector<RowKind> kinds,
+void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law, std::vector<RowKind> kinds,
               std::span<const double> constants) {
   using T = typename S::Scalar;
   ops = ops->with(world.settings.kernels);
@@ -70,7 +70,7 @@ void add_rows(WorldState<S>& world, int joint, const BlockOps<S>* ops, const Law
 }
 
 template <class S>
-void check_joint(const WorldState<S>& world, int joint) {
+void check_joint(const WorldData<S>& world, int joint) {
   if (joint < 0 || joint >= static_cast<int>(world.joints.size()))
     throw Error(fmt::format("there is no joint number {}", joint));
 }
@@ -88,7 +88,7 @@ int coordinate_index(int type, std::string_view name) {
 }
 
 template <class S>
-int add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordinate, const Law<S>* law,
+int add_coordinate_row(WorldData<S>& world, int joint, std::string_view coordinate, const Law<S>* law,
                        std::span<const double> constants) {
   check_joint(world, joint);
   JointRecord& record = world.joints[joint];
@@ -100,11 +100,11 @@ int add_coordinate_row(WorldState<S>& world, int joint, std::string_view coordin
   return static_cast<int>(record.places.size()) - 1;
 }
 
-#define CDOT_INSTANTIATE(S)                                                                                       \
-  template void add_rows(WorldState<S>&, int, const BlockOps<S>*, const Law<S>*, std::vector<RowKind>,            \
-                         std::span<const double>);                                                                \
-  template int add_coordinate_row(WorldState<S>&, int, std::string_view, const Law<S>*, std::span<const double>); \
-  template void check_joint(const WorldState<S>&, int);                                                           \
+#define CDOT_INSTANTIATE(S)                                                                                      \
+  template void add_rows(WorldData<S>&, int, const BlockOps<S>*, const Law<S>*, std::vector<RowKind>,            \
+                         std::span<const double>);                                                               \
+  template int add_coordinate_row(WorldData<S>&, int, std::string_view, const Law<S>*, std::span<const double>); \
+  template void check_joint(const WorldData<S>&, int);                                                           \
   template int coordinate_index<S>(int, std::string_view);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -111,7 +111,7 @@ class Ranges {
 
 // Which of the island's joints may break. Their flags are numbers of its own.
 template <class S>
-bool find_breakable(WorldState<S>& world, int index, Ranges& ranges) {
+bool find_breakable(WorldData<S>& world, int index, Ranges& ranges) {
   bool any = false;
   ranges.item("joints.broken", -1, true);
   for (const auto& [joint, load] : world.breaking_loads) {
@@ -124,8 +124,8 @@ bool find_breakable(WorldState<S>& world, int index, Ranges& ranges) {
 }
 
 template <class S>
-std::vector<Block::Range> ranges_of(WorldState<S>& world, int index) {
-  Ranges ranges(world.state);
+std::vector<Block::Range> ranges_of(WorldData<S>& world, int index) {
+  Ranges ranges(world.block);
   Island<S>& island = world.islands[index];
   const auto& bodies = island.bodies;
   const bool breaks = find_breakable(world, index, ranges);
@@ -153,21 +153,21 @@ std::vector<Block::Range> ranges_of(WorldState<S>& world, int index) {
 }  // namespace
 
 template <class S>
-void settle_state(WorldState<S>& world) {
+void settle_state(WorldData<S>& world) {
   using T = typename S::Scalar;
-  Layout<T> layout(world.state, nullptr);
+  Layout<T> layout(world.block, nullptr);
   StateList::each(world, layout);
   std::vector<std::byte> bytes(layout.size());
-  Layout<T> move(world.state, bytes.data());
+  Layout<T> move(world.block, bytes.data());
   StateList::each(world, move);
-  world.state.bytes.swap(bytes);
-  world.before.assign(world.state.bytes.size(), std::byte{0});
-  world.state.islands.clear();
+  world.block.bytes.swap(bytes);
+  world.before.assign(world.block.bytes.size(), std::byte{0});
+  world.block.islands.clear();
   for (std::size_t k = 0; k < world.islands.size(); ++k)
-    world.state.islands.push_back(ranges_of(world, static_cast<int>(k)));
+    world.block.islands.push_back(ranges_of(world, static_cast<int>(k)));
 }
 
-#define CDOT_INSTANTIATE(S) template void settle_state(WorldState<S>&);
+#define CDOT_INSTANTIATE(S) template void settle_state(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -20,8 +20,8 @@ struct Block {
 
 // Lays out the State of a World whose islands were just analysed, and moves it there. Allocates.
 template <class S>
-struct WorldState;
+struct WorldData;
 template <class S>
-void settle_state(WorldState<S>& world);
+void settle_state(WorldData<S>& world);
 
 }  // namespace cdot

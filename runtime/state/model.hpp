@@ -17,7 +17,7 @@
 namespace cdot {
 
 template <class S>
-struct WorldState;
+struct WorldData;
 // How an island's rows are solved (runtime/solve/solver.hpp).
 template <class S>
 struct RowSolver;
@@ -55,7 +55,7 @@ template <class S>
 struct Model {
   using T = typename S::Scalar;
   // Looks at the World after every substep, as breaking loads do.
-  using Hook = void (*)(WorldState<S>&, T h);
+  using Hook = void (*)(WorldData<S>&, T h);
 
   Settings settings;
   OnFailure on_failure = OnFailure::stop;

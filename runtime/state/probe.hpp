@@ -9,7 +9,7 @@
 
 #include <cdot/detail/joint_table.hpp>
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
@@ -17,7 +17,7 @@ template <class S>
 class Probe {
  public:
   using T = typename S::Scalar;
-  explicit Probe(const WorldState<S>& world) : world_(world) {}
+  explicit Probe(const WorldData<S>& world) : world_(world) {}
 
   // The rows of a joint, or the row of one of its coordinates, with no body taken as immovable.
   void look_at(const JointRecord& joint, int coordinate = -1) {
@@ -162,7 +162,7 @@ class Probe {
     return batch_.C;
   }
 
-  const WorldState<S>& world_;
+  const WorldData<S>& world_;
   const BlockOps<S>* ops_ = nullptr;
   Batch<S> batch_;    // one slot
   Bodies<S> bodies_;  // those of the joint only, in its order
@@ -170,7 +170,7 @@ class Probe {
 
 // lambda of a joint's rows in the last substep, drift correction included; zeros where it has none.
 template <class S>
-std::vector<typename S::Scalar> total_impulse(const WorldState<S>& world, const JointRecord& joint) {
+std::vector<typename S::Scalar> total_impulse(const WorldData<S>& world, const JointRecord& joint) {
   const auto rows = joint_types(S::dimension)[joint.type].row_kinds.size();
   std::vector<typename S::Scalar> lambda(rows, 0);
   if (joint.places.empty() || joint.broken) return lambda;
@@ -183,7 +183,7 @@ std::vector<typename S::Scalar> total_impulse(const WorldState<S>& world, const 
 }
 
 template <class S>
-bool is_soft(const WorldState<S>& world, const JointRecord& joint) {
+bool is_soft(const WorldData<S>& world, const JointRecord& joint) {
   if (joint.places.empty()) return false;
   const Law<S>* law = world.batches[joint.places[0].batch]->law;
   return law && !law->reported;
@@ -195,7 +195,7 @@ inline constexpr const char* why_it_jumps =
 
 // Refuses a coordinate that has no value here, for an effect on it.
 template <class S>
-void check_value(const WorldState<S>& world, const JointRecord& record, int coordinate) {
+void check_value(const WorldData<S>& world, const JointRecord& record, int coordinate) {
   const JointType& type = joint_types(S::dimension)[record.type];
   Probe<S> probe(world);
   probe.look_at(record, coordinate);
@@ -207,7 +207,7 @@ void check_value(const WorldState<S>& world, const JointRecord& record, int coor
 // Refuses rows that have no value where the bodies are, or no direction where they hold. A velocity row has no C; a
 // soft one is a spring, which may have no direction.
 template <class S>
-void check_rows(const WorldState<S>& world, const JointRecord& record, bool soft) {
+void check_rows(const WorldData<S>& world, const JointRecord& record, bool soft) {
   const JointType& type = joint_types(S::dimension)[record.type];
   Probe<S> probe(world);
   probe.look_at(record);

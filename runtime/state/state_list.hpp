@@ -4,7 +4,7 @@
 // Whoever adds a member to one of the State structs gets a compiler error here until it is on the list.
 #pragma once
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
@@ -12,7 +12,7 @@ namespace cdot {
 // in_steps: a step may change it. visit(x) hands it a StateNumber or a StateArray. Numbers of one item are of one type.
 struct StateList {
   template <class S, class Visitor>
-  static void each(WorldState<S>& world, Visitor& visit) {
+  static void each(WorldData<S>& world, Visitor& visit) {
     each_in_common(world, visit);
     each_body(world.bodies, true, visit);
     if constexpr (S::has_gyroscopes) visit.item("gyroscopes", -1, true), visit(world.gyroscopes);
@@ -70,7 +70,7 @@ struct StateList {
 
  private:
   template <class S, class Visitor>
-  static void each_in_common(WorldState<S>& world, Visitor& visit) {
+  static void each_in_common(WorldData<S>& world, Visitor& visit) {
     auto& [time, last_step, counts, gyroscopes] = static_cast<State<S>&>(world);
     visit.item("time", -1, true), visit(time), visit(last_step);  // must come first: Snapshot::time()
     visit.counts(counts);

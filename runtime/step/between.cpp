@@ -37,7 +37,7 @@ void find_further_terms(Flow<S>& flow, const RungeKuttaOf<S>& method) {
 }
 
 template <class S>
-void keep_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+void keep_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   Flow<S>& flow = island.flow;
   read_numbers(world, island, flow.end.data());
   each_run_of_forces(island, [](auto* lambda, auto* forces, int count) { std::copy_n(lambda, count, forces); });
@@ -67,7 +67,7 @@ void interpolate(Flow<S>& flow, const RungeKuttaOf<S>& method) {
 }  // namespace
 
 template <class S>
-void go_between(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+void go_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   Flow<S>& flow = island.flow;
   if (!flow.end_kept) keep_end(world, island, method, time);
   interpolate(flow, method);
@@ -76,7 +76,7 @@ void go_between(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
 }
 
 template <class S>
-void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+void go_to_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   Flow<S>& flow = island.flow;
   set_numbers(world, island, flow.end.data());
   evaluate_anew(world, island, time);
@@ -89,9 +89,9 @@ void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                                \
-  template void go_between(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar); \
-  template void go_to_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
+#define CDOT_INSTANTIATE(S)                                                               \
+  template void go_between(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar); \
+  template void go_to_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -9,10 +9,10 @@ namespace cdot {
 // Brings the bodies from the end of the last step, or from where they stood in it, to Flow::ahead before that end;
 // `time` is that of the end.
 template <class S>
-void go_between(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
+void go_between(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 
 // And back to the end, forces and accelerations included.
 template <class S>
-void go_to_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
+void go_to_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 
 }  // namespace cdot

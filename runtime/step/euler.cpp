@@ -12,7 +12,7 @@ namespace cdot {
 namespace {
 
 template <class S>
-void move_velocities(WorldState<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+void move_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
   using T = typename S::Scalar;
   evaluate_rows(world, island, h);
   apply_forces(world, island, h);
@@ -23,7 +23,7 @@ void move_velocities(WorldState<S>& world, Island<S>& island, typename S::Scalar
 // The linearly implicit step wants the impulses of the one before. The first one takes those that it would have
 // without.
 template <class S>
-void rehearse(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void rehearse(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
   std::vector<typename S::Velocity>& start = island.flow.velocity;
   for (size_t k = 0; k < start.size(); ++k) start[k] = all.velocity[island.bodies[k]];
@@ -35,7 +35,7 @@ void rehearse(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 }  // namespace
 
 template <class S>
-void step_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
   project_start(world, island);
   if (island.stiffened) {
     if (last_step == 0) rehearse(world, island, h);
@@ -52,8 +52,8 @@ void prepare_euler(Island<S>& island) {
   if (island.stiffened) island.flow.velocity.resize(island.bodies.size());
 }
 
-#define CDOT_INSTANTIATE(S)                                                \
-  template void step_euler(WorldState<S>&, Island<S>&, S::Scalar, double); \
+#define CDOT_INSTANTIATE(S)                                               \
+  template void step_euler(WorldData<S>&, Island<S>&, S::Scalar, double); \
   template void prepare_euler(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -47,7 +47,7 @@ void each_guarded_row(Island<S>& island, F f) {
 // where dJv/dt is the largest of the sum of all |J dv/dt|, a linear acceleration being taken for an angular one too,
 // and of what the row's own force keeps from it, K lambda. A row without a direction here is taken for a length.
 template <class S>
-void find_resolution(const WorldState<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
+void find_resolution(const WorldData<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
                      typename S::Scalar h, Resolution<typename S::Scalar>* resolution) {
   using T = typename S::Scalar;
   using Real = ExactNumber<T>;
@@ -84,7 +84,7 @@ void find_resolution(const WorldState<S>& world, const Island<S>& island, const 
 
 // With dv/dt as it is: without joints, then with them.
 template <class S>
-void find_resolution(const WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void find_resolution(const WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   auto* resolution = island.flow.resolution.data();
   each_guarded_slot(island, [&](Batch<S>& batch, int slot) {
     find_resolution(world, island, batch, slot, h, resolution);
@@ -94,7 +94,7 @@ void find_resolution(const WorldState<S>& world, Island<S>& island, typename S::
 
 // J v of every row under a law, into Batch::rate.
 template <class S>
-void find_rates(WorldState<S>& world, Island<S>& island) {
+void find_rates(WorldData<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     if (!segment.batch->law) continue;
     const auto* velocity = world.bodies.velocity.data();
@@ -114,7 +114,7 @@ void clear_laws(Island<S>& island) {
 
 // v, be it velocities or accelerations, such that J v = -bias within the bounds.
 template <class S>
-void solve(WorldState<S>& world, Island<S>& island, typename S::Velocity* v) {
+void solve(WorldData<S>& world, Island<S>& island, typename S::Velocity* v) {
   island.solver->renew(world, island);
   island.solver->velocities(world, island, v, typename S::Scalar(0));
 }
@@ -122,7 +122,7 @@ void solve(WorldState<S>& world, Island<S>& island, typename S::Velocity* v) {
 // Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. What has stopped is `held`:
 // by sweeps its rate is not quite 0. A motor's force is nothing beside an impulse, unless it has no bound.
 template <class S>
-void stop_what_hits(WorldState<S>& world, Island<S>& island) {
+void stop_what_hits(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   bool hits = false;
   find_rates(world, island);
@@ -154,7 +154,7 @@ void stop_what_hits(WorldState<S>& world, Island<S>& island) {
 
 // What each row may do, as bounds of its force. True if for some it depends on the forces.
 template <class S>
-bool offer_bounds(WorldState<S>& world, Island<S>& island) {
+bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   bool open = false;
   find_rates(world, island);
@@ -182,7 +182,7 @@ bool offer_bounds(WorldState<S>& world, Island<S>& island) {
 // Forces and accelerations are complementary: what might hold does, as far as its bounds allow. A force at a bound: the
 // row lets go, or slips.
 template <class S>
-void decide_by_forces(WorldState<S>& world, Island<S>& island, typename S::Scalar time) {
+void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
   ask_for_gamma(world, island, time);
   solve(world, island, world.bodies.velocity_rate.data());
@@ -234,7 +234,7 @@ void count_guarded_rows(Island<S>& island) {
 }
 
 template <class S>
-void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   if (island.flow.guarded > 0) {
     std::fill(island.flow.resolution.begin(), island.flow.resolution.end(), Resolution<typename S::Scalar>{});
     free_accelerations(world, island);
@@ -254,7 +254,7 @@ void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar ti
 }
 
 template <class S>
-void note_rates(WorldState<S>& world, Island<S>& island) {
+void note_rates(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   if (island.flow.guarded == 0) return;
   find_rates(world, island);
@@ -284,11 +284,11 @@ void drop_modes(Island<S>& island) {
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                     \
-  template void count_guarded_rows(Island<S>&);                                 \
-  template void choose_modes(WorldState<S>&, Island<S>&, S::Scalar, S::Scalar); \
-  template void note_rates(WorldState<S>&, Island<S>&);                         \
-  template void measure_margins(Island<S>&);                                    \
+#define CDOT_INSTANTIATE(S)                                                    \
+  template void count_guarded_rows(Island<S>&);                                \
+  template void choose_modes(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar); \
+  template void note_rates(WorldData<S>&, Island<S>&);                         \
+  template void measure_margins(Island<S>&);                                   \
   template void drop_modes(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -2,7 +2,7 @@
 // force. A step that ends where a mode no longer holds is shortened to the event, and the modes are chosen anew.
 #pragma once
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
@@ -14,11 +14,11 @@ void count_guarded_rows(Island<S>& island);
 // What hits something stops there, by impulses. Ends with velocities that fit, with accelerations, and with the
 // margins.
 template <class S>
-void choose_modes(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h);
+void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h);
 
 // J v + dC/dt of these rows into Flow::row_rates, where C and J were just evaluated.
 template <class S>
-void note_rates(WorldState<S>& world, Island<S>& island);
+void note_rates(WorldData<S>& world, Island<S>& island);
 
 // Into Flow::margins, from these rates and the forces found since, how far each row is from its next event, in units of
 // what is not resolution apart: C - end where it is out of reach, the force short of its bounds where it is held, the

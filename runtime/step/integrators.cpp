@@ -12,19 +12,19 @@ namespace cdot {
 template <class S>
 void prepare_euler(Island<S>& island);
 template <class S>
-void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h);
+void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 template <class S>
 void prepare_rattle(Island<S>& island);
 
 namespace {
 
 template <class S>
-void euler(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   step_euler(world, island, h, world.last_step);
 }
 
 template <class S, const auto& method>
-void runge_kutta(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void runge_kutta(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   step_runge_kutta<S>(world, island, method, h);
 }
 template <class S, const auto& method>

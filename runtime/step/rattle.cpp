@@ -25,7 +25,7 @@ constexpr T round_off = T(by_precision<T>(1e-7, 1e-15));
 // one before. From 0 on that would be nothing and twice their share by turns, for ever. Here half of what they exert in
 // h.
 template <class S>
-void exert_at_start(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
@@ -53,7 +53,7 @@ bool has_velocity_rows(const Island<S>& island) {
 // A state that is not the end of a step: on its joints, with the factor of its exact rows. Returns by how much the
 // impulses of the rows belong to this step: h over the step that they are of.
 template <class S>
-typename S::Scalar begin(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+typename S::Scalar begin(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (island.evaluated) return world.last_step > 0 ? h / T(world.last_step) : T(0);
   project_start(world, island);
@@ -68,7 +68,7 @@ typename S::Scalar begin(WorldState<S>& world, Island<S>& island, typename S::Sc
 
 // velocity += h dv/dt of all forces, springs on coordinates among them, at the velocities that are in flow.velocity.
 template <class S>
-void kick(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
   std::vector<typename S::Velocity>& other = island.flow.velocity;
   const auto exchange = [&] {
@@ -88,7 +88,7 @@ void kick(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 
 // What the joints exerted at the end of the step before, they exert at the start of this one: the first guess.
 template <class S>
-void guess_impulses(WorldState<S>& world, Island<S>& island, typename S::Scalar share) {
+void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar share) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int rows = batch.ops->rows;
@@ -101,7 +101,7 @@ void guess_impulses(WorldState<S>& world, Island<S>& island, typename S::Scalar 
 
 // poses = start + h velocity; bodies whose inertia turns with them about their mean spin.
 template <class S>
-void drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
   const std::vector<typename S::Pose>& start = island.flow.pose;
   for (size_t k = 0; k < start.size(); ++k) all.pose[island.bodies[k]] = start[k];
@@ -115,7 +115,7 @@ void drift(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 
 // The half step turned the bodies' velocities round: 2 |change| > |v| in the metric of the masses.
 template <class S>
-bool turned_round(const WorldState<S>& world, const Island<S>& island) {
+bool turned_round(const WorldData<S>& world, const Island<S>& island) {
   double change = 0, before = 0;
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     const int i = island.bodies[k];
@@ -132,7 +132,7 @@ bool turned_round(const WorldState<S>& world, const Island<S>& island) {
 // learns on the way. False if the error does not shrink, the step being too long for it; or if it did so by throwing
 // the bodies back, where a joint's directions turn round as those of a rope do whose length passes through 0.
 template <class S>
-bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   const T time = T(world.time) + h;
   System<S>& system = island.at_work();
@@ -158,7 +158,7 @@ bool drift_onto_joints(WorldState<S>& world, Island<S>& island, typename S::Scal
 
 // Motors, limits and friction are solved for with the exact rows. Springs have pushed as forces.
 template <class S>
-void bound_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
@@ -178,7 +178,7 @@ void bound_rows(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 
 // The velocities at the end: J v = -dC/dt, the impulses in lambda.
 template <class S>
-void solve_end(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   factorize_rows(world, island);
   bound_rows(world, island, h);
   island.factored = false;
@@ -187,7 +187,7 @@ void solve_end(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
 
 // Half a kick at the start, and what the joints are expected to exert there.
 template <class S>
-void start_half(WorldState<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
+void start_half(WorldData<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
   for (size_t k = 0; k < island.bodies.size(); ++k) world.bodies.velocity[island.bodies[k]] = island.flow.velocity[k];
   clear_correction(world, island);
   kick(world, island, h / 2);
@@ -198,7 +198,7 @@ void start_half(WorldState<S>& world, Island<S>& island, typename S::Scalar h, t
 // displacement over h belongs to the velocities, and what caused it to the impulses; unless it undoes the
 // motion. (Sweeps leave something of it to the next step, and need all that they found.)
 template <class S>
-void drift_with_renewed_directions(WorldState<S>& world, Island<S>& island, typename S::Scalar h,
+void drift_with_renewed_directions(WorldData<S>& world, Island<S>& island, typename S::Scalar h,
                                    typename S::Scalar at_start) {
   using T = typename S::Scalar;
   drift(world, island, h);
@@ -212,7 +212,7 @@ void drift_with_renewed_directions(WorldState<S>& world, Island<S>& island, type
 }  // namespace
 
 template <class S>
-void step_rattle(WorldState<S>& world, Island<S>& island, typename S::Scalar h) {
+void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   Flow<S>& flow = island.flow;
@@ -243,8 +243,8 @@ void prepare_rattle(Island<S>& island) {
   island.flow.search.reserve(static_cast<size_t>(island.system.rows()));
 }
 
-#define CDOT_INSTANTIATE(S)                                         \
-  template void step_rattle(WorldState<S>&, Island<S>&, S::Scalar); \
+#define CDOT_INSTANTIATE(S)                                        \
+  template void step_rattle(WorldData<S>&, Island<S>&, S::Scalar); \
   template void prepare_rattle(Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -16,7 +16,7 @@ namespace cdot {
 namespace {
 
 template <class S>
-void read_rates(const WorldState<S>& world, Island<S>& island, int stage) {
+void read_rates(const WorldData<S>& world, Island<S>& island, int stage) {
   typename S::Scalar* to = island.flow.rates.data() + static_cast<size_t>(stage) * island.flow.now.size();
   for (int i : island.bodies) {
     S::write_rate(world.bodies.pose[i], world.bodies.velocity[i], to);
@@ -73,7 +73,7 @@ double estimated_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, typen
 }  // namespace
 
 template <class S>
-void read_numbers(const WorldState<S>& world, const Island<S>& island, typename S::Scalar* to) {
+void read_numbers(const WorldData<S>& world, const Island<S>& island, typename S::Scalar* to) {
   for (int i : island.bodies) {
     S::write(world.bodies.pose[i], to);
     S::write(world.bodies.velocity[i], to + S::pose_numbers);
@@ -82,7 +82,7 @@ void read_numbers(const WorldState<S>& world, const Island<S>& island, typename 
 }
 
 template <class S>
-void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S::Scalar* from) {
+void set_numbers(WorldData<S>& world, const Island<S>& island, const typename S::Scalar* from) {
   for (int i : island.bodies) {
     world.bodies.pose[i] = S::read(from);
     world.bodies.velocity[i] = S::read_velocity(from + S::pose_numbers);
@@ -91,7 +91,7 @@ void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S
 }
 
 template <class S>
-void take_stage(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
                 typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
   combine(island.flow, method.a[stage], stage, h);
@@ -103,7 +103,7 @@ void take_stage(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
 }
 
 template <class S>
-void take_stages(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+void take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                  typename S::Scalar h) {
   for (int stage = 1; stage < method.stages; ++stage) take_stage(world, island, method, stage, time, h);
   combine(island.flow, method.a[method.stages], method.stages, h);
@@ -111,7 +111,7 @@ void take_stages(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>&
 }
 
 template <class S>
-void project(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
+void project(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   const bool projects = world.settings.drift == Drift::projection && !island.segments.empty();
   for (int i : island.bodies) world.bodies.displacement[i] = {};
   if (projects) island.solver->positions(world, island, time, fresh);
@@ -126,7 +126,7 @@ void project(WorldState<S>& world, Island<S>& island, typename S::Scalar time, b
 }
 
 template <class S>
-void project_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
+void project_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   project(world, island, time, false);
   measure_margins(island);
   read_rates(world, island, method.stages);
@@ -171,29 +171,29 @@ void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
 }
 
 template <class S>
-void keep_start(const WorldState<S>& world, Island<S>& island) {
+void keep_start(const WorldData<S>& world, Island<S>& island) {
   read_numbers(world, island, island.flow.start.data());
   read_rates(world, island, 0);
   island.flow.start_residual = island.residual;
 }
 
 template <class S>
-void go_back(WorldState<S>& world, Island<S>& island) {
+void go_back(WorldData<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
   island.residual = island.flow.start_residual;
 }
 
-#define CDOT_INSTANTIATE(S)                                                                                \
-  template void read_numbers(const WorldState<S>&, const Island<S>&, S::Scalar*);                          \
-  template void set_numbers(WorldState<S>&, const Island<S>&, const S::Scalar*);                           \
-  template void take_stage(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
-  template void project(WorldState<S>&, Island<S>&, S::Scalar, bool);                                      \
-  template void prepare_runge_kutta(Island<S>&, const RungeKuttaOf<S>&);                                   \
-  template void keep_start(const WorldState<S>&, Island<S>&);                                              \
-  template void go_back(WorldState<S>&, Island<S>&);                                                       \
-  template void take_stages(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
-  template void project_end(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                \
-  template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);              \
+#define CDOT_INSTANTIATE(S)                                                                               \
+  template void read_numbers(const WorldData<S>&, const Island<S>&, S::Scalar*);                          \
+  template void set_numbers(WorldData<S>&, const Island<S>&, const S::Scalar*);                           \
+  template void take_stage(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
+  template void project(WorldData<S>&, Island<S>&, S::Scalar, bool);                                      \
+  template void prepare_runge_kutta(Island<S>&, const RungeKuttaOf<S>&);                                  \
+  template void keep_start(const WorldData<S>&, Island<S>&);                                              \
+  template void go_back(WorldData<S>&, Island<S>&);                                                       \
+  template void take_stages(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
+  template void project_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                \
+  template double error_of_step(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar, double);             \
   template double share_of_size(const Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

@@ -3,7 +3,7 @@
 // serves the poses, that of the end the velocities and the first stage of the next step.
 #pragma once
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 #include "runtime/step/runge_kutta_tables.hpp"
 
 namespace cdot {
@@ -13,15 +13,15 @@ template <class S>
 using RungeKuttaOf = RungeKutta<ExactNumber<typename S::Scalar>>;
 
 template <class S>
-void step_runge_kutta(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
+void step_runge_kutta(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
 template <class S>
 void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method);
 
 // The present state, with its accelerations, is what the next steps start from; and back to it.
 template <class S>
-void keep_start(const WorldState<S>& world, Island<S>& island);
+void keep_start(const WorldData<S>& world, Island<S>& island);
 template <class S>
-void go_back(WorldState<S>& world, Island<S>& island);
+void go_back(WorldData<S>& world, Island<S>& island);
 
 // Numbers of one body among those of a Flow.
 template <class S>
@@ -29,27 +29,27 @@ inline constexpr int numbers_per_body = S::pose_numbers + S::freedom;
 
 // The bodies' poses and velocities, and dv/dt with the poses' rates, from and to arrays of a Flow.
 template <class S>
-void read_numbers(const WorldState<S>& world, const Island<S>& island, typename S::Scalar* to);
+void read_numbers(const WorldData<S>& world, const Island<S>& island, typename S::Scalar* to);
 template <class S>
-void set_numbers(WorldState<S>& world, const Island<S>& island, const typename S::Scalar* from);
+void set_numbers(WorldData<S>& world, const Island<S>& island, const typename S::Scalar* from);
 
 // The k of a stage at start + h sum_j a_stage,j k_j.
 template <class S>
-void take_stage(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
+void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, int stage,
                 typename S::Scalar time, typename S::Scalar h);
 
 // The stages of a step of h that starts at `time`; leaves its end in the bodies, not yet projected.
 template <class S>
-void take_stages(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+void take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                  typename S::Scalar h);
 
 // The present state onto the constraints, with the accelerations there. `fresh`: J is not yet that of the step.
 template <class S>
-void project(WorldState<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
+void project(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
 
 // The same for the end of a step, whose k becomes the last.
 template <class S>
-void project_end(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
+void project_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 
 // The estimated error of the step over what is allowed [m], [rad], [m/s], [rad/s]: of velocities relative where they
 // exceed 1, of no number less than its last bit.

@@ -59,7 +59,7 @@ double first_event(const Flow<S>& flow) {
 
 // The state at the first event of a step of h that was seen to pass one. Returns the time until there.
 template <class S>
-typename S::Scalar go_to_event(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                typename S::Scalar time, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
@@ -101,7 +101,7 @@ T length_of_step(T best, T left, T reach) {
 // The step ended so far from the joints that to bring it back onto them undid its motion: it passed a pose where the
 // directions of a joint turn round, as those of a rope do where its length passes through 0.
 template <class S>
-bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S::Scalar h) {
+bool went_astray(const WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
   const auto slight = [&](int i) {
     return S::slower(world.bodies.displacement[i], slight_displacement<S> * island.size);
   };
@@ -112,7 +112,7 @@ bool went_astray(const WorldState<S>& world, const Island<S>& island, typename S
 // A step of h, at its end on the constraints. Returns its error, as error_now() tells it in units of what is allowed:
 // above 1 (or no number) the state is none.
 template <class S, class F>
-double try_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                 typename S::Scalar h, F error_now) {
   take_stages(world, island, method, time, h);
   double error = method.error_at_end ? 0 : error_now();
@@ -127,7 +127,7 @@ double try_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& 
 // those of all parts of the step add up. Returns its length; Flow::margins are those of its end. 0 if none is short
 // enough.
 template <class S>
-typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                    typename S::Scalar time, typename S::Scalar left, typename S::Scalar whole) {
   using T = typename S::Scalar;
   T h = left;
@@ -144,7 +144,7 @@ typename S::Scalar take_fixed_step(WorldState<S>& world, Island<S>& island, cons
 
 // A step as long as the error allows, but within `reach`. Returns as take_fixed_step() does.
 template <class S>
-typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                       typename S::Scalar time, typename S::Scalar left, typename S::Scalar reach) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
@@ -175,7 +175,7 @@ typename S::Scalar take_adaptive_step(WorldState<S>& world, Island<S>& island, c
 
 // The state as it was found, on its constraints, with the accelerations.
 template <class S>
-void begin(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+void begin(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   if (island.flow.known) return;
   drop_modes(island);
   island.continuous = false;
@@ -198,7 +198,7 @@ void scale_forces(const Island<S>& island, typename S::Scalar by) {
 // What is left of a step, by the sturdiest of the other methods: linearly implicit, as it starts from `time`. It wants
 // the impulses of a step before.
 template <class S>
-void fall_back_to_euler(WorldState<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
+void fall_back_to_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   ++world.counts->rescued;
   fill_lambda(island, typename S::Scalar(0));
   evaluate_anew(world, island, time);
@@ -228,7 +228,7 @@ void count_step(StepCounts& counts, typename S::Scalar h) {
 
 // From `done` on until h is reached, or passed. Returns the end.
 template <class S>
-typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                               typename S::Scalar done, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
@@ -267,7 +267,7 @@ typename S::Scalar take_steps(WorldState<S>& world, Island<S>& island, const Run
 }  // namespace
 
 template <class S>
-void step_runge_kutta(WorldState<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
+void step_runge_kutta(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h) {
   using T = typename S::Scalar;
   Flow<S>& flow = island.flow;
   if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
@@ -281,7 +281,7 @@ void step_runge_kutta(WorldState<S>& world, Island<S>& island, const RungeKuttaO
 }
 
 #define CDOT_INSTANTIATE(S) \
-  template void step_runge_kutta(WorldState<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
+  template void step_runge_kutta(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

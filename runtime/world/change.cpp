@@ -15,7 +15,7 @@ namespace {
 // The changed parameters to all rows of a joint, and no others: where turns are counted among a slot's numbers, the
 // count goes on.
 template <class S>
-void hand_out(WorldState<S>& world, const JointRecord& record, const std::vector<const ParameterInfo*>& changed) {
+void hand_out(WorldData<S>& world, const JointRecord& record, const std::vector<const ParameterInfo*>& changed) {
   for (const Place& place : record.places) {
     Batch<S>& batch = *world.batches[place.batch];
     for (const ParameterInfo* info : changed)
@@ -27,7 +27,7 @@ void hand_out(WorldState<S>& world, const JointRecord& record, const std::vector
 
 // Refuses parameters with which a coordinate that effects act on has no value.
 template <class S>
-void check_effects(const WorldState<S>& world, const JointRecord& record) {
+void check_effects(const WorldData<S>& world, const JointRecord& record) {
   const auto& coordinates = joint_entries<S>()[record.type].coordinates;
   for (size_t k = 0; k < coordinates.size(); ++k)
     if (std::any_of(record.places.begin(), record.places.end(),
@@ -39,35 +39,35 @@ void check_effects(const WorldState<S>& world, const JointRecord& record) {
 
 template <class S>
 void BasicWorld<S>::remove_joint(int joint) {
-  check_joint(*state_, joint);
-  JointRecord& record = state_->joints[joint];
+  check_joint(*data_, joint);
+  JointRecord& record = data_->joints[joint];
   if (record.broken) return;
   record.broken = true;
-  state_->prepared = false;  // what it held together may be two islands now
+  data_->prepared = false;  // what it held together may be two islands now
 }
 
 template <class S>
 void BasicWorld<S>::set_parameters(int joint, const std::vector<NamedValue>& parameters) {
-  check_joint(*state_, joint);
-  JointRecord& record = state_->joints[joint];
+  check_joint(*data_, joint);
+  JointRecord& record = data_->joints[joint];
   const JointType& type = joint_types(S::dimension)[record.type];
   std::vector<double> numbers = record.parameters;
   const auto changed = change_parameters(type, parameters, numbers);
   std::vector<double> moved = numbers;
   move_world_points(
-      type, record.bodies, [&](int body) { return body == state_->ground; }, state_->origin, -1, moved);
+      type, record.bodies, [&](int body) { return body == data_->ground; }, data_->origin, -1, moved);
   JointRecord next = record;
   for (const ParameterInfo* info : changed)
     std::copy_n(moved.begin() + info->offset, info->size, next.parameters.begin() + info->offset);
-  check_rows(*state_, next, is_soft(*state_, record));
-  check_effects(*state_, next);
+  check_rows(*data_, next, is_soft(*data_, record));
+  check_effects(*data_, next);
 
   record.parameters = next.parameters;
-  hand_out(*state_, record, changed);
-  const int body = movable_body(*state_, record);
-  if (!state_->prepared || body < 0) return;
-  wake(*state_, body);
-  measure_size(*state_, state_->islands[state_->island_of[body]]);
+  hand_out(*data_, record, changed);
+  const int body = movable_body(*data_, record);
+  if (!data_->prepared || body < 0) return;
+  wake(*data_, body);
+  measure_size(*data_, data_->islands[data_->island_of[body]]);
 }
 
 #define CDOT_INSTANTIATE(S)                       \

@@ -56,7 +56,7 @@ double longest_distance(const Batch<S>& batch, int slot, const Bodies<S>& all) {
 }  // namespace
 
 template <class S>
-void measure_size(WorldState<S>& world, Island<S>& island) {
+void measure_size(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
   double size = 0;
   for (const Segment<S>& segment : island.segments) {
@@ -70,7 +70,7 @@ void measure_size(WorldState<S>& world, Island<S>& island) {
   island.scale = std::min(T(10) * island.size, T(1));
 }
 
-#define CDOT_INSTANTIATE(S) template void measure_size(WorldState<S>&, Island<S>&);
+#define CDOT_INSTANTIATE(S) template void measure_size(WorldData<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

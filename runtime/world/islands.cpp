@@ -35,7 +35,7 @@ struct Sets {
 };
 
 template <class S>
-void unite_bodies(const WorldState<S>& world, Sets& sets) {
+void unite_bodies(const WorldData<S>& world, Sets& sets) {
   const auto unite = [&](const std::vector<int>& bodies) {
     int first = -1;
     for (int body : bodies) {
@@ -50,7 +50,7 @@ void unite_bodies(const WorldState<S>& world, Sets& sets) {
 }
 
 template <class S>
-void number_islands(WorldState<S>& world) {
+void number_islands(WorldData<S>& world) {
   const int n = world.bodies.count();
   Sets sets(n);
   unite_bodies(world, sets);
@@ -83,7 +83,7 @@ struct Permute {
 };
 
 template <class S>
-int island_of_slot(const WorldState<S>& world, const Batch<S>& batch, int slot) {
+int island_of_slot(const WorldData<S>& world, const Batch<S>& batch, int slot) {
   for (int k = 0; k < batch.ops->bodies; ++k) {
     const int island = world.island_of[batch.body[slot * batch.ops->bodies + k]];
     if (island >= 0) return island;
@@ -93,7 +93,7 @@ int island_of_slot(const WorldState<S>& world, const Batch<S>& batch, int slot) 
 
 // Slots by island, broken joints last in theirs, the others in the order of `places`, by joint.
 template <class S>
-void sort_slots(WorldState<S>& world, int index, const std::vector<int>& places) {
+void sort_slots(WorldData<S>& world, int index, const std::vector<int>& places) {
   Batch<S>& batch = *world.batches[index];
   std::vector<std::tuple<int, bool, int>> key;
   for (int slot = 0; slot < batch.count(); ++slot) {
@@ -119,7 +119,7 @@ void sort_slots(WorldState<S>& world, int index, const std::vector<int>& places)
 // Runs of slots of one batch that follow each other in the sweep, rows under a law before all others: what is solved
 // last in a sweep holds best, and that should be the joints.
 template <class S>
-void list_segments(WorldState<S>& world, const std::vector<int>& places) {
+void list_segments(WorldData<S>& world, const std::vector<int>& places) {
   struct Run {
     bool joint;  // no law
     int place, batch, slot;
@@ -147,7 +147,7 @@ void list_segments(WorldState<S>& world, const std::vector<int>& places) {
 }
 
 template <class S>
-void give_out_forces(WorldState<S>& world) {
+void give_out_forces(WorldData<S>& world) {
   for (const auto& spring : world.springs) {
     const int island = std::max(world.island_of[spring.body_a], world.island_of[spring.body_b]);
     if (island >= 0) world.islands[island].springs.push_back(spring);
@@ -159,7 +159,7 @@ void give_out_forces(WorldState<S>& world) {
 }
 
 template <class S>
-void build_systems(const WorldState<S>& world, Island<S>& island) {
+void build_systems(const WorldData<S>& world, Island<S>& island) {
   const std::vector<int> tensions = tension_rows(world, island);
   island.system.build(island.segments, world.bodies, island.stiffened ? tensions : std::vector<int>{});
   if (!island.stiffened && !tensions.empty()) island.rescue.build(island.segments, world.bodies, tensions);
@@ -168,7 +168,7 @@ void build_systems(const WorldState<S>& world, Island<S>& island) {
 }  // namespace
 
 template <class S>
-void prepare_topology(WorldState<S>& world) {
+void prepare_topology(WorldData<S>& world) {
   if (world.prepared) return;
   number_islands(world);
   // The direct solver has its own order: each type of joint in one run, in the order in which they were added.
@@ -191,7 +191,7 @@ void prepare_topology(WorldState<S>& world) {
   world.prepared = true;
 }
 
-#define CDOT_INSTANTIATE(S) template void prepare_topology(WorldState<S>&);
+#define CDOT_INSTANTIATE(S) template void prepare_topology(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

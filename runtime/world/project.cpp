@@ -15,7 +15,7 @@ namespace {
 constexpr int newton_rounds = 50;
 
 template <class S>
-void solve_and_exert(WorldState<S>& world, Island<S>& island, typename S::Velocity* to) {
+void solve_and_exert(WorldData<S>& world, Island<S>& island, typename S::Velocity* to) {
   island.system.assemble(world.bodies);
   island.system.factor();
   island.system.solve();
@@ -24,7 +24,7 @@ void solve_and_exert(WorldState<S>& world, Island<S>& island, typename S::Veloci
 }
 
 template <class S>
-void evaluate(WorldState<S>& world, Island<S>& island) {
+void evaluate(WorldData<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->evaluate(*segment.batch, segment.begin, segment.end, world.bodies,
                                  typename S::Scalar(world.time));
@@ -46,7 +46,7 @@ void measure_errors(Island<S>& island) {
 }
 
 template <class S>
-void move_poses(WorldState<S>& world, Island<S>& island) {
+void move_poses(WorldData<S>& world, Island<S>& island) {
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.increment[i] = {};
   solve_and_exert(world, island, all.increment.data());
@@ -63,7 +63,7 @@ void move_poses(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void project_poses(WorldState<S>& world, Island<S>& island) {
+void project_poses(WorldData<S>& world, Island<S>& island) {
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < newton_rounds; ++round) {
     evaluate(world, island);
@@ -81,7 +81,7 @@ void project_poses(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void project_velocities(WorldState<S>& world, Island<S>& island, double tolerance) {
+void project_velocities(WorldData<S>& world, Island<S>& island, double tolerance) {
   Bodies<S>& all = world.bodies;
   evaluate(world, island);
   load_rates(island, island.system, all.velocity.data());
@@ -99,11 +99,11 @@ void project_velocities(WorldState<S>& world, Island<S>& island, double toleranc
 template <class S>
 bool BasicWorld<S>::project(double tolerance) {
   prepare();
-  for (auto& island : state_->islands) {
+  for (auto& island : data_->islands) {
     if (island.segments.empty()) continue;
-    if (!island.system.built()) island.system.build(island.segments, state_->bodies);
-    project_poses(*state_, island);
-    project_velocities(*state_, island, tolerance);
+    if (!island.system.built()) island.system.build(island.segments, data_->bodies);
+    project_poses(*data_, island);
+    project_velocities(*data_, island, tolerance);
     island.evaluated = island.factored = false;
     island.flow.forget();
   }

@@ -17,7 +17,7 @@ bool beats(double value, double worst) { return !std::isnan(worst) && !(value <=
 
 // value(probe, row, kind) over all joints that constrain.
 template <class S, class F>
-WorstError worst_of(const WorldState<S>& world, F value) {
+WorstError worst_of(const WorldData<S>& world, F value) {
   WorstError worst;
   Probe<S> probe(world);
   for (size_t j = 0; j < world.joints.size(); ++j) {
@@ -45,7 +45,7 @@ std::vector<double> in_doubles(const std::vector<T>& numbers) {
 }
 
 template <class S>
-double potential_of_rows(const WorldState<S>& world) {
+double potential_of_rows(const WorldData<S>& world) {
   double energy = 0;
   for (const auto& batch : world.batches) {
     if (!batch->law || !batch->law->energy) continue;
@@ -64,36 +64,36 @@ double potential_of_rows(const WorldState<S>& world) {
 
 template <class S>
 double BasicWorld<S>::time() const {
-  return state_->time;
+  return data_->time;
 }
 template <class S>
 const Settings& BasicWorld<S>::settings() const {
-  return state_->settings;
+  return data_->settings;
 }
 template <class S>
 const std::vector<Note>& BasicWorld<S>::notes() const {
-  return state_->notes;
+  return data_->notes;
 }
 template <class S>
 int BasicWorld<S>::body_count() const {
-  return state_->bodies.count();
+  return data_->bodies.count();
 }
 template <class S>
 typename S::Pose BasicWorld<S>::pose(int body) const {
-  return state_->bodies.pose.at(body);
+  return data_->bodies.pose.at(body);
 }
 template <class S>
 typename S::Place BasicWorld<S>::place(int body) const {
-  return place_in_world(*state_, body);
+  return place_in_world(*data_, body);
 }
 
 template <class S>
 typename S::Velocity BasicWorld<S>::velocity(int body) const {
-  return state_->bodies.velocity.at(body);
+  return data_->bodies.velocity.at(body);
 }
 template <class S>
 typename S::InverseMass BasicWorld<S>::inverse_mass(int body) const {
-  return state_->bodies.inverse_mass.at(body);
+  return data_->bodies.inverse_mass.at(body);
 }
 template <class S>
 bool BasicWorld<S>::is_static(int body) const {
@@ -101,40 +101,40 @@ bool BasicWorld<S>::is_static(int body) const {
 }
 template <class S>
 bool BasicWorld<S>::asleep(int body) const {
-  if (!state_->prepared) return false;
-  const int island = state_->island_of.at(body);
-  return island >= 0 && state_->islands[island].asleep;
+  if (!data_->prepared) return false;
+  const int island = data_->island_of.at(body);
+  return island >= 0 && data_->islands[island].asleep;
 }
 template <class S>
 int BasicWorld<S>::joint_count() const {
-  return static_cast<int>(state_->joints.size());
+  return static_cast<int>(data_->joints.size());
 }
 template <class S>
 const JointType& BasicWorld<S>::joint_type(int joint) const {
-  return joint_types(S::dimension)[state_->joints.at(joint).type];
+  return joint_types(S::dimension)[data_->joints.at(joint).type];
 }
 template <class S>
 std::vector<int> BasicWorld<S>::joint_bodies(int joint) const {
-  return state_->joints.at(joint).bodies;
+  return data_->joints.at(joint).bodies;
 }
 template <class S>
 std::vector<double> BasicWorld<S>::joint_parameters(int joint) const {
-  const JointRecord& record = state_->joints.at(joint);
+  const JointRecord& record = data_->joints.at(joint);
   std::vector<double> numbers = record.parameters;
   move_world_points(
-      joint_types(S::dimension)[record.type], record.bodies, [&](int body) { return body == state_->ground; },
-      state_->origin, 1, numbers);
+      joint_types(S::dimension)[record.type], record.bodies, [&](int body) { return body == data_->ground; },
+      data_->origin, 1, numbers);
   return numbers;
 }
 template <class S>
 bool BasicWorld<S>::broken(int joint) const {
-  return state_->joints.at(joint).broken;
+  return data_->joints.at(joint).broken;
 }
 
 template <class S>
 std::vector<double> BasicWorld<S>::position_error(int joint) const {
-  Probe<S> probe(*state_);
-  probe.look_at(state_->joints.at(joint));
+  Probe<S> probe(*data_);
+  probe.look_at(data_->joints.at(joint));
   std::vector<double> C;
   for (int r = 0; r < probe.rows(); ++r) C.push_back(probe.C(r));
   return C;
@@ -142,55 +142,55 @@ std::vector<double> BasicWorld<S>::position_error(int joint) const {
 
 template <class S>
 std::vector<double> BasicWorld<S>::velocity_error(int joint) const {
-  Probe<S> probe(*state_);
-  probe.look_at(state_->joints.at(joint));
+  Probe<S> probe(*data_);
+  probe.look_at(data_->joints.at(joint));
   return in_doubles(probe.Cdot());
 }
 
 template <class S>
 std::vector<double> BasicWorld<S>::impulse(int joint) const {
-  return in_doubles(total_impulse(*state_, state_->joints.at(joint)));
+  return in_doubles(total_impulse(*data_, data_->joints.at(joint)));
 }
 
 template <class S>
 typename S::Wrench BasicWorld<S>::reaction(int joint, int body) const {
-  const JointRecord& record = state_->joints.at(joint);
+  const JointRecord& record = data_->joints.at(joint);
   Wrench sum;
-  if (state_->last_step <= 0) return sum;
-  Probe<S> probe(*state_);
+  if (data_->last_step <= 0) return sum;
+  Probe<S> probe(*data_);
   probe.look_at(record);
-  const auto lambda = total_impulse(*state_, record);
+  const auto lambda = total_impulse(*data_, record);
   for (size_t k = 0; k < record.bodies.size(); ++k) {
     if (record.bodies[k] != body) continue;
-    S::add(sum, probe.impulse_on(static_cast<int>(k), lambda), state_->last_step);
+    S::add(sum, probe.impulse_on(static_cast<int>(k), lambda), data_->last_step);
   }
   return sum;
 }
 
 template <class S>
 double BasicWorld<S>::coordinate(int joint, std::string_view name) const {
-  const JointRecord& record = state_->joints.at(joint);
-  Probe<S> probe(*state_);
+  const JointRecord& record = data_->joints.at(joint);
+  Probe<S> probe(*data_);
   probe.look_at(record, coordinate_index<S>(record.type, name));
   return probe.C(0);
 }
 
 template <class S>
 double BasicWorld<S>::coordinate_rate(int joint, std::string_view name) const {
-  const JointRecord& record = state_->joints.at(joint);
-  Probe<S> probe(*state_);
+  const JointRecord& record = data_->joints.at(joint);
+  Probe<S> probe(*data_);
   probe.look_at(record, coordinate_index<S>(record.type, name));
   return probe.Cdot()[0];
 }
 
 template <class S>
 WorstError BasicWorld<S>::worst_position_error() const {
-  return worst_of(*state_, position_violation<S>);
+  return worst_of(*data_, position_violation<S>);
 }
 
 template <class S>
 WorstError BasicWorld<S>::worst_velocity_error() const {
-  return worst_of(*state_, [](Probe<S>& probe, int row, RowKind kind) {
+  return worst_of(*data_, [](Probe<S>& probe, int row, RowKind kind) {
     return kind == RowKind::inequality ? 0.0 : double(probe.Cdot()[row]);
   });
 }
@@ -198,10 +198,10 @@ WorstError BasicWorld<S>::worst_velocity_error() const {
 template <class S>
 std::vector<Inconsistency> BasicWorld<S>::inconsistencies(double tolerance) const {
   std::vector<Inconsistency> found;
-  Probe<S> probe(*state_);
+  Probe<S> probe(*data_);
   for (int j = 0; j < joint_count(); ++j) {
-    const JointRecord& joint = state_->joints[j];
-    if (joint.broken || is_soft(*state_, joint)) continue;
+    const JointRecord& joint = data_->joints[j];
+    if (joint.broken || is_soft(*data_, joint)) continue;
     probe.look_at(joint);
     const auto& kinds = joint_type(j).row_kinds;
     const auto& Cdot = probe.Cdot();
@@ -218,14 +218,14 @@ std::vector<Inconsistency> BasicWorld<S>::inconsistencies(double tolerance) cons
 
 template <class S>
 double BasicWorld<S>::energy() const {
-  const Bodies<S>& all = state_->bodies;
-  double energy = potential_of_rows(*state_);
+  const Bodies<S>& all = data_->bodies;
+  double energy = potential_of_rows(*data_);
   for (int i = 0; i < all.count(); ++i) {
     const auto& m = all.inverse_mass[i];
     energy += 0.5 * S::dot(S::force(m, all.velocity[i]), all.velocity[i]);
     energy -= S::dot(S::force(m, all.acceleration[i]), S::difference(all.pose[i], all.start[i]));
   }
-  for (const auto& spring : state_->springs) {
+  for (const auto& spring : data_->springs) {
     const double stretch =
         S::stretch(spring, all.pose[spring.body_a], all.pose[spring.body_b]).length - spring.rest_length;
     energy += 0.5 * double(spring.stiffness) * stretch * stretch;
@@ -236,20 +236,20 @@ double BasicWorld<S>::energy() const {
 template <class S>
 int BasicWorld<S>::redundant_rows() const {
   int sum = 0;
-  for (const auto& island : state_->islands) sum += island.redundant_rows;
+  for (const auto& island : data_->islands) sum += island.redundant_rows;
   return sum;
 }
 template <class S>
 const StepCounts& BasicWorld<S>::step_counts() const {
-  return state_->counts;
+  return data_->counts;
 }
 template <class S>
 int BasicWorld<S>::island_count() const {
-  return static_cast<int>(state_->islands.size());
+  return static_cast<int>(data_->islands.size());
 }
 template <class S>
 int BasicWorld<S>::sleeping_islands() const {
-  return island_count() - static_cast<int>(state_->awake.size());
+  return island_count() - static_cast<int>(data_->awake.size());
 }
 
 // FNV-1a over the bytes of poses and velocities.
@@ -260,8 +260,8 @@ std::uint64_t BasicWorld<S>::hash() const {
     const auto* bytes = reinterpret_cast<const unsigned char*>(items.data());
     for (size_t i = 0; i < items.size() * sizeof(items[0]); ++i) hash = (hash ^ bytes[i]) * 1099511628211ull;
   };
-  add(state_->bodies.pose);
-  add(state_->bodies.velocity);
+  add(data_->bodies.pose);
+  add(data_->bodies.velocity);
   return hash;
 }
 

@@ -21,16 +21,16 @@ inline void copy(const std::byte* from, std::byte* to, Block::Range range) {
 
 // All that a step may change.
 template <class S>
-void copy_awake(const WorldState<S>& world, const std::vector<std::byte>& from, std::vector<std::byte>& to) {
-  copy(from.data(), to.data(), world.state.common);
+void copy_awake(const WorldData<S>& world, const std::vector<std::byte>& from, std::vector<std::byte>& to) {
+  copy(from.data(), to.data(), world.block.common);
   for (int index : world.awake)
-    for (const Block::Range& range : world.state.islands[index]) copy(from.data(), to.data(), range);
+    for (const Block::Range& range : world.block.islands[index]) copy(from.data(), to.data(), range);
 }
 
 }  // namespace
 
 template <class S>
-void find_rows(WorldState<S>& world, Island<S>& island) {
+void find_rows(WorldData<S>& world, Island<S>& island) {
   const auto broken = [&](const Batch<S>& batch, int slot) { return bool(world.joints[batch.joint[slot]].broken); };
   for (Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
@@ -42,7 +42,7 @@ void find_rows(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void compute_again(WorldState<S>& world, Island<S>& island) {
+void compute_again(WorldData<S>& world, Island<S>& island) {
   island.system.slacken();
   island.trouble = StepProblem::none;
   if (!island.evaluated) return;
@@ -53,19 +53,19 @@ void compute_again(WorldState<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void keep_state(WorldState<S>& world) {
-  copy_awake(world, world.state.bytes, world.before);
+void keep_state(WorldData<S>& world) {
+  copy_awake(world, world.block.bytes, world.before);
 }
 
 // Twice, since to factor K counts rows that are redundant, and to evaluate may count turns.
 template <class S>
-void roll_back(WorldState<S>& world) {
-  copy_awake(world, world.before, world.state.bytes);
+void roll_back(WorldData<S>& world) {
+  copy_awake(world, world.before, world.block.bytes);
   for (int index : world.awake) {
     if (!world.breaking_loads.empty()) find_rows(world, world.islands[index]);
     compute_again(world, world.islands[index]);
   }
-  copy_awake(world, world.before, world.state.bytes);
+  copy_awake(world, world.before, world.block.bytes);
   // What pushes an immovable body adds 0 to it, unless it is infinite.
   Bodies<S>& all = world.bodies;
   for (int i = 0; i < all.count(); ++i)
@@ -73,8 +73,8 @@ void roll_back(WorldState<S>& world) {
 }
 
 template <class S>
-void adopt_state(WorldState<S>& world, const std::vector<std::byte>& bytes) {
-  std::memcpy(world.state.bytes.data(), bytes.data(), bytes.size());
+void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes) {
+  std::memcpy(world.block.bytes.data(), bytes.data(), bytes.size());
   world.awake.clear();
   for (std::size_t k = 0; k < world.islands.size(); ++k) {
     Island<S>& island = world.islands[k];
@@ -82,15 +82,15 @@ void adopt_state(WorldState<S>& world, const std::vector<std::byte>& bytes) {
     find_rows(world, island);
     compute_again(world, island);
   }
-  std::memcpy(world.state.bytes.data(), bytes.data(), bytes.size());
+  std::memcpy(world.block.bytes.data(), bytes.data(), bytes.size());
 }
 
-#define CDOT_INSTANTIATE(S)                                                 \
-  template void keep_state(WorldState<S>&);                                 \
-  template void roll_back(WorldState<S>&);                                  \
-  template void adopt_state(WorldState<S>&, const std::vector<std::byte>&); \
-  template void find_rows(WorldState<S>&, Island<S>&);                      \
-  template void compute_again(WorldState<S>&, Island<S>&);
+#define CDOT_INSTANTIATE(S)                                                \
+  template void keep_state(WorldData<S>&);                                 \
+  template void roll_back(WorldData<S>&);                                  \
+  template void adopt_state(WorldData<S>&, const std::vector<std::byte>&); \
+  template void find_rows(WorldData<S>&, Island<S>&);                      \
+  template void compute_again(WorldData<S>&, Island<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

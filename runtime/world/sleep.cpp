@@ -10,7 +10,7 @@ namespace cdot {
 namespace {
 
 template <class S>
-void wake_island(WorldState<S>& world, int index) {
+void wake_island(WorldData<S>& world, int index) {
   Island<S>& island = world.islands[index];
   island.rested = 0;
   if (!island.asleep) return;
@@ -22,7 +22,7 @@ void wake_island(WorldState<S>& world, int index) {
 // Wakes it and tells it by `forget` what happened. What touches an immovable body may touch every island: rare enough
 // not to look up which.
 template <class S, class F>
-void for_each_island_of(WorldState<S>& world, int body, F forget) {
+void for_each_island_of(WorldData<S>& world, int body, F forget) {
   if (!world.prepared) return;
   const int island = world.island_of[body];
   const int first = island < 0 ? 0 : island;
@@ -36,7 +36,7 @@ void for_each_island_of(WorldState<S>& world, int body, F forget) {
 }  // namespace
 
 template <class S>
-void put_to_sleep(WorldState<S>& world, double h) {
+void put_to_sleep(WorldData<S>& world, double h) {
   using T = typename S::Scalar;
   if (world.settings.sleep_after <= 0) return;
   Bodies<S>& all = world.bodies;
@@ -55,12 +55,12 @@ void put_to_sleep(WorldState<S>& world, double h) {
 }
 
 template <class S>
-void wake_pushed(WorldState<S>& world, int body) {
+void wake_pushed(WorldData<S>& world, int body) {
   for_each_island_of(world, body, [&](Island<S>& island) { island.flow.forget(); });
 }
 
 template <class S>
-void wake(WorldState<S>& world, int body) {
+void wake(WorldData<S>& world, int body) {
   for_each_island_of(world, body, [](Island<S>& island) {
     island.evaluated = island.factored = false;
     island.flow.forget();
@@ -68,10 +68,10 @@ void wake(WorldState<S>& world, int body) {
   });
 }
 
-#define CDOT_INSTANTIATE(S)                           \
-  template void put_to_sleep(WorldState<S>&, double); \
-  template void wake_pushed(WorldState<S>&, int);     \
-  template void wake(WorldState<S>&, int);
+#define CDOT_INSTANTIATE(S)                          \
+  template void put_to_sleep(WorldData<S>&, double); \
+  template void wake_pushed(WorldData<S>&, int);     \
+  template void wake(WorldData<S>&, int);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -8,7 +8,7 @@
 #include <cdot/world.hpp>
 
 #include "runtime/number/hash.hpp"
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 #include "runtime/world/islands.hpp"
 #include "runtime/world/rollback.hpp"
 
@@ -17,7 +17,7 @@ namespace {
 
 // Masses, and inertias in the bodies' frames: where those turn with the bodies, the ones in world axes are state.
 template <class S>
-std::uint64_t hash_of_bodies(const WorldState<S>& world) {
+std::uint64_t hash_of_bodies(const WorldData<S>& world) {
   Hash hash;
   for (const auto& m : world.bodies.inverse_mass) hash.add(m.m), hash.add(S::immovable(m));
   if constexpr (S::has_gyroscopes)
@@ -28,7 +28,7 @@ std::uint64_t hash_of_bodies(const WorldState<S>& world) {
 
 // Joints and effects as they were added, springs, drags, gravity. What they have been changed to since is state.
 template <class S>
-std::uint64_t hash_of_joints(const WorldState<S>& world) {
+std::uint64_t hash_of_joints(const WorldData<S>& world) {
   Hash hash;
   for (const JointRecord& joint : world.joints) hash.add(joint.added);
   hash.add(world.springs);
@@ -40,7 +40,7 @@ std::uint64_t hash_of_joints(const WorldState<S>& world) {
 
 // Where prepare_topology() put what. A broken joint's rows have changed places since, and their slots with them.
 template <class S>
-std::uint64_t hash_of_order(WorldState<S>& world) {
+std::uint64_t hash_of_order(WorldData<S>& world) {
   Hash hash;
   hash.add(world.settings.solver), hash.add(world.settings.integrator), hash.add(world.settings.kernels);
   hash.add(world.island_of);
@@ -61,7 +61,7 @@ std::string method_of(const Settings& settings) {
 
 // Its method is left empty.
 template <class S>
-Snapshot::Origin origin_of(WorldState<S>& world) {
+Snapshot::Origin origin_of(WorldData<S>& world) {
   return {{},
           world.bodies.count(),
           static_cast<int>(world.joints.size()),
@@ -93,19 +93,19 @@ void check_origin(const Snapshot::Origin& state, const Snapshot::Origin& world) 
 
 struct SnapshotAccess {
   template <class S>
-  static void save(WorldState<S>& world, Snapshot& to) {
+  static void save(WorldData<S>& world, Snapshot& to) {
     Snapshot::Origin origin = origin_of(world);
-    if (!same_hashes(origin, to.origin_) || to.items_.size() != world.state.items.size()) {
+    if (!same_hashes(origin, to.origin_) || to.items_.size() != world.block.items.size()) {
       to.origin_ = origin;
       to.origin_.method = method_of<S>(world.settings);
-      to.items_ = world.state.items;
+      to.items_ = world.block.items;
     }
-    to.bytes_ = world.state.bytes;
+    to.bytes_ = world.block.bytes;
   }
 
   // Joints that broke before the state's World was prepared have no place in its order of rows.
   template <class S>
-  static void prepare_with_broken_joints(WorldState<S>& world, const Snapshot& from) {
+  static void prepare_with_broken_joints(WorldData<S>& world, const Snapshot& from) {
     const std::byte* at = from.bytes_.data();
     for (const Snapshot::Item& item : from.items_) {
       if (item.name == "joints.broken")
@@ -118,14 +118,14 @@ struct SnapshotAccess {
   }
 
   template <class S>
-  static bool load(WorldState<S>& world, const Snapshot& from) {
-    if (origin_of(world).order != from.origin_.order || world.state.items != from.items_) return false;
+  static bool load(WorldData<S>& world, const Snapshot& from) {
+    if (origin_of(world).order != from.origin_.order || world.block.items != from.items_) return false;
     adopt_state(world, from.bytes_);
     return true;
   }
 
   template <class S>
-  static void restore(WorldState<S>& world, const Snapshot& from) {
+  static void restore(WorldData<S>& world, const Snapshot& from) {
     if (from.empty()) throw Error("an empty snapshot is no state of a World");
     Snapshot::Origin origin = origin_of(world);
     origin.method = method_of<S>(world.settings);
@@ -165,8 +165,8 @@ std::vector<std::string> Snapshot::differences(const Snapshot& other) const {
 
 template <class S>
 void BasicWorld<S>::snapshot_into(Snapshot& snapshot) const {
-  prepare_topology(*state_);
-  SnapshotAccess::save(*state_, snapshot);
+  prepare_topology(*data_);
+  SnapshotAccess::save(*data_, snapshot);
 }
 
 template <class S>
@@ -178,8 +178,8 @@ Snapshot BasicWorld<S>::snapshot() const {
 
 template <class S>
 void BasicWorld<S>::restore(const Snapshot& snapshot) {
-  prepare_topology(*state_);
-  SnapshotAccess::restore(*state_, snapshot);
+  prepare_topology(*data_);
+  SnapshotAccess::restore(*data_, snapshot);
 }
 
 #define CDOT_INSTANTIATE(S)                                    \

@@ -14,7 +14,7 @@ namespace cdot {
 namespace {
 
 template <class S>
-bool finite(const WorldState<S>& world, const Island<S>& island) {
+bool finite(const WorldData<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;
   T sum = 0;
   for (int i : island.bodies) {
@@ -28,7 +28,7 @@ bool finite(const WorldState<S>& world, const Island<S>& island) {
 
 // Over h in so many parts. Stops at the first island whose step fails.
 template <class S>
-StepResult attempt(WorldState<S>& world, double h, int parts) {
+StepResult attempt(WorldData<S>& world, double h, int parts) {
   StepResult result;
   const auto& integrator = stepper_of<S>(world.settings.integrator);
   const double part = h / parts;
@@ -54,7 +54,7 @@ StepResult attempt(WorldState<S>& world, double h, int parts) {
 
 // How much it moved, by itself: the largest of its velocities.
 template <class S>
-double speed_of(const WorldState<S>& world, int body) {
+double speed_of(const WorldData<S>& world, int body) {
   typename S::Scalar numbers[S::freedom];
   S::write(world.bodies.velocity[body], numbers);
   double speed = 0;
@@ -70,7 +70,7 @@ bool finite(const std::vector<T>& numbers, int begin, int end) {
 // Which joint to look at, where the step began: one whose kernel is not finite, or the one that is off most, or pulls
 // most.
 template <class S>
-void blame_joint(WorldState<S>& world, Island<S>& island, StepResult& result) {
+void blame_joint(WorldData<S>& world, Island<S>& island, StepResult& result) {
   double worst = -1;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
@@ -93,7 +93,7 @@ void blame_joint(WorldState<S>& world, Island<S>& island, StepResult& result) {
 }
 
 template <class S>
-void blame(WorldState<S>& world, StepResult& result) {
+void blame(WorldData<S>& world, StepResult& result) {
   Island<S>& island = world.islands[result.island];
   for (int body : island.bodies)
     if (result.body < 0 || speed_of(world, body) > speed_of(world, result.body)) result.body = body;
@@ -102,7 +102,7 @@ void blame(WorldState<S>& world, StepResult& result) {
 
 // In the next attempts.
 template <class S>
-void solve_by(WorldState<S>& world, const RowSolver<S>& solver) {
+void solve_by(WorldData<S>& world, const RowSolver<S>& solver) {
   for (int index : world.awake) {
     Island<S>& island = world.islands[index];
     island.solver = &solver;
@@ -113,7 +113,7 @@ void solve_by(WorldState<S>& world, const RowSolver<S>& solver) {
 
 // True if the step succeeds in parts.
 template <class S>
-bool succeeds_in_parts(WorldState<S>& world, double h, int fewest, StepResult& result) {
+bool succeeds_in_parts(WorldData<S>& world, double h, int fewest, StepResult& result) {
   constexpr int most = 16;
   for (int parts = fewest; parts <= most; parts *= 2) {
     result = attempt(world, h, parts * world.settings.substeps);
@@ -128,7 +128,7 @@ bool succeeds_in_parts(WorldState<S>& world, double h, int fewest, StepResult& r
 }
 
 template <class S>
-StepResult try_again(WorldState<S>& world, double h) {
+StepResult try_again(WorldData<S>& world, double h) {
   StepResult result;
   const RowSolver<S>& solver = solver_of<S>(world.settings.solver);
   if (succeeds_in_parts(world, h, 2, result) || solver.exact) return result;
@@ -143,7 +143,7 @@ StepResult try_again(WorldState<S>& world, double h) {
 
 template <class S>
 StepResult BasicWorld<S>::step(double h) {
-  WorldState<S>& world = *state_;
+  WorldData<S>& world = *data_;
   if (!(h > 0) || !std::isfinite(h)) return {.problem = StepProblem::bad_step, .time = world.time, .length = h};
   prepare_topology(world);
   keep_state(world);

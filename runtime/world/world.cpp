@@ -91,12 +91,12 @@ void check_in_precision(const typename S::BodyDefinition& d) {
 }
 
 template <class S>
-void check_body(const WorldState<S>& world, int body) {
+void check_body(const WorldData<S>& world, int body) {
   if (body < 0 || body >= world.bodies.count()) throw Error(fmt::format("there is no body number {}", body));
 }
 
 template <class S>
-void check_joint_bodies(const WorldState<S>& world, const JointType& type, const std::vector<int>& bodies) {
+void check_joint_bodies(const WorldData<S>& world, const JointType& type, const std::vector<int>& bodies) {
   if (static_cast<int>(bodies.size()) != type.bodies)
     throw Error(fmt::format("joint `{}` connects {} bod{}, not {}", type.name, type.bodies,
                             type.bodies == 1 ? "y" : "ies", bodies.size()));
@@ -110,13 +110,13 @@ void check_joint_bodies(const WorldState<S>& world, const JointType& type, const
 
 // f(gyroscope) if the body's inertia tensor turns with it.
 template <class S, class F>
-void with_gyroscope(WorldState<S>& world, int body, F f) {
+void with_gyroscope(WorldData<S>& world, int body, F f) {
   const auto found = std::find(world.turning.begin(), world.turning.end(), body);
   if (found != world.turning.end()) f(world.gyroscopes[static_cast<size_t>(found - world.turning.begin())]);
 }
 
 template <class S>
-void set_acceleration(WorldState<S>& world, int body) {
+void set_acceleration(WorldData<S>& world, int body) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   const auto own = S::weighted(all.inverse_mass[body], all.force[body]);
@@ -130,9 +130,9 @@ void set_acceleration(WorldState<S>& world, int body) {
 }  // namespace
 
 template <class S>
-BasicWorld<S>::BasicWorld(const Settings& settings) : state_(std::make_unique<WorldState<S>>()) {
+BasicWorld<S>::BasicWorld(const Settings& settings) : data_(std::make_unique<WorldData<S>>()) {
   check(settings);
-  state_->settings = settings;
+  data_->settings = settings;
 }
 template <class S>
 BasicWorld<S>::~BasicWorld() = default;
@@ -143,19 +143,19 @@ BasicWorld<S>& BasicWorld<S>::operator=(BasicWorld&&) noexcept = default;
 
 template <class S>
 void BasicWorld<S>::set_origin(double x, double y, double z) {
-  require(state_->bodies.count() == 0, "the origin must be set before there are bodies");
+  require(data_->bodies.count() == 0, "the origin must be set before there are bodies");
   require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z), "the origin must be finite");
-  state_->origin = {x, y, z};
+  data_->origin = {x, y, z};
 }
 
 template <class S>
 int BasicWorld<S>::add_body(const BodyDefinition& d) {
   check(d);
   check_in_precision<S>(d);
-  Bodies<S>& all = state_->bodies;
+  Bodies<S>& all = data_->bodies;
   const int body = all.count();
   const auto m = S::inverse_mass_of(d);
-  all.pose.push_back(S::placed(moved_by(S::place_of(d), state_->origin, -1)));
+  all.pose.push_back(S::placed(moved_by(S::place_of(d), data_->origin, -1)));
   all.velocity.push_back(S::velocity_of(d));
   all.inverse_mass.push_back(m);
   all.effective_mass.push_back(m);
@@ -164,21 +164,21 @@ int BasicWorld<S>::add_body(const BodyDefinition& d) {
   all.displacement.push_back({}), all.increment.push_back({}), all.stiffness.push_back({});
   all.start.push_back(all.pose[body]);
   if constexpr (S::has_gyroscopes)
-    if (S::is_gyroscope(d)) state_->turning.push_back(body), state_->gyroscopes.push_back(S::gyroscope_of(d));
-  set_acceleration(*state_, body);
+    if (S::is_gyroscope(d)) data_->turning.push_back(body), data_->gyroscopes.push_back(S::gyroscope_of(d));
+  set_acceleration(*data_, body);
   if (!d.is_static && (d.linear_damping > 0 || d.angular_damping > 0))
-    state_->drags.push_back({body, T(d.linear_damping), T(d.angular_damping)});
-  state_->prepared = false;
+    data_->drags.push_back({body, T(d.linear_damping), T(d.angular_damping)});
+  data_->prepared = false;
   return body;
 }
 
 template <class S>
 int BasicWorld<S>::ground() {
-  if (state_->ground >= 0) return state_->ground;
-  BodyDefinition d = moved_by(BodyDefinition{}, state_->origin, 1);
+  if (data_->ground >= 0) return data_->ground;
+  BodyDefinition d = moved_by(BodyDefinition{}, data_->origin, 1);
   d.is_static = true;
-  state_->ground = add_body(d);
-  return state_->ground;
+  data_->ground = add_body(d);
+  return data_->ground;
 }
 
 template <class S>
@@ -187,111 +187,110 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
   if (!type) throw Error(fmt::format("there is no joint `{}`", definition.type));
   if (is_extended<T> && type - joint_types(S::dimension).data() >= std::ssize(joint_entries<S>()))
     throw Error(fmt::format("joint `{}` was not made for extended precision", type->name));
-  check_joint_bodies(*state_, *type, definition.bodies);
+  check_joint_bodies(*data_, *type, definition.bodies);
   JointRecord record;
   record.type = static_cast<int>(type - joint_types(S::dimension).data());
   record.bodies = definition.bodies;
   using InDoubles = typename S::InDoubles;
   std::vector<typename InDoubles::Pose> poses;
-  for (int body : record.bodies) poses.push_back(InDoubles::placed(place_in_world(*state_, body)));
-  auto numbers = parameter_numbers<InDoubles>(record.type, definition.parameters, poses.data(), state_->time);
+  for (int body : record.bodies) poses.push_back(InDoubles::placed(place_in_world(*data_, body)));
+  auto numbers = parameter_numbers<InDoubles>(record.type, definition.parameters, poses.data(), data_->time);
   move_world_points(
-      *type, record.bodies, [&](int body) { return body == state_->ground; }, state_->origin, -1, numbers);
+      *type, record.bodies, [&](int body) { return body == data_->ground; }, data_->origin, -1, numbers);
   record.parameters = numbers;
   double spring[spring_constants_count] = {};
   if (definition.soft) spring_constants(*definition.soft, spring);
 
   record.added.add(record.type), record.added.add(record.bodies), record.added.add(numbers);
 
-  check_rows(*state_, record, definition.soft.has_value());
+  check_rows(*data_, record, definition.soft.has_value());
   const int joint = joint_count();
-  state_->joints.push_back(record);
-  const auto movable = [&](int body) { return !state_->bodies.immovable(body); };
+  data_->joints.push_back(record);
+  const auto movable = [&](int body) { return !data_->bodies.immovable(body); };
   if (std::none_of(record.bodies.begin(), record.bodies.end(), movable)) {
-    state_->notes.push_back({joint, "connects only immovable bodies and does nothing"});
+    data_->notes.push_back({joint, "connects only immovable bodies and does nothing"});
     return joint;
   }
   const auto& kinds = type->row_kinds;
   const bool unilateral = std::count(kinds.begin(), kinds.end(), RowKind::inequality) > 0;
   const Law<S>* law = definition.soft ? &soft_law<S>() : unilateral ? &unilateral_law<S>() : nullptr;
-  const auto* ops = joint_entries<S>()[record.type].rows.choose(state_->bodies, record.bodies);
-  add_rows(*state_, joint, ops, law, kinds,
-           {spring, definition.soft ? static_cast<size_t>(spring_constants_count) : 0});
+  const auto* ops = joint_entries<S>()[record.type].rows.choose(data_->bodies, record.bodies);
+  add_rows(*data_, joint, ops, law, kinds, {spring, definition.soft ? static_cast<size_t>(spring_constants_count) : 0});
   return joint;
 }
 
 template <class S>
 int BasicWorld<S>::add_spring(const SpringDefinition& d) {
-  check_body(*state_, d.body_a);
-  check_body(*state_, d.body_b);
+  check_body(*data_, d.body_a);
+  check_body(*data_, d.body_b);
   require(d.body_a != d.body_b, "a spring connects two different bodies");
   for (double number : {d.ax, d.ay, d.az, d.bx, d.by, d.bz, d.stiffness, d.rest_length, d.damping})
     require(std::isfinite(number), "every number of a spring must be finite");
   require(d.stiffness >= 0 && d.damping >= 0, "stiffness and damping must not be negative");
   require(d.rest_length >= 0, "a rest length must not be negative");
   SpringDefinition spring = d;
-  const auto& from = state_->origin;
-  if (d.body_a == state_->ground) spring.ax -= from[0], spring.ay -= from[1], spring.az -= from[2];
-  if (d.body_b == state_->ground) spring.bx -= from[0], spring.by -= from[1], spring.bz -= from[2];
-  state_->springs.push_back(S::point_spring(spring));
-  state_->prepared = false;
-  return static_cast<int>(state_->springs.size()) - 1;
+  const auto& from = data_->origin;
+  if (d.body_a == data_->ground) spring.ax -= from[0], spring.ay -= from[1], spring.az -= from[2];
+  if (d.body_b == data_->ground) spring.bx -= from[0], spring.by -= from[1], spring.bz -= from[2];
+  data_->springs.push_back(S::point_spring(spring));
+  data_->prepared = false;
+  return static_cast<int>(data_->springs.size()) - 1;
 }
 
 template <class S>
 void BasicWorld<S>::set_force(int body, const Wrench& force) {
-  check_body(*state_, body);
+  check_body(*data_, body);
   check_finite<S>(S::components(force), "every number of a force must be finite");
-  state_->bodies.force[body] = S::components(force);
-  set_acceleration(*state_, body);
-  wake_pushed(*state_, body);
+  data_->bodies.force[body] = S::components(force);
+  set_acceleration(*data_, body);
+  wake_pushed(*data_, body);
 }
 
 template <class S>
 void BasicWorld<S>::set_pose(int body, const Place& place) {
-  check_body(*state_, body);
-  Bodies<S>& all = state_->bodies;
-  const auto pose = S::placed(body == state_->ground ? place : moved_by(place, state_->origin, -1));
+  check_body(*data_, body);
+  Bodies<S>& all = data_->bodies;
+  const auto pose = S::placed(body == data_->ground ? place : moved_by(place, data_->origin, -1));
   check_finite<S>(pose);
   all.pose[body] = pose;
   if constexpr (S::has_gyroscopes)
-    with_gyroscope(*state_, body, [&](auto& gyroscope) {
+    with_gyroscope(*data_, body, [&](auto& gyroscope) {
       S::set_inertia(gyroscope, all.pose[body], all.inverse_mass[body], all.velocity[body]);
       all.effective_mass[body] = all.inverse_mass[body];
-      set_acceleration(*state_, body);
+      set_acceleration(*data_, body);
     });
-  wake(*state_, body);
+  wake(*data_, body);
 }
 
 template <class S>
 void BasicWorld<S>::set_velocity(int body, const typename S::Exact::Velocity& velocity) {
-  check_body(*state_, body);
+  check_body(*data_, body);
   require(!is_static(body), "a static body has no velocity");
   check_finite<S>(S::rounded(velocity), "every number of a velocity must be finite");
-  state_->bodies.velocity[body] = S::rounded(velocity);
-  wake(*state_, body);
+  data_->bodies.velocity[body] = S::rounded(velocity);
+  wake(*data_, body);
 }
 
 template <class S>
 void BasicWorld<S>::apply_impulse(int body, const typename S::Exact::Velocity& impulse) {
-  check_body(*state_, body);
-  auto& all = state_->bodies;
+  check_body(*data_, body);
+  auto& all = data_->bodies;
   const auto change = S::weighted(all.inverse_mass[body], S::rounded(impulse));
   check_finite<S>(S::rounded(impulse), "every number of an impulse must be finite");
   check_finite<S>(S::sum(all.velocity[body], change, T(1)), "an impulse must leave the velocity finite");
   all.velocity[body] = S::sum(all.velocity[body], change, T(1));
-  wake(*state_, body);
+  wake(*data_, body);
 }
 
 template <class S>
 void BasicWorld<S>::prepare() {
-  prepare_topology(*state_);
+  prepare_topology(*data_);
 }
 
 template <class S>
 void BasicWorld<S>::on_failure(OnFailure what) {
-  state_->on_failure = what;
-  state_->prepared = false;
+  data_->on_failure = what;
+  data_->prepared = false;
 }
 
 #define CDOT_INSTANTIATE(S) template class BasicWorld<S>;

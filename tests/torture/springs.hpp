@@ -8,7 +8,7 @@
 
 #include <cdot/world.hpp>
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 
 namespace cdot::torture {
 
@@ -22,7 +22,7 @@ struct SpringRow {
 
 // Rows of batches that a law pushes, at the present poses.
 template <class S>
-void add_spring_rows(const WorldState<S>& state, const Batch<S>& batch, std::vector<SpringRow>& springs) {
+void add_spring_rows(const WorldData<S>& state, const Batch<S>& batch, std::vector<SpringRow>& springs) {
   using T = typename S::Scalar;
   Batch<S> rows = batch;  // the next step may start from the World's own as they are
   const int count = rows.ops->rows;
@@ -49,7 +49,7 @@ void add_spring_rows(const WorldState<S>& state, const Batch<S>& batch, std::vec
 
 template <class S>
 std::vector<SpringRow> spring_rows(BasicWorld<S>& world) {
-  const WorldState<S>& state = world.state();
+  const WorldData<S>& state = world.data();
   std::vector<SpringRow> springs;
   for (const auto& batch : state.batches)
     if (batch->law && batch->law->force) add_spring_rows(state, *batch, springs);

@@ -28,7 +28,7 @@
 namespace cdot {
 
 template <class S>
-struct WorldState;
+struct WorldData;
 
 // The largest entry of C or Cdot over all joints; joint is -1 in a World without joints.
 struct WorstError {
@@ -159,10 +159,10 @@ class BasicWorld {
   std::uint64_t hash() const;  // of every bit of poses and velocities
 
   // For runtime/include/cdot/effects.hpp.
-  WorldState<S>& state() { return *state_; }
+  WorldData<S>& data() { return *data_; }
 
  private:
-  std::unique_ptr<WorldState<S>> state_;
+  std::unique_ptr<WorldData<S>> data_;
 };
 
 // T is double or float.

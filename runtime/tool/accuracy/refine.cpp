@@ -6,7 +6,7 @@
 
 #include <cdot/methods.hpp>
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 #include "runtime/tool/run/process.hpp"
 #include "runtime/tool/run/simulate.hpp"
 
@@ -89,7 +89,7 @@ constexpr int middle = std::size(stages) - 1;
 // With reversed velocities a step of a reversible method goes back. J, C and impulses belong to the poses: nothing is
 // evaluated anew.
 template <class S>
-void turn_round(WorldState<S>& world) {
+void turn_round(WorldData<S>& world) {
   using T = typename S::Scalar;
   for (auto& v : world.bodies.velocity) v = S::sum({}, v, T(-1));
   if constexpr (S::has_gyroscopes)
@@ -103,9 +103,9 @@ template <class S>
 void composed_step(BasicWorld<S>& world, double h) {
   for (int k = -middle; k <= middle; ++k) {
     const double part = stages[middle - std::abs(k)] * h;
-    if (part < 0) turn_round(world.state());
+    if (part < 0) turn_round(world.data());
     world.step(std::abs(part));
-    if (part < 0) turn_round(world.state());
+    if (part < 0) turn_round(world.data());
   }
 }
 
@@ -120,7 +120,7 @@ Trajectory composed_in(Integrator symmetric, const Scene& scene, int steps, cons
   for (const double to : times) {
     for (int k = 0; k < steps; ++k) {
       composed_step(world, (to - from) / steps);
-      world.state().time = from + (to - from) * (k + 1) / steps;  // the World counts steps back as forwards
+      world.data().time = from + (to - from) * (k + 1) / steps;  // the World counts steps back as forwards
     }
     from = to;
     trajectory.counts.evaluations += (2 * middle + 1) * static_cast<long long>(steps);

@@ -40,7 +40,7 @@ struct Mark {
 // A drawing from (0, 0) to (1, 0), placed by its ends: scale(length, 1) leaves the stroke width.
 struct Link {
   Anchor from, to;
-  std::string svg;
+  const char* svg;
 };
 
 struct Trace {

@@ -10,7 +10,7 @@
 
 #include <cdot/jacobian.hpp>
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 #include "tests/runtime/mechanisms.hpp"
 
 namespace cdot::test {
@@ -41,14 +41,14 @@ struct Bench {
   explicit Bench(const std::function<void(BasicWorld<S>&)>& add) : world(settings()) {
     add(world);
     for (int i = 0; i < 20; ++i) world.step(1e-3);
-    island = &world.state().islands.at(0);
+    island = &world.data().islands.at(0);
     const SystemMatrix system = system_matrix(world);
     K = sparse(system);
     // K x, so that no redundant row contradicts the others.
     const Eigen::VectorXd forces = Eigen::VectorXd::LinSpaced(system.rows, -1, 2);
     b = K.selfadjointView<Eigen::Lower>() * forces;
     right_side.resize(forces.size());
-    island->system.assemble(world.state().bodies);
+    island->system.assemble(world.data().bodies);
     island->system.multiply(forces.data(), right_side.data());
   }
   static Settings settings() {
@@ -63,14 +63,14 @@ template <class S>
 void analyse(benchmark::State& state, Bench<S>& bench) {
   System<S> system;
   for (auto _ : state) {
-    system.build(bench.island->segments, bench.world.state().bodies);
+    system.build(bench.island->segments, bench.world.data().bodies);
     benchmark::DoNotOptimize(system.rows());
   }
 }
 
 template <class S>
 void assemble(benchmark::State& state, Bench<S>& bench) {
-  for (auto _ : state) bench.island->system.assemble(bench.world.state().bodies);
+  for (auto _ : state) bench.island->system.assemble(bench.world.data().bodies);
 }
 
 template <class S>

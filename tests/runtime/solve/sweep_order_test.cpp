@@ -54,7 +54,7 @@ TEST(SweepOrder, DoesNotDependOnTheOrderOfAdding) {
 
 TEST(SweepOrder, GoesFromTheTipToTheRoot) {
   World<double> world = chain(false, 3);
-  const std::vector<int> places = sweep_places(world.state());
+  const std::vector<int> places = sweep_places(world.data());
   for (int joint = 0; joint < links; ++joint) {
     const std::vector<int> bodies = world.joint_bodies(joint);
     for (int next = 0; next < links; ++next) {
@@ -78,7 +78,7 @@ TEST(SweepOrder, TakesEachBranchInOneGo) {
   const int left = joint(body[0], body[1]), right = joint(body[0], body[2]);
   const int left_tip = joint(body[1], body[3]), right_tip = joint(body[2], body[4]);
   const int trunk = joint(world.ground(), body[0]);
-  const std::vector<int> places = sweep_places(world.state());
+  const std::vector<int> places = sweep_places(world.data());
   EXPECT_EQ(places[trunk], 4);
   EXPECT_EQ(places[left], places[left_tip] + 1);
   EXPECT_EQ(places[right], places[right_tip] + 1);

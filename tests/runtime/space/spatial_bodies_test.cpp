@@ -5,7 +5,7 @@
 #include <cdot/methods.hpp>
 #include <cdot/rotation.hpp>
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 #include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {
@@ -182,9 +182,9 @@ TEST(SpatialBody, OnlyUnequalInertiasAreTurned) {
   d.wx = d.wy = d.wz = 0;
   world.add_body(d);
   world.ground();
-  EXPECT_TRUE(world.state().gyroscopes.empty());
+  EXPECT_TRUE(world.data().gyroscopes.empty());
   world.add_body(tumbling());
-  EXPECT_EQ(world.state().gyroscopes.size(), 1u);
+  EXPECT_EQ(world.data().gyroscopes.size(), 1u);
 }
 
 // Torque times time, in the world's axes, whatever the tensor does in between.

@@ -8,7 +8,7 @@
 
 #include <cdot/spatial.hpp>
 
-#include "runtime/state/world_state.hpp"
+#include "runtime/state/world_data.hpp"
 #include "tests/bench/peers/geometry.hpp"
 #include "tests/bench/peers/measure.hpp"
 #include "tests/bench/peers/problem.hpp"
@@ -96,7 +96,7 @@ class Stand final : public hard::Mover {
       check_start(problem(), *run_, asked_.engine->number == "float");
     }
     for (int part = 0; part < parts_; ++part) run_->step(by / parts_);
-    WorldState<S>& state = world_->state();
+    WorldData<S>& state = world_->data();
     told_->time = state.time += by;
     for (std::size_t k = 0; k < problem().bodies.size(); ++k) take(int(k), by);
     for (const auto& [joint, load] : state.breaking_loads)

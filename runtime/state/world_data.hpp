@@ -29,26 +29,26 @@ struct Island : IslandModel<S>, IslandState<S>, IslandWorkspace<S> {
 };
 
 template <class S>
-struct WorldState : Model<S>, State<S>, Workspace {
+struct WorldData : Model<S>, State<S>, Workspace {
   using T = typename S::Scalar;
   Bodies<S> bodies;
   std::vector<JointRecord> joints;
   std::vector<std::unique_ptr<Batch<S>>> batches;
   std::vector<Island<S>> islands;
-  Block state;
+  Block block;
   std::vector<std::byte> before;  // the step: of a step that fails
 };
 
 // One of a joint's bodies that can move, in whose island it is; -1: none can.
 template <class S>
-int movable_body(const WorldState<S>& world, const JointRecord& record) {
+int movable_body(const WorldData<S>& world, const JointRecord& record) {
   const auto body = std::find_if_not(record.bodies.begin(), record.bodies.end(),
                                      [&](int body) { return world.bodies.immovable(body); });
   return body == record.bodies.end() ? -1 : *body;
 }
 
 template <class S>
-int slot_of(const WorldState<S>& world, const Place& place) {
+int slot_of(const WorldData<S>& world, const Place& place) {
   return world.batches[place.batch]->slot_of[place.home];
 }
 
@@ -63,7 +63,7 @@ Place moved_by(Place place, const std::array<double, 3>& origin, double sign) {
 
 // The ground stands at the origin, whatever that is: its points are counted from there as well.
 template <class S>
-typename S::Place place_in_world(const WorldState<S>& world, int body) {
+typename S::Place place_in_world(const WorldData<S>& world, int body) {
   const auto place = S::place_of(world.bodies.pose.at(static_cast<size_t>(body)));
   return body == world.ground ? place : moved_by(place, world.origin, 1);
 }
