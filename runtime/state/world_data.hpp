@@ -18,7 +18,7 @@ namespace cdot {
 
 struct JointRecord : JointModel, JointState {};
 
-// What an integrator keeps of an island from one stage of a step to the next, and from step to step.
+// Numbers that an integrator carries from one stage of a step to the next, and from step to step.
 template <class S>
 struct Flow : FlowState<S>, FlowWorkspace<S> {};
 

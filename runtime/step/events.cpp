@@ -14,7 +14,7 @@
 namespace cdot {
 namespace {
 
-// What is not resolution apart, as a share of what C, its rate and its force are made of.
+// Relative resolution, below which C, its rate and its force count as zero: a share of the numbers they are made of.
 template <class T>
 constexpr T slight = T(by_precision<T>(1e-4, 1e-9));
 template <class T>

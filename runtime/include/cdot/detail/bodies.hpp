@@ -38,7 +38,7 @@ struct BodiesState {
   StateArray<typename S::Pose> pose;
   StateArray<Velocity> velocity;
   StateArray<typename S::InverseMass> inverse_mass;  // exactly 0 where immovable; tensors turn with their bodies
-  // What the solvers divide by: inverse_mass, unless geometric stiffness has added to the inertias.
+  // The solvers divide by these: inverse_mass, unless geometric stiffness has added to the inertias.
   StateArray<typename S::InverseMass> effective_mass;
   StateArray<Velocity> force;          // constant, beside gravity
   StateArray<Velocity> acceleration;   // M^-1 force + gravity
