@@ -34,12 +34,12 @@ class Layout {
     block_.items.push_back({index < 0 ? std::string(name) : fmt::format("{}[{}]", name, index), 'c', 0});
   }
   template <class Number>
-  void operator()(StateArray<Number>& column) {
-    add<Number>(column, column.size());
+  void operator()(StateArray<Number>& array) {
+    add<Number>(array, array.size());
   }
   template <class Number>
-  void operator()(StateNumber<Number>& cell) {
-    add<Number>(cell, 1);
+  void operator()(StateNumber<Number>& number) {
+    add<Number>(number, 1);
   }
   // Its fractions go by their bits.
   void counts(StateNumber<StepCounts>& counts) {

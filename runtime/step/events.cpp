@@ -40,7 +40,7 @@ void each_guarded_row(Island<S>& island, F f) {
   });
 }
 
-// Raises what is not resolution apart of the rows of one slot to a slight share of
+// Raises the resolutions of the rows of one slot to a slight share of
 //   C       what a displacement by the island's size and a turn of 1 rad make of it: c
 //   rate    the sum of all |J v|; sqrt(c dJv/dt), what acceleration makes of it on that way; less moves nothing in h
 //   force   dJv/dt + rate^2 / c over K

@@ -21,8 +21,8 @@ template <class S>
 void note_rates(WorldData<S>& world, Island<S>& island);
 
 // Into Flow::margins, from these rates and the forces found since, how far each row is from its next event, in units of
-// what is not resolution apart: C - end where it is out of reach, the force short of its bounds where it is held, the
-// rate still missing where it is pushed.
+// the resolution: C - end where it is out of reach, the force short of its bounds where it is held, the rate still
+// missing where it is pushed.
 template <class S>
 void measure_margins(Island<S>& island);
 

@@ -33,7 +33,7 @@ constexpr auto slight_displacement = typename S::Scalar(1e-6);  // of its size, 
 constexpr int most_searches = 60;                               // for one event
 constexpr int furthest_reach = 64;                              // of a step of its own length, in step()s
 
-// In units of what is not resolution apart, from where a row stood when its mode was chosen, which is steps ago for one
+// In units of the resolution, from where a row stood when its mode was chosen, which is steps ago for one
 // that creeps: an event is behind us, and just behind us.
 constexpr double passed = -1, just_passed = -3;
 

@@ -53,7 +53,7 @@ void compute_again(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void keep_state(WorldData<S>& world) {
+void save_state(WorldData<S>& world) {
   copy_awake(world, world.block.bytes, world.before);
 }
 
@@ -86,7 +86,7 @@ void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes) {
 }
 
 #define CDOT_INSTANTIATE(S)                                                \
-  template void keep_state(WorldData<S>&);                                 \
+  template void save_state(WorldData<S>&);                                 \
   template void roll_back(WorldData<S>&);                                  \
   template void adopt_state(WorldData<S>&, const std::vector<std::byte>&); \
   template void find_rows(WorldData<S>&, Island<S>&);                      \

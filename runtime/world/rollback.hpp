@@ -5,9 +5,9 @@
 
 namespace cdot {
 
-// The State of all islands that are awake is kept, with the time and the counts; and is that of the World again.
+// The State of all islands that are awake is saved, with the time and the counts; and is that of the World again.
 template <class S>
-void keep_state(WorldData<S>& world);
+void save_state(WorldData<S>& world);
 template <class S>
 void roll_back(WorldData<S>& world);
 

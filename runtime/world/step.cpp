@@ -146,7 +146,7 @@ StepResult BasicWorld<S>::step(double h) {
   WorldData<S>& world = *data_;
   if (!(h > 0) || !std::isfinite(h)) return {.problem = StepProblem::bad_step, .time = world.time, .length = h};
   prepare_topology(world);
-  keep_state(world);
+  save_state(world);
   const double start = world.time;
   StepResult result = attempt(world, h, world.settings.substeps);
   if (!result) {

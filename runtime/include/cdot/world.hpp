@@ -86,7 +86,7 @@ class BasicWorld {
   // With Settings::local_error the state at its end may lie between the ends of a step that the method chose: by the
   // method's interpolant, brought back onto the joints. Asking often then costs no steps.
   //
-  // A step that fails leaves the World as it was before it (but for what is computed from that anew) and says so.
+  // A step that fails leaves the State of the World as it was, to the bit, and says so.
   StepResult step(double h);
 
   // What it held together is free of it from the next step on, which analyses islands anew. Its number stays taken.

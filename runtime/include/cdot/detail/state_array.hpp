@@ -51,7 +51,11 @@ class StateArray {
   }
 
   // While a World is set up: the numbers leave the block.
-  void push_back(const T& number) { append(1, number); }
+  void push_back(const T& number) {
+    leave_block();
+    own_.push_back(number);
+    come_home();
+  }
   void append(std::size_t count, const T& number) {
     leave_block();
     own_.insert(own_.end(), count, number);
