@@ -18,6 +18,49 @@ void renew(WorldData<S>& world, Island<S>& island) {
   factorize_rows(world, island);
 }
 
+// Exact rows are solved block by block, in the kernels. Rows under a law are solved one by one, since each may stop at
+// a bound of its own; the batch's `factor` keeps their K:
+//   (K_rr + softness) change = -(J v + bias + softness lambda),  lower <= lambda + change <= upper
+template <class S>
+void iterate_bounded(Batch<S>& batch, int begin, int end, const Bodies<S>& all, typename S::Velocity* v) {
+  using T = typename S::Scalar;
+  const BlockOps<S>& ops = *batch.ops;
+  const int rows = ops.rows, triangle = batch.triangle();
+  const T *const softness = batch.softness.data(), *const lower = batch.lower.data(), *const upper = batch.upper.data();
+  T *const Jv = batch.rate.data(), *const lambda = batch.lambda.data(), *const change = batch.impulse.data();
+  for (int slot = begin; slot < end; ++slot) {
+    ops.velocity(batch, slot, slot + 1, v, Jv);
+    const T* const K = batch.factor.data() + slot * triangle;
+    for (int r = 0, i = slot * rows; r < rows; ++r, ++i) {
+      const T b = -(Jv[i] + batch.bias[i] + softness[i] * lambda[i]);
+      const T wanted = lambda[i] + b * inverse(K[r * (r + 1) / 2 + r] + softness[i]);
+      const T after = std::clamp(wanted, lower[i], upper[i]);
+      change[i] = after - lambda[i];
+      lambda[i] = after;
+      for (int s = r + 1; s < rows; ++s) Jv[slot * rows + s] += K[s * (s + 1) / 2 + r] * change[i];
+    }
+    ops.apply(batch, slot, slot + 1, all, change, v);
+  }
+}
+
+// The same for poses, and for the part of C that the law calls an error.
+template <class S>
+void correct_bounded(Batch<S>& batch, int begin, int end, Bodies<S>& all, typename S::Scalar time) {
+  using T = typename S::Scalar;
+  const int rows = batch.ops->rows;
+  for (int slot = begin; slot < end; ++slot) {
+    batch.ops->position(batch, slot, slot + 1, all, time);
+    T error[most_rows], lambda[most_rows];
+    batch.law->error(batch, slot, error);
+    const T* const K = batch.factor.data() + slot * batch.triangle();
+    for (int r = 0; r < rows; ++r) {
+      lambda[r] = -error[r] * inverse(K[r * (r + 1) / 2 + r]);
+      for (int s = r + 1; s < rows; ++s) error[s] += K[s * (s + 1) / 2 + r] * lambda[r];
+    }
+    batch.ops->displace(batch, slot, all, lambda);
+  }
+}
+
 template <class S>
 void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Velocity* v, typename S::Scalar share) {
   using T = typename S::Scalar;
@@ -33,7 +76,7 @@ void sweep_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
-      if (batch.law) batch.ops->iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
+      if (batch.law) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
       else batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.lambda.data());
     }
   }
@@ -64,11 +107,11 @@ void sweep_lawful_poses(WorldData<S>& world, const Island<S>& island, const Segm
                         typename S::Scalar time) {
   Batch<S>& batch = *segment.batch;
   if (!batch.law->error) return;
-  if (!island.continuous) return batch.ops->correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
+  if (!island.continuous) return correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
   for (int slot = segment.begin; slot < segment.end; ++slot) {
     const auto mode = batch.mode.begin() + slot * batch.ops->rows;
     if (std::find(mode, mode + batch.ops->rows, Mode::held) != mode + batch.ops->rows)
-      batch.ops->correct_bounded(batch, slot, slot + 1, world.bodies, time);
+      correct_bounded(batch, slot, slot + 1, world.bodies, time);
   }
 }
 
@@ -123,7 +166,7 @@ void sweep_projection(WorldData<S>& world, Island<S>& island) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
       if (!batch.law) batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.correction.data());
-      else if (island.continuous) batch.ops->iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
+      else if (island.continuous) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
     }
   }
 }

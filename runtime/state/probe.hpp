@@ -103,11 +103,12 @@ class Probe {
     ops_->dense(batch_, 0, bodies_, J, weighted, K.data(), ops_->rows);
   }
 
-  // J^T lambda on the body at this position of the joint.
-  typename S::Velocity impulse_on(int position, const std::vector<T>& lambda) const {
-    std::vector<typename S::Velocity> impulses(static_cast<size_t>(ops_->bodies));
-    ops_->transposed(batch_, 0, lambda.data(), impulses.data());
-    return impulses[position];
+  // J^T lambda on the body at this position of the joint: the velocity that it gives to a body of mass and inertia 1.
+  typename S::Velocity impulse_on(int position, const std::vector<T>& lambda) {
+    std::fill(bodies_.effective_mass.begin(), bodies_.effective_mass.end(), S::unit_mass());
+    std::fill(bodies_.displacement.begin(), bodies_.displacement.end(), typename S::Velocity{});
+    ops_->apply(batch_, 0, 1, bodies_, lambda.data(), bodies_.displacement.data());
+    return bodies_.displacement[position];
   }
 
  private:

@@ -43,19 +43,15 @@ struct BlockOps {
   void (*velocity)(const Batch<S>&, int begin, int end, const Velocity* velocity, T* Jv);
   // velocity += M^-1 J^T lambda, lambda laid out like the batch's.
   void (*apply)(const Batch<S>&, int begin, int end, const Bodies<S>&, const T* lambda, Velocity*);
-  // One sweep of sequential impulses, added to `lambda` and to the velocities: exact rows, and rows
-  // with softness and bounds (which keep K in `factor`).
+  // One sweep of sequential impulses over exact rows, added to `lambda` and to the velocities.
   void (*iterate)(const Batch<S>&, int begin, int end, const Bodies<S>&, Velocity*, T* lambda);
-  void (*iterate_bounded)(Slots, int begin, int end, const Bodies<S>&, Velocity*);
-  // One sweep of Newton on C, with the J and K of the step: moves the poses and collects the moves
-  // in displacement, the impulses in correction.
+  // One sweep of Newton on C, with the J and K of the step: displaces by what K lambda = -C says.
   void (*correct)(Slots, int begin, int end, Bodies<S>&, T time);
-  void (*correct_bounded)(Slots, int begin, int end, Bodies<S>&, T time);
+  // Moves the poses of one slot by M^-1 J^T lambda; collects the moves in displacement, lambda in correction.
+  void (*displace)(Slots, int slot, Bodies<S>&, const T* lambda);
   // J and (M^-1 J^T)^T of one slot, [rows][freedom * bodies], and the lower triangle of K, row by
   // row `stride` apart, all computed in what K is formed in.
   void (*dense)(const Batch<S>&, int slot, const Bodies<S>&, Real* J, Real* weighted, Real* K, int stride);
-  // J^T lambda of one slot: the impulse by body.
-  void (*transposed)(const Batch<S>&, int slot, const T* lambda, Velocity* impulse);
   // stiffness -= what d(J^T lambda)/dq says of each body's own turning, lambda from the last step
   // with its drift correction.
   void (*add_stiffness)(const Batch<S>&, int begin, int end, const Bodies<S>&, T time,

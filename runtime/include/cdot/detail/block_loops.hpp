@@ -30,6 +30,8 @@ struct BlockLoops {
       rows <= most_rows && bodies <= most_bodies,
       "a joint with more rows or bodies than most_rows, most_bodies of runtime/include/cdot/detail/block.hpp");
   using Turns = TurnCounters<S, Joint, Block>;
+  // Immovable variants inherit the joint's functions that do not touch J, and so share their loops.
+  using Inherited = std::conditional_t<std::is_base_of_v<Joint, Block>, BlockLoops<S, Joint, Joint>, BlockLoops>;
 
   // An empty struct (all entries of J known) has size 1 but holds nothing.
   template <class Struct>
@@ -122,20 +124,20 @@ struct BlockLoops {
   }
 
   static void factorize(Batch<S>& batch, int begin, int end, const Bodies<S>& all) {
+    if constexpr (kernels != Kernels::robust) effective_mass(batch, begin, end, all);
     for (int slot = begin; slot < end; ++slot) {
-      const auto& J = as<Jacobian>(batch.jacobian.data(), slot);
-      InverseMass m[bodies];
-      gather(all.effective_mass, bodies_of(batch, slot), m);
-      T F[triangle];
+      T* const factor = batch.factor.data() + slot * triangle;
+      T K[triangle], F[triangle];
       if constexpr (kernels == Kernels::robust) {
-        factor_by_rows<Block, width>(J, m, F);
+        InverseMass m[bodies];
+        gather(all.effective_mass, bodies_of(batch, slot), m);
+        factor_by_rows<Block, width>(as<Jacobian>(batch.jacobian.data(), slot), m, F);
       } else {
-        T K[triangle];
-        Block::effective_mass(J, m, K);
+        for (int k = 0; k < triangle; ++k) K[k] = factor[k];
         if constexpr (kernels == Kernels::fast) invert(K, F);
         else Block::factor(K, F);
       }
-      for (int k = 0; k < triangle; ++k) batch.factor[slot * triangle + k] = F[k];
+      for (int k = 0; k < triangle; ++k) factor[k] = F[k];
     }
   }
 
@@ -193,34 +195,10 @@ struct BlockLoops {
     }
   }
 
-  // Row by row, since each row may stop at a bound of its own:
-  // (K_rr + softness) change = -(J v + bias + softness lambda), lower <= lambda + change <= upper
-  static void iterate_bounded(Batch<S>& batch, int begin, int end, const Bodies<S>& all, Velocity* of) {
-    for (int slot = begin; slot < end; ++slot) {
-      Velocity v[bodies];
-      for (int k = 0; k < bodies; ++k) v[k] = of[bodies_of(batch, slot)[k]];
-      T Jv[rows], change[rows];
-      Block::velocity(as<Jacobian>(batch.jacobian.data(), slot), v, Jv);
-      const T* K = batch.factor.data() + slot * triangle;
-      for (int r = 0; r < rows; ++r) {
-        const int i = slot * rows + r;
-        const T softness = batch.softness[i], before = batch.lambda[i];
-        const T b = -(Jv[r] + batch.bias[i] + softness * before);
-        const T wanted = before + b * inverse(K[r * (r + 1) / 2 + r] + softness);
-        const T after =
-            select(wanted < batch.lower[i], batch.lower[i], select(wanted > batch.upper[i], batch.upper[i], wanted));
-        batch.lambda[i] = after;
-        change[r] = after - before;
-        for (int s = r + 1; s < rows; ++s) Jv[s] += K[s * (s + 1) / 2 + r] * change[r];
-      }
-      push(batch, slot, all, change, of);
-    }
-  }
-
   // K lambda = -C, displacement = M^-1 J^T lambda
   static void correct(Batch<S>& batch, int begin, int end, Bodies<S>& all, T time) {
     for (int slot = begin; slot < end; ++slot) {
-      position(batch, slot, slot + 1, all, time);
+      Inherited::position(batch, slot, slot + 1, all, time);
       T b[rows], lambda[rows];
       for (int r = 0; r < rows; ++r) b[r] = -batch.C[slot * rows + r];
       solve(batch, slot, b, lambda);
@@ -228,26 +206,13 @@ struct BlockLoops {
     }
   }
 
-  // The same row by row, for the part of C that the law calls an error.
-  static void correct_bounded(Batch<S>& batch, int begin, int end, Bodies<S>& all, T time) {
-    for (int slot = begin; slot < end; ++slot) {
-      position(batch, slot, slot + 1, all, time);
-      T error[rows], lambda[rows];
-      batch.law->error(batch, slot, error);
-      const T* K = batch.factor.data() + slot * triangle;
-      for (int r = 0; r < rows; ++r) {
-        lambda[r] = -error[r] * inverse(K[r * (r + 1) / 2 + r]);
-        for (int s = r + 1; s < rows; ++s) error[s] += K[s * (s + 1) / 2 + r] * lambda[r];
-      }
-      displace(batch, slot, all, lambda);
-    }
-  }
-
-  static void displace(Batch<S>& batch, int slot, Bodies<S>& all, const T (&lambda)[rows]) {
+  static void displace(Batch<S>& batch, int slot, Bodies<S>& all, const T* impulses) {
     const int* body = bodies_of(batch, slot);
     Velocity moved[bodies] = {};
     InverseMass m[bodies];
+    T lambda[rows];
     gather(all.effective_mass, body, m);
+    for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
     Block::apply(as<Jacobian>(batch.jacobian.data(), slot), m, lambda, moved);
     for (int r = 0; r < rows; ++r) batch.correction[slot * rows + r] += lambda[r];
     for (int k = 0; k < bodies; ++k) {
@@ -270,16 +235,6 @@ struct BlockLoops {
     Block::effective_mass(entries, m, own);
     for (int r = 0; r < rows; ++r)
       for (int s = 0; s <= r; ++s) K[r * stride + s] = own[r * (r + 1) / 2 + s];
-  }
-
-  static void transposed(const Batch<S>& batch, int slot, const T* impulses, Velocity* impulse) {
-    InverseMass one[bodies];
-    for (int k = 0; k < bodies; ++k) one[k] = S::unit_mass();
-    T lambda[rows];
-    for (int r = 0; r < rows; ++r) lambda[r] = impulses[r];
-    Velocity sum[bodies] = {};
-    Block::apply(as<Jacobian>(batch.jacobian.data(), slot), one, lambda, sum);
-    for (int k = 0; k < bodies; ++k) impulse[k] = sum[k];
   }
 
   static void stiffness_of(const Batch<S>& batch, int slot, const Bodies<S>& all, T time, const T (&lambda)[rows],
@@ -319,22 +274,20 @@ struct BlockLoops {
             numbers<Jacobian>(),
             Turns::count,
             Block::explicit_time,
-            starter(),
+            Inherited::starter(),
             evaluate,
-            position,
-            gamma,
+            Inherited::position,
+            Inherited::gamma,
             effective_mass,
             factorize,
             velocity,
             apply,
             iterate,
-            iterate_bounded,
             correct,
-            correct_bounded,
+            displace,
             dense,
-            transposed,
-            add_stiffness,
-            stiffness,
+            Inherited::add_stiffness,
+            Inherited::stiffness,
             nullptr,
             nullptr};
   }

@@ -23,10 +23,9 @@ constexpr BlockOps<S> ops_without_rows() {
   ops.velocity = do_nothing;
   ops.apply = do_nothing;
   ops.iterate = do_nothing;
-  ops.iterate_bounded = do_nothing;
-  ops.correct = ops.correct_bounded = do_nothing;
+  ops.correct = do_nothing;
+  ops.displace = do_nothing;
   ops.dense = do_nothing;
-  ops.transposed = do_nothing;
   ops.add_stiffness = do_nothing;
   ops.stiffness = do_nothing;
   return ops;
