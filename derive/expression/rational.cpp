@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace cdot::derive {
 namespace {
@@ -9,15 +10,14 @@ namespace {
 __extension__ using Wide = __int128;
 
 Rational reduced(Wide num, Wide den) {
-  Wide a = num < 0 ? -num : num, b = den;
-  while (b != 0) {
-    const Wide r = a % b;
-    a = b;
-    b = r;
-  }
-  if (a > 1) num /= a, den /= a;
   constexpr Wide limit = std::numeric_limits<std::int64_t>::max();
-  if (num > limit || num < -limit || den > limit) throw NumberTooLarge();
+  const auto fit = [&] { return -limit <= num && num <= limit && den <= limit; };
+  if (!fit()) {
+    Wide a = num < 0 ? -num : num, b = den;
+    while (b != 0) a = std::exchange(b, a % b);
+    num /= a, den /= a;
+  }
+  if (!fit()) throw NumberTooLarge();
   return {static_cast<std::int64_t>(num), static_cast<std::int64_t>(den)};
 }
 
@@ -27,7 +27,7 @@ Rational::Rational(std::int64_t num, std::int64_t den) {
   if (den == 0) throw NumberTooLarge();
   if (num == std::numeric_limits<std::int64_t>::min()) throw NumberTooLarge();
   if (den == std::numeric_limits<std::int64_t>::min()) throw NumberTooLarge();
-  const std::int64_t divisor = std::gcd(num, den);
+  const std::int64_t divisor = den == 1 ? 1 : std::gcd(num, den);
   num_ = (den < 0 ? -num : num) / divisor;
   den_ = (den < 0 ? -den : den) / divisor;
 }

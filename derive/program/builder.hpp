@@ -1,14 +1,22 @@
 // Builds a Program, each operation once. The assembler and every pass end in it.
 #pragma once
 
+#include <algorithm>
+#include <span>
 #include <unordered_map>
 
 #include "derive/program/program.hpp"
 
 namespace cdot::derive {
 
+// The place of an operand; the number of operands if it is none of them.
+inline std::size_t index_of(std::span<const int> args, int arg) {
+  return static_cast<std::size_t>(std::ranges::find(args, arg) - args.begin());
+}
+
 class ProgramBuilder {
  public:
+  explicit ProgramBuilder(std::size_t expected = 0) { program_.ops.reserve(expected), by_hash_.reserve(expected); }
   int number(Rational value);
   // Numeric coefficients of operands move into sums and out of products; nothing is flattened.
   int sum(std::vector<int> args, std::vector<Rational> coefs, std::string name = {});
@@ -30,7 +38,7 @@ class ProgramBuilder {
   Rational pull_coefficient(int& arg) const;
 
   Program program_;
-  std::unordered_map<std::string, int> by_key_;
+  std::unordered_multimap<std::size_t, int> by_hash_;
 };
 
 }  // namespace cdot::derive

@@ -10,21 +10,30 @@
 namespace cdot::derive {
 namespace {
 
-// A unique key of an operation: its numbers, one after the other, as bytes.
-std::string key_of(const Operation& op) {
-  std::string key;
-  const auto add = [&](std::int64_t n) { key.append(reinterpret_cast<const char*>(&n), sizeof n); };
-  const auto add_rational = [&](Rational r) { add(r.num()), add(r.den()); };
+// The same for a sum and its negative.
+std::size_t hash_of(const Operation& op) {
+  std::uint64_t hash = op.kind == OpKind::input ? std::hash<std::string>()(op.input) : 0;
+  const auto add = [&](std::int64_t n) {
+    hash = (hash ^ static_cast<std::uint64_t>(n)) * 0x9E3779B97F4A7C15u;
+    hash ^= hash >> 32;
+  };
+  const auto add_size = [&](Rational r) { add(abs(r).num()), add(r.den()); };
   add(static_cast<int>(op.kind));
-  if (op.kind == OpKind::number) add_rational(op.value);
-  if (op.kind == OpKind::input) key += op.input;
-  if (op.kind == OpKind::function) add(static_cast<int>(op.fn));
-  for (std::size_t i = 0; i < op.args.size(); ++i) {
-    add(op.args[i]);
-    if (op.kind == OpKind::sum) add_rational(op.coefs[i]);
-    if (op.kind == OpKind::product) add(op.exponents[i]);
-  }
-  return key;
+  add(static_cast<int>(op.fn));
+  add_size(op.value);
+  for (const int arg : op.args) add(arg);
+  for (const Rational coef : op.coefs) add_size(coef);
+  for (const int exponent : op.exponents) add(exponent);
+  return hash;
+}
+
+// The sign s with a = s b; 0 if there is none. Only sums of several terms are negatives of each other.
+int sign_between(const Operation& a, const Operation& b) {
+  if (a.kind != b.kind || a.fn != b.fn || a.args != b.args || a.exponents != b.exponents) return 0;
+  if (a.value != b.value || a.input != b.input) return 0;
+  if (a.coefs == b.coefs) return 1;
+  const bool negative = std::ranges::equal(a.coefs, b.coefs, [](Rational c, Rational d) { return c == -d; });
+  return negative && a.args.size() > 1 ? -1 : 0;
 }
 
 bool is_number(const Program& program, int op) {
@@ -65,14 +74,18 @@ Lead lead_of(const Program& program, const Operation& sum) {
 }
 
 int ProgramBuilder::intern(Operation op) {
-  const std::string key = key_of(op);
-  if (const auto found = by_key_.find(key); found != by_key_.end()) {
+  const std::size_t hash = hash_of(op);
+  const auto [first, last] = by_hash_.equal_range(hash);
+  for (auto found = first; found != last; ++found) {  // none but one fits, whatever their order
     Operation& known = program_.ops[static_cast<std::size_t>(found->second)];
-    if (known.name.empty()) known.name = op.name;
+    const int sign = sign_between(op, known);
+    if (sign < 0) return sum({found->second}, {Rational(-1)});  // it exists already and is not computed again
+    if (sign == 0) continue;
+    if (known.name.empty()) known.name = std::move(op.name);
     return found->second;
   }
   program_.ops.push_back(std::move(op));
-  by_key_.emplace(key, size() - 1);
+  by_hash_.emplace(hash, size() - 1);
   return size() - 1;
 }
 
@@ -108,66 +121,58 @@ void ProgramBuilder::positions_first(Operation& sum) const {
 }
 
 int ProgramBuilder::sum(std::vector<int> args, std::vector<Rational> coefs, std::string name) {
+  std::size_t n = 0;  // terms so far
+  for (std::size_t i = 0; i < args.size(); ++i) {
+    int arg = args[i];
+    const Rational coef = coefs[i] * pull_coefficient(arg);
+    const std::size_t same = index_of(std::span(args).first(n), arg);
+    coefs[same] = same < n ? coefs[same] + coef : coef;
+    if (same == n) args[n++] = arg;
+  }
+  args.resize(n), coefs.resize(n);
+  for (std::size_t i = n; i-- > 0;) {
+    if (!coefs[i].is_zero()) continue;
+    args.erase(args.begin() + static_cast<std::ptrdiff_t>(i));
+    coefs.erase(coefs.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  if (args.empty()) return number(0);
+  if (args.size() == 1 && at(args[0]).kind == OpKind::number) return number(coefs[0] * at(args[0]).value);
+  if (args.size() == 1 && coefs[0] == Rational(1)) return args[0];
   Operation op;
   op.kind = OpKind::sum;
-  for (std::size_t i = 0; i < args.size(); ++i) {
-    const Rational coef = coefs[i] * pull_coefficient(args[i]);
-    std::size_t same = 0;
-    while (same < op.args.size() && op.args[same] != args[i]) ++same;
-    if (same < op.args.size()) {
-      op.coefs[same] = op.coefs[same] + coef;
-    } else {
-      op.args.push_back(args[i]);
-      op.coefs.push_back(coef);
-    }
-  }
-  for (std::size_t i = op.args.size(); i-- > 0;) {
-    if (!op.coefs[i].is_zero()) continue;
-    op.args.erase(op.args.begin() + static_cast<std::ptrdiff_t>(i));
-    op.coefs.erase(op.coefs.begin() + static_cast<std::ptrdiff_t>(i));
-  }
-  positions_first(op);
-  if (op.args.empty()) return number(0);
-  if (op.args.size() == 1 && at(op.args[0]).kind == OpKind::number) {
-    return number(op.coefs[0] * at(op.args[0]).value);
-  }
-  if (op.args.size() == 1 && op.coefs[0] == Rational(1)) return op.args[0];
-  // The negative of a sum that exists already is not computed again.
-  Operation negative = op;
-  for (Rational& c : negative.coefs) c = -c;
-  if (op.args.size() > 1) {
-    if (const auto found = by_key_.find(key_of(negative)); found != by_key_.end()) {
-      return sum({found->second}, {Rational(-1)});
-    }
-  }
+  op.args = std::move(args);
+  op.coefs = std::move(coefs);
   op.name = std::move(name);
+  positions_first(op);
   return intern(std::move(op));
 }
 
 int ProgramBuilder::product(std::vector<int> args, std::vector<int> exponents, std::string name) {
-  Operation op;
-  op.kind = OpKind::product;
   Rational coef(1);
+  std::size_t n = 0;  // factors so far
   for (std::size_t i = 0; i < args.size(); ++i) {
-    coef = coef * pow(pull_coefficient(args[i]), exponents[i]);
-    if (at(args[i]).kind == OpKind::number) {
-      coef = coef * pow(at(args[i]).value, exponents[i]);
+    int arg = args[i];
+    const int exponent = exponents[i];
+    coef = coef * pow(pull_coefficient(arg), exponent);
+    if (at(arg).kind == OpKind::number) {
+      coef = coef * pow(at(arg).value, exponent);
       continue;
     }
-    std::size_t same = 0;
-    while (same < op.args.size() && op.args[same] != args[i]) ++same;
-    if (same < op.args.size()) {
-      op.exponents[same] += exponents[i];
-    } else {
-      op.args.push_back(args[i]);
-      op.exponents.push_back(exponents[i]);
-    }
+    const std::size_t same = index_of(std::span(args).first(n), arg);
+    exponents[same] = same < n ? exponents[same] + exponent : exponent;
+    if (same == n) args[n++] = arg;
   }
   if (coef.is_zero()) return number(0);
-  if (op.args.empty()) return number(coef);
-  const bool plain = op.args.size() == 1 && op.exponents[0] == 1;
-  if (coef == Rational(1)) op.name = std::move(name);
-  const int core = plain ? op.args[0] : intern(std::move(op));
+  if (n == 0) return number(coef);
+  int core = args[0];
+  if (n > 1 || exponents[0] != 1) {
+    Operation op;
+    op.kind = OpKind::product;
+    op.args.assign(args.begin(), args.begin() + static_cast<std::ptrdiff_t>(n));
+    op.exponents.assign(exponents.begin(), exponents.begin() + static_cast<std::ptrdiff_t>(n));
+    if (coef == Rational(1)) op.name = name;
+    core = intern(std::move(op));
+  }
   return coef == Rational(1) ? core : sum({core}, {coef}, std::move(name));
 }
 

@@ -1,30 +1,24 @@
 #include "derive/program/rewrite.hpp"
 
-#include <algorithm>
-
 namespace cdot::derive {
 
 Program rewritten(const Program& program, const Rewrite& rewrite) {
   const std::vector<int> uses = use_counts(program);
-  ProgramBuilder builder;
+  ProgramBuilder builder(program.ops.size());
   std::vector<int> at(program.ops.size(), -1);
   for (std::size_t i = 0; i < program.ops.size(); ++i) {
     if (uses[i] == 0) continue;
     const Operation& op = program.ops[i];
     std::optional<int> made = rewrite(builder, op, static_cast<int>(i), at);
     if (!made) {
-      std::vector<int> args;
-      for (const int arg : op.args) args.push_back(at[static_cast<std::size_t>(arg)]);
+      std::vector<int> args = op.args;
+      for (int& arg : args) arg = at[static_cast<std::size_t>(arg)];
       made = builder.rebuild(op, std::move(args));
     }
     at[i] = *made;
   }
   for (const Output& o : program.outputs) builder.output(o.name, at[static_cast<std::size_t>(o.op)]);
   return builder.finish();
-}
-
-std::size_t index_of(const std::vector<int>& args, int arg) {
-  return static_cast<std::size_t>(std::find(args.begin(), args.end(), arg) - args.begin());
 }
 
 }  // namespace cdot::derive

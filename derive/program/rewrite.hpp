@@ -15,9 +15,6 @@ using Rewrite =
     std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index, const std::vector<int>& new_index)>;
 Program rewritten(const Program& program, const Rewrite& rewrite);
 
-// The place of an operand; the number of operands if it is none of them.
-std::size_t index_of(const std::vector<int>& args, int arg);
-
 // Passes that compute a common pair once. Each takes the most frequent pair, the first of equals; nullopt if no pair
 // occurs twice.
 std::optional<Program> share_terms(const Program& program);    // x + ratio y
