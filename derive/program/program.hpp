@@ -22,16 +22,22 @@ struct Operation {
   std::vector<Rational> coefs;  // sum
   std::vector<int> exponents;   // product, positive
   std::string name;             // from the spec, or empty
+
+  friend bool operator==(const Operation&, const Operation&) = default;
 };
 
 struct Output {
   std::string name;  // "C1", "K21", ...
   int op = 0;
+
+  friend bool operator==(const Output&, const Output&) = default;
 };
 
 struct Program {
   std::vector<Operation> ops;
   std::vector<Output> outputs;
+
+  friend bool operator==(const Program&, const Program&) = default;
 };
 
 // The term that opens a sum: the first positive one. Without one it is the first with a numeric factor, as in -2 x.

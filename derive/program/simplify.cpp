@@ -203,6 +203,26 @@ Program exhaust(Program program, Pass pass) {
   return program;
 }
 
+// Orders of passes begin alike, and one search often follows another's steps: each step is made once.
+class Steps {
+ public:
+  Program after(Program from, Pass pass) {
+    for (const Step& known : made_) {
+      if (known.pass == pass && known.from == from) return known.to;
+    }
+    made_.push_back({from, pass, flatten_sums(exhaust(from, pass))});
+    return made_.back().to;
+  }
+
+ private:
+  struct Step {
+    Program from;
+    Pass pass;
+    Program to;
+  };
+  std::vector<Step> made_;
+};
+
 // Cost in units of an addition; a division or root weighs as on current processors.
 int weight(const Count& c) { return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call; }
 
@@ -213,6 +233,7 @@ Program searched(const Program& program) {
                                        {share_terms, take_out_factor, share_factors},
                                        {share_terms, share_factors, take_out_factor},
                                        {take_out_factor, share_terms, share_factors}};
+  Steps steps;
   Program best = program;
   for (bool improved = true; improved;) {
     improved = false;
@@ -223,7 +244,7 @@ Program searched(const Program& program) {
           return flatten_sums(coefficients_out ? take_out_coefficients(p) : p);
         };
         Program candidate = tidied(start);
-        for (const Pass pass : order) candidate = flatten_sums(exhaust(std::move(candidate), pass));
+        for (const Pass pass : order) candidate = steps.after(std::move(candidate), pass);
         candidate = tidied(candidate);
         if (weight(count(candidate)) >= weight(count(best))) continue;
         best = std::move(candidate);
