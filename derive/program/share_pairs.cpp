@@ -1,6 +1,6 @@
 // The passes that share pairs of terms or of factors.
 #include <algorithm>
-#include <map>
+#include <numeric>
 #include <string>
 #include <tuple>
 
@@ -13,11 +13,13 @@ namespace {
 struct Pair {
   int x = 0, y = 0;
   Rational ratio;
-};
 
-std::vector<Pair> term_pairs(const Program& program, const Operation& op) {
-  std::vector<Pair> pairs;
-  if (op.kind != OpKind::sum) return pairs;
+  friend bool operator==(const Pair&, const Pair&) = default;
+};
+using Pairs = std::vector<Pair>;
+
+void add_term_pairs(const Program& program, const Operation& op, Pairs& pairs) {
+  if (op.kind != OpKind::sum) return;
   for (std::size_t i = 0; i < op.args.size(); ++i) {
     for (std::size_t j = i + 1; j < op.args.size(); ++j) {
       // The difference of two positions cancels what is large in both: neither is ever paired with anything else.
@@ -29,40 +31,39 @@ std::vector<Pair> term_pairs(const Program& program, const Operation& op) {
       pairs.push_back({op.args[x], op.args[y], op.coefs[y] / op.coefs[x]});
     }
   }
-  return pairs;
 }
 
-std::vector<Pair> factor_pairs(const Program&, const Operation& op) {
-  std::vector<Pair> pairs;
-  if (op.kind != OpKind::product) return pairs;
+void add_factor_pairs(const Program&, const Operation& op, Pairs& pairs) {
+  if (op.kind != OpKind::product) return;
   for (std::size_t i = 0; i < op.args.size(); ++i) {
     if (op.exponents[i] > 1) pairs.push_back({op.args[i], op.args[i], Rational(1)});
     for (std::size_t j = i + 1; j < op.args.size(); ++j) {
       pairs.push_back({std::min(op.args[i], op.args[j]), std::max(op.args[i], op.args[j]), Rational(1)});
     }
   }
-  return pairs;
 }
 
-using PairFinder = std::vector<Pair> (*)(const Program&, const Operation&);
+using PairFinder = void (*)(const Program&, const Operation&, Pairs&);
 
-// The pair that occurs in most operations, if in more than one; the first such.
-std::optional<Pair> most_frequent(const Program& program, PairFinder pairs_of) {
+// The pair that occurs in most operations, if in more than one; of equals the first whose occurrences are complete.
+std::optional<Pair> most_frequent(const Program& program, PairFinder add_pairs) {
   const std::vector<int> uses = use_counts(program);
-  const auto less = [](const Pair& a, const Pair& b) {
-    return std::tie(a.x, a.y, a.ratio) < std::tie(b.x, b.y, b.ratio);
-  };
-  std::map<Pair, int, decltype(less)> seen(less);
-  std::optional<Pair> best;
-  int best_count = 1;
+  Pairs pairs;
   for (std::size_t i = 0; i < program.ops.size(); ++i) {
-    if (uses[i] == 0) continue;
-    for (const Pair& pair : pairs_of(program, program.ops[i])) {
-      const int n = ++seen[pair];
-      if (n > best_count) best_count = n, best = pair;
-    }
+    if (uses[i] > 0) add_pairs(program, program.ops[i], pairs);
   }
-  return best;
+  std::vector<std::size_t> alike(pairs.size());  // equal pairs side by side, each in order of occurrence
+  std::iota(alike.begin(), alike.end(), std::size_t{0});
+  std::ranges::sort(alike, {}, [&](std::size_t i) {
+    const Pair& p = pairs[i];
+    return std::tuple(p.x, p.y, p.ratio.num(), p.ratio.den(), i);
+  });
+  std::size_t best = 0, best_count = 1;
+  for (std::size_t i = 0, count = 0; i < alike.size(); ++i) {
+    count = i > 0 && pairs[alike[i]] == pairs[alike[i - 1]] ? count + 1 : 1;
+    if (count > best_count || (count > 1 && count == best_count && alike[i] < best)) best_count = count, best = alike[i];
+  }
+  return best_count > 1 ? std::optional(pairs[best]) : std::nullopt;
 }
 
 // The name of x + ratio y in the spec; empty if it has none.
@@ -79,7 +80,7 @@ std::string name_of(const Program& program, const Pair& pair) {
 
 // x + y once for all sums that contain it.
 std::optional<Program> share_terms(const Program& program) {
-  const std::optional<Pair> pair = most_frequent(program, term_pairs);
+  const std::optional<Pair> pair = most_frequent(program, add_term_pairs);
   if (!pair) return std::nullopt;
   const std::string name = name_of(program, *pair);
   return rewritten(
@@ -104,7 +105,7 @@ std::optional<Program> share_terms(const Program& program) {
 
 // x y once for all products that contain it.
 std::optional<Program> share_factors(const Program& program) {
-  const std::optional<Pair> pair = most_frequent(program, factor_pairs);
+  const std::optional<Pair> pair = most_frequent(program, add_factor_pairs);
   if (!pair) return std::nullopt;
   return rewritten(
       program,
