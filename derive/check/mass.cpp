@@ -69,7 +69,7 @@ class MassCheck {
       for (const Expr entry : columns_of(row.J)) J.back().push_back(by_algebra_ ? names_.of(entry) : ex(0));
     }
     std::vector<std::vector<std::vector<double>>> seen;
-    for (const Sample& sample : subject_.anywhere) seen.push_back(jacobian_at(joint_, subject_.block, sample));
+    for (const Sample& sample : subject_.anywhere) seen.push_back(jacobian_at(subject_.block, sample));
     std::map<Monomial, Coefficient> by_monomial;
     std::vector<std::size_t> columns;
     const auto choose = [&](auto&& self, std::size_t from) -> void {

@@ -16,7 +16,7 @@ struct Subject {
 Subject subject_of(const Derivation& derivation);
 
 // The rows of J at a sample.
-std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block, const Sample& sample);
+std::vector<std::vector<double>> jacobian_at(const Block& block, const Sample& sample);
 
 // The place of a coordinate in the spec.
 Span place_of(const Block& coordinate, const Joint& joint);

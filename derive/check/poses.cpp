@@ -19,9 +19,9 @@ std::vector<Expr> expressions_of(const Block& block) {
 
 }  // namespace
 
-std::vector<std::vector<double>> jacobian_at(const Joint& joint, const Block& block, const Sample& sample) {
+std::vector<std::vector<double>> jacobian_at(const Block& block, const Sample& sample) {
   Gradients J;
-  for (const std::vector<Expr>& row : columns_of(block.rows)) J.push_back(values_at(joint, row, sample));
+  for (const std::vector<Expr>& row : columns_of(block.rows)) J.push_back(values_at(row, sample));
   return J;
 }
 

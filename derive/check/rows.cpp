@@ -53,10 +53,10 @@ std::string better_form(Expr C, const Joint& joint) {
 bool vanishes_on_constraint(const Subject& subject, std::size_t row) {
   double usual = 0, largest = 0;
   for (const Sample& sample : subject.anywhere) {
-    usual = std::max(usual, length(jacobian_at(subject.joint, subject.block, sample)[row]));
+    usual = std::max(usual, length(jacobian_at(subject.block, sample)[row]));
   }
   for (const Sample& sample : subject.on_constraint) {
-    largest = std::max(largest, length(jacobian_at(subject.joint, subject.block, sample)[row]));
+    largest = std::max(largest, length(jacobian_at(subject.block, sample)[row]));
   }
   return !subject.on_constraint.empty() && largest < negligible * usual;
 }
@@ -105,7 +105,7 @@ void find_dependent_on_constraint(const Subject& subject, Findings& findings) {
   if (subject.on_constraint.empty() || !generic_rank(columns_of(rows)).dependences.empty()) return;
   std::size_t row = 0;
   for (const Sample& sample : subject.on_constraint) {
-    const Weakest weak = weakest(jacobian_at(subject.joint, subject.block, sample));
+    const Weakest weak = weakest(jacobian_at(subject.block, sample));
     if (!(weak.rest < negligible)) return;
     row = std::max(row, weak.row);
   }

@@ -64,12 +64,12 @@ Motion sum_of(const Motion& a, const Motion& b) {
 double rate_along(const Joint& joint, const ScalarRow& row, const Sample& sample, const Motion& motion, double time) {
   if (row.kind == RowKind::velocity) {
     const Motion rest(motion.size());
-    return values_at(joint, {row.Cdot}, with_velocities(joint, sample, motion))[0] -
-           values_at(joint, {row.Cdot}, with_velocities(joint, sample, rest))[0];
+    return values_at({row.Cdot}, with_velocities(joint, sample, motion))[0] -
+           values_at({row.Cdot}, with_velocities(joint, sample, rest))[0];
   }
   constexpr double step = 1e-6;
-  return (values_at(joint, {row.C}, moved_along(joint, sample, motion, time, step))[0] -
-          values_at(joint, {row.C}, moved_along(joint, sample, motion, time, -step))[0]) /
+  return (values_at({row.C}, moved_along(joint, sample, motion, time, step))[0] -
+          values_at({row.C}, moved_along(joint, sample, motion, time, -step))[0]) /
          (2 * step);
 }
 
@@ -198,7 +198,7 @@ std::string Confirm::row_space(const Poses& poses, const Matrix& larger, const M
   double off = 0;
   for (const Sample& sample : poses.samples()) {
     const auto rows_of = [&](const Matrix& m) {
-      const std::vector<double> all = values_at(joint_, m.entries, sample);
+      const std::vector<double> all = values_at(m.entries, sample);
       Gradients rows;
       for (int r = 0; r < m.rows; ++r) {
         rows.emplace_back(all.begin() + r * m.columns, all.begin() + (r + 1) * m.columns);
@@ -245,7 +245,7 @@ std::string Confirm::after(UpdateLevel level, const std::vector<ScalarRow>& rows
     return most;
   };
   const auto remaining = [&](const std::vector<Expr>& columns) {
-    return [&](const Sample& sample) { return left(values_at(joint_, columns, sample), sample); };
+    return [&](const Sample& sample) { return left(values_at(columns, sample), sample); };
   };
   return worst(how[static_cast<int>(level)], poses_, remaining(change.generated), remaining(change.published));
 }

@@ -62,7 +62,7 @@ class Confirm {
                     const Measure& published_error) const;
   // Of e, relative to the size of the measured value.
   Measure error(const Measure& measured, Expr e) const;
-  double value(Expr e, const Sample& sample) const { return values_at(joint_, {e}, sample)[0]; }
+  double value(Expr e, const Sample& sample) const { return values_at({e}, sample)[0]; }
   Motion in_form(const Motion& gradient, const Sample& sample) const;
   Motion gradient(const ScalarRow& row, const Sample& sample) const;
   Motion velocity(const Sample& sample) const;

@@ -70,17 +70,18 @@ double largest(const std::vector<double>& numbers) {
   return most;
 }
 
-Gradients central_differences(const Joint& joint, const std::vector<Expr>& equations, const Variables& variables,
-                              const Sample& sample) {
+Gradients central_differences(Formulas& equations, const Variables& variables, const Sample& sample) {
   constexpr double step = 1e-6;
-  Gradients G(equations.size());
+  Gradients G;
+  Sample moved;
   for (std::size_t v = 0; v < variables.size(); ++v) {
-    Sample moved = sample;
-    variables.move(moved, v, step);
-    const std::vector<double> above = values_at(joint, equations, moved);
-    moved = sample;
-    variables.move(moved, v, -step);
-    const std::vector<double> below = values_at(joint, equations, moved);
+    const auto beside = [&](double by) {
+      moved = sample;
+      variables.move(moved, v, by);
+      return equations.at(moved);
+    };
+    const std::vector<double> above = beside(step), below = beside(-step);
+    G.resize(above.size());
     for (std::size_t i = 0; i < G.size(); ++i) G[i].push_back((above[i] - below[i]) / (2 * step));
   }
   return G;
@@ -110,13 +111,6 @@ std::vector<double> shortest_step(const Gradients& G, const std::vector<double>&
   return step;
 }
 
-std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample) {
-  Numbers numbers(world_values(joint, sample));
-  std::vector<double> values;
-  for (const Expr e : scalars) values.push_back(numbers.scalar(e));
-  return values;
-}
-
 std::vector<const Triad*> triads_of(const Joint& joint, const Sample& sample) {
   std::vector<const Triad*> triads;
   for (const Expr leaf : sample.leaves) {
@@ -132,20 +126,21 @@ bool move_to_zero(const Joint& joint, const std::vector<Expr>& equations, Sample
                   const std::vector<std::vector<Expr>>& J) {
   constexpr double reached = 1e-12, round_off_of_sums = 1e-11;  // of equations that depend on each other
   const Variables variables(joint, sample, !J.empty());
+  Formulas formulas(equations);
   const auto gradients = [&] {
-    if (J.empty()) return central_differences(joint, equations, variables, sample);
+    if (J.empty()) return central_differences(formulas, variables, sample);
     Gradients G;
-    for (const std::vector<Expr>& row : J) G.push_back(values_at(joint, row, sample));
+    for (const std::vector<Expr>& row : J) G.push_back(values_at(row, sample));
     return G;
   };
-  double error = largest(values_at(joint, equations, sample));
+  double error = largest(formulas.at(sample));
   for (int iteration = 0; iteration < 60 && error > reached; ++iteration) {
-    const std::vector<double> step = shortest_step(gradients(), values_at(joint, equations, sample));
+    const std::vector<double> step = shortest_step(gradients(), formulas.at(sample));
     double fraction = 1;
     for (; fraction > 1e-3; fraction /= 2) {
       Sample moved = sample;
       for (std::size_t i = 0; i < step.size(); ++i) variables.move(moved, i, fraction * step[i]);
-      const double moved_error = largest(values_at(joint, equations, moved));
+      const double moved_error = largest(formulas.at(moved));
       if (!(moved_error < error)) continue;
       sample = std::move(moved);
       error = moved_error;

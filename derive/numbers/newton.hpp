@@ -14,7 +14,6 @@ using Gradients = std::vector<std::vector<double>>;
 // The shortest dx with values + G dx = 0: dx = -G^T (G G^T + eps E)^-1 values. Redundant rows do no harm.
 std::vector<double> shortest_step(const Gradients& G, const std::vector<double>& values);
 
-std::vector<double> values_at(const Joint& joint, const std::vector<Expr>& scalars, const Sample& sample);
 // The triads of a sample, ordered by name: the order of addresses changes from run to run.
 std::vector<const Triad*> triads_of(const Joint& joint, const Sample& sample);
 

@@ -5,50 +5,14 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "derive/expression/symbols.hpp"
+
 namespace cdot::derive {
 namespace {
 
 Triple<double> unit_axis(char letter) {
   return {letter == 'x' ? 1. : 0., letter == 'y' ? 1. : 0., letter == 'z' ? 1. : 0.};
 }
-
-class Doubles final : public Arithmetic<double> {
- public:
-  explicit Doubles(const Values& values) : values_(values) {}
-
-  double number(Rational value) override { return value.value(); }
-
-  double scalar_leaf(const Node& symbol) override {
-    if (symbol.role == Role::constant && symbol.symbol == "pi") return std::numbers::pi;
-    return named(symbol.symbol);
-  }
-
-  Triple<double> vector_leaf(const Node& symbol) override {
-    if (is_world_axis(Expr(&symbol))) return unit_axis(symbol.symbol.back());
-    return {named(symbol.symbol + "_x"), named(symbol.symbol + "_y"),
-            symbol.pool->dimension() == 2 ? 0 : named(symbol.symbol + "_z")};
-  }
-
-  double inverse(const double& x) override { return function_of(Fn::inverse).value(&x); }
-
-  Triple<double> direction(const Triple<double>& u) override {
-    const double u_len = length(u);
-    if (u_len == 0) return {1, 0, 0};
-    return {u[0] / u_len, u[1] / u_len, u[2] / u_len};
-  }
-
-  double call(Fn fn, std::span<const double> args) override { return function_of(fn).value(args.data()); }
-  bool has(Fn) const override { return true; }
-
- private:
-  double named(const std::string& name) const {
-    const auto found = values_.find(name);
-    if (found == values_.end()) throw std::out_of_range("no value for " + name);
-    return found->second;
-  }
-
-  const Values& values_;
-};
 
 Triple<double> turned(double theta, Triple<double> u) {
   const double c = std::cos(theta), s = std::sin(theta);
@@ -63,6 +27,104 @@ Triple<double> turned(const EulerParameters<double>& e, const Triple<double>& u)
   }
   return sum;
 }
+
+class Doubles : public Arithmetic<double> {
+ public:
+  double number(Rational value) override { return value.value(); }
+
+  double scalar_leaf(const Node& symbol) override {
+    return symbol.role == Role::constant && symbol.symbol == "pi" ? std::numbers::pi : scalar(symbol);
+  }
+
+  Triple<double> vector_leaf(const Node& symbol) override {
+    return is_world_axis(Expr(&symbol)) ? unit_axis(symbol.symbol.back()) : vector(symbol);
+  }
+
+  double inverse(const double& x) override { return function_of(Fn::inverse).value(&x); }
+
+  Triple<double> direction(const Triple<double>& u) override {
+    const double u_len = length(u);
+    if (u_len == 0) return {1, 0, 0};
+    return {u[0] / u_len, u[1] / u_len, u[2] / u_len};
+  }
+
+  double call(Fn fn, std::span<const double> args) override { return function_of(fn).value(args.data()); }
+  bool has(Fn) const override { return true; }
+
+ protected:
+  template <class T>
+  static const T& named(const std::map<std::string, T>& values, const std::string& name) {
+    const auto found = values.find(name);
+    if (found == values.end()) throw std::out_of_range("no value for " + name);
+    return found->second;
+  }
+
+ private:
+  virtual double scalar(const Node& leaf) const = 0;
+  virtual Triple<double> vector(const Node& leaf) const = 0;
+};
+
+class ByName final : public Doubles {
+ public:
+  explicit ByName(Values values) : values_(std::move(values)) {}
+
+ private:
+  double scalar(const Node& leaf) const override { return named(values_, leaf.symbol); }
+  Triple<double> vector(const Node& leaf) const override {
+    return {named(values_, leaf.symbol + "_x"), named(values_, leaf.symbol + "_y"),
+            leaf.pool->dimension() == 2 ? 0 : named(values_, leaf.symbol + "_z")};
+  }
+
+  const Values values_;
+};
+
+class InSample final : public Doubles {
+ public:
+  explicit InSample(const Sample* sample = nullptr) : sample_(sample) {}
+  void move_to(const Sample& sample) { sample_ = &sample; }
+
+ private:
+  const Sample::Body& body_of(const Node& leaf) const { return sample_->bodies[static_cast<std::size_t>(leaf.body)]; }
+
+  double scalar(const Node& leaf) const override {
+    const std::string& name = leaf.symbol;
+    switch (leaf.role) {
+      case Role::angle: return body_of(leaf).theta;
+      case Role::spin:
+        if (leaf.pool->dimension() == 2) return body_of(leaf).w[2];
+        [[fallthrough]];
+      case Role::position:
+      case Role::velocity:
+      case Role::world_vector:
+      case Role::body_vector:  // t_x, a component of t
+        return vector(*leaf.pool->find(name.substr(0, name.size() - 2)))[static_cast<std::size_t>(name.back() - 'x')];
+      case Role::given:
+        if (leaf.body >= 0) return body_of(leaf).e[static_cast<std::size_t>(name.back() - '0')];
+        [[fallthrough]];
+      default: return named(sample_->scalars, name);
+    }
+  }
+
+  Triple<double> vector(const Node& leaf) const override {
+    if (leaf.role == Role::position) return body_of(leaf).x;
+    if (leaf.role == Role::velocity) return body_of(leaf).v;
+    if (leaf.role == Role::spin) return body_of(leaf).w;
+    const Triple<double> local = in_frame(leaf);
+    if (leaf.role != Role::body_vector || leaf.body < 0) return local;
+    return leaf.pool->dimension() == 2 ? turned(body_of(leaf).theta, local) : turned(body_of(leaf).e, local);
+  }
+
+  Triple<double> in_frame(const Node& leaf) const {
+    if (!sample_->triads.empty()) {
+      const Pool::Axis axis = leaf.pool->axis_of(Expr(&leaf));
+      const auto triad = sample_->triads.find(axis.triad);
+      if (triad != sample_->triads.end()) return axes_of(triad->second)[static_cast<std::size_t>(axis.index)];
+    }
+    return named(sample_->local, leaf.symbol);
+  }
+
+  const Sample* sample_;
+};
 
 EulerParameters<double> random_orientation(Random& random) {
   EulerParameters<double> e;
@@ -88,9 +150,8 @@ bool is_body_axis(const Joint& joint, const Node& leaf) {
 }  // namespace
 
 struct Numbers::Parts {
-  explicit Parts(Values given) : values(std::move(given)), doubles(values), evaluation(doubles) {}
-  const Values values;
-  Doubles doubles;
+  explicit Parts(Values values) : doubles(std::move(values)), evaluation(doubles) {}
+  ByName doubles;
   Evaluation<double> evaluation;
 };
 
@@ -98,6 +159,24 @@ Numbers::Numbers(Values values) : parts_(std::make_unique<Parts>(std::move(value
 Numbers::~Numbers() = default;
 double Numbers::scalar(Expr e) { return parts_->evaluation.scalar(e); }
 Triple<double> Numbers::vector(Expr e) { return parts_->evaluation.vector(e); }
+
+struct Formulas::Parts {
+  explicit Parts(std::vector<Expr> of) : scalars(std::move(of)), evaluation(doubles) {}
+  const std::vector<Expr> scalars;
+  InSample doubles;
+  Evaluation<double> evaluation;
+};
+
+Formulas::Formulas(std::vector<Expr> scalars) : parts_(std::make_unique<Parts>(std::move(scalars))) {}
+Formulas::~Formulas() = default;
+std::vector<double> Formulas::at(const Sample& sample) {
+  parts_->doubles.move_to(sample);
+  parts_->evaluation.repeat();
+  std::vector<double> values;
+  values.reserve(parts_->scalars.size());
+  for (const Expr e : parts_->scalars) values.push_back(parts_->evaluation.scalar(e));
+  return values;
+}
 
 // splitmix64 (Steele, Lea, Flood, 2014).
 std::uint64_t Random::bits() {
@@ -203,39 +282,21 @@ Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std:
 
 Values world_values(const Joint& joint, const Sample& sample) {
   Values values = sample.scalars;
-  const auto put = [&](const std::string& name, const Triple<double>& u) {
-    for (std::size_t k = 0; k < static_cast<std::size_t>(joint.dimension); ++k) {
-      values[name + "_" + "xyz"[k]] = u[k];
+  Pool& pool = *joint.pool;
+  InSample there(&sample);
+  const auto put = [&](Expr leaf) {
+    if (!leaf->vector) values[leaf->symbol] = there.scalar_leaf(*leaf);
+    for (std::size_t k = 0; leaf->vector && k < static_cast<std::size_t>(joint.dimension); ++k) {
+      values[leaf->symbol + "_" + "xyz"[k]] = there.vector_leaf(*leaf)[k];
     }
   };
-  for (std::size_t b = 0; b < joint.bodies.size(); ++b) {
-    const Sample::Body& body = sample.bodies[b];
-    put("x_" + joint.bodies[b], body.x);
-    put("v_" + joint.bodies[b], body.v);
-    if (joint.dimension == 3) {
-      put("w_" + joint.bodies[b], body.w);
-      for (std::size_t k = 0; k < 4; ++k) values[joint.bodies[b] + ".e" + std::to_string(k)] = body.e[k];
-    } else {
-      values["theta_" + joint.bodies[b]] = body.theta;
-      values["w_" + joint.bodies[b]] = body.w[2];
-    }
+  for (int b = 0; b < static_cast<int>(joint.bodies.size()); ++b) {
+    for (const Expr leaf : {body_position(pool, b), body_velocity(pool, b), body_spin(pool, b)}) put(leaf);
+    if (joint.dimension == 2) put(body_angle(pool, b));
+    else std::ranges::for_each(body_euler_parameters(pool, b), put);
   }
   for (const Expr leaf : sample.leaves) {
-    Triple<double> local{};
-    const Pool::Axis axis = joint.pool->axis_of(leaf);
-    const auto triad = sample.triads.find(axis.triad);
-    if (const auto found = sample.local.find(leaf->symbol); found != sample.local.end()) {
-      local = found->second;
-    } else if (triad != sample.triads.end()) {
-      local = axes_of(triad->second)[static_cast<std::size_t>(axis.index)];
-    } else {
-      continue;
-    }
-    if (leaf->role == Role::body_vector && leaf->body >= 0) {
-      const Sample::Body& body = sample.bodies[static_cast<std::size_t>(leaf->body)];
-      local = joint.dimension == 2 ? turned(body.theta, local) : turned(body.e, local);
-    }
-    put(leaf->symbol, local);
+    if (leaf->vector) put(leaf);
   }
   return values;
 }

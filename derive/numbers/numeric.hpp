@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "derive/expression/components.hpp"
@@ -79,101 +80,116 @@ class Arithmetic {
   }
 };
 
-// Evaluates expressions, each node once.
+// Evaluates expressions, each node once, operands before users.
 template <class T>
 class Evaluation {
  public:
   explicit Evaluation(Arithmetic<T>& arithmetic) : arithmetic_(arithmetic) {}
 
-  T scalar(Expr e) {
-    walk(e);
-    return scalars_.at(&*e);
-  }
-  Triple<T> vector(Expr e) {
-    walk(e);
-    return vectors_.at(&*e);
+  T scalar(Expr e) { return values_[place_of(e)][0]; }
+  Triple<T> vector(Expr e) { return values_[place_of(e)]; }
+
+  // Evaluates all expressions so far anew, after the leaves have changed.
+  void repeat() {
+    for (std::size_t i = 0; i < steps_.size(); ++i) values_[i] = value_of(steps_[i]);
   }
 
  private:
-  void walk(Expr root) {
-    if (scalars_.contains(&*root) || vectors_.contains(&*root)) return;
-    for (const Expr e : topological(std::span(&root, 1))) {
-      if (e->kind == Kind::symbol && is_tensor(e)) continue;
-      if (e->vector) {
-        if (!vectors_.contains(&*e)) vectors_.emplace(&*e, vector_rule(e));
-      } else if (!scalars_.contains(&*e)) {
-        scalars_.emplace(&*e, scalar_rule(e));
-      }
+  struct Step {
+    Expr e;
+    std::vector<std::size_t> operands;  // places in values_
+  };
+
+  std::size_t place_of(Expr e) {
+    if (const auto known = places_.find(&*e); known != places_.end()) return known->second;
+    Step step{e, {}};
+    step.operands.reserve(e->args.size());
+    for (const Expr arg : e->args) {
+      const bool tensor = arg->kind == Kind::symbol && is_tensor(arg);  // read by its components
+      step.operands.push_back(tensor ? 0 : place_of(arg));
     }
+    const Triple<T> value = value_of(step);
+    steps_.push_back(std::move(step));
+    values_.push_back(value);
+    places_.emplace(&*e, steps_.size() - 1);
+    return steps_.size() - 1;
   }
 
-  const T& s(Expr e, std::size_t i) const { return scalars_.at(&*e->args[i]); }
-  const Triple<T>& v(Expr e, std::size_t i) const { return vectors_.at(&*e->args[i]); }
+  const T& s(const Step& step, std::size_t i) const { return values_[step.operands[i]][0]; }
+  const Triple<T>& v(const Step& step, std::size_t i) const { return values_[step.operands[i]]; }
 
-  T scalar_rule(Expr e) {
+  // A scalar is the first of three.
+  Triple<T> value_of(const Step& step) {
+    return step.e->vector ? vector_rule(step) : Triple<T>{scalar_rule(step)};
+  }
+
+  T scalar_rule(const Step& step) {
+    const Expr e = step.e;
     switch (e->kind) {
       case Kind::number: return arithmetic_.number(e->value);
       case Kind::symbol: return arithmetic_.scalar_leaf(*e);
       case Kind::sum: {
         T total = arithmetic_.number(0);
         for (std::size_t i = 0; i < e->args.size(); ++i) {
-          total = total + arithmetic_.number(e->coefs[i]) * s(e, i);
+          total = total + arithmetic_.number(e->coefs[i]) * s(step, i);
         }
         return total;
       }
-      case Kind::product: return product_rule(e);
-      case Kind::dot: return inner_product(v(e, 0), v(e, 1));
-      case Kind::cross: return v(e, 0)[0] * v(e, 1)[1] - v(e, 0)[1] * v(e, 1)[0];
+      case Kind::product: return product_rule(step);
+      case Kind::dot: return inner_product(v(step, 0), v(step, 1));
+      case Kind::cross: return v(step, 0)[0] * v(step, 1)[1] - v(step, 0)[1] * v(step, 1)[0];
       case Kind::twist: return scalar(twist_as_atan2(e));
-      case Kind::norm: return arithmetic_.length(v(e, 0));
+      case Kind::norm: return arithmetic_.length(v(step, 0));
       default: break;
     }
     if (!arithmetic_.has(e->fn)) return scalar(function_of(e->fn).by_others(e->args[0]));
     std::vector<T> args;
-    for (std::size_t i = 0; i < e->args.size(); ++i) args.push_back(s(e, i));
+    for (std::size_t i = 0; i < e->args.size(); ++i) args.push_back(s(step, i));
     return arithmetic_.call(e->fn, args);
   }
 
-  T product_rule(Expr e) {
+  T product_rule(const Step& step) {
     T total = arithmetic_.number(1);
-    for (std::size_t i = 0; i < e->args.size(); ++i) {
-      const int exponent = e->exponents[i];
-      const T base = exponent < 0 ? arithmetic_.inverse(s(e, i)) : s(e, i);
+    for (std::size_t i = 0; i < step.operands.size(); ++i) {
+      const int exponent = step.e->exponents[i];
+      const T base = exponent < 0 ? arithmetic_.inverse(s(step, i)) : s(step, i);
       for (int k = 0; k < (exponent < 0 ? -exponent : exponent); ++k) total = total * base;
     }
     return total;
   }
 
-  Triple<T> vector_rule(Expr e) {
+  Triple<T> vector_rule(const Step& step) {
+    const Expr e = step.e;
     switch (e->kind) {
       case Kind::sum: {
         Triple<T> total{arithmetic_.number(0), arithmetic_.number(0), arithmetic_.number(0)};
         for (std::size_t i = 0; i < e->args.size(); ++i) {
           const T coef = arithmetic_.number(e->coefs[i]);
-          for (std::size_t k = 0; k < 3; ++k) total[k] = total[k] + coef * v(e, i)[k];
+          for (std::size_t k = 0; k < 3; ++k) total[k] = total[k] + coef * v(step, i)[k];
         }
         return total;
       }
-      case Kind::scale: return {s(e, 0) * v(e, 1)[0], s(e, 0) * v(e, 1)[1], s(e, 0) * v(e, 1)[2]};
-      case Kind::perp: return {arithmetic_.number(-1) * v(e, 0)[1], v(e, 0)[0], arithmetic_.number(0)};
-      case Kind::cross: return cross_product(v(e, 0), v(e, 1));
+      case Kind::scale: return {s(step, 0) * v(step, 1)[0], s(step, 0) * v(step, 1)[1], s(step, 0) * v(step, 1)[2]};
+      case Kind::perp: return {arithmetic_.number(-1) * v(step, 0)[1], v(step, 0)[0], arithmetic_.number(0)};
+      case Kind::cross: return cross_product(v(step, 0), v(step, 1));
       case Kind::tensor: {
         Triple<T> product;
         for (std::size_t i = 0; i < 3; ++i) {
           const Triple<T> row{arithmetic_.tensor_leaf(*e->args[0], i, 0), arithmetic_.tensor_leaf(*e->args[0], i, 1),
                               arithmetic_.tensor_leaf(*e->args[0], i, 2)};
-          product[i] = inner_product(row, v(e, 1));
+          product[i] = inner_product(row, v(step, 1));
         }
         return product;
       }
-      case Kind::unit: return arithmetic_.direction(v(e, 0));
+      case Kind::unit: return arithmetic_.direction(v(step, 0));
       default: return arithmetic_.vector_leaf(*e);
     }
   }
 
   Arithmetic<T>& arithmetic_;
-  std::map<const Node*, T> scalars_;
-  std::map<const Node*, Triple<T>> vectors_;
+  std::vector<Step> steps_;
+  std::vector<Triple<T>> values_;
+  std::unordered_map<const Node*, std::size_t> places_;
 };
 
 // Values of leaves by name; a vector leaf `t` is read as `t_x`, `t_y`, `t_z`. `pi` and the world's axes are known.
@@ -231,7 +247,22 @@ struct Sample {
 // Positions within a few metres, orientations all around, scalars in [0.5, 2], unit vectors of length 1.
 Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std::uint64_t seed);
 
-// The leaves' values in world axes.
+// The leaves' values in world axes, by name.
 Values world_values(const Joint& joint, const Sample& sample);
+
+// Scalars at one sample after another, as Numbers: their nodes are put in order once.
+class Formulas {
+ public:
+  explicit Formulas(std::vector<Expr> scalars);
+  ~Formulas();
+  std::vector<double> at(const Sample& sample);
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+inline std::vector<double> values_at(const std::vector<Expr>& scalars, const Sample& sample) {
+  return Formulas(scalars).at(sample);
+}
 
 }  // namespace cdot::derive
