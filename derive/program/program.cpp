@@ -164,15 +164,14 @@ int ProgramBuilder::product(std::vector<int> args, std::vector<int> exponents, s
   }
   if (coef.is_zero()) return number(0);
   if (n == 0) return number(coef);
-  int core = args[0];
-  if (n > 1 || exponents[0] != 1) {
-    Operation op;
-    op.kind = OpKind::product;
-    op.args.assign(args.begin(), args.begin() + static_cast<std::ptrdiff_t>(n));
-    op.exponents.assign(exponents.begin(), exponents.begin() + static_cast<std::ptrdiff_t>(n));
-    if (coef == Rational(1)) op.name = name;
-    core = intern(std::move(op));
-  }
+  args.resize(n), exponents.resize(n);
+  Operation op;
+  op.kind = OpKind::product;
+  op.args = std::move(args);
+  op.exponents = std::move(exponents);
+  if (coef == Rational(1)) op.name = name;
+  const bool plain = n == 1 && op.exponents[0] == 1;
+  const int core = plain ? op.args[0] : intern(std::move(op));
   return coef == Rational(1) ? core : sum({core}, {coef}, std::move(name));
 }
 

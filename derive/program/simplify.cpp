@@ -1,6 +1,7 @@
 // Passes from program to program. Each finds its best single rewriting, deterministically: the most frequent pair, the
 // first of equals. Sharing and factoring compete, so they run in several orders and the cheapest program wins.
 #include <algorithm>
+#include <deque>
 #include <optional>
 #include <set>
 
@@ -198,20 +199,21 @@ std::optional<Program> cancel_terms(const Program& program) {
 
 using Pass = std::optional<Program> (*)(const Program&);
 
-Program exhaust(Program program, Pass pass) {
-  while (std::optional<Program> next = pass(program)) program = std::move(*next);
-  return program;
+Program exhaust(const Program& program, Pass pass) {
+  std::optional<Program> last = pass(program);
+  if (!last) return program;
+  while (std::optional<Program> next = pass(*last)) last = std::move(next);
+  return std::move(*last);
 }
 
 // Orders of passes begin alike, and one search often follows another's steps: each step is made once.
 class Steps {
  public:
-  Program after(Program from, Pass pass) {
+  const Program& after(const Program& from, Pass pass) {
     for (const Step& known : made_) {
       if (known.pass == pass && known.from == from) return known.to;
     }
-    made_.push_back({from, pass, flatten_sums(exhaust(from, pass))});
-    return made_.back().to;
+    return made_.emplace_back(Step{from, pass, flatten_sums(exhaust(from, pass))}).to;
   }
 
  private:
@@ -220,7 +222,7 @@ class Steps {
     Pass pass;
     Program to;
   };
-  std::vector<Step> made_;
+  std::deque<Step> made_;
 };
 
 // Cost in units of an addition; a division or root weighs as on current processors.
@@ -237,15 +239,15 @@ Program searched(const Program& program) {
   Program best = program;
   for (bool improved = true; improved;) {
     improved = false;
-    const Program start = best;
+    const auto tidied = [](const Program& p, bool coefficients_out) {
+      return flatten_sums(coefficients_out ? take_out_coefficients(p) : p);
+    };
+    const Program starts[] = {tidied(best, false), tidied(best, true)};
     for (const auto& order : orders) {
       for (const bool coefficients_out : {false, true}) {
-        const auto tidied = [&](const Program& p) {
-          return flatten_sums(coefficients_out ? take_out_coefficients(p) : p);
-        };
-        Program candidate = tidied(start);
-        for (const Pass pass : order) candidate = steps.after(std::move(candidate), pass);
-        candidate = tidied(candidate);
+        const Program* last = &starts[coefficients_out];
+        for (const Pass pass : order) last = &steps.after(*last, pass);
+        Program candidate = tidied(*last, coefficients_out);
         if (weight(count(candidate)) >= weight(count(best))) continue;
         best = std::move(candidate);
         improved = true;
