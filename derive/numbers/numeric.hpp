@@ -119,9 +119,7 @@ class Evaluation {
   const Triple<T>& v(const Step& step, std::size_t i) const { return values_[step.operands[i]]; }
 
   // A scalar is the first of three.
-  Triple<T> value_of(const Step& step) {
-    return step.e->vector ? vector_rule(step) : Triple<T>{scalar_rule(step)};
-  }
+  Triple<T> value_of(const Step& step) { return step.e->vector ? vector_rule(step) : Triple<T>{scalar_rule(step)}; }
 
   T scalar_rule(const Step& step) {
     const Expr e = step.e;

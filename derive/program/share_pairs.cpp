@@ -61,7 +61,8 @@ std::optional<Pair> most_frequent(const Program& program, PairFinder add_pairs) 
   std::size_t best = 0, best_count = 1;
   for (std::size_t i = 0, count = 0; i < alike.size(); ++i) {
     count = i > 0 && pairs[alike[i]] == pairs[alike[i - 1]] ? count + 1 : 1;
-    if (count > best_count || (count > 1 && count == best_count && alike[i] < best)) best_count = count, best = alike[i];
+    if (count > best_count || (count > 1 && count == best_count && alike[i] < best))
+      best_count = count, best = alike[i];
   }
   return best_count > 1 ? std::optional(pairs[best]) : std::nullopt;
 }
