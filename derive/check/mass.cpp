@@ -117,7 +117,7 @@ class MassCheck {
     }
     Candidate candidate{e, {}};
     for (const Sample& sample : subject_.anywhere) {
-      candidate.seen.push_back(evaluate(e, world_values(joint_, sample)));
+      candidate.seen.push_back(Numbers(sample).scalar(e));
     }
     candidates_.push_back(std::move(candidate));
   }

@@ -82,7 +82,7 @@ class Undefined {
   bool vanishes_on_constraint(Expr e) const {
     if (!held_ || subject_.on_constraint.empty()) return false;
     return std::all_of(subject_.on_constraint.begin(), subject_.on_constraint.end(), [&](const Sample& sample) {
-      Numbers numbers(world_values(subject_.joint, sample));
+      Numbers numbers(sample);
       if (!e->vector) return std::fabs(numbers.scalar(e)) < vanishing;
       const Triple<double> u = numbers.vector(e);
       return std::hypot(u[0], u[1], u[2]) < vanishing;

@@ -83,18 +83,18 @@ bool Poses::equal(Expr a, Expr b) const {
   if (samples_.empty()) return false;
   const Nullity difference = equations_.empty() ? difference_modulo_prime(a, b) : Nullity::unknown;
   if (difference != Nullity::unknown) return difference == Nullity::zero;
-  Formulas both({a, b});
+  Numbers numbers(samples_[0]);
   return std::all_of(samples_.begin(), samples_.end(), [&](const Sample& sample) {
-    const std::vector<double> v = both.at(sample);
-    return std::abs(v[0] - v[1]) <= round_off * (1 + std::abs(v[0]) + std::abs(v[1]));
+    numbers.move_to(sample);
+    const double x = numbers.scalar(a), y = numbers.scalar(b);
+    return std::abs(x - y) <= round_off * (1 + std::abs(x) + std::abs(y));
   });
 }
 
 std::optional<double> Poses::constant_ratio(Expr a, Expr b) const {
   std::optional<double> ratio;
-  Formulas both({a, b});
   for (const Sample& sample : samples_) {
-    const std::vector<double> v = both.at(sample);
+    const std::vector<double> v = values_at({a, b}, sample);
     if (std::abs(v[1]) < 1e-6) continue;
     const double k = v[0] / v[1];
     if (ratio && std::abs(k - *ratio) > 1e-7 * (1 + std::abs(k))) return std::nullopt;

@@ -70,7 +70,9 @@ double largest(const std::vector<double>& numbers) {
   return most;
 }
 
-Gradients central_differences(Formulas& equations, const Variables& variables, const Sample& sample) {
+using Formulas = std::function<std::vector<double>(const Sample&)>;
+
+Gradients central_differences(const Formulas& equations, const Variables& variables, const Sample& sample) {
   constexpr double step = 1e-6;
   Gradients G;
   Sample moved;
@@ -78,7 +80,7 @@ Gradients central_differences(Formulas& equations, const Variables& variables, c
     const auto beside = [&](double by) {
       moved = sample;
       variables.move(moved, v, by);
-      return equations.at(moved);
+      return equations(moved);
     };
     const std::vector<double> above = beside(step), below = beside(-step);
     G.resize(above.size());
@@ -126,21 +128,25 @@ bool move_to_zero(const Joint& joint, const std::vector<Expr>& equations, Sample
                   const std::vector<std::vector<Expr>>& J) {
   constexpr double reached = 1e-12, round_off_of_sums = 1e-11;  // of equations that depend on each other
   const Variables variables(joint, sample, !J.empty());
-  Formulas formulas(equations);
+  Numbers numbers(sample);
+  const auto values = [&](const Sample& there) {
+    numbers.move_to(there);
+    return numbers.of(equations);
+  };
   const auto gradients = [&] {
-    if (J.empty()) return central_differences(formulas, variables, sample);
+    if (J.empty()) return central_differences(values, variables, sample);
     Gradients G;
     for (const std::vector<Expr>& row : J) G.push_back(values_at(row, sample));
     return G;
   };
-  double error = largest(formulas.at(sample));
+  double error = largest(values(sample));
   for (int iteration = 0; iteration < 60 && error > reached; ++iteration) {
-    const std::vector<double> step = shortest_step(gradients(), formulas.at(sample));
+    const std::vector<double> step = shortest_step(gradients(), values(sample));
     double fraction = 1;
     for (; fraction > 1e-3; fraction /= 2) {
       Sample moved = sample;
       for (std::size_t i = 0; i < step.size(); ++i) variables.move(moved, i, fraction * step[i]);
-      const double moved_error = largest(formulas.at(moved));
+      const double moved_error = largest(values(moved));
       if (!(moved_error < error)) continue;
       sample = std::move(moved);
       error = moved_error;

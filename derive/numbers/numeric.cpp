@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
 
 #include "derive/expression/symbols.hpp"
@@ -28,16 +29,35 @@ Triple<double> turned(const EulerParameters<double>& e, const Triple<double>& u)
   return sum;
 }
 
-class Doubles : public Arithmetic<double> {
+class Doubles final : public Arithmetic<double> {
  public:
+  explicit Doubles(const Sample& sample) : sample_(&sample) {}
+  void move_to(const Sample& sample) { sample_ = &sample; }
+
   double number(Rational value) override { return value.value(); }
 
-  double scalar_leaf(const Node& symbol) override {
-    return symbol.role == Role::constant && symbol.symbol == "pi" ? std::numbers::pi : scalar(symbol);
+  double scalar_leaf(const Node& leaf) override {
+    if (leaf.role == Role::constant && leaf.symbol == "pi") return std::numbers::pi;
+    const Sample::Body* const body = body_of(leaf);
+    if (body && leaf.role == Role::angle) return body->theta;
+    if (body && leaf.role == Role::spin && leaf.pool->dimension() == 2) return body->w[2];
+    if (body && leaf.role == Role::given) return body->e[static_cast<std::size_t>(leaf.symbol.back() - '0')];
+    return named(leaf.symbol);
   }
 
-  Triple<double> vector_leaf(const Node& symbol) override {
-    return is_world_axis(Expr(&symbol)) ? unit_axis(symbol.symbol.back()) : vector(symbol);
+  Triple<double> vector_leaf(const Node& leaf) override {
+    if (is_world_axis(Expr(&leaf))) return unit_axis(leaf.symbol.back());
+    const Sample::Body* const body = body_of(leaf);
+    if (body && leaf.role == Role::position) return body->x;
+    if (body && leaf.role == Role::velocity) return body->v;
+    if (body && leaf.role == Role::spin) return body->w;
+    const bool plane = leaf.pool->dimension() == 2;
+    const std::optional<Triple<double>> local = in_frame(leaf);
+    if (!local) {
+      return {named(leaf.symbol + "_x"), named(leaf.symbol + "_y"), plane ? 0 : named(leaf.symbol + "_z")};
+    }
+    if (!body || leaf.role != Role::body_vector) return *local;
+    return plane ? turned(body->theta, *local) : turned(body->e, *local);
   }
 
   double inverse(const double& x) override { return function_of(Fn::inverse).value(&x); }
@@ -51,76 +71,24 @@ class Doubles : public Arithmetic<double> {
   double call(Fn fn, std::span<const double> args) override { return function_of(fn).value(args.data()); }
   bool has(Fn) const override { return true; }
 
- protected:
-  template <class T>
-  static const T& named(const std::map<std::string, T>& values, const std::string& name) {
-    const auto found = values.find(name);
-    if (found == values.end()) throw std::out_of_range("no value for " + name);
+ private:
+  const Sample::Body* body_of(const Node& leaf) const {
+    const std::size_t body = static_cast<std::size_t>(leaf.body);  // -1: beyond the last
+    return body < sample_->bodies.size() ? &sample_->bodies[body] : nullptr;
+  }
+
+  std::optional<Triple<double>> in_frame(const Node& leaf) const {
+    if (const auto found = sample_->local.find(leaf.symbol); found != sample_->local.end()) return found->second;
+    const Pool::Axis axis = leaf.pool->axis_of(Expr(&leaf));
+    const auto triad = sample_->triads.find(axis.triad);
+    if (triad == sample_->triads.end()) return std::nullopt;
+    return axes_of(triad->second)[static_cast<std::size_t>(axis.index)];
+  }
+
+  double named(const std::string& name) const {
+    const auto found = sample_->scalars.find(name);
+    if (found == sample_->scalars.end()) throw std::out_of_range("no value for " + name);
     return found->second;
-  }
-
- private:
-  virtual double scalar(const Node& leaf) const = 0;
-  virtual Triple<double> vector(const Node& leaf) const = 0;
-};
-
-class ByName final : public Doubles {
- public:
-  explicit ByName(Values values) : values_(std::move(values)) {}
-
- private:
-  double scalar(const Node& leaf) const override { return named(values_, leaf.symbol); }
-  Triple<double> vector(const Node& leaf) const override {
-    return {named(values_, leaf.symbol + "_x"), named(values_, leaf.symbol + "_y"),
-            leaf.pool->dimension() == 2 ? 0 : named(values_, leaf.symbol + "_z")};
-  }
-
-  const Values values_;
-};
-
-class InSample final : public Doubles {
- public:
-  explicit InSample(const Sample* sample = nullptr) : sample_(sample) {}
-  void move_to(const Sample& sample) { sample_ = &sample; }
-
- private:
-  const Sample::Body& body_of(const Node& leaf) const { return sample_->bodies[static_cast<std::size_t>(leaf.body)]; }
-
-  double scalar(const Node& leaf) const override {
-    const std::string& name = leaf.symbol;
-    switch (leaf.role) {
-      case Role::angle: return body_of(leaf).theta;
-      case Role::spin:
-        if (leaf.pool->dimension() == 2) return body_of(leaf).w[2];
-        [[fallthrough]];
-      case Role::position:
-      case Role::velocity:
-      case Role::world_vector:
-      case Role::body_vector:  // t_x, a component of t
-        return vector(*leaf.pool->find(name.substr(0, name.size() - 2)))[static_cast<std::size_t>(name.back() - 'x')];
-      case Role::given:
-        if (leaf.body >= 0) return body_of(leaf).e[static_cast<std::size_t>(name.back() - '0')];
-        [[fallthrough]];
-      default: return named(sample_->scalars, name);
-    }
-  }
-
-  Triple<double> vector(const Node& leaf) const override {
-    if (leaf.role == Role::position) return body_of(leaf).x;
-    if (leaf.role == Role::velocity) return body_of(leaf).v;
-    if (leaf.role == Role::spin) return body_of(leaf).w;
-    const Triple<double> local = in_frame(leaf);
-    if (leaf.role != Role::body_vector || leaf.body < 0) return local;
-    return leaf.pool->dimension() == 2 ? turned(body_of(leaf).theta, local) : turned(body_of(leaf).e, local);
-  }
-
-  Triple<double> in_frame(const Node& leaf) const {
-    if (!sample_->triads.empty()) {
-      const Pool::Axis axis = leaf.pool->axis_of(Expr(&leaf));
-      const auto triad = sample_->triads.find(axis.triad);
-      if (triad != sample_->triads.end()) return axes_of(triad->second)[static_cast<std::size_t>(axis.index)];
-    }
-    return named(sample_->local, leaf.symbol);
   }
 
   const Sample* sample_;
@@ -150,31 +118,26 @@ bool is_body_axis(const Joint& joint, const Node& leaf) {
 }  // namespace
 
 struct Numbers::Parts {
-  explicit Parts(Values values) : doubles(std::move(values)), evaluation(doubles) {}
-  ByName doubles;
+  explicit Parts(Values values) : own{{}, std::move(values), {}, {}, {}}, doubles(own), evaluation(doubles) {}
+  explicit Parts(const Sample& sample) : doubles(sample), evaluation(doubles) {}
+  const Sample own;
+  Doubles doubles;
   Evaluation<double> evaluation;
 };
 
 Numbers::Numbers(Values values) : parts_(std::make_unique<Parts>(std::move(values))) {}
+Numbers::Numbers(const Sample& sample) : parts_(std::make_unique<Parts>(sample)) {}
 Numbers::~Numbers() = default;
 double Numbers::scalar(Expr e) { return parts_->evaluation.scalar(e); }
 Triple<double> Numbers::vector(Expr e) { return parts_->evaluation.vector(e); }
-
-struct Formulas::Parts {
-  explicit Parts(std::vector<Expr> of) : scalars(std::move(of)), evaluation(doubles) {}
-  const std::vector<Expr> scalars;
-  InSample doubles;
-  Evaluation<double> evaluation;
-};
-
-Formulas::Formulas(std::vector<Expr> scalars) : parts_(std::make_unique<Parts>(std::move(scalars))) {}
-Formulas::~Formulas() = default;
-std::vector<double> Formulas::at(const Sample& sample) {
+void Numbers::move_to(const Sample& sample) {
   parts_->doubles.move_to(sample);
   parts_->evaluation.repeat();
+}
+
+std::vector<double> Numbers::of(const std::vector<Expr>& scalars) {
   std::vector<double> values;
-  values.reserve(parts_->scalars.size());
-  for (const Expr e : parts_->scalars) values.push_back(parts_->evaluation.scalar(e));
+  for (const Expr e : scalars) values.push_back(scalar(e));
   return values;
 }
 
@@ -283,7 +246,7 @@ Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std:
 Values world_values(const Joint& joint, const Sample& sample) {
   Values values = sample.scalars;
   Pool& pool = *joint.pool;
-  InSample there(&sample);
+  Doubles there(sample);
   const auto put = [&](Expr leaf) {
     if (!leaf->vector) values[leaf->symbol] = there.scalar_leaf(*leaf);
     for (std::size_t k = 0; leaf->vector && k < static_cast<std::size_t>(joint.dimension); ++k) {

@@ -193,21 +193,6 @@ class Evaluation {
 // Values of leaves by name; a vector leaf `t` is read as `t_x`, `t_y`, `t_z`. `pi` and the world's axes are known.
 using Values = std::map<std::string, double>;
 
-// In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is the x axis. Throws std::out_of_range
-// with the name of a leaf that has no value.
-class Numbers {
- public:
-  explicit Numbers(Values values);
-  ~Numbers();
-  double scalar(Expr e);
-  Triple<double> vector(Expr e);
-
- private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
-};
-inline double evaluate(Expr scalar, const Values& values) { return Numbers(values).scalar(scalar); }
-
 // The same numbers from the same seed on any machine.
 class Random {
  public:
@@ -248,19 +233,26 @@ Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std:
 // The leaves' values in world axes, by name.
 Values world_values(const Joint& joint, const Sample& sample);
 
-// Scalars at one sample after another, as Numbers: their nodes are put in order once.
-class Formulas {
+// In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is the x axis. Throws std::out_of_range
+// with the name of a leaf that has no value.
+class Numbers {
  public:
-  explicit Formulas(std::vector<Expr> scalars);
-  ~Formulas();
-  std::vector<double> at(const Sample& sample);
+  explicit Numbers(Values values);
+  explicit Numbers(const Sample& sample);  // which outlives the numbers
+  ~Numbers();
+  double scalar(Expr e);
+  Triple<double> vector(Expr e);
+  std::vector<double> of(const std::vector<Expr>& scalars);
+  // Evaluates all expressions so far at another sample; cheaper than to begin anew.
+  void move_to(const Sample& sample);
 
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
-inline std::vector<double> values_at(const std::vector<Expr>& scalars, const Sample& sample) {
-  return Formulas(scalars).at(sample);
+inline double evaluate(Expr scalar, const Values& values) { return Numbers(values).scalar(scalar); }
+inline std::vector<double> values_at(const std::vector<Expr>& scalars, const Sample& at) {
+  return Numbers(at).of(scalars);
 }
 
 }  // namespace cdot::derive

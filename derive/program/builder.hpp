@@ -26,7 +26,7 @@ class ProgramBuilder {
   // The same operation with other operands.
   int rebuild(const Operation& op, std::vector<int> args);
 
-  const Operation& at(int op) const { return program_.ops[static_cast<std::size_t>(op)]; }
+  const Operation& at(int op) const { return program_.at(op); }
   int size() const { return static_cast<int>(program_.ops.size()); }
   void output(std::string name, int op) { program_.outputs.push_back({std::move(name), op}); }
   Program finish() { return std::move(program_); }

@@ -36,9 +36,7 @@ int sign_between(const Operation& a, const Operation& b) {
   return negative && a.args.size() > 1 ? -1 : 0;
 }
 
-bool is_number(const Program& program, int op) {
-  return program.ops[static_cast<std::size_t>(op)].kind == OpKind::number;
-}
+bool is_number(const Program& program, int op) { return program.at(op).kind == OpKind::number; }
 
 void add_cost(const Program& program, const Operation& op, Count& count) {
   const int n = static_cast<int>(op.args.size());

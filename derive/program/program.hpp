@@ -22,14 +22,12 @@ struct Operation {
   std::vector<Rational> coefs;  // sum
   std::vector<int> exponents;   // product, positive
   std::string name;             // from the spec, or empty
-
   friend bool operator==(const Operation&, const Operation&) = default;
 };
 
 struct Output {
   std::string name;  // "C1", "K21", ...
   int op = 0;
-
   friend bool operator==(const Output&, const Output&) = default;
 };
 
@@ -37,6 +35,7 @@ struct Program {
   std::vector<Operation> ops;
   std::vector<Output> outputs;
 
+  const Operation& at(int op) const { return ops[static_cast<std::size_t>(op)]; }
   friend bool operator==(const Program&, const Program&) = default;
 };
 

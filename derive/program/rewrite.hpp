@@ -9,10 +9,16 @@
 
 namespace cdot::derive {
 
-// Copies the needed operations. `rewrite` receives an operation and the new indices of all operations; it builds a
-// replacement, or returns nullopt to leave the operation as it is.
-using Rewrite =
-    std::function<std::optional<int>(ProgramBuilder&, const Operation&, int index, const std::vector<int>& new_index)>;
+// The new indices of operations.
+struct Moved {
+  std::vector<int> to;
+  int operator()(int op) const { return to[static_cast<std::size_t>(op)]; }
+};
+using Made = std::optional<int>;
+
+// Copies the needed operations. `rewrite` receives an operation and its index; it builds a replacement and returns that
+// one's index, or nullopt to leave the operation as it is.
+using Rewrite = std::function<Made(ProgramBuilder&, const Operation&, int index, const Moved& at)>;
 Program rewritten(const Program& program, const Rewrite& rewrite);
 
 // Passes that compute a common pair once. Each takes the most frequent pair, the first of equals; nullopt if no pair

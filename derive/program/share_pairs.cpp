@@ -23,8 +23,8 @@ void add_term_pairs(const Program& program, const Operation& op, Pairs& pairs) {
   for (std::size_t i = 0; i < op.args.size(); ++i) {
     for (std::size_t j = i + 1; j < op.args.size(); ++j) {
       // The difference of two positions cancels what is large in both: neither is ever paired with anything else.
-      const bool first = program.ops[static_cast<std::size_t>(op.args[i])].is_position;
-      const bool second = program.ops[static_cast<std::size_t>(op.args[j])].is_position;
+      const bool first = program.at(op.args[i]).is_position;
+      const bool second = program.at(op.args[j]).is_position;
       if (first != second && op.args.size() > 2) continue;
       const bool swap = op.args[i] > op.args[j];
       const std::size_t x = swap ? j : i, y = swap ? i : j;
@@ -84,51 +84,47 @@ std::optional<Program> share_terms(const Program& program) {
   const std::optional<Pair> pair = most_frequent(program, add_term_pairs);
   if (!pair) return std::nullopt;
   const std::string name = name_of(program, *pair);
-  return rewritten(
-      program,
-      [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
-        if (op.kind != OpKind::sum) return std::nullopt;
-        const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
-        if (x == op.args.size() || y == op.args.size() || op.coefs[y] / op.coefs[x] != pair->ratio) {
-          return std::nullopt;
-        }
-        const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
-        std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio}, name)};
-        std::vector<Rational> coefs{op.coefs[x]};
-        for (std::size_t i = 0; i < op.args.size(); ++i) {
-          if (i == x || i == y) continue;
-          args.push_back(mapped(i));
-          coefs.push_back(op.coefs[i]);
-        }
-        return builder.sum(std::move(args), std::move(coefs), op.name);
-      });
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
+    if (op.kind != OpKind::sum) return std::nullopt;
+    const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
+    if (x == op.args.size() || y == op.args.size() || op.coefs[y] / op.coefs[x] != pair->ratio) {
+      return std::nullopt;
+    }
+    const auto mapped = [&](std::size_t i) { return at(op.args[i]); };
+    std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio}, name)};
+    std::vector<Rational> coefs{op.coefs[x]};
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      if (i == x || i == y) continue;
+      args.push_back(mapped(i));
+      coefs.push_back(op.coefs[i]);
+    }
+    return builder.sum(std::move(args), std::move(coefs), op.name);
+  });
 }
 
 // x y once for all products that contain it.
 std::optional<Program> share_factors(const Program& program) {
   const std::optional<Pair> pair = most_frequent(program, add_factor_pairs);
   if (!pair) return std::nullopt;
-  return rewritten(
-      program,
-      [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
-        if (op.kind != OpKind::product) return std::nullopt;
-        std::vector<int> exponents = op.exponents;
-        const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
-        if (x == op.args.size() || y == op.args.size()) return std::nullopt;
-        const int times = x == y ? exponents[x] / 2 : std::min(exponents[x], exponents[y]);
-        if (times == 0) return std::nullopt;
-        exponents[x] -= times;
-        exponents[y] -= times;
-        const auto mapped = [&](std::size_t i) { return at[static_cast<std::size_t>(op.args[i])]; };
-        std::vector<int> args{builder.product({mapped(x), mapped(y)}, {1, 1})};
-        std::vector<int> powers{times};
-        for (std::size_t i = 0; i < op.args.size(); ++i) {
-          if (exponents[i] == 0) continue;
-          args.push_back(mapped(i));
-          powers.push_back(exponents[i]);
-        }
-        return builder.product(std::move(args), std::move(powers), op.name);
-      });
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
+    if (op.kind != OpKind::product) return std::nullopt;
+    std::vector<int> exponents = op.exponents;
+    const std::size_t x = index_of(op.args, pair->x), y = index_of(op.args, pair->y);
+    if (x == op.args.size() || y == op.args.size()) return std::nullopt;
+    const int times = x == y ? exponents[x] / 2 : std::min(exponents[x], exponents[y]);
+    if (times == 0) return std::nullopt;
+    exponents[x] -= times;
+    exponents[y] -= times;
+    const auto mapped = [&](std::size_t i) { return at(op.args[i]); };
+    std::vector<int> args{builder.product({mapped(x), mapped(y)}, {1, 1})};
+    std::vector<int> powers{times};
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      if (exponents[i] == 0) continue;
+      args.push_back(mapped(i));
+      powers.push_back(exponents[i]);
+    }
+    return builder.product(std::move(args), std::move(powers), op.name);
+  });
 }
 
 }  // namespace cdot::derive

@@ -15,7 +15,7 @@ std::vector<std::size_t> terms_with(const Program& program, const Operation& sum
                                     const std::vector<int>& uses) {
   std::vector<std::size_t> terms;
   for (std::size_t i = 0; i < sum.args.size(); ++i) {
-    const Operation& term = program.ops[static_cast<std::size_t>(sum.args[i])];
+    const Operation& term = program.at(sum.args[i]);
     const bool own = uses[static_cast<std::size_t>(sum.args[i])] == 1;
     const bool contains = term.kind == OpKind::product && own && index_of(term.args, factor) < term.args.size();
     if (sum.args[i] == factor || contains) terms.push_back(i);
@@ -36,7 +36,7 @@ std::optional<Factoring> best_factoring(const Program& program) {
     if (uses[s] == 0 || sum.kind != OpKind::sum) continue;
     std::set<int> factors;
     for (const int arg : sum.args) {
-      const Operation& term = program.ops[static_cast<std::size_t>(arg)];
+      const Operation& term = program.at(arg);
       if (term.kind == OpKind::product) factors.insert(term.args.begin(), term.args.end());
     }
     for (const int factor : factors) {
@@ -53,60 +53,56 @@ std::optional<Factoring> best_factoring(const Program& program) {
 std::optional<Program> take_out_factor(const Program& program) {
   const std::optional<Factoring> f = best_factoring(program);
   if (!f) return std::nullopt;
-  return rewritten(
-      program,
-      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
-        if (index != f->sum) return std::nullopt;
-        std::vector<int> inner, outer;
-        std::vector<Rational> inner_coefs, outer_coefs;
-        for (std::size_t i = 0; i < op.args.size(); ++i) {
-          if (std::find(f->terms.begin(), f->terms.end(), i) == f->terms.end()) {
-            outer.push_back(at[static_cast<std::size_t>(op.args[i])]);
-            outer_coefs.push_back(op.coefs[i]);
-            continue;
-          }
-          const Operation& term = program.ops[static_cast<std::size_t>(op.args[i])];
-          std::vector<int> args, exponents;
-          if (op.args[i] != f->factor) {
-            for (std::size_t k = 0; k < term.args.size(); ++k) {
-              const int left = term.exponents[k] - (term.args[k] == f->factor ? 1 : 0);
-              if (left == 0) continue;
-              args.push_back(at[static_cast<std::size_t>(term.args[k])]);
-              exponents.push_back(left);
-            }
-          }
-          inner.push_back(builder.product(std::move(args), std::move(exponents)));
-          inner_coefs.push_back(op.coefs[i]);
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index, const Moved& at) -> Made {
+    if (index != f->sum) return std::nullopt;
+    std::vector<int> inner, outer;
+    std::vector<Rational> inner_coefs, outer_coefs;
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      if (std::find(f->terms.begin(), f->terms.end(), i) == f->terms.end()) {
+        outer.push_back(at(op.args[i]));
+        outer_coefs.push_back(op.coefs[i]);
+        continue;
+      }
+      const Operation& term = program.at(op.args[i]);
+      std::vector<int> args, exponents;
+      if (op.args[i] != f->factor) {
+        for (std::size_t k = 0; k < term.args.size(); ++k) {
+          const int left = term.exponents[k] - (term.args[k] == f->factor ? 1 : 0);
+          if (left == 0) continue;
+          args.push_back(at(term.args[k]));
+          exponents.push_back(left);
         }
-        const int rest = builder.sum(std::move(inner), std::move(inner_coefs));
-        const int taken = builder.product({at[static_cast<std::size_t>(f->factor)], rest}, {1, 1});
-        outer.push_back(taken);
-        outer_coefs.push_back(Rational(1));
-        return builder.sum(std::move(outer), std::move(outer_coefs), op.name);
-      });
+      }
+      inner.push_back(builder.product(std::move(args), std::move(exponents)));
+      inner_coefs.push_back(op.coefs[i]);
+    }
+    const int rest = builder.sum(std::move(inner), std::move(inner_coefs));
+    const int taken = builder.product({at(f->factor), rest}, {1, 1});
+    outer.push_back(taken);
+    outer_coefs.push_back(Rational(1));
+    return builder.sum(std::move(outer), std::move(outer_coefs), op.name);
+  });
 }
 
 // -x - y = -(x + y) and 2 x - 2 y = 2 (x - y): one factor for the sum, not one per term.
 Program take_out_coefficients(const Program& program) {
-  return rewritten(
-      program,
-      [&](ProgramBuilder& builder, const Operation& op, int, const std::vector<int>& at) -> std::optional<int> {
-        // Names of the spec survive.
-        if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
-        const bool alike =
-            std::all_of(op.coefs.begin(), op.coefs.end(), [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
-        const bool negative = std::all_of(op.coefs.begin(), op.coefs.end(), [](Rational c) { return c.sign() < 0; });
-        const Rational factor = (negative ? Rational(-1) : Rational(1)) * (alike ? abs(op.coefs[0]) : Rational(1));
-        if (factor == Rational(1)) return std::nullopt;
-        std::vector<int> args;
-        std::vector<Rational> coefs;
-        for (std::size_t i = 0; i < op.args.size(); ++i) {
-          args.push_back(at[static_cast<std::size_t>(op.args[i])]);
-          coefs.push_back(op.coefs[i] / factor);
-        }
-        const int core = builder.sum(std::move(args), std::move(coefs));
-        return builder.sum({core}, {factor});
-      });
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int, const Moved& at) -> Made {
+    // Names of the spec survive.
+    if (op.kind != OpKind::sum || op.args.size() < 2 || !op.name.empty()) return std::nullopt;
+    const bool alike =
+        std::all_of(op.coefs.begin(), op.coefs.end(), [&](Rational c) { return abs(c) == abs(op.coefs[0]); });
+    const bool negative = std::all_of(op.coefs.begin(), op.coefs.end(), [](Rational c) { return c.sign() < 0; });
+    const Rational factor = (negative ? Rational(-1) : Rational(1)) * (alike ? abs(op.coefs[0]) : Rational(1));
+    if (factor == Rational(1)) return std::nullopt;
+    std::vector<int> args;
+    std::vector<Rational> coefs;
+    for (std::size_t i = 0; i < op.args.size(); ++i) {
+      args.push_back(at(op.args[i]));
+      coefs.push_back(op.coefs[i] / factor);
+    }
+    const int core = builder.sum(std::move(args), std::move(coefs));
+    return builder.sum({core}, {factor});
+  });
 }
 
 // (x + y) + z = x + y + z and -(x - y) = y - x, where the inner sum has no other user.
@@ -129,27 +125,25 @@ Program flatten_sums(const Program& program) {
       absorbed[a] = flattens(outer, outer.coefs[k], program.ops[a], uses[a]);
     }
   }
-  return rewritten(
-      program,
-      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
-        if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // never read
-        if (op.kind != OpKind::sum) return std::nullopt;
-        std::vector<int> args;
-        std::vector<Rational> coefs;
-        const auto add = [&](auto&& self, const Operation& sum, Rational factor) -> void {
-          for (std::size_t i = 0; i < sum.args.size(); ++i) {
-            const std::size_t arg = static_cast<std::size_t>(sum.args[i]);
-            if (absorbed[arg]) {
-              self(self, program.ops[arg], factor * sum.coefs[i]);
-            } else {
-              args.push_back(at[arg]);
-              coefs.push_back(factor * sum.coefs[i]);
-            }
-          }
-        };
-        add(add, op, Rational(1));
-        return builder.sum(std::move(args), std::move(coefs), op.name);
-      });
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index, const Moved& at) -> Made {
+    if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // never read
+    if (op.kind != OpKind::sum) return std::nullopt;
+    std::vector<int> args;
+    std::vector<Rational> coefs;
+    const auto add = [&](auto&& self, const Operation& sum, Rational factor) -> void {
+      for (std::size_t i = 0; i < sum.args.size(); ++i) {
+        const std::size_t arg = static_cast<std::size_t>(sum.args[i]);
+        if (absorbed[arg]) {
+          self(self, program.ops[arg], factor * sum.coefs[i]);
+        } else {
+          args.push_back(at(sum.args[i]));
+          coefs.push_back(factor * sum.coefs[i]);
+        }
+      }
+    };
+    add(add, op, Rational(1));
+    return builder.sum(std::move(args), std::move(coefs), op.name);
+  });
 }
 
 // u + r = x_a - x_b where u = x_a - x_b - r: adding again what was subtracted costs an operation and digits.
@@ -161,7 +155,7 @@ std::optional<Cancelling> find_cancelling(const Program& program) {
     const Operation& outer = program.ops[s];
     if (uses[s] == 0 || outer.kind != OpKind::sum) continue;
     for (std::size_t k = 0; k < outer.args.size(); ++k) {
-      const Operation& inner = program.ops[static_cast<std::size_t>(outer.args[k])];
+      const Operation& inner = program.at(outer.args[k]);
       if (inner.kind != OpKind::sum) continue;
       for (std::size_t i = 0; i < inner.args.size(); ++i) {
         const std::size_t same = index_of(outer.args, inner.args[i]);
@@ -177,53 +171,43 @@ std::optional<Cancelling> find_cancelling(const Program& program) {
 std::optional<Program> cancel_terms(const Program& program) {
   const std::optional<Cancelling> found = find_cancelling(program);
   if (!found) return std::nullopt;
-  return rewritten(
-      program,
-      [&](ProgramBuilder& builder, const Operation& op, int index, const std::vector<int>& at) -> std::optional<int> {
-        if (index != static_cast<int>(found->first)) return std::nullopt;
-        std::vector<int> args;
-        std::vector<Rational> coefs;
-        const auto add = [&](const Operation& sum, Rational factor, std::size_t but) {
-          for (std::size_t i = 0; i < sum.args.size(); ++i) {
-            if (i == but) continue;
-            args.push_back(at[static_cast<std::size_t>(sum.args[i])]);
-            coefs.push_back(factor * sum.coefs[i]);
-          }
-        };
-        const Operation& inner = program.ops[static_cast<std::size_t>(op.args[found->second])];
-        add(inner, op.coefs[found->second], inner.args.size());
-        add(op, Rational(1), found->second);
-        return builder.sum(std::move(args), std::move(coefs), op.name);
-      });
+  return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index, const Moved& at) -> Made {
+    if (index != static_cast<int>(found->first)) return std::nullopt;
+    std::vector<int> args;
+    std::vector<Rational> coefs;
+    const auto add = [&](const Operation& sum, Rational factor, std::size_t but) {
+      for (std::size_t i = 0; i < sum.args.size(); ++i) {
+        if (i == but) continue;
+        args.push_back(at(sum.args[i]));
+        coefs.push_back(factor * sum.coefs[i]);
+      }
+    };
+    const Operation& inner = program.at(op.args[found->second]);
+    add(inner, op.coefs[found->second], inner.args.size());
+    add(op, Rational(1), found->second);
+    return builder.sum(std::move(args), std::move(coefs), op.name);
+  });
 }
 
 using Pass = std::optional<Program> (*)(const Program&);
 
-Program exhaust(const Program& program, Pass pass) {
-  std::optional<Program> last = pass(program);
-  if (!last) return program;
-  while (std::optional<Program> next = pass(*last)) last = std::move(next);
-  return std::move(*last);
+Program exhaust(Program program, Pass pass) {
+  while (std::optional<Program> next = pass(program)) program = std::move(*next);
+  return program;
 }
 
-// Orders of passes begin alike, and one search often follows another's steps: each step is made once.
-class Steps {
- public:
-  const Program& after(const Program& from, Pass pass) {
-    for (const Step& known : made_) {
-      if (known.pass == pass && known.from == from) return known.to;
-    }
-    return made_.emplace_back(Step{from, pass, flatten_sums(exhaust(from, pass))}).to;
-  }
-
- private:
-  struct Step {
-    Program from;
-    Pass pass;
-    Program to;
-  };
-  std::deque<Step> made_;
+// Orders of passes begin alike, and a search often repeats an earlier one: each step is made once.
+struct Step {
+  Program from;
+  Pass pass;
+  Program to;
 };
+const Program& after(const Program& from, Pass pass, std::deque<Step>& made) {
+  for (const Step& step : made) {
+    if (step.pass == pass && step.from == from) return step.to;
+  }
+  return made.emplace_back(Step{from, pass, flatten_sums(exhaust(from, pass))}).to;
+}
 
 // Cost in units of an addition; a division or root weighs as on current processors.
 int weight(const Count& c) { return c.add + c.multiply + c.compare + 6 * (c.divide + c.root) + 40 * c.call; }
@@ -235,7 +219,7 @@ Program searched(const Program& program) {
                                        {share_terms, take_out_factor, share_factors},
                                        {share_terms, share_factors, take_out_factor},
                                        {take_out_factor, share_terms, share_factors}};
-  Steps steps;
+  std::deque<Step> steps;
   Program best = program;
   for (bool improved = true; improved;) {
     improved = false;
@@ -246,7 +230,7 @@ Program searched(const Program& program) {
     for (const auto& order : orders) {
       for (const bool coefficients_out : {false, true}) {
         const Program* last = &starts[coefficients_out];
-        for (const Pass pass : order) last = &steps.after(*last, pass);
+        for (const Pass pass : order) last = &after(*last, pass, steps);
         Program candidate = tidied(*last, coefficients_out);
         if (weight(count(candidate)) >= weight(count(best))) continue;
         best = std::move(candidate);
