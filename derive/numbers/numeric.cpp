@@ -6,8 +6,6 @@
 #include <optional>
 #include <stdexcept>
 
-#include "derive/expression/symbols.hpp"
-
 namespace cdot::derive {
 namespace {
 
@@ -241,27 +239,6 @@ Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std:
   sample.leaves = leaves_of(expressions);
   for (const Expr leaf : sample.leaves) draw_leaf(joint, leaf, random, sample);
   return sample;
-}
-
-Values world_values(const Joint& joint, const Sample& sample) {
-  Values values = sample.scalars;
-  Pool& pool = *joint.pool;
-  Doubles there(sample);
-  const auto put = [&](Expr leaf) {
-    if (!leaf->vector) values[leaf->symbol] = there.scalar_leaf(*leaf);
-    for (std::size_t k = 0; leaf->vector && k < static_cast<std::size_t>(joint.dimension); ++k) {
-      values[leaf->symbol + "_" + "xyz"[k]] = there.vector_leaf(*leaf)[k];
-    }
-  };
-  for (int b = 0; b < static_cast<int>(joint.bodies.size()); ++b) {
-    for (const Expr leaf : {body_position(pool, b), body_velocity(pool, b), body_spin(pool, b)}) put(leaf);
-    if (joint.dimension == 2) put(body_angle(pool, b));
-    else std::ranges::for_each(body_euler_parameters(pool, b), put);
-  }
-  for (const Expr leaf : sample.leaves) {
-    if (leaf->vector) put(leaf);
-  }
-  return values;
 }
 
 }  // namespace cdot::derive

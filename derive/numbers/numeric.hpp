@@ -230,9 +230,6 @@ struct Sample {
 // Positions within a few metres, orientations all around, scalars in [0.5, 2], unit vectors of length 1.
 Sample random_sample(const Joint& joint, std::span<const Expr> expressions, std::uint64_t seed);
 
-// The leaves' values in world axes, by name.
-Values world_values(const Joint& joint, const Sample& sample);
-
 // In doubles, as a kernel computes: 1/0 is 0, the direction of the zero vector is the x axis. Throws std::out_of_range
 // with the name of a leaf that has no value.
 class Numbers {

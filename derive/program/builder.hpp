@@ -33,7 +33,6 @@ class ProgramBuilder {
 
  private:
   int intern(Operation op);
-  void positions_first(Operation& sum) const;
   // Takes the numeric factor out of an operand: a sum with one term, or a number.
   Rational pull_coefficient(int& arg) const;
 

@@ -102,22 +102,6 @@ Rational ProgramBuilder::pull_coefficient(int& arg) const {
   return op.coefs[0];
 }
 
-// Sums are taken from the left: x_a - x_b + r keeps the digits of r far from the origin, r + x_a - x_b does not.
-void ProgramBuilder::positions_first(Operation& sum) const {
-  std::size_t next = 0;
-  for (std::size_t i = 0; i < sum.args.size(); ++i) {
-    if (!at(sum.args[i]).is_position) continue;
-    const auto move_up = [&](auto& list) {
-      const auto first = list.begin() + static_cast<std::ptrdiff_t>(next);
-      std::rotate(first, list.begin() + static_cast<std::ptrdiff_t>(i),
-                  list.begin() + static_cast<std::ptrdiff_t>(i + 1));
-    };
-    move_up(sum.args);
-    move_up(sum.coefs);
-    ++next;
-  }
-}
-
 int ProgramBuilder::sum(std::vector<int> args, std::vector<Rational> coefs, std::string name) {
   std::size_t n = 0;  // terms so far
   for (std::size_t i = 0; i < args.size(); ++i) {
@@ -127,21 +111,22 @@ int ProgramBuilder::sum(std::vector<int> args, std::vector<Rational> coefs, std:
     coefs[same] = same < n ? coefs[same] + coef : coef;
     if (same == n) args[n++] = arg;
   }
-  args.resize(n), coefs.resize(n);
-  for (std::size_t i = n; i-- > 0;) {
-    if (!coefs[i].is_zero()) continue;
-    args.erase(args.begin() + static_cast<std::ptrdiff_t>(i));
-    coefs.erase(coefs.begin() + static_cast<std::ptrdiff_t>(i));
-  }
-  if (args.empty()) return number(0);
-  if (args.size() == 1 && at(args[0]).kind == OpKind::number) return number(coefs[0] * at(args[0]).value);
-  if (args.size() == 1 && coefs[0] == Rational(1)) return args[0];
   Operation op;
   op.kind = OpKind::sum;
-  op.args = std::move(args);
-  op.coefs = std::move(coefs);
+  op.args.reserve(n), op.coefs.reserve(n);
+  // Sums are taken from the left: x_a - x_b + r keeps the digits of r far from the origin, r + x_a - x_b does not.
+  for (const bool position : {true, false}) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (at(args[i]).is_position != position || coefs[i].is_zero()) continue;
+      op.args.push_back(args[i]);
+      op.coefs.push_back(coefs[i]);
+    }
+  }
+  if (op.args.empty()) return number(0);
+  const bool single = op.args.size() == 1;
+  if (single && at(op.args[0]).kind == OpKind::number) return number(op.coefs[0] * at(op.args[0]).value);
+  if (single && op.coefs[0] == Rational(1)) return op.args[0];
   op.name = std::move(name);
-  positions_first(op);
   return intern(std::move(op));
 }
 

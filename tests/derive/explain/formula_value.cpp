@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "derive/expression/symbols.hpp"
+
 using namespace cdot::derive;
 
 namespace {
@@ -141,6 +143,27 @@ Array leaf_value(const Formula& f, const Values& values) {
 }
 
 }  // namespace
+
+Values world_values(const Joint& joint, const Sample& sample) {
+  Values values = sample.scalars;
+  Numbers numbers(sample);
+  const auto put = [&](Expr leaf) {
+    if (!leaf->vector) values[leaf->symbol] = numbers.scalar(leaf);
+    for (std::size_t k = 0; leaf->vector && k < static_cast<std::size_t>(joint.dimension); ++k) {
+      values[leaf->symbol + "_" + "xyz"[k]] = numbers.vector(leaf)[k];
+    }
+  };
+  Pool& pool = *joint.pool;
+  for (int b = 0; b < static_cast<int>(joint.bodies.size()); ++b) {
+    for (const Expr leaf : {body_position(pool, b), body_velocity(pool, b), body_spin(pool, b)}) put(leaf);
+    if (joint.dimension == 2) put(body_angle(pool, b));
+    else std::ranges::for_each(body_euler_parameters(pool, b), put);
+  }
+  for (const Expr leaf : sample.leaves) {
+    if (leaf->vector) put(leaf);
+  }
+  return values;
+}
 
 Array value_of_formula(const Formula& f, const Values& values) {
   std::vector<Array> args;

@@ -20,6 +20,9 @@ struct NoValue : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+// The leaves' values in world axes, by name.
+cdot::derive::Values world_values(const cdot::derive::Joint& joint, const cdot::derive::Sample& sample);
+
 Array value_of_formula(const cdot::derive::Formula& f, const cdot::derive::Values& values);
 // J, block by block, times the velocities: one of them for each column of blocks.
 std::vector<double> blocks_times(const cdot::derive::Formula& J, const std::vector<std::vector<double>>& velocities,
