@@ -14,12 +14,20 @@ inline std::size_t index_of(std::span<const int> args, int arg) {
   return static_cast<std::size_t>(std::ranges::find(args, arg) - args.begin());
 }
 
+// coefs[0] args[0] + coefs[1] args[1] + ...
+struct Summands {
+  std::vector<int> args;
+  std::vector<Rational> coefs;
+
+  void add(Rational coef, int arg) { args.push_back(arg), coefs.push_back(coef); }
+};
+
 class ProgramBuilder {
  public:
   explicit ProgramBuilder(std::size_t expected = 0) { program_.ops.reserve(expected), by_hash_.reserve(expected); }
   int number(Rational value);
   // Numeric coefficients of operands move into sums and out of products; nothing is flattened.
-  int sum(std::vector<int> args, std::vector<Rational> coefs, std::string name = {});
+  int sum(Summands terms, std::string name = {});
   int product(std::vector<int> args, std::vector<int> exponents, std::string name = {});
   int function(Fn fn, std::vector<int> args, std::string name = {});
   int input(const Operation& op);

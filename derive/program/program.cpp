@@ -77,7 +77,7 @@ int ProgramBuilder::intern(Operation op) {
   for (auto found = first; found != last; ++found) {  // none but one fits, whatever their order
     Operation& known = program_.ops[static_cast<std::size_t>(found->second)];
     const int sign = sign_between(op, known);
-    if (sign < 0) return sum({found->second}, {Rational(-1)});  // it exists already and is not computed again
+    if (sign < 0) return sum({{found->second}, {Rational(-1)}});  // it exists already and is not computed again
     if (sign == 0) continue;
     if (known.name.empty()) known.name = std::move(op.name);
     return found->second;
@@ -102,7 +102,8 @@ Rational ProgramBuilder::pull_coefficient(int& arg) const {
   return op.coefs[0];
 }
 
-int ProgramBuilder::sum(std::vector<int> args, std::vector<Rational> coefs, std::string name) {
+int ProgramBuilder::sum(Summands terms, std::string name) {
+  auto& [args, coefs] = terms;
   std::size_t n = 0;  // terms so far
   for (std::size_t i = 0; i < args.size(); ++i) {
     int arg = args[i];
@@ -155,7 +156,7 @@ int ProgramBuilder::product(std::vector<int> args, std::vector<int> exponents, s
   if (coef == Rational(1)) op.name = name;
   const bool plain = n == 1 && op.exponents[0] == 1;
   const int core = plain ? op.args[0] : intern(std::move(op));
-  return coef == Rational(1) ? core : sum({core}, {coef}, std::move(name));
+  return coef == Rational(1) ? core : sum({{core}, {coef}}, std::move(name));
 }
 
 int ProgramBuilder::function(Fn fn, std::vector<int> args, std::string name) {
@@ -170,7 +171,7 @@ int ProgramBuilder::function(Fn fn, std::vector<int> args, std::string name) {
       op.args[0] = inner;
       op.name = name;
       const int core = intern(std::move(op));
-      return fn == Fn::abs ? core : sum({core}, {Rational(-1)});
+      return fn == Fn::abs ? core : sum({{core}, {Rational(-1)}});
     }
   }
   op.name = std::move(name);
@@ -181,7 +182,7 @@ int ProgramBuilder::rebuild(const Operation& op, std::vector<int> args) {
   switch (op.kind) {
     case OpKind::number: return number(op.value);
     case OpKind::input: return input(op);
-    case OpKind::sum: return sum(std::move(args), op.coefs, op.name);
+    case OpKind::sum: return sum({std::move(args), op.coefs}, op.name);
     case OpKind::product: return product(std::move(args), op.exponents, op.name);
     case OpKind::function: return function(op.fn, std::move(args), op.name);
   }

@@ -91,14 +91,11 @@ std::optional<Program> share_terms(const Program& program) {
       return std::nullopt;
     }
     const auto mapped = [&](std::size_t i) { return at(op.args[i]); };
-    std::vector<int> args{builder.sum({mapped(x), mapped(y)}, {Rational(1), pair->ratio}, name)};
-    std::vector<Rational> coefs{op.coefs[x]};
+    Summands terms{{builder.sum({{mapped(x), mapped(y)}, {Rational(1), pair->ratio}}, name)}, {op.coefs[x]}};
     for (std::size_t i = 0; i < op.args.size(); ++i) {
-      if (i == x || i == y) continue;
-      args.push_back(mapped(i));
-      coefs.push_back(op.coefs[i]);
+      if (i != x && i != y) terms.add(op.coefs[i], mapped(i));
     }
-    return builder.sum(std::move(args), std::move(coefs), op.name);
+    return builder.sum(std::move(terms), op.name);
   });
 }
 

@@ -55,12 +55,10 @@ std::optional<Program> take_out_factor(const Program& program) {
   if (!f) return std::nullopt;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index, const Moved& at) -> Made {
     if (index != f->sum) return std::nullopt;
-    std::vector<int> inner, outer;
-    std::vector<Rational> inner_coefs, outer_coefs;
+    Summands inner, outer;
     for (std::size_t i = 0; i < op.args.size(); ++i) {
       if (std::find(f->terms.begin(), f->terms.end(), i) == f->terms.end()) {
-        outer.push_back(at(op.args[i]));
-        outer_coefs.push_back(op.coefs[i]);
+        outer.add(op.coefs[i], at(op.args[i]));
         continue;
       }
       const Operation& term = program.at(op.args[i]);
@@ -73,14 +71,11 @@ std::optional<Program> take_out_factor(const Program& program) {
           exponents.push_back(left);
         }
       }
-      inner.push_back(builder.product(std::move(args), std::move(exponents)));
-      inner_coefs.push_back(op.coefs[i]);
+      inner.add(op.coefs[i], builder.product(std::move(args), std::move(exponents)));
     }
-    const int rest = builder.sum(std::move(inner), std::move(inner_coefs));
-    const int taken = builder.product({at(f->factor), rest}, {1, 1});
-    outer.push_back(taken);
-    outer_coefs.push_back(Rational(1));
-    return builder.sum(std::move(outer), std::move(outer_coefs), op.name);
+    const int rest = builder.sum(std::move(inner));
+    outer.add(Rational(1), builder.product({at(f->factor), rest}, {1, 1}));
+    return builder.sum(std::move(outer), op.name);
   });
 }
 
@@ -94,14 +89,9 @@ Program take_out_coefficients(const Program& program) {
     const bool negative = std::all_of(op.coefs.begin(), op.coefs.end(), [](Rational c) { return c.sign() < 0; });
     const Rational factor = (negative ? Rational(-1) : Rational(1)) * (alike ? abs(op.coefs[0]) : Rational(1));
     if (factor == Rational(1)) return std::nullopt;
-    std::vector<int> args;
-    std::vector<Rational> coefs;
-    for (std::size_t i = 0; i < op.args.size(); ++i) {
-      args.push_back(at(op.args[i]));
-      coefs.push_back(op.coefs[i] / factor);
-    }
-    const int core = builder.sum(std::move(args), std::move(coefs));
-    return builder.sum({core}, {factor});
+    Summands terms;
+    for (std::size_t i = 0; i < op.args.size(); ++i) terms.add(op.coefs[i] / factor, at(op.args[i]));
+    return builder.sum({{builder.sum(std::move(terms))}, {factor}});
   });
 }
 
@@ -128,21 +118,17 @@ Program flatten_sums(const Program& program) {
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index, const Moved& at) -> Made {
     if (absorbed[static_cast<std::size_t>(index)]) return builder.number(0);  // never read
     if (op.kind != OpKind::sum) return std::nullopt;
-    std::vector<int> args;
-    std::vector<Rational> coefs;
+    Summands terms;
     const auto add = [&](auto&& self, const Operation& sum, Rational factor) -> void {
       for (std::size_t i = 0; i < sum.args.size(); ++i) {
-        const std::size_t arg = static_cast<std::size_t>(sum.args[i]);
-        if (absorbed[arg]) {
-          self(self, program.ops[arg], factor * sum.coefs[i]);
-        } else {
-          args.push_back(at(sum.args[i]));
-          coefs.push_back(factor * sum.coefs[i]);
-        }
+        const int arg = sum.args[i];
+        const Rational coef = factor * sum.coefs[i];
+        if (absorbed[static_cast<std::size_t>(arg)]) self(self, program.at(arg), coef);
+        else terms.add(coef, at(arg));
       }
     };
     add(add, op, Rational(1));
-    return builder.sum(std::move(args), std::move(coefs), op.name);
+    return builder.sum(std::move(terms), op.name);
   });
 }
 
@@ -173,19 +159,16 @@ std::optional<Program> cancel_terms(const Program& program) {
   if (!found) return std::nullopt;
   return rewritten(program, [&](ProgramBuilder& builder, const Operation& op, int index, const Moved& at) -> Made {
     if (index != static_cast<int>(found->first)) return std::nullopt;
-    std::vector<int> args;
-    std::vector<Rational> coefs;
+    Summands terms;
     const auto add = [&](const Operation& sum, Rational factor, std::size_t but) {
       for (std::size_t i = 0; i < sum.args.size(); ++i) {
-        if (i == but) continue;
-        args.push_back(at(sum.args[i]));
-        coefs.push_back(factor * sum.coefs[i]);
+        if (i != but) terms.add(factor * sum.coefs[i], at(sum.args[i]));
       }
     };
     const Operation& inner = program.at(op.args[found->second]);
     add(inner, op.coefs[found->second], inner.args.size());
     add(op, Rational(1), found->second);
-    return builder.sum(std::move(args), std::move(coefs), op.name);
+    return builder.sum(std::move(terms), op.name);
   });
 }
 
