@@ -83,11 +83,9 @@ bool Poses::equal(Expr a, Expr b) const {
   if (samples_.empty()) return false;
   const Nullity difference = equations_.empty() ? difference_modulo_prime(a, b) : Nullity::unknown;
   if (difference != Nullity::unknown) return difference == Nullity::zero;
-  Numbers numbers(samples_[0]);
   return std::all_of(samples_.begin(), samples_.end(), [&](const Sample& sample) {
-    numbers.move_to(sample);
-    const double x = numbers.scalar(a), y = numbers.scalar(b);
-    return std::abs(x - y) <= round_off * (1 + std::abs(x) + std::abs(y));
+    const std::vector<double> v = values_at({a, b}, sample);
+    return std::abs(v[0] - v[1]) <= round_off * (1 + std::abs(v[0]) + std::abs(v[1]));
   });
 }
 

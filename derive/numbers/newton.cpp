@@ -70,9 +70,8 @@ double largest(const std::vector<double>& numbers) {
   return most;
 }
 
-using Formulas = std::function<std::vector<double>(const Sample&)>;
-
-Gradients central_differences(const Formulas& equations, const Variables& variables, const Sample& sample) {
+template <class Equations>
+Gradients central_differences(const Equations& equations, const Variables& variables, const Sample& sample) {
   constexpr double step = 1e-6;
   Gradients G;
   Sample moved;

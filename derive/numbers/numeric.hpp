@@ -103,7 +103,6 @@ class Evaluation {
   std::size_t place_of(Expr e) {
     if (const auto known = places_.find(&*e); known != places_.end()) return known->second;
     Step step{e, {}};
-    step.operands.reserve(e->args.size());
     for (const Expr arg : e->args) {
       const bool tensor = arg->kind == Kind::symbol && is_tensor(arg);  // read by its components
       step.operands.push_back(tensor ? 0 : place_of(arg));
@@ -118,7 +117,6 @@ class Evaluation {
   const T& s(const Step& step, std::size_t i) const { return values_[step.operands[i]][0]; }
   const Triple<T>& v(const Step& step, std::size_t i) const { return values_[step.operands[i]]; }
 
-  // A scalar is the first of three.
   Triple<T> value_of(const Step& step) { return step.e->vector ? vector_rule(step) : Triple<T>{scalar_rule(step)}; }
 
   T scalar_rule(const Step& step) {

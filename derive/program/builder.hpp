@@ -18,7 +18,6 @@ inline std::size_t index_of(std::span<const int> args, int arg) {
 struct Summands {
   std::vector<int> args;
   std::vector<Rational> coefs;
-
   void add(Rational coef, int arg) { args.push_back(arg), coefs.push_back(coef); }
 };
 

@@ -36,13 +36,11 @@ int sign_between(const Operation& a, const Operation& b) {
   return negative && a.args.size() > 1 ? -1 : 0;
 }
 
-bool is_number(const Program& program, int op) { return program.at(op).kind == OpKind::number; }
-
 void add_cost(const Program& program, const Operation& op, Count& count) {
   const int n = static_cast<int>(op.args.size());
   if (op.kind == OpKind::sum) {
     for (std::size_t i = 0; i < op.args.size(); ++i) {
-      const bool scaled = abs(op.coefs[i]) != Rational(1) && !is_number(program, op.args[i]);
+      const bool scaled = abs(op.coefs[i]) != Rational(1) && program.at(op.args[i]).kind != OpKind::number;
       count.multiply += scaled ? 1 : 0;
     }
     count.add += n - 1 + (lead_of(program, op).negated ? 1 : 0);
@@ -66,7 +64,7 @@ Lead lead_of(const Program& program, const Operation& sum) {
     if (sum.coefs[i].sign() > 0) return {i, false};
   }
   for (std::size_t i = 0; i < sum.args.size(); ++i) {
-    if (sum.coefs[i] != Rational(-1) || is_number(program, sum.args[i])) return {i, false};
+    if (sum.coefs[i] != Rational(-1) || program.at(sum.args[i]).kind == OpKind::number) return {i, false};
   }
   return {0, true};
 }
