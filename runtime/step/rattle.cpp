@@ -66,15 +66,11 @@ typename S::Scalar begin(WorldData<S>& world, Island<S>& island, typename S::Sca
   return T(1);
 }
 
-// velocity += h dv/dt of all forces, springs on coordinates among them, at the velocities that are in flow.velocity.
+// velocity = flow.velocity + h dv/dt, with all forces at the velocities that the bodies have; springs on coordinates
+// are among them.
 template <class S>
 void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
-  std::vector<typename S::Velocity>& other = island.flow.velocity;
-  const auto exchange = [&] {
-    for (size_t k = 0; k < island.bodies.size(); ++k) std::swap(other[k], all.velocity[island.bodies[k]]);
-  };
-  exchange();
   push_free_bodies(world, island);
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
@@ -82,8 +78,10 @@ void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     find_known_forces(world, batch, segment.begin, segment.end, batch.impulse.data());
     batch.ops->apply(batch, segment.begin, segment.end, all, batch.impulse.data(), all.velocity_rate.data());
   }
-  exchange();
-  for (int i : island.bodies) all.velocity[i] = S::sum(all.velocity[i], all.velocity_rate[i], h);
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    const int i = island.bodies[k];
+    all.velocity[i] = S::sum(island.flow.velocity[k], all.velocity_rate[i], h);
+  }
 }
 
 // What the joints exerted at the end of the step before, they exert at the start of this one: the first guess.
@@ -227,10 +225,14 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     if (!by_sweeps) start_half(world, island, h, share);
     drift_with_renewed_directions(world, island, h, at_start);
   }
-  // The velocity that the end will have, to second order: 2 v_half - v_start.
-  for (size_t k = 0; k < island.bodies.size(); ++k)
-    flow.velocity[k] = S::sum(S::sum({}, all.velocity[island.bodies[k]], T(2)), flow.velocity[k], T(-1));
   evaluate_anew(world, island, T(world.time) + h);
+  // The second kick takes the forces at the velocity of the end, to second order: 2 v_half - v_start.
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    auto &v = all.velocity[island.bodies[k]], &start = flow.velocity[k];
+    const auto half = v;
+    v = S::sum(S::sum({}, half, T(2)), start, T(-1));
+    start = half;
+  }
   kick(world, island, h / 2);
   solve_end(world, island, h);
   island.evaluated = true;
