@@ -126,14 +126,15 @@ TEST(Failure, IsToldInWords) {
   const int body = build(world);
   world.set_force(body, huge<Planar<double>>());
   const StepResult result = world.step(0.01);
-  EXPECT_EQ(in_words(result, "the arm", "joint 5 (revolute)"),
-            "the step of 0.01 s at t = 0 s failed in island 1: a pose or velocity came out not finite; look at joint 5 "
-            "(revolute), row 1; the arm moved fastest");
+  EXPECT_EQ(
+      in_words(result, "the arm", "joint 5 (revolute)"),
+      "the step of 0.01 s at t = 0 s failed in island 1: a pose or velocity became infinite or NaN; look at joint 5 "
+      "(revolute), row 1; the arm moved fastest");
   EXPECT_FALSE(world.step(0));
   EXPECT_FALSE(world.step(-1));
   const StepResult none = world.step(std::nan(""));
   EXPECT_EQ(none.problem, StepProblem::bad_step);
-  EXPECT_EQ(in_words(none, "", ""), "there is no step of nan s");
+  EXPECT_EQ(in_words(none, "", ""), "a step of nan s is impossible");
   EXPECT_EQ(world.time(), 0);
 }
 

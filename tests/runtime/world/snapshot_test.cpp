@@ -277,13 +277,12 @@ TEST(Snapshot, TextComesBackToTheBitAndSaysWhereItIsWrong) {
   EXPECT_EQ(Snapshot::read(text), state);
   EXPECT_EQ(Snapshot::read(text).text(), text);
   const auto wrong = [&](std::string changed) { return error_of([&] { Snapshot::read(changed); }); };
-  EXPECT_EQ(wrong("time d 2"),
-            "line 1: it does not begin with \"cdot state 2\": this is no state, or not the whole of one");
-  EXPECT_NE(wrong(text.substr(0, text.size() / 2)).find("not the whole of one"), std::string::npos);
+  EXPECT_EQ(wrong("time d 2"), "line 1: it does not begin with \"cdot state 2\": this is not a complete state");
+  EXPECT_NE(wrong(text.substr(0, text.size() / 2)).find("not a complete state"), std::string::npos);
   EXPECT_NE(wrong(text.substr(0, text.rfind("end"))).find("the last line is missing"), std::string::npos);
   std::string other = text;
   other.replace(other.find("0x1."), 4, "0x1.0");
-  EXPECT_NE(wrong(other).find("what it says is not what was written"), std::string::npos) << wrong(other);
+  EXPECT_NE(wrong(other).find("its hash differs"), std::string::npos) << wrong(other);
   other = text;
   other.replace(other.find("0x1."), 4, "0x1,");
   EXPECT_NE(wrong(other).find("line 6: \"0x1,"), std::string::npos) << wrong(other);
