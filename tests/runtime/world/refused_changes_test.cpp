@@ -37,8 +37,8 @@ TEST(Changes, ThatMakeNoSenseAreRefusedAndChangeNothing) {
   world.restore(whole);
   refused([&] { set_motor(world, 1, 2, {}); }, "joint number 1 has no effect number 2");
   refused([&] { set_motor(world, 1, 0, {}); }, "joint number 1 has no effect number 0");
-  refused([&] { set_motor(world, 0, lock, {}); }, "effect number 1 of joint number 0 is no motor");
-  refused([&] { set_limit(world, 0, lock, {.lower = 0, .upper = 1}); }, "is no limit with two ends");
+  refused([&] { set_motor(world, 0, lock, {}); }, "effect number 1 of joint number 0 is not a motor");
+  refused([&] { set_limit(world, 0, lock, {.lower = 0, .upper = 1}); }, "is not a limit with two ends");
   refused([&] { set_motor(world, 1, motor, {.speed = NAN}); }, "a motor's speed must be finite");
   refused([&] { set_limit(world, 0, lock, {.lower = 2, .upper = 1}); }, "must not lie above");
 }

@@ -41,9 +41,10 @@ TEST(Setup, MistakesInJointsAreNamed) {
 
 TEST(Setup, MistakesInBodiesAreNamed) {
   World<double> world;
-  EXPECT_EQ(message_of([&] { world.add_body({.mass = 0, .inertia = 1}); }), "a body needs a mass > 0, or to be static");
+  EXPECT_EQ(message_of([&] { world.add_body({.mass = 0, .inertia = 1}); }),
+            "a body that is not static needs a mass > 0");
   EXPECT_EQ(message_of([&] { world.add_body({.mass = -1, .inertia = 1}); }),
-            "a body needs a mass > 0, or to be static");
+            "a body that is not static needs a mass > 0");
   EXPECT_EQ(message_of([&] { world.add_body({.x = NAN, .mass = 1}); }), "every number of a body must be finite");
   EXPECT_EQ(message_of([&] { world.add_body({.vx = 1, .is_static = true}); }), "a static body has no velocity");
   EXPECT_EQ(world.body_count(), 0);
