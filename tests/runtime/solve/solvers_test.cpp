@@ -1,5 +1,4 @@
-// The direct solver is exact, the iterative one tends to it, both do the same to the bit every
-// time.
+// The direct solver is exact, the iterative one converges to it, and both reproduce their bits.
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
@@ -76,7 +75,7 @@ TEST(Solvers, SameBitsEveryTime) {
   }
 }
 
-// Two worlds in one: islands do not feel each other, to the bit.
+// Two worlds in one: islands do not influence each other's bits.
 TEST(Solvers, IslandsAreIndependent) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     World<double> alone(settings(solver, Drift::projection, -9.81));

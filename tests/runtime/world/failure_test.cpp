@@ -1,5 +1,4 @@
-// A step that fails leaves the World as it was before it and says where and why; numbers that are not finite do not get
-// in.
+// A failed step restores the World and reports place and cause. The World refuses numbers that are not finite.
 #include <fmt/format.h>
 #include <limits>
 
@@ -46,8 +45,8 @@ int build(SpatialWorld<T>& world) {
   return body;
 }
 
-// The acceleration overflows: the step fails, in the second of three islands. Then the force is taken away and the run
-// goes on with the bits of one in which that never was.
+// The acceleration overflows, so the step fails in the second of three islands. After the removal of the force the run
+// has the bits of one without the failure.
 template <class S>
 void check_a_failure(const Settings& settings, const std::string& name) {
   BasicWorld<S> world(settings), spared(settings);
@@ -97,7 +96,7 @@ TEST(Failure, LeavesTheStateInSpace) {
   check_failures<Spatial<float>>();
 }
 
-// A joint breaks in the first part of the step, and the second part fails: the joint holds again.
+// A joint breaks in the first part of the step, and the second part fails: the rollback restores the joint.
 TEST(Failure, MendsWhatBrokeInTheSameStep) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);
   s.substeps = 2;
@@ -106,11 +105,11 @@ TEST(Failure, MendsWhatBrokeInTheSameStep) {
   add_limit(world, 1, "angle", {.lower = -1, .upper = 1});
   const int light = world.add_body({.x = 1, .y = 5, .mass = 1e-9, .inertia = 1e-9});
   revolute(world, world.ground(), light, 0, 5, -1, 0);
-  // Slack where it starts, not finite where it is after the first part.
+  // Slack at the start; its force is not finite after the first part.
   world.add_spring(
       {.body_a = light, .body_b = world.ground(), .bx = 1, .by = 9, .stiffness = 1.7e308, .rest_length = 4});
   world.prepare();
-  for (int joint : {1, 2}) set_breaking_load(world, joint, 1e-3);  // asked for late: the World is prepared
+  for (int joint : {1, 2}) set_breaking_load(world, joint, 1e-3);  // set when the World is already prepared
   const Snapshot before = world.snapshot();
   const StepResult result = world.step(0.01);
   EXPECT_FALSE(result);
@@ -138,7 +137,7 @@ TEST(Failure, IsToldInWords) {
   EXPECT_EQ(world.time(), 0);
 }
 
-// --- the border ---
+// --- arguments that are not finite ---
 
 template <class F>
 void refused(F f, const char* why) {

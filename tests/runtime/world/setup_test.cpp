@@ -1,5 +1,4 @@
-// Setting a World up: what is refused and how it is said, what is accepted but does nothing,
-// inconsistent starts.
+// Sets Worlds up: refusals and their messages, definitions without influence, inconsistent starts.
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
