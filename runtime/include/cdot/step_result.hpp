@@ -12,7 +12,7 @@ enum class StepProblem : char {
   joints_apart,  // Newton did not converge, or left a larger C than the motion had
 };
 
-// What step() does after a step failed and the state was rolled back.
+// The reaction of step() to a failed step, after the rollback.
 enum class OnFailure : char {
   stop,  // nothing
   retry  // repeats it in 2, 4, 8, 16 parts; then, if the solver is iterative, by the direct one

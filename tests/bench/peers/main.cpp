@@ -1,4 +1,4 @@
-// cdot-peers: what accuracy costs in Cdot and in today's engines, in one run on one machine.
+// cdot-peers: the cost of accuracy in Cdot and in today's engines, in one run on one machine.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace cdot::peers;
 
-// Said before the clock starts: do all engines answer the same question?
+// Before the timing: checks that all engines solve the same problem.
 void compare_answers(const Measured& m) {
   for (const std::string& name : present(m.points)) {
     const std::vector<std::size_t> best = frontier(m.points, name);

@@ -86,7 +86,7 @@ std::string cost(const Line& line) {
   return fmt::format("{}: {:.1f} / {:.1f}", line.operations, line.in_float.nanoseconds, line.in_double.nanoseconds);
 }
 
-// Forms of C that are not generated, each below the one that is.
+// Other forms of C, each below the generated one.
 std::string forms_of_C(const std::vector<Line>& lines) {
   std::string s =
       "| form | operations | float: ns | ulp: median | p99 | scale: p99 | worst | at | double: ns | "

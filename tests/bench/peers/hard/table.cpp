@@ -63,12 +63,12 @@ bool is_planar(const hard::Case& hard_case) {
   return hard::Trial(hard_case.fault + "/" + hard_case.scene, {}).scene.dimension == Dimension::planar;
 }
 
-// Before it moved anything; of some questions, that holds the case.
+// True if the engine refused before the first step, which solves some cases.
 bool refused(const Outcome& o) {
   return (o.kind == Outcome::gives_up || o.kind == Outcome::survives) && o.time == 0 && !o.message.empty();
 }
 
-// In the table, of the best setting.
+// The text in the table, for the best setting.
 std::string brief(const Cell& cell) {
   const std::size_t best = cell.best();
   const Outcome& o = cell.settings[best];
@@ -81,7 +81,7 @@ std::string brief(const Cell& cell) {
   return fmt::format("{} at {:.2g} s", name_of(o.kind), o.time);
 }
 
-// Below the table.
+// The text below the table.
 std::string account(const Outcome& o) {
   if (refused(o)) return (o.kind == Outcome::survives ? "holds, refuses: " : "refuses: ") + o.message;
   if (o.kind == Outcome::survives || o.kind == Outcome::wrong) {
@@ -102,7 +102,7 @@ std::string account(const Outcome& o) {
   return fmt::format("{} at {:.3g} s: {}", name_of(o.kind), o.time, o.message);
 }
 
-// What was looked into, where an engine fails by far.
+// Explanations of large failures.
 struct Remark {
   const char *row, *column, *text;
 };
@@ -152,7 +152,7 @@ std::string details(const Row& row, const nlohmann::json& cells) {
   return text + remarks_on(row);
 }
 
-// How many cases a column holds: with its defaults, with any setting, of those that it can say.
+// The number of cases that a column holds: with defaults, with any setting, of those that it supports.
 std::string tally(const nlohmann::json& found) {
   std::string text = "| of those it can say: holds with its defaults, with any setting |";
   for (const Column& column : columns()) {
@@ -200,7 +200,7 @@ std::vector<Row> rows() {
 Question question(const Row& row, const Column& column) {
   const hard::Case *planar = nullptr, *spatial = nullptr;
   for (const hard::Case& hard_case : row.cases) (is_planar(hard_case) ? planar : spatial) = &hard_case;
-  // Turns are counted, which poses in space do not tell.
+  // These cases count turns, which spatial poses do not contain.
   if (row.name == "closed_loops" || row.name == "angle_past_half_a_turn") spatial = nullptr;
   if (row.name.starts_with("long_chains_and_trees, tree")) spatial = nullptr;  // of universal joints, unlike the planar
   if (column.planar) return {planar, engine_of(column.engine)};
