@@ -171,9 +171,9 @@ TEST(Failure, NumbersThatAreNotFiniteAreRefused) {
     refused([&] { space.set_velocity(0, {0, 0, 0, 0, 0, bad}); }, "velocity must be finite");
   }
   World<float> world(settings(Solver::direct));
-  refused([&] { world.add_body({.mass = 1e-39}); }, "so small");
-  refused([&] { world.add_body({.mass = 1, .inertia = 1e-39}); }, "so small");
-  refused([&] { world.add_body({.mass = 1e46}); }, "so large");
+  refused([&] { world.add_body({.mass = 1e-39}); }, "too small");
+  refused([&] { world.add_body({.mass = 1, .inertia = 1e-39}); }, "too small");
+  refused([&] { world.add_body({.mass = 1e46}); }, "too large");
   World<double> doubles(settings(Solver::direct));
   doubles.add_body({.mass = 1e-39});
 }

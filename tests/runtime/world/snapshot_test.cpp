@@ -189,7 +189,7 @@ TEST(Snapshot, AStateOfAnotherWorldIsRefused) {
   other = direct;
   other.gravity_y = -1.6;
   expect_refused(world, chain_of(3, 1, other).snapshot(), "its joints, their parameters, effects, springs or gravity");
-  expect_refused(world, Snapshot{}, "an empty snapshot");
+  expect_refused(world, Snapshot{}, "the snapshot is empty");
   World<float> floats(direct);
   add_chain(floats, 3, 0.3);
   expect_refused(world, floats.snapshot(), "planar float");
