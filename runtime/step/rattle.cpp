@@ -1,7 +1,7 @@
-// RATTLE: half a kick with impulses along J of the start, such that C = 0 after the drift; the drift; half a kick with
-// impulses along J of the end, such that J v = -dC/dt there. Second order and symmetric, so energy errors do not
-// accumulate. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Limits, motors and friction act at the end of the step, at
-// first order.
+// RATTLE: half a kick with impulses along J of the start, such that C = 0 after the drift. Then the drift. Then half a
+// kick with impulses along J of the end, such that J v = -dC/dt there. Second order and symmetric, so energy errors do
+// not accumulate. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Limits, motors and friction act at the end of the step,
+// at first order.
 #include <algorithm>
 #include <cmath>
 

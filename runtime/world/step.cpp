@@ -67,8 +67,8 @@ bool finite(const std::vector<T>& numbers, int begin, int end) {
   return std::all_of(numbers.begin() + begin, numbers.begin() + end, [](T number) { return std::isfinite(number); });
 }
 
-// Finds the joint to blame at the start of the step: one with a kernel that is not finite, else the one with the
-// largest C, else the one with the largest force.
+// Finds the joint to blame at the start of the step. A kernel that is not finite comes first, then the largest C, then
+// the largest force.
 template <class S>
 void blame_joint(WorldData<S>& world, Island<S>& island, StepResult& result) {
   double worst = -1;

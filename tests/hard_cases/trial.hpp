@@ -17,7 +17,7 @@
 
 namespace cdot::hard {
 
-inline constexpr double h = 1.0 / 60;  // the step, unless a scene or its criterion says otherwise [s]
+inline constexpr double h = 1.0 / 60;  // the step, unless a scene or its criterion has another [s]
 inline constexpr double g = 9.81;
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double finite_only = std::numeric_limits<double>::infinity();

@@ -2,11 +2,11 @@
 //
 // A kernel is a struct of static function templates, one struct per joint (`cdot::planar::line`), written by
 // `cdot derive`. A solver sees a *row block*: one or more rows of C(q, t) over one or more bodies. Three kinds of
-// struct are row blocks and have the same members: a joint, one of its coordinates (`line::slide`, always one row), and
-// a joint or coordinate with one body immovable (`line::a_immovable`, without that body's terms in J, K and the
-// impulse). A variant inherits gamma, dC/dt and the stiffness from the block with all bodies movable, because no inner
-// loop of a solver calls them. In space it also inherits the two other forms of J, which take the Jacobian<T> of that
-// block.
+// struct are row blocks with the same members. The first is a joint, the second one of its coordinates (`line::slide`,
+// always one row). The third is a variant of these with one body immovable (`line::a_immovable`, without that body's
+// terms in J, K and the impulse). A variant inherits gamma, dC/dt and the stiffness from the block with all bodies
+// movable, because no inner loop of a solver calls them. In space it also inherits the two other forms of J, which take
+// the Jacobian<T> of that block.
 //
 //   members of a row block B                                                                 shapes
 //   B::bodies, B::rows                                             number of bodies, of rows
@@ -149,8 +149,8 @@ struct InverseMass {
 
 namespace spatial {
 
-// Centre of mass [m], orientation as Euler parameters (a unit quaternion, e0 its scalar part) and the rotation matrix
-// A(e) that belongs to them, row by row: the body's x axis is (xx, yx, zx) in the world.
+// Centre of mass [m], orientation as Euler parameters (a unit quaternion, e0 its scalar part), and their rotation
+// matrix A(e), row by row. The body's x axis is (xx, yx, zx) in the world.
 template <class T>
 struct Pose {
   T x, y, z;

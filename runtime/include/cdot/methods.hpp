@@ -1,5 +1,5 @@
-// The names of solvers, drift corrections, integrators, forms of kernels, precisions and answers to a step that fails,
-// as scenes, commands and reports spell them: one table each.
+// The names in scenes, commands and reports: one table each for solvers, drift corrections, integrators, forms of
+// kernels, precisions and reactions to a failed step.
 #pragma once
 
 #include <array>

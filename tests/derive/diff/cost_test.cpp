@@ -1,5 +1,5 @@
-// The published formulas that the ledger counts beside the generated ones: those that agree at every pose. The ledger's
-// tests check the counts.
+// The ledger counts published formulas beside the generated ones if they agree at every pose. The ledger's tests check
+// the counts.
 #include <algorithm>
 #include <gtest/gtest.h>
 

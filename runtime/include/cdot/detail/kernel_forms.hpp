@@ -9,8 +9,8 @@ namespace cdot {
 // K = L D L^T of J M^-1 J^T without K: each row of J is made conjugate to those before it,
 //   L_rs = j_r M^-1 j_s / D_s,   j_r -= L_rs j_s,   D_r = j_r M^-1 j_r,
 // so no pivot is a difference of large numbers. The relative error of K's pivots grows with the square of the block's
-// condition (a long arm on a body of little inertia), that of these pivots with the condition. F has the layout of the
-// kernel's factor.
+// condition, as for a long arm on a body of little inertia. The error of these pivots grows with the condition. F has
+// the layout of the kernel's factor.
 template <class Block, int columns, class Jacobian, class InverseMass, class T, int triangle>
 void factor_by_rows(const Jacobian& J, const InverseMass (&m)[Block::bodies], T (&F)[triangle]) {
   constexpr int rows = Block::rows;

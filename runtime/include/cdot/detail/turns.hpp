@@ -1,6 +1,6 @@
 // Angles beyond half a turn. In space a kernel gives an angle within (-pi, pi]. These counters add the whole turns from
 // one evaluation to the next, for
-//   - a coordinate in radians under an effect: its C goes on beyond pi;
+//   - a coordinate in radians under an effect: its C grows beyond pi;
 //   - a joint whose rows need it: the parameter `<coordinate>_turns` [rad] is kept such that the
 //     coordinate and it together never jump (a gear between two hinges).
 #pragma once

@@ -150,7 +150,7 @@ std::string details(const Row& row, const nlohmann::json& cells) {
   return text + remarks_on(row);
 }
 
-// The number of cases that a column holds: with defaults, with any setting, of those that it supports.
+// The number of cases that a column holds: with defaults, with any setting, of all supported cases.
 std::string tally(const nlohmann::json& found) {
   std::string text = "| of those it can say: holds with its defaults, with any setting |";
   for (const Column& column : columns()) {
