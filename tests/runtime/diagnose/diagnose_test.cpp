@@ -111,7 +111,7 @@ TEST(Diagnose, StiffestMotionOfASpringOnACoordinate) {
 
 // The linearly implicit step removes the stiffness of tension on rods and on beads: no oscillation exceeds 1 rad per
 // step. With the iterative solver the stiffness on beads remains.
-TEST(Diagnose, KnowsWhatTheImplicitStepTakesOff) {
+TEST(Diagnose, SubtractsTheStiffnessThatTheImplicitStepRemoves) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);
   s.integrator = Integrator::implicit;
   constexpr double step = 1.0 / 60;
@@ -178,7 +178,7 @@ TEST(Diagnose, NamesRedundantRows) {
 }
 
 // A side is 0.02 m too long: the contradicting row is off by that length, and all three joints take part.
-TEST(Diagnose, TellsConflictsByHowMuch) {
+TEST(Diagnose, ReportsTheSizeOfConflicts) {
   World<double> world(settings(Solver::direct));
   const auto side = [&](double x, double length) {
     return world.add_body({.x = x, .mass = 1, .inertia = length / 12});

@@ -179,7 +179,7 @@ TEST(Ldlt, DependentRowsAreCountedAndDropped) {
 // A row that was redundant from the start stays dropped at small errors of C, because it would lock the mechanism. A
 // row that was independent stays in use down to round-off. After the removal of the neighbour that it repeated, the
 // dropped row is used again.
-TEST(Ldlt, WhatIsRedundantByDesignStaysDropped) {
+TEST(Ldlt, RowsRedundantByDesignStayDropped) {
   std::mt19937 random(8);
   Joints joints = chain(4, 3);
   Problem problem = random_problem(joints, 6, random);

@@ -15,7 +15,7 @@ bool holds_the_world(const JointType& type) {
 
 class Catalogue : public testing::TestWithParam<const JointType*> {};
 
-TEST_P(Catalogue, RunsAndKeepsWhatItMust) {
+TEST_P(Catalogue, RunsAndConservesMomentum) {
   const JointType& type = *GetParam();
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     Settings s = settings(solver);

@@ -96,7 +96,7 @@ TEST(SpatialJoints, AnAngleWithoutValueIsRefused) {
 }
 
 // The same for a row and for changed parameters of a running World: a refusal changes nothing.
-TEST(SpatialJoints, ChangesThatTakeAnAngleItsValueAreRefused) {
+TEST(SpatialJoints, ChangesThatMakeAnAngleJumpAreRefused) {
   SpatialWorld<double> world(settings(Solver::direct));
   const int body = world.add_body(brick(0.5, 0, 0));
   const int wheel = world.add_body(brick(0, 2, 0));

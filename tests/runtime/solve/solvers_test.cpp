@@ -34,7 +34,7 @@ TEST(Solvers, IterativeTendsToDirect) {
   }
 }
 
-TEST(Solvers, WarmStartingBringsTheSameSweepsFurther) {
+TEST(Solvers, WarmStartingReducesTheErrorOfTheSameSweeps) {
   double gap[2];
   for (bool warm : {false, true}) {
     Settings s = settings(Solver::iterative, Drift::baumgarte, -9.81);

@@ -172,7 +172,7 @@ TEST(Tension, LeavesAHangingChainWhereItIs) {
 
 // A fixed angle holds a pendulum against a constant torque. The joint exerts that torque, although tension adds 5.4
 // times the body's inertia.
-TEST(Tension, LeavesATorqueAtRestWhatItIs) {
+TEST(Tension, KeepsATorqueAtRest) {
   World<double> world(implicit());
   const int body = world.add_body({.y = -2, .mass = 1000, .inertia = 1, .torque = 5});
   const int pin = revolute(world, world.ground(), body, 0, 0, 0, 2);

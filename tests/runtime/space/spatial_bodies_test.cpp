@@ -254,7 +254,7 @@ TEST(SpatialBody, EqualBitsOnRepetition) {
   EXPECT_EQ(hash(), hash());
 }
 
-TEST(SpatialBody, RefusesWhatNoBodyIs) {
+TEST(SpatialBody, RefusesImpossibleBodies) {
   SpatialWorld<double> world;
   const auto refused = [&](auto change) {
     SpatialBodyDefinition d = tumbling();

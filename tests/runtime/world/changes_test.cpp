@@ -182,7 +182,7 @@ TEST(Changes, AMotorTurnsBack) {
 
 // Setting the present force, motor, friction and spring again after every step does not change the motion. The bits are
 // equal unless a step computes the accelerations for the next one (rk4, dop853).
-TEST(Changes, OfForcesThatChangeNothingDoNothing) {
+TEST(Changes, ToTheSameForcesDoNothing) {
   Settings base = heavy;
   base.iterations = 200;
   const int methods = for_each_method(base, [&](const Settings& s, const std::string& name) {
@@ -301,7 +301,7 @@ TEST(Changes, PointsOfTheGroundAreThoseOfTheWorld) {
 
 // --- other effects of a change ---
 
-TEST(Changes, WakeWhatSleeps) {
+TEST(Changes, WakeSleepingIslands) {
   Settings s = heavy;
   s.sleep_after = 0.1;
   const auto asleep = [&](auto change) {
@@ -322,7 +322,7 @@ TEST(Changes, WakeWhatSleeps) {
 }
 
 // Changes belong to the State: an earlier snapshot undoes them, including the removal of a joint.
-TEST(Changes, ASnapshotBringsBackWhatWas) {
+TEST(Changes, AreUndoneByAnEarlierSnapshot) {
   for (Integrator integrator : {Integrator::euler, Integrator::rattle, Integrator::dop853}) {
     Settings s = heavy;
     s.integrator = integrator;

@@ -97,7 +97,7 @@ TEST(Failure, LeavesTheStateInSpace) {
 }
 
 // A joint breaks in the first part of the step, and the second part fails: the rollback restores the joint.
-TEST(Failure, MendsWhatBrokeInTheSameStep) {
+TEST(Failure, RestoresAJointThatBrokeInTheSameStep) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);
   s.substeps = 2;
   World<double> world(s);
@@ -120,7 +120,7 @@ TEST(Failure, MendsWhatBrokeInTheSameStep) {
   EXPECT_TRUE(world.broken(1) && world.broken(2));
 }
 
-TEST(Failure, IsToldInWords) {
+TEST(Failure, IsDescribedInWords) {
   World<double> world(settings(Solver::direct));
   const int body = build(world);
   world.set_force(body, huge<Planar<double>>());

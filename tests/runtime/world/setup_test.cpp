@@ -109,7 +109,7 @@ TEST(Setup, InconsistentStartIsReportedAndProjected) {
   }
 }
 
-TEST(Setup, ProjectionOfWhatCannotBeIsRefused) {
+TEST(Setup, ProjectionOfContradictingJointsFails) {
   World<double> world;
   const int bob = world.add_body({.x = 1, .mass = 1});
   const int post = world.add_body({.x = 5, .is_static = true});

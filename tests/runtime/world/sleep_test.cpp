@@ -20,7 +20,7 @@ struct TwoPendulums {
   int resting, swinging;
 };
 
-TEST(Sleep, OnlyWhatRestsFallsAsleep) {
+TEST(Sleep, OnlyIslandsAtRestFallAsleep) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     TwoPendulums two(solver);
     run(two.world, 0.4, 0.01);

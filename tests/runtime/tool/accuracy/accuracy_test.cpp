@@ -28,7 +28,7 @@ TEST(Frontier, OfPointsByHand) {
 }
 
 // A point is on the frontier if and only if no other point is better in one quantity and not worse in the other.
-TEST(Frontier, IsWhatNoPointBeats) {
+TEST(Frontier, HasThePointsThatNoOtherBeats) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> digit(0, 20);
   for (int trial = 0; trial < 200; ++trial) {

@@ -243,7 +243,7 @@ TEST(AccuracyCommand, ItsAdviceCanBeTaken) {
   }
 }
 
-TEST(AccuracyCommand, MistakesAreTwoAndSaySo) {
+TEST(AccuracyCommand, MistakesExitWithTwoAndAMessage) {
   const TemporaryFolder folder;
   const std::string prefix = folder / "p", pendulum = scene_path("simple_pendulum");
   const auto refused = [&](const std::string& arguments) {

@@ -182,7 +182,7 @@ TEST(AccuracyReference, BelievesTheTwoThatAgreeBest) {
   EXPECT_LE(made.disagreement(), finer ? wanted_agreement : 1e-11);
 }
 
-TEST(AccuracyReference, KnowsWhatIsToBlame) {
+TEST(AccuracyReference, NamesTheCauseOfADisagreement) {
   EXPECT_EQ(verdict_on(2e-12, {10, 1e-13}, true), "round-off sets this limit");
   EXPECT_EQ(verdict_on(1e-11, {10, 1e-13}, true), "the methods need finer steps: raise --budget");
   EXPECT_TRUE(verdict_on(1e-11, {10, 1e-13}, false).starts_with("finer steps do not help"));
@@ -214,7 +214,7 @@ TEST(ComposedRattle, IsOfOrderTen) {
   EXPECT_EQ(seen, 2);
 }
 
-TEST(ComposedRattle, NeedsAMotionThatGoesBack) {
+TEST(ComposedRattle, NeedsAReversibleMotion) {
   for (const char* name : {"simple_pendulum", "four_bar", "slider_crank", "spatial/gyroscope", "spatial/three_bodies"})
     EXPECT_TRUE(reversible(scene_named(name))) << name;
   const auto changed = [](auto change) {
@@ -239,7 +239,7 @@ TEST(ComposedRattle, NeedsAMotionThatGoesBack) {
 }
 
 // A weak motor drives a rod against a limit: the acceleration jumps when the rod reaches the limit and when it leaves.
-TEST(AccuracyReference, GetsPastKinks) {
+TEST(AccuracyReference, SolvesMotionsWithKinks) {
   const Scene scene = read_scene(
       "duration = 2\n[[body]]\nname = \"rod\"\nmass = 1\nshape = { rod = 1 }\nposition = [0.5, 0]\n[[joint]]\ntype = "
       "\"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\nangle.limit = { lower = \"-80 deg\" }\n"

@@ -66,7 +66,7 @@ TEST(Command, JacobianSaysWhereItWent) {
   EXPECT_NE(result.err.find("use diagnose --matrix"), std::string::npos) << result.err;
 }
 
-TEST(Command, BadUsageAndBadScenesAreTwo) {
+TEST(Command, BadUsageAndBadScenesExitWithTwo) {
   EXPECT_EQ(cdot_run("").status, 2);
   EXPECT_EQ(cdot_run("simulate").status, 2);
   EXPECT_EQ(cdot_run("simulate no_such_file.toml").status, 2);
@@ -83,7 +83,7 @@ TEST(Command, BadUsageAndBadScenesAreTwo) {
   EXPECT_NE(result.err.find("did you mean `revolute`?"), std::string::npos);
 }
 
-TEST(Command, AnUnstableRunIsOneAndSaysWhy) {
+TEST(Command, AnUnstableRunExitsWithOneAndTheReason) {
   const CommandResult result =
       cdot_run("simulate " + scene("compound_pendulum") + " --drift none --step 0.05 --tolerance 1e-6");
   EXPECT_EQ(result.status, 1);

@@ -43,7 +43,7 @@ constexpr Wrong wrong[] = {
     {"stiff_and_soft/planar", "--integrator rattle", "a spring makes \"box", "substeps = "},
 };
 
-TEST(DiagnoseCommand, SaysWhichMethodIsWrongAndWhatIsRight) {
+TEST(DiagnoseCommand, NamesAWrongMethodAndABetterOne) {
   for (const Wrong& one : wrong) {
     const CommandResult simulated = cdot_run(fmt::format("simulate {} {} --until 1", hard(one.scene), one.method));
     EXPECT_TRUE(says(simulated.out, "  warning         ")) << one.scene << " " << one.method << "\n" << simulated.out;

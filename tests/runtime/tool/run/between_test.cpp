@@ -91,7 +91,7 @@ TEST_P(Between, AChangeActsWhenItIsMade) {
 }
 
 // If a joint may break, a step ends at each check of the load.
-TEST_P(Between, NothingIsPassedWhereLoadsAreLookedAt) {
+TEST_P(Between, StepsEndAtChecksOfLoads) {
   Pendulum p(adaptive(GetParam(), 1e-6));
   set_breaking_load(p.world, p.pivot, 1e9);
   for (int k = 0; k < 100; ++k) p.world.step(1e-3);

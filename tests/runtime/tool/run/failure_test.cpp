@@ -45,7 +45,7 @@ struct Failing {
   }
 };
 
-TEST(FailedStep, IsToldWithPlaceReasonAndFix) {
+TEST(FailedStep, IsReportedWithPlaceReasonAndFix) {
   Failing scene;
   const auto csv = scene.folder / "rows.csv", state = scene.folder / "before.state";
   const CommandResult result =
@@ -79,7 +79,7 @@ CommandResult run_hard_case(const char* scene, const std::string& keys, const ch
 }
 
 // A ball of 4 t on a light chain with steps far too long for its tension: the run ends at 1.8 s, or continues in parts.
-TEST(FailedStep, IsTakenAgainInPartsWhereTheSceneAllows) {
+TEST(FailedStep, IsRepeatedInPartsIfTheSceneAllows) {
   const auto run = [](const std::string& keys) {
     return run_hard_case("ball_and_chain/planar.toml", keys, "--integrator euler --until 1.9 --tolerance 1 --json");
   };
@@ -112,7 +112,7 @@ TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
 }
 
 // The fix does not name a method that was already tried.
-TEST(FailedStep, AdvisesWhatWasNotTried) {
+TEST(FailedStep, AdvisesOnlyUntriedMethods) {
   Failing scene;
   const CommandResult stopped = cdot_run(scene.run("", "")),
                       retried = cdot_run(scene.run("on_failure = \"retry\"\n", ""));

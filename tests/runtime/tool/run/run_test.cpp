@@ -37,7 +37,7 @@ TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
 }
 
 // A chain with an inconsistent start gets one short warning, not one per link.
-TEST(Run, OfManyInconsistentJointsTheFirstAreTold) {
+TEST(Run, OfManyInconsistentJointsTheFirstAreReported) {
   const std::string links =
       with(with(pendulum, "[[body]]", "[[body]]\nrepeat = 40"), "[[joint]]", "[[joint]]\nrepeat = 40");
   const Scene scene = scene_of(

@@ -83,7 +83,7 @@ TEST_F(SpacePage, PlaysScrubsAndOrbits) {
 }
 
 // Two implementations of one picture: the page's script and the still's C++.
-TEST_F(SpacePage, ShowsAtItsEndWhatTheStillShows) {
+TEST_F(SpacePage, EndsWithThePictureOfTheStill) {
   const auto seen = seen_by(html_page(scene_, film_), R"(
       seen.paths = [...document.querySelectorAll('#space path')].map(p => p.getAttribute('d'))
                        .filter(d => d);)",
