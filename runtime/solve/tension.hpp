@@ -2,7 +2,7 @@
 // displacements, as in a taut rod or rope. The part of each body's own rotation adds to the inertias
 // (stiffen_bodies()). This part becomes soft rows in the direct solver's system,
 //
-//   -h d(J^T lambda)/dq = W^T D W + (own turning),   impulse mu = -D W v',
+//   -h d(J^T lambda)/dq = W^T D W + (own rotations),   impulse mu = -D W v',
 //
 // so K gets the rows W with D^-1 on the diagonal, and M stays block diagonal. This impulse rotates the joint's own
 // impulse J^T lambda from its direction at the start of the step to the one at the end. Reactions use J at the end; J^T

@@ -41,8 +41,8 @@ void each_guarded_row(Island<S>& island, F f) {
 }
 
 // Raises the resolutions of the rows of one slot to the share `slight` of
-//   C       what a displacement by the island's size and a turn of 1 rad make of it: c
-//   rate    the sum of all |J v|; sqrt(c dJv/dt), what acceleration makes of it on that way; less moves nothing in h
+//   C       its largest change by a displacement of the island's size or a rotation of 1 rad: c
+//   rate    the largest of the sum of all |J v|; sqrt(c dJv/dt), the rate after the way c; epsilon c / (slight h)
 //   force   dJv/dt + rate^2 / c over K
 // where dJv/dt is the larger of two numbers: the sum of all |J dv/dt|, in which angular accelerations are at least
 // linear / size, and K lambda of the row's own force. A row with J = 0 counts as a length.

@@ -36,7 +36,7 @@
 // Further members of the three kinds of row block (strings are std::string_view, arrays std::array):
 //   members of a joint                                             and of
 //   name                                                           a coordinate: "line"; "slide"
-//   title                                                          what it does, in a sentence
+//   title                                                          its purpose in one sentence
 //   unit                                                           a coordinate only: "m", "rad"
 //   body_names, row_names, row_kinds                               a coordinate: the last two
 //   Parameters<T>, parameters                                      the numbers, and a ParameterInfo for each parameter
