@@ -52,7 +52,7 @@ void write_down(const std::string& folder, const std::string& command, const Opt
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"What accuracy costs in Cdot and in today's engines."};
+  CLI::App app{"The cost of accuracy in Cdot and in today's engines."};
   Options options;
   std::string problem, output;
   app.add_option("--problem", problem, "Only problems whose name contains this");

@@ -149,7 +149,7 @@ std::string noise_text(const std::vector<Measured>& all) {
 
 std::string page(const std::string& command, const Options& options, const std::vector<Measured>& all) {
   std::string text = fmt::format(
-      "# What accuracy costs, here and elsewhere\n\n"
+      "# The cost of accuracy, here and elsewhere\n\n"
       "Written by `{}`.\n\n"
       "Microseconds of CPU time (one thread) per simulated second, for the cheapest setting of each "
       "engine whose error stays below the level; in brackets its ratio to Cdot's cheapest. The error "

@@ -158,7 +158,7 @@ std::string markdown(const std::vector<Line>& lines, int samples_per_family) {
       "## Every function, in units of its natural scale\n\n"
       "Median and p99 of the middle kernel; the worst input of the worst kernel.\n\n{}\n"
       "## Every kernel: the worst input, in units of the natural scale, float / double\n\n{}\n"
-      "## What it costs: operations, then nanoseconds in float / double\n\n{}\n"
+      "## Cost: operations, then nanoseconds in float / double\n\n{}\n"
       "## Other forms of C, each below the generated one\n\n{}\n"
       "## From J to the impulse by `kernels = \"fast\"`, `\"balanced\"`, `\"robust\"`: in float\n\n"
       "p99 and worst in units of the natural scale; dropped: inputs of which a row was taken for dependent.\n\n"
