@@ -1,4 +1,4 @@
-// The methods of a World, for tests that go through all of them, and what order they are of.
+// All methods of a World with their orders, for tests that run every method.
 #pragma once
 
 #include <fmt/format.h>
@@ -10,8 +10,9 @@ namespace cdot::test {
 
 constexpr double order_of(Integrator integrator) { return row_of(integrator).order; }
 
-// f(settings, name) for every solver, drift correction and integrator, with fixed steps and with steps of their own,
-// that go together (setup_test.cpp says which are refused, and how); the rest as in `base`. Returns how many these are.
+// f(settings, name) for every allowed combination of solver, drift correction and integrator, with fixed and with
+// adaptive steps; other settings are those of `base`. Returns the number of combinations. setup_test.cpp tests the
+// refused ones.
 template <class F>
 int for_each_method(const Settings& base, F f) {
   int methods = 0;

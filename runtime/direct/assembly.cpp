@@ -1,5 +1,4 @@
-// Which numbers of K come from which joints, and their values from J and the masses. Apart from
-// direct/system.cpp, which solves.
+// Rows, J and masses of an island -> the pattern and the values of K.
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -14,8 +13,7 @@
 namespace cdot {
 namespace {
 
-// K += J weighted^T over the columns of one body. A and B are the numbers of rows, 0: known at run
-// time only.
+// K += J weighted^T over the columns of one body. A and B are the numbers of rows; 0: known only at run time.
 template <class S, int A, int B>
 void add_product(const typename System<S>::Product& product, const typename System<S>::Real* J,
                  const typename System<S>::Real* weighted, typename System<S>::Real* K) {
@@ -101,8 +99,8 @@ std::vector<int> System<S>::movable_bodies(const Block& block, const Bodies<S>& 
   return movable;
 }
 
-// Blocks over the same bodies (a joint, its limit, its motor) are eliminated as one group; rows are
-// numbered in the order of elimination.
+// Blocks over the same bodies (a joint, its limit, its motor) are eliminated as one group. Rows are numbered in the
+// order of elimination.
 template <class S>
 void System<S>::order_rows(const Bodies<S>& bodies) {
   std::map<std::vector<int>, int> group_over;
@@ -120,7 +118,7 @@ void System<S>::order_rows(const Bodies<S>& bodies) {
     rows[found->second] += block.rows;
   };
   for (const Block& block : blocks) place(block);
-  for (const Block& tension : tensions) place(tension);  // after the rows of their joints, which are not soft
+  for (const Block& tension : tensions) place(tension);  // after the rows of their joints, which are exact
   std::vector<std::pair<int, int>> coupled;
   for (const auto& [body, groups] : groups_at)
     for (int i : groups)

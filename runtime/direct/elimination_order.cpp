@@ -8,8 +8,8 @@
 namespace cdot {
 namespace {
 
-// What a block is chosen by: whether its elimination couples blocks that were not, rows of its
-// neighbours, length of the succession that it waits for, its number.
+// The criteria of choice: whether the elimination adds fill-in, rows of the neighbours, length of the chain of
+// eliminations before it, the block's number.
 using Key = std::tuple<bool, int, int, int>;
 
 int rows_of(const std::vector<int>& blocks, const std::vector<int>& rows) {
@@ -18,7 +18,7 @@ int rows_of(const std::vector<int>& blocks, const std::vector<int>& rows) {
   return sum;
 }
 
-// To look at all pairs costs more than it saves where there are many.
+// Above this number of neighbours the check of all pairs costs more than it saves.
 constexpr size_t most_looked_at = 64;
 
 bool fills_in(int block, const std::vector<std::vector<int>>& neighbours) {
@@ -29,7 +29,7 @@ bool fills_in(int block, const std::vector<std::vector<int>>& neighbours) {
   return false;
 }
 
-// Both sorted; without i and k.
+// The union of two sorted lists, without i and k.
 std::vector<int> united_without(const std::vector<int>& a, const std::vector<int>& b, int i, int k) {
   std::vector<int> both;
   both.reserve(a.size() + b.size());
@@ -77,8 +77,8 @@ void sort_neighbours(std::vector<Elimination>& order, size_t blocks) {
     std::sort(one.neighbours.begin(), one.neighbours.end(), [&](int i, int j) { return place[i] < place[j]; });
 }
 
-// A block whose neighbours are the next one's, and that one itself, waits for it: what they leave
-// to others is one update then instead of two. Where they leave nothing they stay apart.
+// Joins a block to the next one if its neighbours are that block and that block's neighbours. Both then need one update
+// of the others in place of two. Blocks without such an update stay single.
 std::vector<Elimination> joined(std::vector<Elimination> order, const std::vector<int>& rows, int widest) {
   std::vector<int> holder = places(order, rows.size());
   std::vector<Elimination> joined;

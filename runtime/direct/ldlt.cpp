@@ -9,9 +9,9 @@
 namespace cdot {
 namespace {
 
-// Of one factor(), at rows whose noise is in doubt; each that is cleared costs an elimination. Of a large grid
-// thousands are in doubt: where an elimination takes more multiplications than that, they stay dropped, and what that
-// leaves unmet is refined (direct/regularise.cpp).
+// The number of doubtful rows that one factor() checks. Each row that turns out independent costs another elimination.
+// In a large grid thousands are doubtful. If an elimination takes more than `affordable` multiplications, these rows
+// stay dropped and refinement reduces their error (direct/regularise.cpp).
 constexpr int most_looks = 8;
 constexpr long affordable = 1'000'000;
 
@@ -109,7 +109,7 @@ void BasicLdlt<Real>::lay_out(const std::vector<int>& rows, const std::vector<El
   }
 }
 
-// Of each pair of runs of the panel's rows: a run's unknowns follow each other within one column.
+// One update for each pair of runs of the panel's rows; a run's unknowns are consecutive within one column.
 template <class Real>
 void BasicLdlt<Real>::list_updates(Column& column) {
   const int* row = panel_row_.data() + column.rows;
@@ -192,8 +192,8 @@ Real BasicLdlt<Real>::round_off_scale(int unknown) {
   return sum;
 }
 
-// The first row that was dropped for the noise of its pivot, and whose pivot round-off does not reach: the noise is set
-// right for one more elimination, in which others may depend on it. False if there is none.
+// Finds the first row that was dropped because of its noise although its pivot exceeds the true round-off. Corrects the
+// noise for one more elimination, in which other rows may depend on this one. False if no such row exists.
 template <class Real>
 bool BasicLdlt<Real>::clears_a_doubt(const Real* added) {
   for (int k = 0; k < size(); ++k) {
@@ -215,7 +215,7 @@ int BasicLdlt<Real>::factor(const Real* added, const char* out) {
   int dependent_rows = eliminate_columns(all, out);
   const int looks = dependent_rows > 0 && multiplications() <= affordable ? most_looks : 0;
   for (int look = 0; look < looks && clears_a_doubt(added); ++look) {
-    for (int k = 0; k < size(); ++k)  // what was learnt of them is learnt once more
+    for (int k = 0; k < size(); ++k)  // the next elimination counts them again
       if (dependent(k)) dependent_[k] = static_cast<unsigned char>(std::max(dependent_[k] - all.counts, 0));
     begin_noise();
     dependent_rows = eliminate_columns(all, out);

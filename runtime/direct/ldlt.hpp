@@ -1,6 +1,5 @@
-// A sparse K = L D L^T in dense blocks, whose pattern is analysed once and whose numbers come every
-// step, without allocating then. Its blocks are the rows of joints, where a general library goes
-// number by number.
+// A sparse K = L D L^T in dense blocks. The pattern is analysed once; a step changes the numbers and allocates nothing.
+// The blocks are the rows of joints; a general library works number by number.
 #pragma once
 
 #include <utility>
@@ -16,20 +15,18 @@ namespace cdot {
 // The data of runtime/direct/ldlt_kernels.hpp.
 namespace dense {
 
-// A row that depended on others in so many factorisations on end, or in the first of all, is
-// redundant by design. It stays dropped until its pivot is above this share of its diagonal: where
-// joints are a little open, axes that should be parallel are not, and what says nothing new on the
-// joints' manifold would lock the mechanism beside it.
+// A row that was redundant in lasting_count consecutive factorisations, or in the first, is redundant by design. It
+// stays dropped until its pivot exceeds lasting_share of its diagonal. Small errors of C make such a row slightly
+// independent: off C = 0, axes that should be parallel are not. It would then lock the mechanism.
 inline constexpr double lasting_share = 1e-4;
 inline constexpr int lasting_count = 100;
 
-// Round-off of a pivot beside what its row began with; delta(pivot_i) = L_ij^2 delta(pivot_j) says
-// what becomes of it in the rows that follow.
+// Round-off of a pivot, relative to the row's diagonal in K. It propagates to later rows as delta(pivot_i) = L_ij^2
+// delta(pivot_j).
 template <class Real>
 inline constexpr double pivot_noise = by_precision<Real>(1e-14);
 
-// A column of L: a square on the diagonal and, below it, the panel of all rows that it is coupled
-// with, both row by row.
+// A column of L: a square on the diagonal and, below it, the panel of all coupled rows, both row by row.
 struct Column {
   int first, width;   // unknowns
   int square, panel;  // into l
@@ -37,20 +34,20 @@ struct Column {
   int rows;           // of the panel, into panel_row
 };
 
-// What an eliminated column takes from another: numbers at `target` in l, row by row `stride` apart.
+// The update of a later column by an eliminated one: numbers at `target` in l, rows `stride` apart.
 struct Part {
   int left, rows;      // of the panel
-  int above, columns;  // rows of the panel that are the other's columns
+  int above, columns;  // rows of the panel that are columns of the other
   int target, stride;
 };
 
 template <class Real>
 struct Numbers {
-  Real* l;                   // K; in its place L
+  Real* l;                   // K, overwritten by L
   const Real* K;             // as it was before any elimination
   const Real* added;         // on K's diagonal, by unknown
   const char* out;           // unknowns that do not take part
-  Real* inverse;             // D^-1 by unknown; 0 where it is out or its row depends on others
+  Real* inverse;             // D^-1 by unknown; 0 if the row is out or redundant
   Real* unscaled;            // L D of the panel at hand, column by column
   const int* panel_row;      // unknown of each row of each panel
   unsigned char* dependent;  // in how many factorisations on end, by unknown
@@ -69,37 +66,36 @@ using Sweep = void (*)(const Column&, const Numbers<Real>&, Real* x);
 
 }  // namespace dense
 
-// Real is what K is formed in.
+// Real is the number type of K.
 template <class Real>
 class BasicLdlt {
  public:
-  // Below this share of its original diagonal, or below what the pivots before it have magnified round-off to, a pivot
-  // says nothing: its row depends on those before it, and its unknown is 0.
+  // A pivot below this share of its original diagonal, or below the round-off magnified by earlier pivots, counts as
+  // zero. The row depends on earlier rows, and its unknown is 0.
   //
-  // With y = K_II^-1 k_i, what row i has of the rows I before it, round-off eps sqrt(K_aa K_bb) in every entry ab moves
-  // its pivot by eps (sqrt(K_ii) + sum |y_a| sqrt(K_aa))^2 at most, which is at most (m + 1) eps (K_ii + sum y_a^2
-  // K_aa) where m rows take part. The second factor is what dense::pivot_noise follows from row to row, as the sum of
-  // what each pivot before adds, whatever their signs; where only that speaks against a row, y is found, and the factor
-  // as it is. The share is m + 1 = 10 times it, as many rows as a loop too many has. More is no round-off: a body 1e10
-  // times lighter than the two that it joins leaves 1e-10 of the second joint's rows, and they are as good as any. K
-  // from floats is further off. T is what J and the masses are in.
+  // Let y = K_II^-1 k_i be the shares of row i in the earlier rows I. Round-off eps sqrt(K_aa K_bb) in every entry ab
+  // moves the pivot by at most eps (sqrt(K_ii) + sum |y_a| sqrt(K_aa))^2 <= (m + 1) eps (K_ii + sum y_a^2 K_aa) if m
+  // rows take part. dense::pivot_noise bounds the last factor from row to row by the sum over earlier pivots, without
+  // cancellation. If only this bound rejects a row, y and the exact factor are computed. The share is m + 1 = 10 times
+  // pivot_noise: a redundant loop has about that many rows. A larger share would reject good rows: a body 1e10 times
+  // lighter than its two neighbours leaves 1e-10 of the second joint's rows. K from floats is less exact. T is the
+  // number type of J and of the masses.
   template <class T>
   static constexpr double pivot_share = std::is_same_v<T, float> ? 1e-7 : 10 * dense::pivot_noise<T>;
-  // Of a soft row: below it the softness is not told from none. Dropped, the row is rigid beside those that it depends
-  // on, 1e-10 stiffer than it is; kept, its force would be off by pivot_noise over its pivot, 1e-4 and more.
+  // The same for a soft row; below it the softness counts as 0. A dropped row is rigid beside the rows that it depends
+  // on, an error of 1e-10 of their stiffness. Otherwise its force would have a relative error of pivot_noise / pivot,
+  // 1e-4 and more.
   static constexpr double pivot_share_of_soft = by_precision<Real>(1e-10);
 
-  // rows: of each block. coupled: pairs of blocks between which K may be nonzero; repetitions do no
-  // harm.
+  // rows: of each block. coupled: pairs of blocks between which K may be nonzero; repetitions are allowed.
   void analyse(const std::vector<int>& rows, const std::vector<std::pair<int, int>>& coupled,
                double share = pivot_share<Real>);
   int size() const { return static_cast<int>(diagonal_.size()); }
   // Unknowns are numbered in the order of elimination. A block's first one:
   int first(int block) const { return first_[block]; }
 
-  // Where in values() K's numbers from (row, column) on lie, row by row `stride` apart, within the
-  // two's blocks. These are coupled, and row >= column; of a block with itself the lower triangle
-  // counts.
+  // The place in values() of K's numbers from (row, column) on, rows `stride` apart, within the blocks of both. The
+  // blocks are coupled and row >= column. On the diagonal the lower triangle counts.
   struct Place {
     int at, stride;
   };
@@ -107,32 +103,32 @@ class BasicLdlt {
   std::vector<Real>& values() { return values_; }
   Real diagonal(int unknown) const { return values_[diagonal_[unknown]]; }
 
-  // Factors values() with `added` on the diagonal and the unknowns marked in `out` taken out (their
-  // rows become those of the identity); null: none. Returns how many rows depend on others.
+  // Factors values() plus `added` on the diagonal, without the unknowns marked in `out` (their rows become those of the
+  // identity); null: none. Returns the number of redundant rows.
   int factor(const Real* added, const char* out);
-  // The same where `added` makes K definite, however slightly: no row is dropped, and nothing is learnt about any.
+  // The same if `added` makes K positive definite: drops no row and counts no row as redundant.
   void factor_definite(const Real* added, const char* out);
-  // The next factor() is the first.
+  // Treats the next factor() as the first.
   void forget();
-  // Rows have gone: others that have depended for long may have depended on these only.
+  // After the removal of rows: rows that are redundant by design may have depended on the removed rows only.
   void doubt_lasting();
-  // The last factor() found the row to depend on others.
+  // True if the last factor() found the row redundant.
   bool dependent(int unknown) const { return inverse_[unknown] == 0 && !out_[unknown]; }
-  // What it magnified round-off to was above what a pivot may be of the diagonal: whether the row depends on others
-  // remains unknown.
+  // True if magnified round-off exceeds the threshold of the pivot, so the last factor() could not decide whether the
+  // row is redundant.
   bool blurred(int unknown) const { return noise_[unknown] > share_ * diagonal(unknown); }
-  // Of a row that does not depend on others.
+  // For independent rows only.
   Real pivot(int unknown) const { return 1 / inverse_[unknown]; }
   // x = K^-1 b for the last factor(); may be in place.
   void solve(const Real* b, Real* x);
-  // y = K x, with values() alone.
+  // y = K x, from values(), without the factor.
   void multiply(const Real* x, Real* y) const;
 
   // Its State.
   StateArray<unsigned char>& dependent() { return dependent_; }
   StateNumber<bool>& factored() { return factored_; }
 
-  // Of one factor() and one solve(): what the order of elimination costs.
+  // Of one factor() and one solve(), a measure of the order of elimination.
   long multiplications() const;
 
  private:
@@ -163,7 +159,7 @@ class BasicLdlt {
   std::vector<char> out_;
   StateArray<unsigned char> dependent_;  // State: in how many factorisations on end, by unknown
   StateNumber<bool> factored_ = false;   // State: not the first
-  std::vector<unsigned char> definite_;  // nobody asks what factor_definite() says there
+  std::vector<unsigned char> definite_;  // written by factor_definite(), never read
   bool any_out_ = false;
   double share_ = pivot_share<Real>;
   std::vector<Real> unscaled_, given_;

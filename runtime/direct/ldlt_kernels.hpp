@@ -1,6 +1,5 @@
-// The dense inside of Ldlt: what happens to one column of blocks, A unknowns wide. A and B are
-// numbers of rows that joints have, their loops unrolled; 0 stands for any other, known at run time
-// only.
+// The dense operations of Ldlt on one column of blocks, A unknowns wide. A and B are numbers of rows of joints with
+// unrolled loops; 0: any other number, known only at run time.
 #pragma once
 
 #include <algorithm>
@@ -38,7 +37,7 @@ inline void times(Known<n>, F f) {
   (std::make_integer_sequence<int, n>{});
 }
 
-// A few numbers of an array, in registers where their count is known.
+// A few numbers of an array, in registers if their count is known.
 template <class Real, int A>
 struct Few {
   Real number[A];
@@ -69,7 +68,7 @@ Few<Real, 0> few(int, Real* from) {
 
 // --- factor ---
 
-// K = L D L^T of the square, scalar pivot by scalar pivot. Returns how many were round-off.
+// K = L D L^T of the square, by scalar pivots. Returns the number of pivots that are round-off.
 template <class Real, int A>
 int factor_square(const Column& column, const Numbers<Real>& numbers) {
   const auto a = size<A>(column.width);
@@ -134,8 +133,8 @@ int eliminate(const Column& column, const Numbers<Real>& numbers) {
   return dependent;
 }
 
-// target -= L_left (L D)_above^T for some rows of the panel and B others of it. `lower`: they are
-// the same, and only the lower triangle counts.
+// target -= L_left (L D)_above^T for rows `left` and B rows `above` of the panel. `lower`: both are the same rows, and
+// only the lower triangle counts.
 template <class Real, int A, int B, bool lower>
 void update(const Column& column, const Part& part, const Numbers<Real>& numbers) {
   const auto a = size<A>(column.width);
@@ -155,7 +154,7 @@ void update(const Column& column, const Part& part, const Numbers<Real>& numbers
 
 // --- solve ---
 
-// x = D^-1 L^-1 x of the column; every row of the panel loses its share.
+// x = D^-1 L^-1 x of the column; subtracts the column's share from every row of the panel.
 template <class Real, int A>
 void forward(const Column& column, const Numbers<Real>& numbers, Real* x) {
   const auto a = size<A>(column.width);

@@ -1,12 +1,12 @@
-// Rows that depend on others and ask for something else than these: joints that cannot all hold, as a triangle whose
-// third side is too long. Whichever row elimination meets last is dropped; its error is then shared by all rows that
-// take part in the contradiction, such that the sum of squares is least.
+// Contradicting rows: joints that cannot all be satisfied, as in a triangle whose third side is too long. Elimination
+// drops the last of these rows. This code distributes its error over all rows of the contradiction, with the least sum
+// of squares.
 //
 //   K lambda = b - Z y,  Z^T Z y = Z^T b,  the columns of Z spanning the left null space of K:
-//   z_d = e_d - (K_II^-1 K_Id on the rows I that were kept), for every dropped row d.
+//   z_d = e_d - (K_II^-1 K_Id on the independent rows I), for every dropped row d.
 //
-// Z^T b is what the dropped rows miss, so that where nothing contradicts nothing is computed. The small system is
-// solved by conjugate gradients, whose products are a solve and a multiplication with the factor and the K at hand.
+// Z^T b is the error of the dropped rows; if it is round-off, there is nothing to do. Conjugate gradients solve the
+// small system; each product needs one solve with the factor and one multiplication by K.
 #include <algorithm>
 #include <cmath>
 
@@ -17,13 +17,13 @@
 namespace cdot {
 namespace {
 
-// Below this, and below this share of the largest b, a row that is missed is round-off.
+// An error of a row below this, or below this share of the largest b, counts as round-off.
 template <class T>
 constexpr double least_slight = by_precision<T>(1e-5, 1e-11);
 template <class T>
 constexpr double least_share = by_precision<T>(1e-4, 1e-9);
 
-constexpr double solved = 1e-24;  // of the square of what was missed at first
+constexpr double solved = 1e-24;  // share of the square of the first error
 
 template <class Real>
 Real product(const std::vector<Real>& x, const std::vector<Real>& y) {
@@ -34,7 +34,7 @@ Real product(const std::vector<Real>& x, const std::vector<Real>& y) {
 
 }  // namespace
 
-// w becomes Z^T w, in the places of the dropped rows; 0 elsewhere.
+// w <- Z^T w in the places of the dropped rows; 0 elsewhere.
 template <class S>
 void System<S>::contract(std::vector<Real>& w) {
   for (int r = 0; r < rows_; ++r) right_side_[r] = kept(r) ? w[r] : Real(0);
@@ -43,7 +43,7 @@ void System<S>::contract(std::vector<Real>& w) {
   for (int r = 0; r < rows_; ++r) w[r] = ldlt_.dependent(r) ? w[r] - product_[r] : Real(0);
 }
 
-// to = Z y, y in the places of the dropped rows.
+// to = Z y, with y in the places of the dropped rows.
 template <class S>
 void System<S>::expand(const std::vector<Real>& y, std::vector<Real>& to) {
   ldlt_.multiply(y.data(), product_.data());
@@ -57,7 +57,7 @@ typename System<S>::Real System<S>::slight(Real scale) {
   return std::max(Real(least_slight<T>), least_share<T> * scale);
 }
 
-// What the dropped rows miss, into `missed`. False if that is round-off.
+// Writes the error of the dropped rows, Z^T b, to `missed`. False if it is round-off.
 template <class S>
 bool System<S>::misses_rows(std::vector<Real>& missed) {
   ldlt_.multiply(lambda.data(), product_.data());

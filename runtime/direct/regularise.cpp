@@ -1,13 +1,13 @@
-// Systems in which elimination cannot tell whether a row depends on those before it: in large ones with many redundant
-// rows a pivot that is rightly small magnifies the round-off of all that follow, until rows that say something new are
-// dropped. Where a row that may be one of these is left unmet, K is factored once more, slightly softened in every row,
-// so that none has to be dropped, and the softness is taken back by refinement:
+// Regularises systems in which elimination cannot decide whether a row is redundant. In large systems with many
+// redundant rows a small true pivot magnifies the round-off of all later ones, until independent rows are dropped. If
+// such a row is not satisfied, K is factored again with a small softness in every row, so that no row is dropped.
+// Refinement then removes the softness:
 //
 //   lambda <- lambda + (K + eps D)^-1 (b - K lambda),   D the diagonal of K
 //
-// Each round leaves eps / (eps + kappa) of what b has along an eigenvector, K x = kappa D x. Of rows that contradict
-// each other (kappa = 0) all is left. That adds 1 / eps of itself to lambda in every round, and as much round-off to
-// the rest: for such rows eps is larger, and D the same for all, which makes the motion that of least squares.
+// Each round reduces the error along an eigenvector, K x = kappa D x, by the factor eps / (eps + kappa). The error of
+// contradicting rows (kappa = 0) stays and adds 1 / eps of itself to lambda in every round, with that much round-off in
+// the other rows. For such systems eps is larger and D equal for all rows: the result is the least-squares motion.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,8 +19,7 @@
 namespace cdot {
 namespace {
 
-// In small systems round-off is magnified as much only close to poses that lose a row, and there what is dropped is
-// best left dropped.
+// In small systems round-off grows that much only near singular poses, and there dropped rows are best left dropped.
 constexpr int least_rows = 500;
 struct Level {
   double eps;
@@ -28,7 +27,7 @@ struct Level {
 };
 constexpr Level slightly{1e-10, 5}, plainly{1e-7, 12};
 template <class Real>
-constexpr double refined = by_precision<Real>(1e-13);  // of the largest b
+constexpr double refined = by_precision<Real>(1e-13);  // share of the largest b
 
 }  // namespace
 
@@ -56,7 +55,7 @@ void System<S>::soften(Softened how) {
   softened_ = how;
 }
 
-// The largest of what lambda leaves of `wanted` in the rows that are free.
+// rest = wanted - (K + softness) lambda in the free rows. Returns its largest entry.
 template <class S>
 typename System<S>::Real System<S>::find_rest(const std::vector<Real>& wanted, std::vector<Real>& rest) {
   ldlt_.multiply(lambda.data(), product_.data());
@@ -68,7 +67,7 @@ typename System<S>::Real System<S>::find_rest(const std::vector<Real>& wanted, s
   return largest;
 }
 
-// Returns the largest of what is left.
+// Returns the largest remaining error.
 template <class S>
 typename System<S>::Real System<S>::refine(const std::vector<Real>& wanted, Real scale) {
   auto& [rest, change, aim, unused] = shared_;

@@ -72,8 +72,7 @@ typename System<S>::Real System<S>::largest_b() const {
   return largest;
 }
 
-// Moves rows that left their bounds onto them, and lets rows go whose bound pushes the wrong way.
-// True if none had to.
+// Fixes rows outside their bounds at the bound, and frees rows whose bound has the wrong sign. True if nothing changed.
 template <class S>
 bool System<S>::revise_active_set(bool one_by_one) {
   ldlt_.multiply(lambda.data(), product_.data());
@@ -98,16 +97,15 @@ bool System<S>::revise_active_set(bool one_by_one) {
   return settled;
 }
 
-// The largest share of b by which a row within its bounds may miss it.
+// The largest error of a row within its bounds, as a share of the largest b.
 template <class Real>
 constexpr double missed = by_precision<Real>(1e-9);
-// Of its own diagonal: what makes a row that depends on others one of its own.
+// Share of the diagonal that makes a redundant row independent.
 constexpr double slight_softness = 1e-8;
 
-// A motor and the limit that it runs into are one row twice: whichever elimination meets last is
-// dropped as dependent, whatever it asks for. Where that leaves a row with a bound unsatisfied,
-// such rows become slightly soft, so that the weaker of the two reaches its bound. True if there
-// were any.
+// A motor and the limit that it runs into are the same row twice: elimination drops the later one. If that leaves a
+// bounded row unsatisfied, all bounded rows become slightly soft, so the weaker of the two reaches its bound. True if
+// rows changed.
 template <class S>
 bool System<S>::part_contradicting_rows() {
   const auto bounded = [&](int r) { return std::isfinite(lower[r]) || std::isfinite(upper[r]); };
@@ -123,8 +121,8 @@ bool System<S>::part_contradicting_rows() {
 
 template <class S>
 int System<S>::find_active_set() {
-  // Exchanging all offenders at once is fast but may cycle; one at a time, always the last, does
-  // not (Murty's rule).
+  // Changing all violating rows at once is fast but may cycle. Changing one at a time, always the last, does not cycle
+  // (Murty's rule).
   const int fast = 10, slow = std::min(2 * rows_, 200);
   int dependent = 0;
   for (int round = 0; round < fast + slow; ++round) {
@@ -137,7 +135,7 @@ int System<S>::find_active_set() {
 
 template <class S>
 int System<S>::solve_bounded() {
-  std::copy(active_set_.begin(), active_set_.end(), fixed.begin());  // the rows that were held back in the step before
+  std::copy(active_set_.begin(), active_set_.end(), fixed.begin());  // start: the active set of the last step
   for (int r = 0; r < rows_; ++r) {
     if (broken[r]) fixed[r] = free;
     if (fixed[r]) lambda[r] = fixed[r] == at_lower ? lower[r] : upper[r];

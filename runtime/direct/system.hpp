@@ -1,5 +1,5 @@
-// The global system K lambda = b of one island: assembled from its row blocks, factored sparse,
-// solved exactly.
+// The system K lambda = b of one island: assembled from its row blocks, factored as a sparse matrix, solved to
+// round-off.
 #pragma once
 
 #include <array>
@@ -18,8 +18,7 @@ class System {
   using T = typename S::Scalar;
   using Real = ExactNumber<T>;
 
-  // Analyses the pattern. Slots are told apart by their position in `segments`. tension_rows: how many each of
-  // them has; none if empty.
+  // Analyses the pattern. tension_rows: the number of each slot in the order of `segments`; empty: none.
   void build(const std::vector<Segment<S>>& segments, const Bodies<S>& bodies,
              const std::vector<int>& tension_rows = {});
   bool built() const { return built_; }
@@ -28,7 +27,7 @@ class System {
   // K from the present J and effective masses.
   void assemble(const Bodies<S>& bodies);
 
-  // Rows have changed places, and those of a slot that is broken(batch, slot) are no more.
+  // Call after slots changed places. Rows of a slot with broken_slot(batch, slot) no longer take part.
   template <class F>
   void find_rows(F broken_slot) {
     for (auto* list : {&blocks, &tensions})
@@ -36,10 +35,10 @@ class System {
     for (const Block& block : blocks)
       std::fill_n(broken.begin() + block.first, block.rows, broken_slot(*block.batch, block.slot) ? 1 : 0);
   }
-  // Rows have broken: others that seemed redundant for long may have been so beside these only.
+  // Call after rows broke: rows that are redundant by design may have depended on the broken rows only.
   void doubt_redundant_rows() { ldlt_.doubt_lasting(); }
 
-  // Some rows have softness or bounds.
+  // True if there are rows with softness or bounds.
   bool lawful() const { return lawful_; }
 
   // b of every row from value(batch, i), i numbering the batch's rows.
@@ -50,7 +49,7 @@ class System {
   }
   // Softness and bounds of the rows under a law.
   void load_laws();
-  // Takes part only where wanted(batch, i); softness 0.
+  // Selects the rows with wanted(batch, i); softness 0.
   template <class F>
   void choose(F wanted) {
     each_row([&](int row, const Batch<S>& batch, int i) {
@@ -58,7 +57,7 @@ class System {
       softness[row] = lambda[row] = 0;
     });
   }
-  // The same of rows that do not take part so far; the others stay. True if there is one more.
+  // Adds rows with wanted(batch, i) to the selection. True if there was one.
   template <class F>
   bool choose_more(F wanted) {
     bool any = false;
@@ -70,7 +69,7 @@ class System {
     });
     return any;
   }
-  // lambda of the rows that do not take part.
+  // Sets lambda of the rows that are not selected.
   template <class F>
   void give(F force) {
     each_row([&](int row, const Batch<S>& batch, int i) {
@@ -92,27 +91,26 @@ class System {
   std::vector<Real> b, lambda;
   std::vector<Real> softness, lower, upper;
   enum Hold : char { free = 0, at_lower = 1, at_upper = 2 };
-  std::vector<char> fixed;   // Hold: where not free, lambda stays what it is
-  std::vector<char> broken;  // 1: the row is no more: lambda = 0
+  std::vector<char> fixed;   // Hold: unless free, lambda is given
+  std::vector<char> broken;  // 1: the joint is broken, lambda = 0
 
-  // Factors with the rows marked in `fixed` or `broken` taken out. Returns the number of dependent
-  // rows.
+  // Factors K without the rows marked in `fixed` or `broken`. Returns the number of redundant rows.
   int factor();
-  // lambda of the free rows from b and the lambda of the fixed ones. Rows that depend on others and contradict them are
-  // met in the sense of least squares.
+  // lambda of the free rows from b and from lambda of the fixed rows. Contradicting rows are satisfied in the sense of
+  // least squares.
   void solve();
-  // By how much the last solve() had to leave b unmet in a row; 0 where rows do not contradict each other.
+  // The error of a row after the last solve(); 0 unless rows contradict each other.
   Real unmet(int row) const { return contradicted_ ? unmet_[static_cast<size_t>(row)] : Real(0); }
-  // The share that a row has of K by itself: J M^-1 J^T of it alone.
+  // K_rr = J M^-1 J^T of the row alone.
   Real diagonal(int row) const { return ldlt_.diagonal(row); }
-  // Of the last factor(): what it left of that; the row depends on others; x = K^-1 x of the rows that do not.
+  // Results of the last factor(): the pivot of K_rr; whether the row is redundant; x = K^-1 x of the independent rows.
   Real pivot(int row) const { return ldlt_.pivot(row); }
   bool dependent(int row) const { return ldlt_.dependent(row); }
   void solve_factored(Real* x) { ldlt_.solve(x, x); }
-  // y = K x of all rows.
+  // y = K x over all rows.
   void multiply(const Real* x, Real* y) const { ldlt_.multiply(x, y); }
-  // lambda within [lower, upper], by an active set: where a bound holds it back, J v + bias need
-  // not vanish. Returns the number of dependent rows of the last factorisation.
+  // lambda within [lower, upper], by an active set: at a bound J v + bias need not vanish. Returns the number of
+  // redundant rows of the last factorisation.
   int solve_bounded();
 
   // Its State.
@@ -129,12 +127,11 @@ class System {
   };
   std::vector<Block> blocks, tensions;
 
-  // Rows that the tension of a slot adds (runtime/solve/tension.hpp): the impulse -stiffness W v along W^T, as soft
-  // rows. They are no joint's, so each_row() leaves them out, and their b is 0 but after load_tensions(). Slack until
-  // tightened.
+  // Soft rows for the tension of a slot (runtime/solve/tension.hpp): the impulse -stiffness W v along W^T. They belong
+  // to no joint, so each_row() skips them; load_tensions() sets their b. They are inactive until tighten().
   void slacken();
-  // Takes over from the system of the same blocks without tensions what changed since both were built, and forgets the
-  // rest.
+  // Copies the changes since both were built from the system of the same blocks without tensions; resets everything
+  // else.
   void follow(const System& other);
   void tighten(const Block& tension, int row, const double* w, double stiffness);
   // b = -W velocity
@@ -142,7 +139,7 @@ class System {
   // to += M^-1 W^T lambda
   void pull(const Bodies<S>& bodies, typename S::Velocity* to) const;
 
-  // J of one block times the weighted J of another over one body that they share.
+  // J of one block times the weighted J of another, over one shared body.
   struct Product {
     void (*add)(const Product&, const Real* J, const Real* weighted, Real* K);
     int J, weighted;                // into jacobian_ and weighted_
@@ -152,7 +149,7 @@ class System {
   };
 
  private:
-  // The factor is that of K with every row softened (runtime/direct/regularise.cpp).
+  // Whether the factor is that of K with softness in every row (runtime/direct/regularise.cpp).
   enum class Softened : char { no, slightly, plainly };
   template <class F>
   void each_tension_row(F f) const {
@@ -188,9 +185,9 @@ class System {
   std::vector<Product> products_;
   std::vector<Real> jacobian_, weighted_;
   std::vector<Real> right_side_, product_;
-  std::array<std::vector<Real>, 4> shared_;  // by row, while contradictions are shared out or rows refined
+  std::array<std::vector<Real>, 4> shared_;  // by row, scratch of least_squares.cpp and regularise.cpp
   std::vector<Real> unmet_;                  // by row
-  std::vector<int> tension_of_;              // which of `blocks`
+  std::vector<int> tension_of_;              // index into `blocks`
   std::vector<char> out_;
   StateArray<char> active_set_;  // State: Hold by row, of the last solve_bounded()
 };

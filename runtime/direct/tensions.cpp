@@ -1,4 +1,4 @@
-// The rows that tension adds to an island's system: apart from those of joints, since nobody else is to see them.
+// The rows that tension adds to an island's system.
 #include <algorithm>
 
 #include <cdot/spaces.hpp>

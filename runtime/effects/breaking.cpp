@@ -76,7 +76,7 @@ void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
   if (data.joints[joint].places.empty()) return;
   if (data.breaking_loads.empty()) data.after_substep.push_back(break_overloaded<S>);
   data.breaking_loads.emplace_back(joint, load);
-  if (data.prepared) settle_state(data);  // its island has more to lose in a step now
+  if (data.prepared) settle_state(data);  // the flag of the joint joins its island's ranges
 }
 
 #define CDOT_INSTANTIATE(S) template void set_breaking_load(BasicWorld<S>&, int, double);

@@ -19,7 +19,7 @@ void set_constants(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S
     throw Error(fmt::format("joint number {} has no effect number {}", joint, effect));
   Batch<S>& batch = *data.batches[record.places[place].batch];
   if (batch.law != &named.law)
-    throw Error(fmt::format("effect number {} of joint number {} is no {}", effect, joint, named.name));
+    throw Error(fmt::format("effect number {} of joint number {} is not a {}", effect, joint, named.name));
   const auto count = static_cast<size_t>(named.law.constants);
   for (size_t k = 0; k < count; ++k)
     batch.constants[slot_of(data, record.places[place]) * count + k] = typename S::Scalar(constants[k]);

@@ -1,4 +1,4 @@
-// What acts on bodies without a joint: gravity, constant forces, springs between points, drag.
+// Forces on bodies other than the joints': gravity, constant forces, springs between points, drag.
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
@@ -6,7 +6,7 @@
 namespace cdot {
 namespace {
 
-// to += M^-1 of what the spring exerts, over a time h.
+// to += h M^-1 f of the spring.
 template <class S>
 void pull(const Bodies<S>& all, const typename S::PointSpring& spring, typename S::Scalar h,
           StateArray<typename S::Velocity>& to) {
@@ -14,7 +14,7 @@ void pull(const Bodies<S>& all, const typename S::PointSpring& spring, typename 
   const auto a = static_cast<size_t>(spring.body_a), b = static_cast<size_t>(spring.body_b);
   const auto stretch = S::stretch(spring, all.pose[a], all.pose[b]);
   const T impulse = h * S::tension(spring, stretch, all.velocity[a], all.velocity[b]);
-  // Of what never moves not even 0 times a force: where a stage goes astray that is infinite.
+  // Skips immovable bodies: in a diverging stage f may be infinite, and 0 times infinity is NaN.
   const auto push = [&](size_t body, const auto& on_body) {
     if (!all.immovable(static_cast<int>(body)))
       to[body] = S::sum(to[body], S::weighted(all.effective_mass[body], on_body), T(1));
@@ -52,13 +52,13 @@ template <class S>
 void apply_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
-  // dv/dt = -d v, implicitly: v / (1 + h d) never overshoots 0. Before the forces, so that it does
-  // not dampen the h g of a body that hangs at rest.
+  // dv/dt = -d v, implicitly: v / (1 + h d) never overshoots 0. Drag comes before the forces, so it does not damp the h
+  // g of a body that hangs at rest.
   for (const Drag<S>& drag : island.drags)
     all.velocity[drag.body] =
         S::damped(all.velocity[drag.body], T(1) / (T(1) + h * drag.linear), T(1) / (T(1) + h * drag.angular));
   for (const auto& spring : island.springs) pull(all, spring, h, all.velocity);
-  // What tension stiffens, a torque turns less.
+  // Tension adds to the effective inertia, so torques act through effective_mass.
   for (int i : island.bodies) {
     const auto& rate = all.acceleration[i];
     all.velocity[i] =

@@ -1,6 +1,5 @@
-// Symplectic Euler: the velocities have been advanced first, the poses follow with the new ones.
-// First order. A body whose inertia tensor turns with it goes about its mean spin of the step,
-// second order by itself, and keeps its angular momentum.
+// Symplectic Euler, first order: the poses advance with the new velocities. A body with a turning inertia tensor
+// rotates by its mean spin of the step. That rotation is second order and conserves the angular momentum.
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
@@ -13,7 +12,7 @@ void turn_inertias(WorldData<S>& world, Island<S>& island) {
   for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
     S::turn(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
     S::turn_acceleration(gyroscope, all.inverse_mass[i], all.acceleration[i]);
-    // Under geometric stiffness the effective mass is that of the step's start until the next.
+    // With geometric stiffness the effective mass of the step's start stays until the next step.
     if (!island.stiffened) all.effective_mass[i] = all.inverse_mass[i];
   });
 }

@@ -1,4 +1,4 @@
-// How bodies move apart from their joints: forces, and poses from velocities.
+// Motion of bodies without their joints: forces, and poses from velocities.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
@@ -9,22 +9,22 @@ namespace cdot {
 template <class S>
 void apply_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
-// M^-1 of the same forces, explicitly, into Bodies::velocity_rate; and with the gyroscopic torques dv/dt of bodies
-// without joints.
+// M^-1 f of the same forces, explicitly, into Bodies::velocity_rate. free_accelerations() adds the gyroscopic torques:
+// dv/dt without joints.
 template <class S>
 void push_free_bodies(WorldData<S>& world, Island<S>& island);
 template <class S>
 void free_accelerations(WorldData<S>& world, Island<S>& island);
 
-// q += h v; bodies whose inertia tensor turns with them keep I w.
+// q += h v; bodies with a turning inertia tensor keep L = I w.
 template <class S>
 void integrate(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 
-// The inertia tensors at the present poses, w = I^-1 L with them: for whoever moves poses, in a
-// space that has gyroscopes.
+// Sets the inertia tensors at the present poses, and w = I^-1 L. Call it after every change of poses, in a space with
+// gyroscopes.
 template <class S>
 void turn_inertias(WorldData<S>& world, Island<S>& island);
-// The same with w kept in place of L.
+// The same, but keeps w in place of L.
 template <class S>
 void set_inertias(WorldData<S>& world, Island<S>& island);
 template <class S, class F>

@@ -2,8 +2,8 @@
 
 namespace cdot {
 
-// The same numbers in [0, 1) every time, that have nothing to do with any scene: no eigenvector is orthogonal to them
-// but by chance, and no pose made of them is a special one.
+// A fixed sequence of numbers in [0, 1) without relation to any scene: a start vector for power iterations, and poses
+// that are not singular.
 class Arbitrary {
  public:
   double operator()() {

@@ -1,7 +1,6 @@
-// Broyden's method: solves F(x) = 0 with the factor of dF/dx at hand, which it corrects by what it learns from each
-// step. Where the directions of a mechanism's joints turn about within a step, as at a pose in which it loses a row,
-// that factor alone leads astray in one direction; two or three steps tell how far. (C. T. Kelley, "Iterative Methods
-// for Linear and Nonlinear Equations", 1995, 7.3.)
+// Broyden's method: solves F(x) = 0 with an old factor B of dF/dx, corrected by a rank-one update after each step. Near
+// a singular pose the joints' directions change within a step and B is wrong in one direction. Two or three updates
+// correct that. (C. T. Kelley, "Iterative Methods for Linear and Nonlinear Equations", 1995, 7.3.)
 #pragma once
 
 #include <cmath>
@@ -20,14 +19,14 @@ class Broyden {
     sizes_.assign(most_steps + 1, 0.0);
     weights_.assign(n_, 1.0);
   }
-  // weight(i): of unknown i in the products of steps, such that unknowns of different units compare.
+  // weight(i): weight of unknown i in the products <s, z>, which makes unknowns of different units comparable.
   template <class F>
   void begin(F weight) {
     count_ = 0;
     for (size_t i = 0; i < n_; ++i) weights_[i] = weight(i);
   }
 
-  // z = -B^-1 F at the present point, B being that factor; becomes the step from there. False if none is known.
+  // In: z = -B^-1 F at the present point. Out: the step from there. False if the method has no further step.
   //   z += s_j+1 <s_j, z> / <s_j, s_j> for the steps s_j so far, then s = z / (1 - <s_n, z> / <s_n, s_n>)
   bool next(Real* z) {
     if (count_ > most_steps) return false;

@@ -1,4 +1,4 @@
-// A fingerprint of numbers: FNV-1a of their bytes.
+// Numbers -> a fingerprint: FNV-1a of their bytes.
 #pragma once
 
 #include <cstddef>

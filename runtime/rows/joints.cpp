@@ -21,7 +21,7 @@ std::span<const JointType> joint_types(Dimension dimension) { return registered(
 
 void add_joint_type(Dimension dimension, JointType type) {
   if (find_joint_type(dimension, type.name) != nullptr)
-    throw std::logic_error("there is a joint `" + std::string(type.name) + "` already");
+    throw std::logic_error("there is already a joint `" + std::string(type.name) + "`");
   registered(dimension).push_back(std::move(type));
 }
 

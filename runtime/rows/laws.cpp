@@ -43,8 +43,7 @@ void guard_unilateral(const Batch<S>& batch, int slot, Guard<typename S::Scalar>
   }
 }
 
-// Out of a unilateral spring's reach the row is exact, so that C cannot leap over 0 within the
-// step.
+// Out of reach (C > 0) a unilateral spring's row is exact, so C cannot jump over 0 within the step.
 template <class S>
 void fill_soft(Batch<S>& batch, int begin, int end, typename S::Scalar h, const Settings&) {
   using T = typename S::Scalar;

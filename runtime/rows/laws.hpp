@@ -1,5 +1,5 @@
-// The laws of a joint's own rows that are not plain equalities: inequalities, and rows as springs.
-// The laws of effects on coordinates are in effects/.
+// The laws of a joint's own rows: inequalities, and rows as springs. Plain equalities have no law. The laws of effects
+// on coordinates are in effects/.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace cdot {
 
-// C >= 0 where the spec says so: the impulse may only push C up.
+// C >= 0 for the spec's inequalities: lambda >= 0.
 template <class S>
 const Law<S>& unilateral_law();
 
@@ -25,14 +25,13 @@ inline void spring_constants(const Softness& softness, double* constants) {
   if (!(strength >= 0 && damping >= 0) || !std::isfinite(strength) || !std::isfinite(damping))
     throw Error("a spring needs a frequency or stiffness and a damping that are finite and >= 0");
   if (strength == 0 && (softness.by_frequency || damping == 0))
-    throw Error("a spring of zero stiffness without damping does nothing; leave it out");
+    throw Error("a spring of zero stiffness and zero damping has no effect; remove it");
   constants[0] = softness.by_frequency ? 1 : 0;
   constants[1] = strength;
   constants[2] = damping;
 }
 
-// Stiffness k and damping d of a spring on one row; from the effective mass if it is told by its frequency: k = (2 pi
-// f)^2 / K, d = 2 zeta 2 pi f / K.
+// Stiffness k and damping d of a spring on one row. By frequency f: k = (2 pi f)^2 / K, d = 2 zeta 2 pi f / K.
 template <class T>
 struct SpringNumbers {
   T k, d;
@@ -70,8 +69,8 @@ double spring_stiffness(T K, const T* constants) {
   return double(spring_numbers(K, constants).k);
 }
 
-// The bias of a row that keeps C >= 0: far away it lets C shrink to 0 within the step but not
-// further; beyond 0, the share that the drift correction takes per step is fed back.
+// The bias of an inequality row. For C > 0 it lets C shrink to 0 within the step, but not further. For C < 0 it feeds
+// back the share of C that Drift::baumgarte removes per step.
 template <class T>
 T unilateral_bias(T C, T h, const Settings& settings) {
   const T share = settings.drift == Drift::baumgarte ? T(settings.baumgarte) : T(0);

@@ -34,7 +34,7 @@ void check_numbers(const JointType& type, const ParameterInfo& info, const Named
       throw Error(fmt::format("parameter `{}` of joint `{}` is not finite", info.name, type.name));
 }
 
-// A direction of any length but zero stands for the unit vector along it.
+// Scales a direction of any length but 0 to length 1.
 void normalise(const JointType& type, const ParameterInfo& info, double* numbers, int size) {
   double square = 0;
   for (int k = 0; k < size; ++k) square += numbers[k] * numbers[k];
@@ -44,8 +44,8 @@ void normalise(const JointType& type, const ParameterInfo& info, double* numbers
   for (int k = 0; k < size; ++k) numbers[k] /= length;
 }
 
-// The triad of which the x axis is given, or the x axis and where y roughly points: x stays, y is
-// made perpendicular to it, z = x cross y. Without y the world's axis furthest from x serves.
+// Completes a triad from its x axis and, if given, an approximate y axis. x stays, y is made perpendicular to x, z = x
+// cross y. Without y the frame axis furthest from x replaces it.
 void complete_triad(const JointType& type, const ParameterInfo& info, double* numbers, bool with_y) {
   using Vector = spatial::Vector<double>;
   normalise(type, info, numbers, 3);
@@ -99,7 +99,7 @@ std::vector<double> parameter_numbers(int type_index, const std::vector<NamedVal
   const auto& entry = joint_entries<S>()[static_cast<size_t>(type_index)];
   std::vector<double> numbers(static_cast<size_t>(type.parameter_size), 0.0);
   const std::vector<const NamedValue*> value_of = match(type, given);
-  // In order of declaration, since a default may use the parameters before it.
+  // In order of declaration, because a default may use earlier parameters.
   for (size_t i = 0; i < type.parameters.size(); ++i) {
     const ParameterInfo& info = type.parameters[i];
     double* at = numbers.data() + info.offset;

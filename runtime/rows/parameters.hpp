@@ -1,4 +1,4 @@
-// A joint's parameters as a scene names them, turned into the numbers that its kernel reads.
+// A joint's named parameters -> the numbers that its kernel reads.
 #pragma once
 
 #include <array>
@@ -9,18 +9,18 @@
 
 namespace cdot {
 
-// S computes in doubles. All numbers of Parameters<double>: given ones checked and normalised, the
-// others by the spec's default from the poses of the joint's bodies. Throws Error.
+// All numbers of Parameters<double>: given parameters checked and normalised, the others by the spec's defaults from
+// the poses of the joint's bodies. S computes in doubles. Throws Error.
 template <class S>
 std::vector<double> parameter_numbers(int type, const std::vector<NamedValue>& given, const typename S::Pose* poses,
                                       double time);
 
-// Those given take the place of what stood in `numbers`; the others stay. Returns those given. Throws Error.
+// Writes the given parameters into `numbers`; the others stay. Returns the given ones. Throws Error.
 std::vector<const ParameterInfo*> change_parameters(const JointType& type, const std::vector<NamedValue>& given,
                                                     std::vector<double>& numbers);
 
-// Moves the points that such a joint has in the world: those that its spec has on the world, and those on bodies for
-// which fixed_in_world(body) holds.
+// Moves the joint's points in the world: points that its spec declares on the world, and points on bodies with
+// fixed_in_world(body).
 template <class Fixed>
 void move_world_points(const JointType& type, const std::vector<int>& bodies, Fixed fixed_in_world,
                        const std::array<double, 3>& by, double sign, std::vector<double>& numbers) {

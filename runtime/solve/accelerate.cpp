@@ -1,5 +1,5 @@
-// Acceleration level: M dv/dt = f + J^T lambda with J dv/dt = gamma, lambda being forces. Solvers work as on
-// velocities, with dv/dt in their place and -gamma for the bias.
+// Acceleration level: M dv/dt = f + J^T lambda with J dv/dt = gamma; lambda are forces. Solvers get dv/dt in place of
+// velocities and -gamma as bias.
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"

@@ -1,4 +1,4 @@
-// The island's whole K at once: exact to round-off, whatever the mass ratios and however long the chain.
+// Solves the island's whole K at once: exact to round-off for every mass ratio and chain length.
 #include "runtime/solve/direct.hpp"
 
 #include <limits>
@@ -12,8 +12,8 @@ namespace cdot {
 namespace {
 
 constexpr int newton_rounds = 20;
-// What a round may leave of the error: less, and any is down to round-off when the rounds end, 0.2^19 being 5e-14. In
-// continuous time a step that needs new directions is rather too long: its error control is to find that.
+// The share of the error that a Newton round may leave. At this rate newton_rounds reach round-off: 0.2^19 = 5e-14. At
+// acceleration level a step that needs a new J is too long; error control must shorten it.
 constexpr double enough = 0.2, enough_in_continuous_time = 0.5;
 
 template <class S>
@@ -21,7 +21,7 @@ bool is_held(const Batch<S>& batch, int i) {
   return !batch.law || batch.mode[i] == Mode::held;
 }
 
-// A row that has something to correct.
+// True if the row has an error to correct.
 template <class S>
 bool has_error(const Batch<S>& batch, int i) {
   return is_held(batch, i) || (batch.mode[i] == Mode::bounded && batch.error[i] != 0);
@@ -65,7 +65,7 @@ void solve_velocities(WorldData<S>& world, Island<S>& island, typename S::Veloci
   exert_solution(world, island, system, v);
 }
 
-// K lambda = gamma - J dv/dt without joints, known forces being given.
+// K lambda = gamma - J dv/dt, with dv/dt without joints and known forces given.
 template <class S>
 void solve_accelerations(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
@@ -99,23 +99,24 @@ void move_by_newton(WorldData<S>& world, Island<S>& island, System<S>& system) {
   }
 }
 
-// `fresh`: J and K are not yet those of the step. Where they leave more than `enough` of the error they are renewed,
-// and where new ones do not halve it the joints contradict each other, round-off is reached, or the step went too far.
+// `fresh`: J and K are not yet those of the step. A round that leaves more than `enough` of the error renews them. If
+// new ones do not halve the error, the rounds end: the joints contradict each other, C is at round-off, or the step was
+// too long.
 template <class S>
 void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   using T = typename S::Scalar;
   System<S>& system = island.at_work();
   T before = std::numeric_limits<T>::infinity();
   bool renewed = false;
-  // Forces that are known move nothing here.
+  // Known forces do not act in a projection.
   system.give([](const Batch<S>&, int) { return 0.0; });
-  // Without laws, and in continuous time, the solve before has left just this factor.
+  // Without laws and at acceleration level the last solve left the right factor.
   const bool other_rows = system.lawful() && !island.continuous;
   for (int round = 0;; ++round) {
     const T worst = find_errors(world, island, time);
     island.residual = worst;
     if (!(worst > converged<T> * island.scale) || round == newton_rounds) return;
-    // Bounds that were within reach when the rows were chosen, and are passed now. What has come in stays.
+    // Adds rows that passed their bound since the selection. Selected rows stay.
     const bool more = round > 0 && other_rows && system.choose_more(has_error<S>);
     const bool slow = !more && worst > T(island.continuous ? enough_in_continuous_time : enough) * before;
     if (slow && renewed && worst > T(0.5) * before) return;
@@ -151,7 +152,7 @@ void factor_rows_with_errors(System<S>& system) {
   system.factor();
 }
 
-// What brings a state of continuous time back onto its joints is the method's error, not an impulse of theirs.
+// At acceleration level the projection corrects the method's error, so it is not part of the joints' impulses.
 template <class S>
 void exert_correction(const WorldData<S>& world, const Island<S>& island, System<S>& system, typename S::Velocity* to) {
   using T = typename S::Scalar;

@@ -1,8 +1,8 @@
-// The steps that every use of an island's factor is made of, from J v to the bodies:
+// The stages of every solve with an island's factor, from J v to the bodies:
 //
 //   load_rates or load_errors, assemble, factor, solve, store, exert
 //
-// Inline: to a small island a call would cost as much as what it does.
+// Inline, because in a small island the call would cost as much as the work.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
@@ -18,13 +18,13 @@ template <class S>
   system.load([](const Batch<S>& batch, int i) { return -(batch.rate[i] + batch.bias[i]); });
 }
 
-// b = share * the errors that find_errors() left.
+// b = share * the errors from find_errors().
 template <class S>
 [[gnu::always_inline]] inline void load_errors(System<S>& system, typename S::Scalar share) {
   system.load([share](const Batch<S>& batch, int i) { return share * batch.error[i]; });
 }
 
-// to += M^-1 J^T x, x being an array of the batches; what tension adds to the rows is part of it.
+// to += M^-1 J^T x, where x is an array of the batches, plus the impulse of tension rows.
 template <class S, class Array>
 [[gnu::always_inline]] inline void exert(const WorldData<S>& world, const Island<S>& island, const System<S>& system,
                                          Array x, typename S::Velocity* to) {
@@ -33,11 +33,11 @@ template <class S, class Array>
   system.pull(world.bodies, to);
 }
 
-// Takes rows out of the system that have nothing to correct, and factors the rest.
+// Selects the rows that have an error to correct and factors them.
 template <class S>
 void factor_rows_with_errors(System<S>& system);
 
-// The solution becomes the batches' impulse of this round of a projection, is added to their correction, and acts on
+// Stores the solution as the batches' impulse of this projection round, adds it to their correction and applies it to
 // `to`.
 template <class S>
 void exert_correction(const WorldData<S>& world, const Island<S>& island, System<S>& system, typename S::Velocity* to);

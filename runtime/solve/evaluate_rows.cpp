@@ -1,4 +1,4 @@
-// Evaluates the rows of an island, once per step, before the solver of the settings sees them.
+// Evaluates the rows of an island once per step, before the solver.
 #include <algorithm>
 
 #include <cdot/spaces.hpp>
@@ -19,8 +19,8 @@ void stiffen_bodies(WorldData<S>& world, Island<S>& island, typename S::Scalar h
     segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all, T(world.time),
                                       all.stiffness.data());
   tighten_tensions(world, island, share);
-  // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq, an implicit Euler step of the
-  // turning forces: v starts as (M + h G)^-1 M v.
+  // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq: implicit Euler for the change of the joints'
+  // forces. v starts as (M + h G)^-1 M v.
   for (int i : island.bodies) {
     all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.stiffness[i], share);
     all.velocity[i] = S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
@@ -32,7 +32,7 @@ template <class S>
 void factorize_rows(WorldData<S>& world, Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
-    // The direct solver builds its own K; a law looks at K's diagonal whatever the solver.
+    // The direct solver builds its own K, but a law needs K's diagonal with every solver.
     if (!batch.law && island.solver->exact) continue;
     const auto fill = batch.law ? batch.ops->effective_mass : batch.ops->factorize;
     fill(batch, segment.begin, segment.end, world.bodies);

@@ -1,4 +1,4 @@
-// Sequential impulses: each block brings its own rows to J v = -bias, or to C = 0, in turn, again and again.
+// Sequential impulses: a sweep solves one block after another for J v = -bias, or for C = 0.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -88,7 +88,7 @@ void sweep_accelerations(WorldData<S>& world, Island<S>& island) {
   sweep_velocities(world, island, world.bodies.velocity_rate.data(), typename S::Scalar(1));
 }
 
-// The largest error that a sweep met on its way.
+// The largest error found by a sweep.
 template <class S>
 typename S::Scalar errors_met(const Island<S>& island) {
   typename S::Scalar worst = 0;
@@ -101,7 +101,7 @@ typename S::Scalar errors_met(const Island<S>& island) {
   return worst;
 }
 
-// In continuous time only where a row is held: one that is out of reach must be seen to pass.
+// At acceleration level only held rows are corrected: the event search must see the others pass their ends.
 template <class S>
 void sweep_lawful_poses(WorldData<S>& world, const Island<S>& island, const Segment<S>& segment,
                         typename S::Scalar time) {
@@ -115,7 +115,7 @@ void sweep_lawful_poses(WorldData<S>& world, const Island<S>& island, const Segm
   }
 }
 
-// Where a sweep meets larger errors than the one before, the directions of the step's J mislead: they are renewed.
+// If a sweep finds larger errors than the last one, the step's J is out of date and is renewed.
 template <class S>
 void sweep_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bool fresh) {
   using T = typename S::Scalar;
@@ -141,7 +141,7 @@ void sweep_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   island.residual = find_errors(world, island, time);
 }
 
-// Rows that are not held keep the impulse that they have.
+// The bounds fix the impulse of rows that are not held.
 template <class S>
 void bound_for_projection(const Island<S>& island) {
   using T = typename S::Scalar;

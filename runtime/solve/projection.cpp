@@ -1,5 +1,5 @@
-// The way back onto C = 0 and J v = -dC/dt, for one island: of first-order steps (Drift::projection), and the parts
-// that other integrators share with them.
+// Projects one island onto C = 0 and J v = -dC/dt: the drift correction of first-order steps (Drift::projection), and
+// the functions that other integrators share with it.
 #include "runtime/solve/projection.hpp"
 
 #include <algorithm>
@@ -14,8 +14,7 @@
 namespace cdot {
 namespace {
 
-// What is wrong with a row under a law: for an island in continuous time only rows that are held have to be at their
-// end.
+// The error of a row under a law. At acceleration level only held rows must be at their end.
 template <class S>
 void error_of_law(const Island<S>& island, const Batch<S>& batch, int slot, typename S::Scalar* error) {
   using T = typename S::Scalar;
@@ -29,7 +28,7 @@ void error_of_law(const Island<S>& island, const Batch<S>& batch, int slot, type
     if (batch.mode[slot * rows + r] == Mode::held) error[r] = guards[r].off_by;
 }
 
-// Adds to the bias `share` of the rates that laws want of rows that are held.
+// Adds `share` of the prescribed rates of held rows to the bias.
 template <class S>
 void add_wanted_rates(const Island<S>& island, typename S::Scalar share) {
   using T = typename S::Scalar;
@@ -44,7 +43,7 @@ void add_wanted_rates(const Island<S>& island, typename S::Scalar share) {
   }
 }
 
-// Round-off in C from numbers of the size of the poses, at most about.
+// An estimate of the largest round-off in C from the size of the poses.
 template <class S>
 typename S::Scalar round_off(const WorldData<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;
@@ -169,21 +168,20 @@ void project_start(WorldData<S>& world, Island<S>& island) {
   island.evaluated = island.factored = false;
 }
 
-// Newton on C with the J and K of the step (SHAKE), the displacement over h added to the velocities, and these
-// projected onto J v = -dC/dt at the new poses. Moving the poses alone would drain energy at first order: every step
-// turns the velocity out of the tangent plane, and what the next solve cuts off is gone.
+// Newton on C with the step's J and K (SHAKE). Then displacement / h is added to the velocities, and these are
+// projected onto J v = -dC/dt at the new poses. A projection of the poses alone loses energy at first order: every step
+// turns the velocity out of the tangent plane, and the next solve removes that part.
 template <class S>
 void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
   const T time = T(world.time) + h;
   clear_correction(world, island);
-  // What the start of the step could not correct (joints that contradict each other, too few
-  // sweeps) is not motion.
+  // An error left from the start of the step (contradicting joints, too few sweeps) is not due to the motion.
   const T foreign_error = island.residual, error = find_errors(world, island, time);
   const bool from_motion = foreign_error <= T(0.1) * error;
   island.solver->positions(world, island, time, false);
-  // Otherwise it would be thrown in as energy.
+  // Any other displacement would add energy to the velocities.
   const bool keep = from_motion && correction_is_small(world, island, double(h));
   const bool was_apart = foreign_error > foreign<T> && std::isfinite(foreign_error);
   if (!was_apart) fail_if_open(world, island, foreign_error);

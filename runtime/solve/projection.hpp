@@ -1,63 +1,62 @@
-// Keeping an island on C = 0 and J v = -dC/dt: Newton on the poses, a projection of the velocities. Shared by the drift
-// correction of first-order steps and by the integrators that work with accelerations.
+// Projects an island onto C = 0 by Newton on the poses and onto J v = -dC/dt. The drift correction of first-order steps
+// and the integrators at acceleration level share these functions.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
-// C this small is left alone, in metres and radians, times Island::scale.
+// A smaller C needs no correction; times Island::scale, in [m] and [rad].
 template <class T>
 inline constexpr T converged = T(by_precision<T>(1e-6, 1e-13));
 
-// C of this size came from outside (a pose that was set, joints that contradict each other), not from the motion of the
-// last step: correcting it must not change velocities. Times Island::scale.
+// A larger C at the start of a step is not due to motion but to a set pose or to contradicting joints. Its correction
+// must not change velocities. Times Island::scale.
 template <class T>
 inline constexpr T foreign = T(by_precision<T>(1e-4, 1e-8));
 
-// Displacements and their impulses start at 0.
+// Sets displacements and their impulses to 0.
 template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island);
 
-// What of C is to be removed at the present poses, into Batch::error. Returns its largest entry.
+// Writes the part of C to remove at the present poses to Batch::error. Returns the largest entry.
 template <class S>
 typename S::Scalar find_errors(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
-// Every row's impulse becomes `value`.
+// Sets every row's impulse to `value`.
 template <class S>
 void fill_lambda(const Island<S>& island, typename S::Scalar value);
 template <class S>
 void scale_corrections(const Island<S>& island, typename S::Scalar by);
-// Displacements and their impulses become those of velocities.
+// Adds the displacements, times per_time, to the velocities and scales their impulses likewise.
 template <class S>
 void add_corrections(WorldData<S>& world, Island<S>& island, typename S::Scalar per_time);
 
-// C and J at the present poses, and the inertias there: of an island in continuous time with w as it is, of others with
-// the angular momentum as it is.
+// Evaluates C, J and the inertias at the present poses. Keeps w at acceleration level, otherwise the angular momentum.
 template <class S>
 void evaluate_anew(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
-// The poses were not brought onto the joints, where those of the start of the step were, but for `at_start`: a step too
-// far for Newton, or beyond their reach. Of sweeps, which leave what they leave, nothing is said.
+// True if the direct solver failed to project the poses onto C = 0 although the start of the step satisfied C = 0 up to
+// `at_start`. The step was too long for Newton, or its end is out of the joints' reach. Sweeps always leave an error
+// and never count as failed.
 template <class S>
 bool left_the_joints(const WorldData<S>& world, const Island<S>& island, typename S::Scalar at_start);
-// Such a step has failed, where no shorter one takes its place; unless what is left is what the last solve had to
-// leave: joints that contradict each other share it.
+// Marks such a step as failed, unless the remaining error is the one that contradicting joints share.
 template <class S>
 void fail_if_open(const WorldData<S>& world, Island<S>& island, typename S::Scalar at_start);
 
-// The correction is small beside the motion: 2 |displacement| <= |h v| in the metric of the
-// masses. More than that comes of a passage through a singular pose, or of a step far too large.
+// True if 2 |displacement| <= |h v| in the metric of the masses. A larger correction comes from a singular pose or from
+// a step that is far too long.
 template <class S>
 bool correction_is_small(const WorldData<S>& world, const Island<S>& island, double h);
 
-// Velocities onto J v = -dC/dt, where C and J were just evaluated: exact rows and those that are held. The direct
-// solver then has their factor.
+// Projects the velocities onto J v = -dC/dt after an evaluation of C and J, for exact and held rows. The direct solver
+// then has the factor of these rows.
 template <class S>
 void project_velocities(WorldData<S>& world, Island<S>& island);
 
-// Only for Drift::projection: a start that is off C = 0 onto it, where a step of h begins; and its end, the velocities
-// with it.
+// With Drift::projection: project_start() projects the poses at the start of a step onto C = 0 if they are off.
+// project_step() projects the poses and velocities at the end of a step of h.
 template <class S>
 void project_start(WorldData<S>& world, Island<S>& island);
 template <class S>

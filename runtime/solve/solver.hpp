@@ -1,5 +1,5 @@
-// The solvers of an island's rows, as integrators see them: one interface, a file for each that implements it. Nothing
-// here knows of joints or of an integrator.
+// The interface of the solvers of an island's rows; one file for each implementation. It does not depend on joints or
+// integrators.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
@@ -11,25 +11,25 @@ struct RowSolver {
   using T = typename S::Scalar;
   using Velocity = typename S::Velocity;
 
-  // To round-off, by the factor of the island's K: Island::factored says whether that is of the present J, with all
-  // rows free. Otherwise by sweeps over the blocks, to what the sweeps leave.
+  // True: solves to round-off with the factor of the island's K. Island::factored tells if that is the factor of the
+  // present J with all rows free. False: approximates by sweeps over the blocks.
   bool exact;
 
-  // J has changed: an old factor is forgotten, or the blocks get theirs anew.
+  // Call after a change of J: drops an old factor, or factors the blocks again.
   void (*renew)(WorldData<S>&, Island<S>&);
-  // The same at once, for whoever begins with the factor of all rows.
+  // The same, and factors all rows at once.
   void (*factor)(WorldData<S>&, Island<S>&);
-  // Adds impulses to v such that J v = -bias, within the bounds of rows under a law. Sweeps start from `share` of the
-  // impulses at hand, unless warm starting is off.
+  // Adds impulses to v such that J v = -bias, within the bounds of rows under a law. With warm starting, sweeps start
+  // from `share` of the present impulses.
   void (*velocities)(WorldData<S>&, Island<S>&, Velocity* v, T share);
-  // Adds forces to dv/dt such that J dv/dt = -bias, in rows under a law that are held; the others have the force
-  // between their bounds, which are one number.
+  // Adds forces to dv/dt such that J dv/dt = -bias in exact and held rows. Other rows have a known force: both bounds
+  // are that number.
   void (*accelerations)(WorldData<S>&, Island<S>&);
-  // Moves the poses onto C = 0: with the factor at hand, or, if `fresh`, with J and K at the present poses. Leaves the
-  // moves in Bodies::displacement, the rest of C in Island::residual.
+  // Projects the poses onto C = 0 with the present factor or, if `fresh`, with J and K at the present poses. Writes the
+  // moves to Bodies::displacement and the remaining C to Island::residual.
   void (*positions)(WorldData<S>&, Island<S>&, T time, bool fresh);
-  // Projects the velocities onto J v = -bias, where C and J were just evaluated: exact rows and those that are held.
-  // Afterwards Island::factored says whether the factor of these rows is at hand.
+  // Projects the velocities onto J v = -bias after an evaluation of C and J, for exact and held rows. Sets
+  // Island::factored if the factor of these rows is available.
   void (*projection)(WorldData<S>&, Island<S>&);
 };
 

@@ -17,7 +17,7 @@ std::vector<std::vector<int>> joints_by_body(const WorldData<S>& world) {
   return joints;
 }
 
-// What stands still first, then the heaviest.
+// Roots of the sweep: immovable bodies first, then the heaviest.
 template <class S>
 std::vector<int> roots(const WorldData<S>& world) {
   std::vector<int> bodies(static_cast<size_t>(world.bodies.count()));
@@ -29,12 +29,12 @@ std::vector<int> roots(const WorldData<S>& world) {
 
 }  // namespace
 
-// Depth first, each chain to its end before the next: read backwards, from the tips to the roots.
+// Depth first, each chain to its end; the reverse order runs from the tips to the roots.
 template <class S>
 std::vector<int> sweep_places(const WorldData<S>& world) {
   struct Visit {
     int body;
-    size_t next;  // of its joints
+    size_t next;  // index of its next joint
   };
   const auto joints = joints_by_body(world);
   int place = static_cast<int>(world.joints.size());

@@ -12,11 +12,11 @@
 namespace cdot {
 namespace {
 
-// A pivot below this share of the largest entry is what round-off left.
+// A pivot below this share of the largest entry is round-off.
 template <class T>
 constexpr double slight = by_precision<T>(1e-4, 1e-9);
 
-// The symmetric part of -d(J^T lambda)/dq of one slot over its movable bodies, and what elimination leaves of it.
+// The symmetric part of -d(J^T lambda)/dq of one slot over its movable bodies, reduced by elimination.
 template <class S>
 class Stiffness {
  public:
@@ -24,7 +24,7 @@ class Stiffness {
   static constexpr int widest = S::freedom * most_bodies;
   using Row = std::array<double, widest>;
 
-  // At the poses of `at`; `all` tells which bodies move.
+  // Evaluates at the poses of `at`; `all` tells which bodies are movable.
   Stiffness(const Batch<S>& batch, int slot, const Bodies<S>& all, const Bodies<S>& at, double time, const T* lambda)
       : bodies_(batch.ops->bodies), width_(S::freedom * bodies_) {
     T H[widest * widest];
@@ -43,7 +43,8 @@ class Stiffness {
     }
   }
 
-  // The row of the displacement that is held most, over its pivot. False if none is held any more.
+  // The row of the displacement with the largest stiffness, divided by its pivot. False if no stiff displacement is
+  // left.
   bool find_row(Row& w, double& pivot, bool any_sign) const {
     int held = -1;
     double most = slight<T> * largest_;
@@ -66,7 +67,7 @@ class Stiffness {
     }
   }
 
-  // Nothing is left but what bodies' own turnings have.
+  // True if only the stiffness of the bodies' own rotations is left.
   bool only_turns() const {
     double left = 0;
     for (int r = 0; r < width_; ++r)
@@ -82,7 +83,7 @@ class Stiffness {
   double largest_ = 0;
 };
 
-// Somewhere else: no direction there is a special one.
+// Generic poses, at which no direction is singular.
 template <class S>
 Bodies<S> elsewhere(const Bodies<S>& all, typename S::Scalar size) {
   using T = typename S::Scalar;
@@ -96,8 +97,8 @@ Bodies<S> elsewhere(const Bodies<S>& all, typename S::Scalar size) {
   return other;
 }
 
-// Of a slot that couples displacements, and beside these own turnings only. Others (what slides along an axis that
-// turns) stay with the own turnings.
+// The number of tension rows of a slot that couples displacements and, apart from these, own rotations only. Other
+// joints (a slide along a turning axis) use the own rotations only.
 template <class S>
 int rows_of(const WorldData<S>& world, const Batch<S>& batch, int slot, const Bodies<S>& at) {
   using T = typename S::Scalar;
@@ -111,7 +112,7 @@ int rows_of(const WorldData<S>& world, const Batch<S>& batch, int slot, const Bo
   return stiffness.only_turns() ? rows : 0;
 }
 
-// What a row takes over is not the body's own turning.
+// Subtracts the stiffness of the row from the body's own rotation.
 template <class S>
 void leave_to_row(typename S::Stiffness& own, const double* w, double pivot) {
   typename S::Scalar taken[S::freedom][S::freedom] = {};

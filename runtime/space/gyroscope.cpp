@@ -1,5 +1,5 @@
-// How a free body turns during a step: in closed form if it is symmetric, else Newton for its mean spin. Apart from
-// cdot/gyroscope.hpp, which all joints see.
+// A free body's inertia and spin -> its mean spin during a step: in closed form for symmetric bodies, by Newton for
+// others.
 #include <cmath>
 #include <limits>
 
@@ -9,13 +9,13 @@
 namespace cdot::spatial {
 namespace {
 
-// Of a rotation about theta: sin(a) / a and (1 - cos a) / a^2, a = |theta|.
+// sin(a) / a and (1 - cos a) / a^2 of a rotation about theta, a = |theta|.
 template <class T>
 struct Rodrigues {
   T sinc, versine;
 };
 
-// From a^2. Their series, to round-off, cost a third of a root, a sine and a cosine.
+// From a^2. The series to round-off cost a third of a square root, a sine and a cosine.
 template <class T>
 Rodrigues<T> rodrigues(T square) {
   if (square < T(0.25)) {
@@ -31,8 +31,8 @@ Rodrigues<T> rodrigues(T square) {
   return {T(2) * s * std::cos(angle / 2), T(2) * s * s};
 }
 
-// The solution d of (I - b x T) d = I r. T(theta) = E - versine theta x + (theta x)^2 (1 - sinc) / a^2 says how a small
-// addition d to theta turns what exp(-theta) turned: about T d.
+// Solves (I - b x T) d = I r for d. T(theta) = E - versine theta x + (theta x)^2 (1 - sinc) / a^2 is the tangent map:
+// exp(-theta - d) is exp(-theta) followed by a rotation by -T d.
 template <class T>
 Vector<T> newton_step(const Symmetric<T>& I, const Vector<T>& b, const Vector<T>& theta, T sinc, T versine,
                       const Vector<T>& r) {
@@ -49,7 +49,7 @@ Vector<T> newton_step(const Symmetric<T>& I, const Vector<T>& b, const Vector<T>
   return scale * Vector<T>{dot(right, across), dot(right, cross(third, first)), dot(right, cross(first, second))};
 }
 
-// W after a step of h by Taylor's series, I dW/dt = I W x W; W itself where the step is too long for that.
+// W after a step of h by Taylor's series of I dW/dt = I W x W; W itself if the step is too long for the series.
 template <class T>
 Vector<T> expected_spin(const Symmetric<T>& I, const Symmetric<T>& inverse, const Vector<T>& W, T h) {
   if (!(h * h * dot(W, W) < T(0.25))) return W;
@@ -58,8 +58,7 @@ Vector<T> expected_spin(const Symmetric<T>& I, const Symmetric<T>& inverse, cons
   return W + h * (rate + (T(0.5) * h) * bend);
 }
 
-// The axis of the frame about which the body is symmetric: the moments about the others are equal. Zero if there is
-// none.
+// The frame axis of symmetry: the moments about the other two axes are equal. Zero if no axis has this property.
 template <class T>
 Vector<T> symmetry_axis(const Symmetric<T>& I) {
   const T slight = T(8) * std::numeric_limits<T>::epsilon() * (I.xx + I.yy + I.zz);
@@ -71,8 +70,8 @@ Vector<T> symmetry_axis(const Symmetric<T>& I) {
                              : Vector<T>{0, 0, 0};
 }
 
-// Of a symmetric body in closed form: it goes round L at the rate L / I1, and about its axis e at what its spin has
-// beyond that, (W . e) (1 - I3 / I1). Both turns as quaternions; the spin is the turn that they make together, over h.
+// The mean spin of a symmetric body in closed form. The body precesses about L at the rate L / I1 and rotates about its
+// axis e at (W . e) (1 - I3 / I1). The mean spin is the product of both rotations, as a rotation vector over h.
 template <class T>
 Vector<T> symmetric_spin(const Vector<T>& e, const Vector<T>& W, const Vector<T>& momentum, T I1, T h) {
   const Vector<T> round = (h / I1) * momentum, rest = (h * dot(W, e) - dot(round, e)) * e;
@@ -88,7 +87,7 @@ Vector<T> symmetric_spin(const Vector<T>& e, const Vector<T>& W, const Vector<T>
 
 template <class T>
 Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vector<T>& w, T h) {
-  const T unit = unit_of(gyroscope.inertia);  // how a body turns does not depend on how heavy it is
+  const T unit = unit_of(gyroscope.inertia);  // the rotation does not depend on the scale of the inertia
   const Symmetric<T> I = unit * gyroscope.inertia, inverse = (T(1) / unit) * gyroscope.inverse;
   const Vector<T> before = to_body(q, w), momentum = I * before;
   const Vector<T> axis = symmetry_axis(I);
@@ -97,7 +96,7 @@ Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vecto
     return to_world(q, symmetric_spin(axis, before, momentum, across, h));
   }
   const T round_off = std::numeric_limits<T>::epsilon() * norm(before);
-  // What Newton leaves of an error d is below this times d^2: h^2 / 8 d x (d x I W), weighed by I^-1.
+  // Newton reduces an error d to less than this times d^2: I^-1 of h^2 / 8 d x (d x I W).
   const T curvature = T(0.125) * h * h * (inverse.xx + inverse.yy + inverse.zz) * norm(momentum);
   Vector<T> after = expected_spin(I, inverse, before, h), best = before;
   T smallest_residual = std::numeric_limits<T>::infinity();
@@ -121,7 +120,7 @@ Vector<T> mean_spin(const Gyroscope<T>& gyroscope, const Pose<T>& q, const Vecto
       break;
     }
   }
-  // What is no solution at all may be far from any spin that the body can have.
+  // A vector with a large residual may be far from any possible spin.
   return to_world(q, smallest_residual < T(0.5) * norm(before) ? best : before);
 }
 

@@ -1,4 +1,4 @@
-// Which inertia tensors there are: apart because scenes and Worlds both ask.
+// Checks an inertia tensor, for scenes and for Worlds.
 #include <cdot/settings.hpp>
 
 namespace cdot {
@@ -9,8 +9,8 @@ const char* wrong_with(const Inertia& I) {
   const double determinant = minor * I.zz - I.xx * I.yz * I.yz - I.yy * I.xz * I.xz + 2 * I.xy * I.xz * I.yz;
   if (!(I.xx > 0 && minor > 0 && determinant > 0))
     return "an inertia tensor must be positive definite, or 0 for a point mass";
-  // No principal moment is larger than the sum of the others: with half = trace / 2, the tensor of
-  // second moments half E - I is positive semidefinite.
+  // No principal moment exceeds the sum of the others: with half = trace / 2, the tensor of second moments half E - I
+  // is positive semidefinite.
   const double half = (I.xx + I.yy + I.zz) / 2, slack = -1e-9 * half;
   const double x = half - I.xx, y = half - I.yy, z = half - I.zz;
   const double determinant_of_moments =
@@ -19,7 +19,7 @@ const char* wrong_with(const Inertia& I) {
       x * z - I.xz * I.xz >= slack * half && y * z - I.yz * I.yz >= slack * half &&
       determinant_of_moments >= slack * half * half)
     return nullptr;
-  return "no body has this inertia: a principal moment is at most the sum of the other two";
+  return "no rigid body has this inertia tensor: a principal moment exceeds the sum of the other two";
 }
 
 }  // namespace cdot

@@ -1,4 +1,4 @@
-// Gives a joint, or an effect on one, its slot in the batch of its kind.
+// Adds a joint, or an effect on one, as a slot to the batch of its kind.
 #pragma once
 
 #include <span>
@@ -11,17 +11,17 @@ template <class S>
 void add_rows(WorldData<S>& world, int joint, const BlockOps<S>* ops, const Law<S>* law, std::vector<RowKind> kinds,
               std::span<const double> constants);
 
-// The one row of a joint's coordinate under an effect's law. Returns its index into JointRecord::places. Throws Error
-// if there is no such joint or coordinate; does nothing, and returns -1, for a joint between immovable bodies.
+// Adds the one row of a coordinate under an effect's law. Returns the index into JointRecord::places; -1 without a row
+// if all bodies are immovable. Throws Error if the joint or the coordinate does not exist.
 template <class S>
 int add_coordinate_row(WorldData<S>& world, int joint, std::string_view coordinate, const Law<S>* law,
                        std::span<const double> constants);
 
-// Throws Error if there is no such joint.
+// Throws Error if the joint does not exist.
 template <class S>
 void check_joint(const WorldData<S>& world, int joint);
 
-// Index into JointType::coordinates. Throws Error, listing those there are.
+// Index into JointType::coordinates. Throws Error with a list of the coordinates.
 template <class S>
 int coordinate_index(int type, std::string_view name);
 

@@ -41,7 +41,7 @@ class Layout {
   void operator()(StateNumber<Number>& number) {
     add<Number>(number, 1);
   }
-  // Its fractions go by their bits.
+  // The doubles among the counts are stored as their bits.
   void counts(StateNumber<StepCounts>& counts) {
     item("counts", -1, true);
     if (to_) counts.settle(to_ + at_);
@@ -68,8 +68,8 @@ class Layout {
   std::size_t at_ = 0;
 };
 
-// The share of an island in the arrays that steps change, by body, by slot, or its own. It does not depend on which
-// other islands there are: neither must the price of a step.
+// The ranges of one island in the arrays that steps change: by body, by slot, or its own. The ranges exclude other
+// islands, so saving costs a step nothing for them.
 class Ranges {
  public:
   explicit Ranges(const Block& block) : base_(block.bytes.data()) {}
@@ -78,7 +78,7 @@ class Ranges {
   void take(int begin, int end, std::size_t of) {
     begin_ = static_cast<std::size_t>(begin), end_ = static_cast<std::size_t>(end), of_ = of;
   }
-  // Whole arrays and numbers, which follow each other.
+  // Whole arrays and numbers, stored contiguously.
   void take_all() { own_ = true; }
   void item(const char*, int, bool in_steps) { in_steps_ = in_steps; }
   template <class Number>
@@ -109,7 +109,7 @@ class Ranges {
   bool in_steps_ = true, own_ = false, follows_ = false;
 };
 
-// Which of the island's joints may break. Their flags are numbers of its own.
+// Adds the flags of the island's breakable joints to its ranges. True if there are any.
 template <class S>
 bool find_breakable(WorldData<S>& world, int index, Ranges& ranges) {
   bool any = false;
@@ -129,7 +129,7 @@ std::vector<Block::Range> ranges_of(WorldData<S>& world, int index) {
   Island<S>& island = world.islands[index];
   const auto& bodies = island.bodies;
   const bool breaks = find_breakable(world, index, ranges);
-  for (std::size_t k = 0, next; k < bodies.size(); k = next) {  // runs of bodies that follow each other
+  for (std::size_t k = 0, next; k < bodies.size(); k = next) {  // runs of consecutive bodies
     for (next = k + 1; next < bodies.size() && bodies[next] == bodies[next - 1] + 1;) ++next;
     ranges.take(bodies[k], bodies[next - 1] + 1, world.bodies.pose.size());
     const bool masses_change = !island.gyroscopes.empty() || world.may_stiffen();

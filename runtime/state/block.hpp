@@ -1,4 +1,4 @@
-// The bytes of a State, one array after another, each from a multiple of Snapshot::alignment on.
+// The bytes of a State: its arrays one after another, each aligned to Snapshot::alignment.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@ struct Block {
   std::vector<std::byte> bytes;
   std::vector<Snapshot::Item> items;
   Range common{};                           // time and counts
-  std::vector<std::vector<Range>> islands;  // the share of each in all that steps change
+  std::vector<std::vector<Range>> islands;  // ranges of each that steps change
 };
 
-// Lays out the State of a World whose islands were just analysed, and moves it there. Allocates.
+// Lays out the State of a World after the analysis of islands and moves it into one block. Allocates.
 template <class S>
 struct WorldData;
 template <class S>

@@ -1,5 +1,4 @@
-// All of a World that no step changes: its settings, who is connected with whom, and in which order it is solved. A
-// World of many equal mechanisms has one Model and a State for each of them.
+// The part of a World that no step changes: settings, connections, order of the solution.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +21,7 @@ struct WorldData;
 template <class S>
 struct RowSolver;
 
-// Where a joint's rows stand, or those of an effect on it.
+// The place of the rows of a joint or of an effect.
 struct Place {
   int batch;
   int home;  // BatchState::home of its slot, which is Batch::slot_of[home]
@@ -31,8 +30,8 @@ struct Place {
 struct JointModel {
   int type;  // index into joint_types()
   std::vector<int> bodies;
-  std::vector<Place> places;  // its own rows first, then its effects; none if all its bodies are immovable
-  Hash added;                 // of what it was added as, with its effects
+  std::vector<Place> places;  // the joint's rows, then its effects; empty if all bodies are immovable
+  Hash added;                 // of its definition and effects at first
 };
 
 template <class S>
@@ -48,18 +47,18 @@ struct IslandModel {
   std::vector<typename S::PointSpring> springs;
   std::vector<Drag<S>> drags;
   std::vector<int> gyroscopes;  // into Model::turning
-  bool restless = false;        // driven by time: never sleeps
+  bool restless = false;        // depends on t: never sleeps
 };
 
 template <class S>
 struct Model {
   using T = typename S::Scalar;
-  // Looks at the World after every substep, as breaking loads do.
+  // Called after every substep, for example by breaking loads.
   using Hook = void (*)(WorldData<S>&, T h);
 
   Settings settings;
   OnFailure on_failure = OnFailure::stop;
-  std::array<double, 3> origin{};  // [m] where the poses are counted from
+  std::array<double, 3> origin{};  // [m] origin of the poses
   int ground = -1;
   std::vector<typename S::PointSpring> springs;
   std::vector<Drag<S>> drags;
@@ -68,12 +67,12 @@ struct Model {
   std::vector<Hook> after_substep;
   std::vector<Note> notes;
 
-  bool prepared = false;       // the following, and the order of slots, are those of the present joints
+  bool prepared = false;       // the members below and the order of slots are current
   std::vector<int> island_of;  // by body; -1: immovable
 
-  // Steps are linearly implicit: effective masses change.
+  // True for linearly implicit steps, which change effective masses.
   bool may_stiffen() const { return row_of(settings.integrator).stiffens; }
-  // The direct solver works on islands, or may have to.
+  // True if the direct solver works on islands, always or in a retry.
   bool needs_systems() const { return !sweeps(settings.solver) || on_failure == OnFailure::retry; }
 };
 

@@ -1,5 +1,4 @@
-// One joint or coordinate evaluated at the present poses without touching the World's own rows:
-// what every question about a World is answered from.
+// One joint or coordinate at the present poses, in its own slot: queries use it and leave the World's rows unchanged.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +18,7 @@ class Probe {
   using T = typename S::Scalar;
   explicit Probe(const WorldData<S>& world) : world_(world) {}
 
-  // The rows of a joint, or the row of one of its coordinates, with no body taken as immovable.
+  // Evaluates the rows of a joint, or the row of one of its coordinates, by the block for general bodies.
   void look_at(const JointRecord& joint, int coordinate = -1) {
     const JointEntry<S>& entry = joint_entries<S>()[joint.type];
     const BlockVariants<S>& variants = coordinate < 0 ? entry.rows : entry.coordinates[coordinate];
@@ -54,9 +53,8 @@ class Probe {
     return batch_.rate;
   }
 
-  // True if C, where it holds, has no direction: a step along the row's own M^-1 J^T changes C as
-  // much as one back, so that the C that J promises is not there. That is what a distance of length
-  // 0 is.
+  // True if C = 0 is a kink of C, as at a distance of length 0. A step along the row's M^-1 J^T then changes C by as
+  // much as the opposite step, so J does not predict the change of C.
   bool at_kink(int row) {
     if (!(std::abs(C(row)) <= 1e-9)) return false;
     std::vector<T> lambda(static_cast<size_t>(ops_->rows), T(0));
@@ -67,8 +65,8 @@ class Probe {
     ops_->velocity(batch_, 0, 1, step.data(), batch_.rate.data());
     const T promised = batch_.rate[row];
     if (!(promised > T(0))) return false;
-    // A joint that is small itself has its kink near, and one that is large does not see small steps: it is a kink only
-    // if it is one at every scale.
+    // A small joint may have a kink nearby, and a large one does not resolve small steps. A kink must show at every
+    // scale.
     for (const T wanted : {T(1e-3), T(1e-6), T(1e-9), T(1e3) * resolution()}) {
       if (wanted == T(0)) continue;  // all bodies are at the origin
       const T forth = C_after(wanted / promised)[row], back = C_after(-wanted / promised)[row];
@@ -77,9 +75,9 @@ class Probe {
     return true;
   }
 
-  // The first row whose C has no value here, as an angle has none that is told by axes which point against each other:
-  // a body moves by a hair, by a thousandth of it, and C changes by the same. -1 if there is none; whole turns are
-  // counted and no jump.
+  // The first row whose C jumps here, as an angle does between axes that point in opposite directions; -1 if none. A
+  // small motion of a body and a thousandth of that motion change such a C by the same amount. Counted whole turns are
+  // no jump.
   int jumping_row() {
     const T hair = T(by_precision<T>(1e-2, 1e-6)), least = std::max(T(0.01), T(1e3) * resolution());
     const std::vector<T> here = batch_.C;
@@ -103,7 +101,7 @@ class Probe {
     ops_->dense(batch_, 0, bodies_, J, weighted, K.data(), ops_->rows);
   }
 
-  // J^T lambda on the body at this position of the joint: the velocity that it gives to a body of mass and inertia 1.
+  // J^T lambda on the body at this position in the joint: the change of velocity of a body of mass and inertia 1.
   typename S::Velocity impulse_on(int position, const std::vector<T>& lambda) {
     std::fill(bodies_.effective_mass.begin(), bodies_.effective_mass.end(), S::unit_mass());
     std::fill(bodies_.displacement.begin(), bodies_.displacement.end(), typename S::Velocity{});
@@ -112,7 +110,7 @@ class Probe {
   }
 
  private:
-  // Whole turns as the World has counted them, if it has; else from none.
+  // Takes the whole turns that the World has counted, if any; otherwise starts at none.
   void count_on(const JointRecord& joint, const BlockVariants<S>& variants) {
     batch_.counters.assign(static_cast<size_t>(ops_->counters), T(0));
     ops_->start_counting(batch_, 0, bodies_, T(world_.time));
@@ -124,7 +122,7 @@ class Probe {
     }
   }
 
-  // How far bodies are from the first.
+  // The largest distance of a body from the first one, by component.
   T reach() const {
     T far = 0, from[S::pose_numbers], to[S::pose_numbers];
     S::write(bodies_.pose[0], from);
@@ -135,7 +133,7 @@ class Probe {
     return far;
   }
 
-  // What two places are told apart by, where the bodies are.
+  // The resolution of positions at the bodies' distance from the origin.
   T resolution() const {
     T far = 0;
     for (const auto& pose : bodies_.pose) {
@@ -153,7 +151,7 @@ class Probe {
     return C_after(T(1));
   }
 
-  // C of all rows where `scale` times the displacements lead.
+  // C of all rows after `scale` times the displacements.
   const std::vector<T>& C_after(T scale) {
     const auto poses = bodies_.pose;
     for (size_t k = 0; k < poses.size(); ++k)
@@ -169,7 +167,7 @@ class Probe {
   Bodies<S> bodies_;  // those of the joint only, in its order
 };
 
-// lambda of a joint's rows in the last substep, drift correction included; zeros where it has none.
+// lambda of a joint's rows in the last substep, with the drift correction; zeros for rows without a slot.
 template <class S>
 std::vector<typename S::Scalar> total_impulse(const WorldData<S>& world, const JointRecord& joint) {
   const auto rows = joint_types(S::dimension)[joint.type].row_kinds.size();
@@ -191,10 +189,10 @@ bool is_soft(const WorldData<S>& world, const JointRecord& joint) {
 }
 
 inline constexpr const char* why_it_jumps =
-    "it jumps however little a body moves, as an angle does that is told by axes which point against each other. Turn "
-    "one of the joint's frames round";
+    "it jumps at the smallest motion of a body, as an angle does between axes that point in opposite directions. "
+    "Turn one of the joint's frames round";
 
-// Refuses a coordinate that has no value here, for an effect on it.
+// Throws Error if a coordinate for an effect jumps here.
 template <class S>
 void check_value(const WorldData<S>& world, const JointRecord& record, int coordinate) {
   const JointType& type = joint_types(S::dimension)[record.type];
@@ -205,8 +203,8 @@ void check_value(const WorldData<S>& world, const JointRecord& record, int coord
                             type.name, why_it_jumps));
 }
 
-// Refuses rows that have no value where the bodies are, or no direction where they hold. A velocity row has no C; a
-// soft one is a spring, which may have no direction.
+// Throws Error if a row jumps here or has its kink at C = 0. Velocity rows have no C. A soft row is a spring and may
+// have a kink.
 template <class S>
 void check_rows(const WorldData<S>& world, const JointRecord& record, bool soft) {
   const JointType& type = joint_types(S::dimension)[record.type];

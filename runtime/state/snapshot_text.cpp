@@ -1,5 +1,5 @@
-// Snapshots as text: lines that say what they are states of, then a line for each array, its fractions in hexadecimal
-// so that every bit comes back, and a hash of all at the end.
+// A snapshot <-> text: lines for the Origin, a line for each array, and a hash of all lines. Hexadecimal floats keep
+// every bit.
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -42,7 +42,7 @@ void write(std::string& text, Number number) {
   else fmt::format_to(out, " {}", static_cast<long long>(number));
 }
 
-// Lines and the words on them, and where that is when something is wrong.
+// Reads lines and words; errors name the line.
 class Reader {
  public:
   explicit Reader(std::string_view text) : size_(text.size()), rest_(text) { next_line(); }
@@ -83,15 +83,15 @@ class Reader {
       result = std::from_chars(digits.data(), digits.data() + digits.size(), number, base);
     }
     if (digits.empty() || result.ec != std::errc{} || result.ptr != digits.data() + digits.size())
-      fail(fmt::format("\"{}\" is no number", found));
+      fail(fmt::format("\"{}\" is not a number", found));
     return number;
   }
   void end_line() {
-    if (const auto more = word(); !more.empty()) fail(fmt::format("\"{}\" is too much", more));
+    if (const auto more = word(); !more.empty()) fail(fmt::format("unexpected \"{}\"", more));
     next_line();
   }
   [[noreturn]] void fail(const std::string& what) const {
-    throw Error(fmt::format("line {}: {}: this is no state, or not the whole of one", line_number_, what));
+    throw Error(fmt::format("line {}: {}: this is not a complete state", line_number_, what));
   }
 
  private:
@@ -118,7 +118,7 @@ Snapshot::Origin read_origin(Reader& reader) {
   return origin;
 }
 
-// One line: name, type, count, numbers; these onto the end of `bytes`.
+// Reads one line: name, type, count, numbers. Appends the numbers to `bytes`.
 Snapshot::Item read_item(Reader& reader, std::string_view name, std::vector<std::byte>& bytes) {
   const std::string_view type = reader.word();
   const Snapshot::Item item{std::string(name), type.size() == 1 ? type[0] : ' ', reader.number<std::size_t>()};
@@ -130,7 +130,7 @@ Snapshot::Item read_item(Reader& reader, std::string_view name, std::vector<std:
     }
   });
   bytes.resize(Snapshot::aligned(bytes.size()));
-  if (!known) reader.fail(fmt::format("\"{}\" is no type of numbers", type));
+  if (!known) reader.fail(fmt::format("\"{}\" is not a type of numbers", type));
   reader.end_line();
   return item;
 }
@@ -167,7 +167,7 @@ Snapshot Snapshot::read(std::string_view text) {
     snapshot.items_.push_back(read_item(reader, name, snapshot.bytes_));
   if (reader.ended()) reader.fail("the last line is missing");
   if (reader.number<std::uint64_t>(16) != hash_of(text.substr(0, reader.line_start())))
-    reader.fail("what it says is not what was written");
+    reader.fail("the text was changed: its hash differs");
   return snapshot;
 }
 

@@ -1,15 +1,16 @@
-// The one list of all StateNumbers and StateArrays: by it they are laid out in a block, named, and told apart by
-// island.
+// The one list of all StateNumbers and StateArrays. It determines their order in the block, their names and their
+// islands.
 //
-// Whoever adds a member to one of the State structs gets a compiler error here until it is on the list.
+// A new member of a State struct is a compiler error here until it is on the list.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
-// visit.item(name, index, in_steps) begins an array, index telling those of one name apart (-1: there is one);
-// in_steps: a step may change it. visit(x) hands it a StateNumber or a StateArray. Numbers of one item are of one type.
+// visit.item(name, index, in_steps) begins an item; index numbers items of the same name (-1: only one); in_steps: a
+// step may change the item. visit(x) adds a StateNumber or a StateArray to the item. All numbers of an item have one
+// type.
 struct StateList {
   template <class S, class Visitor>
   static void each(WorldData<S>& world, Visitor& visit) {
@@ -22,7 +23,7 @@ struct StateList {
       each_of_island(world.islands[k], static_cast<int>(k), world.needs_systems(), visit);
   }
 
-  // masses_change: tensors turn, or geometric stiffness is added.
+  // masses_change: tensors turn, or steps add geometric stiffness.
   template <class S, class Visitor>
   static void each_body(Bodies<S>& bodies, bool masses_change, Visitor& visit) {
     auto& [pose, velocity, inverse_mass, effective_mass, force, acceleration, velocity_rate] =
@@ -55,7 +56,7 @@ struct StateList {
     visit.item("rows.constants", index, breaks), visit(constants);
   }
 
-  // The iterative solver alone needs no system; projecting the start makes one nevertheless.
+  // The iterative solver needs no system, but the projection of the start builds one.
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool has_system, Visitor& visit) {
     auto& [size, scale, residual, evaluated_at, evaluated, factored, continuous, asleep, rested, redundant_rows] =

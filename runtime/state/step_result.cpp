@@ -7,8 +7,8 @@ namespace {
 
 const char* what_went_wrong(StepProblem problem) {
   switch (problem) {
-    case StepProblem::not_finite: return "a pose or velocity came out not finite";
-    case StepProblem::joints_apart: return "Newton did not bring the joints together that the motion drew apart";
+    case StepProblem::not_finite: return "a pose or velocity became infinite or NaN";
+    case StepProblem::joints_apart: return "Newton did not converge: the joints drifted apart in this step";
     case StepProblem::bad_step:
     case StepProblem::none: break;
   }
@@ -23,7 +23,7 @@ std::string likely_fix(StepProblem problem, OnFailure tried) {
     case StepProblem::not_finite:
       return "a shorter step; the direct solver; integrator implicit where loads are heavy or springs stiff" + or_retry;
     case StepProblem::joints_apart: return "a shorter step: at most a tenth of a radian in each" + or_retry;
-    case StepProblem::bad_step: return "a step is a finite number of seconds above 0";
+    case StepProblem::bad_step: return "a finite step above 0 s";
     case StepProblem::none: break;
   }
   return "";
@@ -40,7 +40,7 @@ const char* name_of(StepProblem problem) {
 }
 
 std::string in_words(const StepResult& result, const std::string& body, const std::string& joint) {
-  if (result.problem == StepProblem::bad_step) return fmt::format("there is no step of {} s", result.length);
+  if (result.problem == StepProblem::bad_step) return fmt::format("a step of {} s is impossible", result.length);
   std::string text = fmt::format("the step of {:.6g} s at t = {:.6g} s ", result.length, result.time);
   if (result) {
     text += fmt::format("was taken in {} part{}", result.parts, result.parts == 1 ? "" : "s");

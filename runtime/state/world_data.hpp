@@ -1,5 +1,5 @@
-// A World inside: its Model, its State and its Workspace, joined so that the stages which step() lists find what they
-// work on in one place. Nobody outside runtime/ includes this.
+// A World inside: its Model, State and Workspace in one struct, on which all stages of step() work. Private to
+// runtime/.
 #pragma once
 
 #include <algorithm>
@@ -18,11 +18,11 @@ namespace cdot {
 
 struct JointRecord : JointModel, JointState {};
 
-// Numbers that an integrator carries from one stage of a step to the next, and from step to step.
+// State and Workspace of an integrator.
 template <class S>
 struct Flow : FlowState<S>, FlowWorkspace<S> {};
 
-// Bodies that push each other through joints and springs: solved together, and asleep together.
+// Bodies that are connected by joints and springs. They are solved together and sleep together.
 template <class S>
 struct Island : IslandModel<S>, IslandState<S>, IslandWorkspace<S> {
   Flow<S> flow;
@@ -36,10 +36,10 @@ struct WorldData : Model<S>, State<S>, Workspace {
   std::vector<std::unique_ptr<Batch<S>>> batches;
   std::vector<Island<S>> islands;
   Block block;
-  std::vector<std::byte> before;  // the step: of a step that fails
+  std::vector<std::byte> before;  // the State before the step, for roll_back()
 };
 
-// One of a joint's bodies that can move, in whose island it is; -1: none can.
+// The joint's first movable body, which determines its island; -1: none.
 template <class S>
 int movable_body(const WorldData<S>& world, const JointRecord& record) {
   const auto body = std::find_if_not(record.bodies.begin(), record.bodies.end(),
@@ -52,7 +52,7 @@ int slot_of(const WorldData<S>& world, const Place& place) {
   return world.batches[place.batch]->slot_of[place.home];
 }
 
-// `place` counted from the origin (sign -1), or back in the world (1).
+// `place` relative to the origin (sign -1), or back in world coordinates (1).
 template <class Place>
 Place moved_by(Place place, const std::array<double, 3>& origin, double sign) {
   place.x += sign * origin[0];
@@ -61,7 +61,7 @@ Place moved_by(Place place, const std::array<double, 3>& origin, double sign) {
   return place;
 }
 
-// The ground stands at the origin, whatever that is: its points are counted from there as well.
+// The ground stands at the origin of poses, because its points are relative to that origin.
 template <class S>
 typename S::Place place_in_world(const WorldData<S>& world, int body) {
   const auto place = S::place_of(world.bodies.pose.at(static_cast<size_t>(body)));

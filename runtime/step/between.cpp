@@ -9,7 +9,7 @@
 namespace cdot {
 namespace {
 
-// f(lambda, forces, count) for every run of the island's rows, forces being where theirs are kept.
+// f(lambda, forces, count) for every run of the island's rows; `forces` is their place in Flow::end_forces.
 template <class S, class F>
 void each_run_of_forces(Island<S>& island, F f) {
   auto* forces = island.flow.end_forces.data();
@@ -47,7 +47,7 @@ void keep_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& met
   flow.end_kept = true;
 }
 
-// The formula above RungeKutta::between.
+// y(t + theta h) by the formula above RungeKutta::further_stages.
 template <class S>
 void interpolate(Flow<S>& flow, const RungeKuttaOf<S>& method) {
   using T = typename S::Scalar;

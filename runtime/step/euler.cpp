@@ -1,5 +1,5 @@
-// Symplectic Euler, plain or linearly implicit: velocities first, with whatever holds the joints, then the poses with
-// the new ones, then the drift.
+// Symplectic Euler, plain or linearly implicit: solves the velocities with the joints, advances the poses with the new
+// velocities, corrects the drift.
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
@@ -16,12 +16,11 @@ void move_velocities(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   using T = typename S::Scalar;
   evaluate_rows(world, island, h);
   apply_forces(world, island, h);
-  // The same forces over another time.
+  // Warm start: the same forces over another time.
   island.solver->velocities(world, island, world.bodies.velocity.data(), last_step > 0 ? h / T(last_step) : T(0));
 }
 
-// The linearly implicit step wants the impulses of the one before. The first one takes those that it would have
-// without.
+// The linearly implicit step needs the last step's impulses. The first step takes those of a plain step.
 template <class S>
 void rehearse(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
@@ -44,7 +43,7 @@ void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, do
   move_velocities(world, island, h, last_step);
   integrate(world, island, h);
   project_step(world, island, h);
-  island.at_work().slacken();  // what follows between steps is no motion of this one
+  island.at_work().slacken();  // tension rows act only within the step
 }
 
 template <class S>

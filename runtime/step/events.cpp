@@ -14,13 +14,13 @@
 namespace cdot {
 namespace {
 
-// Relative resolution, below which C, its rate and its force count as zero: a share of the numbers they are made of.
+// Relative resolution: below this share of their terms, C, its rate and its force count as 0.
 template <class T>
 constexpr T slight = T(by_precision<T>(1e-4, 1e-9));
 template <class T>
 constexpr T infinite = std::numeric_limits<T>::infinity();
 
-// f(batch, slot) for all with rows that come and go.
+// f(batch, slot) for all slots with guarded rows.
 template <class S, class F>
 void each_guarded_slot(const Island<S>& island, F f) {
   for (const Segment<S>& segment : island.segments) {
@@ -29,7 +29,7 @@ void each_guarded_slot(const Island<S>& island, F f) {
   }
 }
 
-// f(batch, index, guard, resolution) for every row that comes and goes, guards at the C at hand.
+// f(batch, index, guard, resolution) for every guarded row, with guards at the present C.
 template <class S, class F>
 void each_guarded_row(Island<S>& island, F f) {
   Guard<typename S::Scalar> guards[most_rows];
@@ -40,12 +40,12 @@ void each_guarded_row(Island<S>& island, F f) {
   });
 }
 
-// Raises the resolutions of the rows of one slot to a slight share of
-//   C       what a displacement by the island's size and a turn of 1 rad make of it: c
-//   rate    the sum of all |J v|; sqrt(c dJv/dt), what acceleration makes of it on that way; less moves nothing in h
+// Raises the resolutions of the rows of one slot to the share `slight` of
+//   C       its largest change by a displacement of the island's size or a rotation of 1 rad: c
+//   rate    the largest of the sum of all |J v|; sqrt(c dJv/dt), the rate after the way c; epsilon c / (slight h)
 //   force   dJv/dt + rate^2 / c over K
-// where dJv/dt is the largest of the sum of all |J dv/dt|, a linear acceleration being taken for an angular one too,
-// and of what the row's own force keeps from it, K lambda. A row without a direction here is taken for a length.
+// where dJv/dt is the larger of two numbers: the sum of all |J dv/dt|, in which angular accelerations are at least
+// linear / size, and K lambda of the row's own force. A row with J = 0 counts as a length.
 template <class S>
 void find_resolution(const WorldData<S>& world, const Island<S>& island, const Batch<S>& batch, int slot,
                      typename S::Scalar h, Resolution<typename S::Scalar>* resolution) {
@@ -82,7 +82,7 @@ void find_resolution(const WorldData<S>& world, const Island<S>& island, const B
   }
 }
 
-// With dv/dt as it is: without joints, then with them.
+// The same for all guarded rows at the present dv/dt. choose_modes() calls this without and with the joints' forces.
 template <class S>
 void find_resolution(const WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   auto* resolution = island.flow.resolution.data();
@@ -112,15 +112,15 @@ void clear_laws(Island<S>& island) {
   }
 }
 
-// v, be it velocities or accelerations, such that J v = -bias within the bounds.
+// v (velocities or accelerations) such that J v = -bias within the bounds.
 template <class S>
 void solve(WorldData<S>& world, Island<S>& island, typename S::Velocity* v) {
   island.solver->renew(world, island);
   island.solver->velocities(world, island, v, typename S::Scalar(0));
 }
 
-// Whatever closes where it touches stops, without rebound: J v >= 0 there, impulses >= 0. What has stopped is `held`:
-// by sweeps its rate is not quite 0. A motor's force is nothing beside an impulse, unless it has no bound.
+// Inelastic impacts: rows that close at contact stop, J v >= 0 with impulses >= 0. They become `held`, because sweeps
+// leave a rate that is not exactly 0. Motors with a bounded force do not act during an impact.
 template <class S>
 void stop_what_hits(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
@@ -152,7 +152,7 @@ void stop_what_hits(WorldData<S>& world, Island<S>& island) {
       });
 }
 
-// What each row may do, as bounds of its force. True if for some it depends on the forces.
+// Sets the bounds of each row's force and a first mode. True if the forces must decide about some rows.
 template <class S>
 bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
@@ -179,8 +179,8 @@ bool offer_bounds(WorldData<S>& world, Island<S>& island) {
   return open;
 }
 
-// Forces and accelerations are complementary: what might hold does, as far as its bounds allow. A force at a bound: the
-// row lets go, or slips.
+// Forces and accelerations are complementary: a row stays held if its force lies within the bounds. With a force at a
+// bound the row lets go or slips.
 template <class S>
 void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   using T = typename S::Scalar;
@@ -199,7 +199,7 @@ void decide_by_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar
   });
 }
 
-// Of one row; infinite where nothing can happen.
+// The margin of one row; infinite if no event is possible.
 template <class S>
 typename S::Scalar margin_of(const Batch<S>& batch, int i, const Guard<typename S::Scalar>& guard,
                              const Resolution<typename S::Scalar>& resolution, typename S::Scalar rate) {

@@ -1,32 +1,31 @@
-// Rows under a law in continuous time. Between two events each has a mode: out of reach, held, or pushed with a known
-// force. A step that ends where a mode no longer holds is shortened to the event, and the modes are chosen anew.
+// Rows under a law at acceleration level. Between two events each has a mode: off, held, or pushed with a known force.
+// A step that passes an event is shortened to the event, and the modes are chosen again. Rows with such events are
+// guarded rows.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
-// Makes room for the island's rows that come and go.
+// Allocates the numbers of the island's guarded rows.
 template <class S>
 void count_guarded_rows(Island<S>& island);
 
-// What each row does from here on, in steps of about h, after drop_modes(); C and J are evaluated at the present poses.
-// What hits something stops there, by impulses. Ends with velocities that fit, with accelerations, and with the
-// margins.
+// Chooses the mode of each guarded row, after drop_modes(), for steps of about h. C and J must be those of the present
+// poses. Impacts stop rows by impulses. Leaves consistent velocities, accelerations and margins.
 template <class S>
 void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h);
 
-// J v + dC/dt of these rows into Flow::row_rates, where C and J were just evaluated.
+// Writes J v + dC/dt of the guarded rows to Flow::row_rates, after an evaluation of C and J.
 template <class S>
 void note_rates(WorldData<S>& world, Island<S>& island);
 
-// Into Flow::margins, from these rates and the forces found since, how far each row is from its next event, in units of
-// the resolution: C - end where it is out of reach, the force short of its bounds where it is held, the rate still
-// missing where it is pushed.
+// Writes each row's distance from its next event to Flow::margins, in units of the resolution. off: C - end. held:
+// distance of the force from its bounds. pushed: the missing rate.
 template <class S>
 void measure_margins(Island<S>& island);
 
-// The rows are left to their bounds again, as the other integrators want them.
+// Sets all modes to `bounded`, as the other integrators need them.
 template <class S>
 void drop_modes(Island<S>& island);
 

@@ -8,7 +8,7 @@
 
 namespace cdot {
 
-// Each in the file of its name.
+// Defined in the file of the method's name.
 template <class S>
 void prepare_euler(Island<S>& island);
 template <class S>

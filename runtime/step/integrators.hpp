@@ -1,4 +1,4 @@
-// How the integrators of <cdot/integrators.hpp> take their steps.
+// The step functions of the integrators in <cdot/integrators.hpp>.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
@@ -8,19 +8,19 @@ namespace cdot {
 template <class S>
 struct Stepper {
   Integrator integrator;
-  // One step of h of one island, from the impulses of one of WorldData::last_step.
+  // One step of h of one island. The present impulses are those of a step of WorldData::last_step.
   void (*step)(WorldData<S>&, Island<S>&, typename S::Scalar h);
-  // Makes room in Island::flow; allocates.
+  // Allocates the numbers of Island::flow.
   void (*prepare)(Island<S>&);
-  // A step begins with the factor of all rows that the one before left.
+  // True if a step begins with the last step's factor of all rows.
   bool starts_from_factor;
 };
 
 template <class S>
 const Stepper<S>& stepper_of(Integrator integrator);
 
-// Euler's step of h, where the impulses at hand are those of a step of `last_step`; 0: there are none. Linearly
-// implicit if the island is `stiffened`: then it is what others fall back on.
+// Euler's step of h. The present impulses are those of a step of `last_step`; 0: none. Linearly implicit if the island
+// is `stiffened`, as in the fallback of other integrators.
 template <class S>
 void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
 

@@ -1,7 +1,7 @@
-// RATTLE: half a kick with the joints' impulses along J at the start, such that C = 0 after the drift; the drift; half
-// a kick with impulses along J at the end, such that J v = -dC/dt there. Second order and symmetric: what it does to
-// the energy does not add up. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Limits, motors and friction act at the end
-// of the step, of first order.
+// RATTLE: half a kick with impulses along J of the start, such that C = 0 after the drift. Then the drift. Then half a
+// kick with impulses along J of the end, such that J v = -dC/dt there. Second order and symmetric, so energy errors do
+// not accumulate. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Limits, motors and friction act at the end of the step,
+// at first order.
 #include <algorithm>
 #include <cmath>
 
@@ -16,14 +16,14 @@
 namespace cdot {
 namespace {
 
-constexpr int most_in_vain = 4;  // rounds that do not bring the error down
-// As far as Newton goes if it can: what is left of C pushes the velocities by C / h.
+constexpr int most_in_vain = 4;  // rounds that do not reduce the error
+// The goal of Newton, because a remaining C changes the velocities by C / h.
 template <class T>
 constexpr T round_off = T(by_precision<T>(1e-7, 1e-15));
 
-// Rows without a position tell the first half of a step nothing: it repeats what they exerted in the second half of the
-// one before. From 0 on that would be nothing and twice their share by turns, for ever. Here half of what they exert in
-// h.
+// Velocity rows have no C for the first half of a step: it repeats their impulses from the second half of the last
+// step. A start from 0 would alternate between 0 and twice the impulse forever. The start is therefore half of their
+// impulse in h.
 template <class S>
 void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -39,7 +39,7 @@ void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h
     for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
       batch.lambda[i] *= batch.law ? T(0) : h / 2;
   }
-  evaluate_anew(world, island, time);  // gamma took the place of dC/dt
+  evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
 }
 
 template <class S>
@@ -50,8 +50,8 @@ bool has_velocity_rows(const Island<S>& island) {
   });
 }
 
-// A state that is not the end of a step: on its joints, with the factor of its exact rows. Returns by how much the
-// impulses of the rows belong to this step: h over the step that they are of.
+// Prepares the start of the step. A state that is not the end of a step is projected, and its exact rows are factored.
+// Returns the factor that scales the present impulses to this step: h / last step.
 template <class S>
 typename S::Scalar begin(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -66,8 +66,7 @@ typename S::Scalar begin(WorldData<S>& world, Island<S>& island, typename S::Sca
   return T(1);
 }
 
-// velocity = flow.velocity + h dv/dt, with all forces at the velocities that the bodies have; springs on coordinates
-// are among them.
+// velocity = flow.velocity + h dv/dt of all forces and of springs on coordinates, at the velocities of the bodies.
 template <class S>
 void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
@@ -84,7 +83,7 @@ void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   }
 }
 
-// What the joints exerted at the end of the step before, they exert at the start of this one: the first guess.
+// First guess: the joints' impulses at the end of the last step.
 template <class S>
 void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar share) {
   for (const Segment<S>& segment : island.segments) {
@@ -97,7 +96,7 @@ void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar s
   }
 }
 
-// poses = start + h velocity; bodies whose inertia turns with them about their mean spin.
+// poses = start + h velocity; bodies with a turning inertia tensor rotate by their mean spin.
 template <class S>
 void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   Bodies<S>& all = world.bodies;
@@ -111,7 +110,7 @@ void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
 }
 
-// The half step turned the bodies' velocities round: 2 |change| > |v| in the metric of the masses.
+// True if the half step reversed velocities: 2 |change| > |v| in the metric of the masses.
 template <class S>
 bool turned_round(const WorldData<S>& world, const Island<S>& island) {
   double change = 0, before = 0;
@@ -126,9 +125,9 @@ bool turned_round(const WorldData<S>& world, const Island<S>& island) {
   return 4 * change > before;
 }
 
-// From the factor of the start: K lambda = -C / h, velocity += M^-1 J^T lambda, and the drift again, with what Broyden
-// learns on the way. False if the error does not shrink, the step being too long for it; or if it did so by throwing
-// the bodies back, where a joint's directions turn round as those of a rope do whose length passes through 0.
+// Repeats K lambda = -C / h with the factor of the start and Broyden's updates, velocity += M^-1 J^T lambda, and the
+// drift. False if the error does not shrink because the step is too long. False also if the solution reverses the
+// bodies' velocities. That happens where a joint's direction reverses, as that of a rope whose length passes through 0.
 template <class S>
 bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -142,7 +141,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
     island.residual = find_errors(world, island, time);
     if (!(island.residual > round_off<T> * island.scale)) return !astray || !turned_round(world, island);
     if (island.residual < T(0.7) * least) least = island.residual, vain = 0;
-    else if (island.residual <= converged<T> * island.scale)  // round-off may stop it earlier than that
+    else if (island.residual <= converged<T> * island.scale)  // round-off may end the rounds early
       return !astray || !turned_round(world, island);
     else if (++vain > most_in_vain) return island.residual <= T(10) * converged<T> * island.scale;
     astray |= vain > 0;
@@ -154,7 +153,7 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   }
 }
 
-// Motors, limits and friction are solved for with the exact rows. Springs have pushed as forces.
+// Motors, limits and friction are solved with the exact rows. Springs have acted as forces.
 template <class S>
 void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
@@ -162,7 +161,7 @@ void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     Batch<S>& batch = *segment.batch;
     if (!batch.law) continue;
     const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
-    if (batch.law->force) {  // what it would add to the bias is no rate, and the next kick asks for rates
+    if (batch.law->force) {  // its fill() would add C to the bias, and the next kick reads the bias as dC/dt
       for (int i = begin; i < end; ++i) batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
       continue;
     }
@@ -183,7 +182,7 @@ void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   island.solver->velocities(world, island, world.bodies.velocity.data(), typename S::Scalar(1));
 }
 
-// Half a kick at the start, and what the joints are expected to exert there.
+// Half a kick at the start, with the first guess of the joints' impulses.
 template <class S>
 void start_half(WorldData<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
   for (size_t k = 0; k < island.bodies.size(); ++k) world.bodies.velocity[island.bodies[k]] = island.flow.velocity[k];
@@ -192,9 +191,9 @@ void start_half(WorldData<S>& world, Island<S>& island, typename S::Scalar h, ty
   guess_impulses(world, island, share);
 }
 
-// Where the drift of RATTLE does not find the joints, and by sweeps: poses go there with J renewed on the way. The
-// displacement over h belongs to the velocities, and what caused it to the impulses; unless it undoes the
-// motion. (Sweeps leave something of it to the next step, and need all that they found.)
+// For sweeps, and if the drift did not reach C = 0: projects the poses and renews J on the way. Unless the displacement
+// is large, displacement / h is added to the velocities and its impulses are kept. Sweeps always add them, because the
+// next step corrects the remaining error.
 template <class S>
 void drift_with_renewed_directions(WorldData<S>& world, Island<S>& island, typename S::Scalar h,
                                    typename S::Scalar at_start) {
@@ -226,7 +225,7 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     drift_with_renewed_directions(world, island, h, at_start);
   }
   evaluate_anew(world, island, T(world.time) + h);
-  // The second kick takes the forces at the velocity of the end, to second order: 2 v_half - v_start.
+  // Forces of the second kick are those at the end's velocity, to second order: 2 v_half - v_start.
   for (size_t k = 0; k < island.bodies.size(); ++k) {
     auto &v = all.velocity[island.bodies[k]], &start = flow.velocity[k];
     const auto half = v;

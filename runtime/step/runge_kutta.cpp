@@ -62,7 +62,7 @@ double largest_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, int est
   return worst;
 }
 
-// Both estimates as one.
+// Combines both estimates.
 template <class S, class F>
 double estimated_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, typename S::Scalar h, F unit) {
   const double first = largest_error(flow, method, 0, h, unit), second = largest_error(flow, method, 1, h, unit);

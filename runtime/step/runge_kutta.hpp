@@ -1,6 +1,6 @@
 // One step of a Runge-Kutta method for the accelerations of an island: the index-1 form, in which gamma keeps J v =
-// -dC/dt along the exact motion. What the step leaves of C and Cdot is then projected away. The last stage's factor
-// serves the poses, that of the end the velocities and the first stage of the next step.
+// -dC/dt along the exact motion. A projection then removes the remaining C and Cdot. It uses the last stage's factor
+// for the poses. The factor at the end serves the velocities and the next step's first stage.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
@@ -8,7 +8,7 @@
 
 namespace cdot {
 
-// As exact as what computes with it.
+// Coefficients in the number type of K.
 template <class S>
 using RungeKuttaOf = RungeKutta<ExactNumber<typename S::Scalar>>;
 
@@ -17,17 +17,17 @@ void step_runge_kutta(WorldData<S>& world, Island<S>& island, const RungeKuttaOf
 template <class S>
 void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method);
 
-// The present state, with its accelerations, is what the next steps start from; and back to it.
+// keep_start() stores the present state and its accelerations as the start of the next steps; go_back() restores them.
 template <class S>
 void keep_start(const WorldData<S>& world, Island<S>& island);
 template <class S>
 void go_back(WorldData<S>& world, Island<S>& island);
 
-// Numbers of one body among those of a Flow.
+// Numbers of one body in the arrays of a Flow.
 template <class S>
 inline constexpr int numbers_per_body = S::pose_numbers + S::freedom;
 
-// The bodies' poses and velocities, and dv/dt with the poses' rates, from and to arrays of a Flow.
+// Copy the bodies' poses and velocities, or dv/dt and the poses' rates, to and from arrays of a Flow.
 template <class S>
 void read_numbers(const WorldData<S>& world, const Island<S>& island, typename S::Scalar* to);
 template <class S>
@@ -43,19 +43,20 @@ template <class S>
 void take_stages(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                  typename S::Scalar h);
 
-// The present state onto the constraints, with the accelerations there. `fresh`: J is not yet that of the step.
+// Projects the present state onto the constraints and computes its accelerations. `fresh`: J is not yet that of the
+// step.
 template <class S>
 void project(WorldData<S>& world, Island<S>& island, typename S::Scalar time, bool fresh);
 
-// The same for the end of a step, whose k becomes the last.
+// The same for the end of a step; writes the last k.
 template <class S>
 void project_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time);
 
-// The estimated error of the step over what is allowed [m], [rad], [m/s], [rad/s]: of velocities relative where they
-// exceed 1, of no number less than its last bit.
+// Estimated error of the step / `allowed` [m], [rad], [m/s], [rad/s]. The allowed error is relative for velocities
+// above 1 and at least one unit in the last place of every number.
 template <class S>
 double error_of_step(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h, double allowed);
-// The same in units of Island::size and of a radian, of velocities relative where they exceed that per second.
+// Estimated error in units of Island::size and of 1 rad; relative for velocities above one such unit per second.
 template <class S>
 double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar h);
 

@@ -4,23 +4,23 @@
 
 namespace cdot {
 
-inline constexpr int most_stages = 16;  // that of the end and those between the ends included
+inline constexpr int most_stages = 16;  // with the stage of the end and the interpolant's stages
 
-// y(t + c_i h) ~ y + h sum_j a_ij k_j, k_i = f there; the end of the step is row `stages` of a, whose k belongs to the
-// end itself and is the first of the next step.
+// y(t + c_i h) ~ y + h sum_j a_ij k_j, k_i = f there. Row `stages` of a is the end of the step; its k is the first k of
+// the next step.
 template <class Real>
 struct RungeKutta {
   int order;
   int stages;
   Real c[most_stages];
   Real a[most_stages][most_stages];
-  // Weights of the k in the embedded error estimates, k of the end included. Of one order less than the method's; or,
-  // where the second exists, combined as |first|^2 / sqrt(|first|^2 + 0.01 |second|^2).
+  // Weights of the k in the embedded error estimates, with the k of the end. A single estimate is one order below the
+  // method. Two estimates are combined as |first|^2 / sqrt(|first|^2 + 0.01 |second|^2).
   double error[2][most_stages];
-  bool error_at_end;  // an estimate that needs the k of the end
+  bool error_at_end;  // an estimate needs the k of the end
   // Between the ends, at t + theta h, with d = y(t + h) - y(t), r = h (k_start) - d, s = d - h k_end - r:
   //   y(t) + theta (d + (1 - theta) (r + theta (s + (1 - theta) (f_0 + theta (f_1 + ...)))))
-  // where the first terms are Hermite's cubic and f_i = h sum_j between_ij k_j, which needs further stages: rows of a
+  // where the first terms are Hermite's cubic and f_i = h sum_j between_ij k_j. The further stages are the rows of a
   // after that of the end.
   int further_stages;
   int further_terms;
@@ -32,7 +32,7 @@ template <class Real>
 inline constexpr RungeKutta<Real> rk4 = {
     4, 4, {0, 0.5L, 0.5L, 1, 1},
     {{}, {0.5L}, {0, 0.5L}, {0, 0, 1}, {1.0L / 6, 1.0L / 3, 1.0L / 3, 1.0L / 6}},
-    // Against the third-order weights 1/6, 1/3, 1/3, 1/15, 1/10.
+    // Difference from the third-order weights 1/6, 1/3, 1/3, 1/15, 1/10.
     {{0, 0, 0, 0.1, -0.1}, {}}, true, 0, 0, {}};
 // clang-format on
 

@@ -1,5 +1,5 @@
-// A step of a Runge-Kutta method as the World asks for it: in one piece, or by as many as the error estimate wants, the
-// last of which may end beyond it; cut at events.
+// step(h) by a Runge-Kutta method: fixed or adaptive steps, shortened at events. The last adaptive step may end beyond
+// h.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,25 +16,27 @@
 namespace cdot {
 namespace {
 
-// In one step(), and in a row; beyond them its rest is left to Euler's: something chatters, or jams.
+// Limits on events in one step(h) and on consecutive slivers. More of them mean chatter or jamming; Euler's method then
+// finishes the step.
 constexpr int most_events = 32, most_slivers = 1000;
-constexpr double sliver = 1e-4;      // of the longest step so far
+constexpr double sliver = 1e-4;      // share of the longest step so far
 constexpr int most_rejections = 30;  // in a row
-// The same of attempts that do not end on the joints, or only where these undo the motion: at steps hundreds of times
-// shorter too. Then no length is to blame, but velocities that contradict each other, as a motor's and a bar's.
+// The same for attempts whose end cannot be projected, or only by a correction that undoes the motion. If steps that
+// are hundreds of times shorter fail too, the length is not the cause but contradicting velocities, as of a motor and a
+// bar.
 constexpr int most_astray = 5;
-// In units of the mechanism's size, and [rad]: a step whose error is estimated above this has nothing to do with the
-// motion, as where tension makes a chain stiffer than the step can follow.
+// In units of Island::size and [rad]: a step with a larger estimated error is meaningless, for example if tension makes
+// a chain too stiff for the step.
 constexpr double absurd = 0.3;
-// Of a fixed step: shorter parts than this share of it are not tried before the rest of it is left to Euler's.
+// The shortest part of a fixed step. If its error is too large, Euler's method finishes the step.
 constexpr double smallest_part = 1.0 / 16;
 template <class S>
-constexpr auto slight_displacement = typename S::Scalar(1e-6);  // of its size, and [rad]
+constexpr auto slight_displacement = typename S::Scalar(1e-6);  // in units of Island::size, and [rad]
 constexpr int most_searches = 60;                               // for one event
-constexpr int furthest_reach = 64;                              // of a step of its own length, in step()s
+constexpr int furthest_reach = 64;                              // of an adaptive step, in units of h
 
-// In units of the resolution, from where a row stood when its mode was chosen, which is steps ago for one
-// that creeps: an event is behind us, and just behind us.
+// Thresholds for an event that was passed and just passed. In units of the resolution, relative to the margin at the
+// choice of the mode: a row that creeps may have chosen its mode many steps ago.
 constexpr double passed = -1, just_passed = -3;
 
 template <class T>
@@ -44,7 +46,8 @@ double furthest(const StateArray<T>& chosen, const StateArray<T>& now) {
   return worst;
 }
 
-// The share of the way from `low` to `high` at which the first row has just passed its event, by straight lines.
+// The point between `low` and `high`, from 0 to 1, at which the first row has just passed its event, by linear
+// interpolation.
 template <class S>
 double first_event(const Flow<S>& flow) {
   const double aim = 0.5 * (passed + just_passed);
@@ -57,7 +60,7 @@ double first_event(const Flow<S>& flow) {
   return first;
 }
 
-// The state at the first event of a step of h that was seen to pass one. Returns the time until there.
+// Goes to the first event of a step of h that passed one. Returns the time from the step's start to the event.
 template <class S>
 typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                typename S::Scalar time, typename S::Scalar h) {
@@ -66,7 +69,7 @@ typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const Run
   flow.high.assign(flow.margins.begin(), flow.margins.end());
   T low = 0, high = h;
   for (int search = 0; search < most_searches; ++search) {
-    // Every third time in the middle, where straight lines mislead.
+    // Every third round bisects, in case linear interpolation stalls.
     const double share = search % 3 == 2 ? 0.5 : std::clamp(first_event(flow), 0.001, 0.999);
     const T at = low + T(share) * (high - low);
     if (!(at > low && at < high)) break;
@@ -89,17 +92,17 @@ typename S::Scalar go_to_event(WorldData<S>& world, Island<S>& island, const Run
   return high;
 }
 
-// Of a step that should be `best` long where `left` remains, and `reach` may be gone. To end where a state is asked for
-// costs less than to look back, if that shortens the step a little only.
+// The length of the next step: near `best`, with `left` to the end of step(h), at most `reach`. A step that ends at
+// `left` saves the interpolation, if it is only a little shorter or longer than `best`.
 template <class T>
 T length_of_step(T best, T left, T reach) {
   if (!(best > T(0)) || (best > T(0.95) * left && best < T(1.6) * left)) return left;
   if (reach > left) return std::min(best, reach);
-  return best < left ? left / std::ceil(left / best) : left;  // equal parts: no sliver remains
+  return best < left ? left / std::ceil(left / best) : left;  // equal parts leave no sliver
 }
 
-// The step ended so far from the joints that to bring it back onto them undid its motion: it passed a pose where the
-// directions of a joint turn round, as those of a rope do where its length passes through 0.
+// True if the projection at the end of the step undid the motion. The step then passed a pose where a joint's direction
+// reverses, as that of a rope whose length passes through 0.
 template <class S>
 bool went_astray(const WorldData<S>& world, const Island<S>& island, typename S::Scalar h) {
   const auto slight = [&](int i) {
@@ -109,8 +112,8 @@ bool went_astray(const WorldData<S>& world, const Island<S>& island, typename S:
   return !correction_is_small(world, island, double(h));
 }
 
-// A step of h, at its end on the constraints. Returns its error, as error_now() tells it in units of what is allowed:
-// above 1 (or no number) the state is none.
+// Takes a step of h and projects its end. Returns error_now(), the error in units of the allowed one. If that is above
+// 1 or NaN, the state is invalid.
 template <class S, class F>
 double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
                 typename S::Scalar h, F error_now) {
@@ -123,9 +126,9 @@ double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   return lost ? std::numeric_limits<double>::infinity() : error;
 }
 
-// Of a fixed step of `whole` what is `left`, or the largest of its halves, quarters ... whose error is not absurd:
-// those of all parts of the step add up. Returns its length; Flow::margins are those of its end. 0 if none is short
-// enough.
+// Takes `left` of a fixed step of `whole`, or its largest half, quarter, ... with an allowed error. The parts share the
+// allowed error `absurd` in proportion to their lengths. Returns the length, 0 if no part is short enough.
+// Flow::margins are those of the end.
 template <class S>
 typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                    typename S::Scalar time, typename S::Scalar left, typename S::Scalar whole) {
@@ -142,7 +145,7 @@ typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const
   return T(0);
 }
 
-// A step as long as the error allows, but within `reach`. Returns as take_fixed_step() does.
+// Takes a step as long as the error allows, at most `reach`. Returns like take_fixed_step().
 template <class S>
 typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                                       typename S::Scalar time, typename S::Scalar left, typename S::Scalar reach) {
@@ -154,12 +157,11 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
     const double error = try_step(world, island, method, time, h,
                                   [&] { return error_of_step(island, method, h, world.settings.local_error); });
-    // 0.9 of the step that would just do; a NaN shrinks like the worst.
+    // 0.9 of the longest allowed step; a NaN counts as the largest error.
     const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
     if (error <= 1) {
-      // One that was cut short tells nothing against the length that was proposed; after one that was too long none
-      // grows.
+      // A shortened step does not reduce the proposed length. After a rejected step the length does not grow.
       if (attempt == 0 && h < proposed) flow.next_step = std::max<T>(flow.next_step, proposed);
       if (attempt > 0) flow.next_step = std::min<T>(flow.next_step, h);
       return h;
@@ -173,7 +175,7 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
   return T(0);
 }
 
-// The state as it was found, on its constraints, with the accelerations.
+// Projects the start state and computes modes and accelerations, unless they are known.
 template <class S>
 void begin(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   if (island.flow.known) return;
@@ -186,7 +188,7 @@ void begin(WorldData<S>& world, Island<S>& island, typename S::Scalar time, type
   island.flow.known = true;
 }
 
-// The forces of the joints as impulses over h, and back.
+// Converts the joints' forces to impulses over h, and back.
 template <class S>
 void scale_forces(const Island<S>& island, typename S::Scalar by) {
   for (const Segment<S>& segment : island.segments) {
@@ -195,8 +197,8 @@ void scale_forces(const Island<S>& island, typename S::Scalar by) {
   }
 }
 
-// What is left of a step, by the sturdiest of the other methods: linearly implicit, as it starts from `time`. It wants
-// the impulses of a step before.
+// Finishes the step from `time` on by the most robust method, linearly implicit Euler. Computes the impulses that this
+// method needs from the accelerations.
 template <class S>
 void fall_back_to_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   ++world.counts->rescued;
@@ -226,7 +228,7 @@ void count_step(StepCounts& counts, typename S::Scalar h) {
   counts.longest = std::max(counts.longest, double(h));
 }
 
-// From `done` on until h is reached, or passed. Returns the end.
+// Takes steps from `done` on until h is reached or passed. Returns the end.
 template <class S>
 typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
                               typename S::Scalar done, typename S::Scalar h) {
@@ -242,7 +244,7 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
     keep_start(world, island);
     flow.low.assign(flow.margins.begin(), flow.margins.end());
     flow.end_kept = false;
-    // Whoever looks at the loads after every step may change what follows.
+    // A hook after the substep may change the World, so no step may pass the end.
     const T reach = world.after_substep.empty() ? furthest_reach * h : left;
     flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, left, reach)
                                                  : take_fixed_step(world, island, method, time, left, h);

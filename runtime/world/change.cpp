@@ -1,5 +1,4 @@
-// Joints that are removed or get other parameters while a World runs. Effects on them are changed where they are made,
-// in effects/.
+// Removes joints and changes their parameters in a running World. effects/ changes effects.
 #include <algorithm>
 
 #include <cdot/world.hpp>
@@ -12,8 +11,8 @@
 namespace cdot {
 namespace {
 
-// The changed parameters to all rows of a joint, and no others: where turns are counted among a slot's numbers, the
-// count goes on.
+// Writes the changed parameters to all rows of a joint. The other numbers stay, because a slot's parameters may include
+// counted turns.
 template <class S>
 void hand_out(WorldData<S>& world, const JointRecord& record, const std::vector<const ParameterInfo*>& changed) {
   for (const Place& place : record.places) {
@@ -25,7 +24,7 @@ void hand_out(WorldData<S>& world, const JointRecord& record, const std::vector<
   }
 }
 
-// Refuses parameters with which a coordinate that effects act on has no value.
+// Throws Error if a coordinate with effects jumps at the new parameters.
 template <class S>
 void check_effects(const WorldData<S>& world, const JointRecord& record) {
   const auto& coordinates = joint_entries<S>()[record.type].coordinates;
@@ -43,7 +42,7 @@ void BasicWorld<S>::remove_joint(int joint) {
   JointRecord& record = data_->joints[joint];
   if (record.broken) return;
   record.broken = true;
-  data_->prepared = false;  // what it held together may be two islands now
+  data_->prepared = false;  // its island may have split
 }
 
 template <class S>

@@ -1,4 +1,4 @@
-// How large a mechanism is: what may be left of C is told by it, not by the metre.
+// The size of a mechanism, which scales the tolerance of C.
 #include <algorithm>
 #include <cmath>
 #include <vector>
@@ -17,8 +17,8 @@ double distance(const typename S::Pose& a, const typename S::Pose& b) {
   else return std::hypot(p.x - q.x, p.y - q.y, p.z - q.z);
 }
 
-// The longest arm of a slot's rows: what a turn of a movable body does to C over what its displacement does. Rows
-// without lengths in them have none.
+// The longest arm of a slot's rows: |dC/d rotation| / |dC/d displacement| of a movable body; 0 for rows without
+// displacements.
 template <class S>
 double longest_arm(const Batch<S>& batch, int slot, const Bodies<S>& all) {
   const int bodies = batch.ops->bodies, width = S::freedom * bodies;

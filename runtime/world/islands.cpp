@@ -1,5 +1,5 @@
-// Who is connected with whom: union-find over movable bodies, then the slots of every batch sorted by island, and in
-// each the order of the rows.
+// Joints and springs -> islands: union-find over movable bodies, then the slots of every batch sorted by island and
+// within an island by sweep order.
 #include "runtime/world/islands.hpp"
 
 #include <algorithm>
@@ -18,8 +18,7 @@
 namespace cdot {
 namespace {
 
-// The representative of a set is its smallest body, so that islands are numbered independently of
-// the joints' order.
+// The representative of a set is its smallest body, so the numbers of islands do not depend on the joints' order.
 struct Sets {
   explicit Sets(int n) : parent(static_cast<size_t>(n)) { std::iota(parent.begin(), parent.end(), 0); }
   int find(int i) {
@@ -68,7 +67,7 @@ void number_islands(WorldData<S>& world) {
   }
 }
 
-// StateArrays by slot; the numbers of the Workspace are computed anew.
+// Permutes StateArrays by slot. The Workspace needs no permutation: a step recomputes it.
 struct Permute {
   const std::vector<int>& order;
   void item(const char*, int, bool) {}
@@ -88,10 +87,10 @@ int island_of_slot(const WorldData<S>& world, const Batch<S>& batch, int slot) {
     const int island = world.island_of[batch.body[slot * batch.ops->bodies + k]];
     if (island >= 0) return island;
   }
-  return -1;  // cannot be: blocks between immovable bodies are never added
+  return -1;  // unreachable: blocks between immovable bodies are never added
 }
 
-// Slots by island, broken joints last in theirs, the others in the order of `places`, by joint.
+// Sorts slots by island and then by `places` of their joints, with broken joints last.
 template <class S>
 void sort_slots(WorldData<S>& world, int index, const std::vector<int>& places) {
   Batch<S>& batch = *world.batches[index];
@@ -116,8 +115,8 @@ void sort_slots(WorldData<S>& world, int index, const std::vector<int>& places) 
       if (place.batch == index) place.home = now[place.home];
 }
 
-// Runs of slots of one batch that follow each other in the sweep, rows under a law before all others: what is solved
-// last in a sweep holds best, and that should be the joints.
+// Lists runs of slots of one batch that are consecutive in the sweep. Rows under a law come first: the rows solved last
+// have the smallest error, and these should be the joints.
 template <class S>
 void list_segments(WorldData<S>& world, const std::vector<int>& places) {
   struct Run {
@@ -171,7 +170,7 @@ template <class S>
 void prepare_topology(WorldData<S>& world) {
   if (world.prepared) return;
   number_islands(world);
-  // The direct solver has its own order: each type of joint in one run, in the order in which they were added.
+  // The direct solver has its own order, so each type of joint is one run, in the order of add_joint().
   const std::vector<int> places =
       sweeps(world.settings.solver) ? sweep_places(world) : std::vector<int>(world.joints.size(), 0);
   for (int i = 0; i < static_cast<int>(world.batches.size()); ++i) sort_slots(world, i, places);

@@ -1,12 +1,12 @@
-// Islands, their sizes, and which of them sleep.
+// Islands: their analysis, their sizes and their sleep.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
-// Islands, order of slots, patterns: all that depends on what is connected, not on where it is.
-// Allocates; does nothing if nothing was added since.
+// Analyses islands, order of slots and sparsity patterns, which depend on connections and not on poses. Allocates; does
+// nothing if they are current.
 template <class S>
 void prepare_topology(WorldData<S>& world);
 
@@ -14,13 +14,13 @@ void prepare_topology(WorldData<S>& world);
 template <class S>
 void measure_size(WorldData<S>& world, Island<S>& island);
 
-// Islands that have rested long enough fall asleep.
+// Puts islands to sleep that have rested long enough.
 template <class S>
 void put_to_sleep(WorldData<S>& world, double h);
-// For whoever changes a force on a body: its island wakes, and goes on from where it is.
+// Call after a change of a force on a body: wakes its island.
 template <class S>
 void wake_pushed(WorldData<S>& world, int body);
-// For whoever changes where it is, how it moves, or what holds it: nothing that was computed for its island holds.
+// Call after a change of pose, velocity or joints: wakes the body's island and discards all that was computed for it.
 template <class S>
 void wake(WorldData<S>& world, int body);
 

@@ -1,6 +1,5 @@
-// The initial state brought onto the joints: full Newton on C, then the velocities, each by the
-// least change in the metric of the masses. Apart from solve/projection.cpp, which corrects one step's drift with that
-// step's J.
+// Projects the initial state: full Newton on C, then the velocities, each by the least change in the metric of the
+// masses. (solve/projection.cpp corrects the drift of one step with that step's J.)
 #include <algorithm>
 #include <cmath>
 
@@ -30,7 +29,7 @@ void evaluate(WorldData<S>& world, Island<S>& island) {
                                  typename S::Scalar(world.time));
 }
 
-// The law's idea of the error, or C itself; 0 for rows that do not constrain.
+// Batch::error = the law's error, or C of exact rows; 0 for rows that are no constraints.
 template <class S>
 void measure_errors(Island<S>& island) {
   for (const Segment<S>& segment : island.segments) {
@@ -54,7 +53,7 @@ void move_poses(WorldData<S>& world, Island<S>& island) {
     all.pose[i] = S::moved(all.pose[i], all.increment[i]);
     all.increment[i] = {};
   }
-  // The velocities are those of the scene: a start that is moved keeps them.
+  // Keeps the scene's velocities while the poses move.
   if constexpr (S::has_gyroscopes)
     for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
       S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
@@ -72,7 +71,7 @@ void project_poses(WorldData<S>& world, Island<S>& island) {
     load_errors(island.system, typename S::Scalar(-1));
     island.system.each_row(
         [&](int, const Batch<S>& batch, int i) { worst = std::max(worst, std::abs(double(batch.error[i]))); });
-    // Down to round-off: from there on it does not get smaller.
+    // Round-off is reached when the error no longer shrinks.
     if (worst == 0 || (worst < 1e-6 && worst >= before)) return;
     before = worst;
     island.system.choose([](const Batch<S>& batch, int i) { return !batch.law || batch.error[i] != 0; });

@@ -1,4 +1,4 @@
-// Looking at a World. Nothing here changes what the next step computes.
+// The queries of a World. They do not influence the next step.
 #include <cmath>
 #include <cstring>
 
@@ -11,11 +11,10 @@
 namespace cdot {
 namespace {
 
-// A NaN beats every number and stays: an error measure that hides it would call a blown-up World
-// sound.
+// A NaN exceeds every number: an error measure that ignored NaN would pass a World that exploded.
 bool beats(double value, double worst) { return !std::isnan(worst) && !(value <= worst); }
 
-// value(probe, row, kind) over all joints that constrain.
+// The largest value(probe, row, kind) over all joints that are neither soft nor broken.
 template <class S, class F>
 WorstError worst_of(const WorldData<S>& world, F value) {
   WorstError worst;
@@ -49,7 +48,7 @@ double potential_of_rows(const WorldData<S>& world) {
   double energy = 0;
   for (const auto& batch : world.batches) {
     if (!batch->law || !batch->law->energy) continue;
-    Batch<S> rows = *batch;  // the next step may start from the World's own as they are
+    Batch<S> rows = *batch;  // a copy, because the next step may start from the World's own rows
     for (int slot = 0; slot < rows.count(); ++slot) {
       if (world.joints[rows.joint[slot]].broken) continue;
       rows.ops->position(rows, slot, slot + 1, world.bodies, typename S::Scalar(world.time));
@@ -207,7 +206,7 @@ std::vector<Inconsistency> BasicWorld<S>::inconsistencies(double tolerance) cons
     const auto& Cdot = probe.Cdot();
     for (int r = 0; r < probe.rows(); ++r) {
       const double C = position_violation(probe, r, kinds[r]), rate = Cdot[r];
-      // An inequality that does not touch may close; one that touches may only open.
+      // An inequality with C > 0 may close; one at C = 0 may only open.
       const bool held = kinds[r] != RowKind::inequality || (probe.C(r) <= tolerance && rate < 0);
       if (!(std::abs(C) <= tolerance)) found.push_back({j, r, false, C});
       if (held && !(std::abs(rate) <= tolerance)) found.push_back({j, r, true, rate});

@@ -11,7 +11,7 @@
 namespace cdot {
 namespace {
 
-// A call of memcpy costs more than a few numbers.
+// For a few numbers a loop is cheaper than a call of memcpy.
 inline void copy(const std::byte* from, std::byte* to, Block::Range range) {
   std::size_t at = range.begin;
   if (range.end - at > 48) return void(std::memcpy(to + at, from + at, range.end - at));
@@ -19,7 +19,7 @@ inline void copy(const std::byte* from, std::byte* to, Block::Range range) {
   for (; at < range.end; ++at) to[at] = from[at];
 }
 
-// All that a step may change.
+// Copies all bytes that a step may change.
 template <class S>
 void copy_awake(const WorldData<S>& world, const std::vector<std::byte>& from, std::vector<std::byte>& to) {
   copy(from.data(), to.data(), world.block.common);
@@ -57,7 +57,7 @@ void save_state(WorldData<S>& world) {
   copy_awake(world, world.block.bytes, world.before);
 }
 
-// Twice, since to factor K counts rows that are redundant, and to evaluate may count turns.
+// Copies twice, because compute_again() changes the State: factoring counts redundant rows, evaluation counts turns.
 template <class S>
 void roll_back(WorldData<S>& world) {
   copy_awake(world, world.before, world.block.bytes);
@@ -66,7 +66,7 @@ void roll_back(WorldData<S>& world) {
     compute_again(world, world.islands[index]);
   }
   copy_awake(world, world.before, world.block.bytes);
-  // What pushes an immovable body adds 0 to it, unless it is infinite.
+  // Impulses add 0 to an immovable body; infinite ones have added NaN.
   Bodies<S>& all = world.bodies;
   for (int i = 0; i < all.count(); ++i)
     if (all.immovable(i)) all.velocity[i] = all.velocity_rate[i] = all.displacement[i] = all.increment[i] = {};

@@ -1,25 +1,24 @@
-// From State to State: back to the one before a step that failed, or on from another.
+// Replaces the State: by the one before a failed step, or by a snapshot.
 #pragma once
 
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
 
-// The State of all islands that are awake is saved, with the time and the counts; and is that of the World again.
+// save_state() saves the time, the counts and the State of all awake islands; roll_back() restores them.
 template <class S>
 void save_state(WorldData<S>& world);
 template <class S>
 void roll_back(WorldData<S>& world);
 
-// The World goes on from these bytes, which are laid out like its own.
+// Replaces the State by these bytes, which have the layout of the World's block.
 template <class S>
 void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes);
 
-// Where rows stand, after some have changed places: from BatchState::home and the joints that broke.
+// Updates the places of rows from BatchState::home and the broken joints, after slots changed places.
 template <class S>
 void find_rows(WorldData<S>& world, Island<S>& island);
-// The Workspace that the end of a step leaves for the next one: J at these poses, and the factor of a method that
-// begins with it.
+// Recomputes the Workspace that the last step left for the next one: J and, for methods that begin with it, the factor.
 template <class S>
 void compute_again(WorldData<S>& world, Island<S>& island);
 

@@ -1,5 +1,4 @@
-// Islands at rest are taken off the list that step() walks, and put back when something touches
-// them.
+// Removes islands at rest from the list of awake islands, and puts them back when a change wakes them.
 #include <algorithm>
 
 #include <cdot/spaces.hpp>
@@ -15,12 +14,11 @@ void wake_island(WorldData<S>& world, int index) {
   island.rested = 0;
   if (!island.asleep) return;
   island.asleep = false;
-  // There is room: the list once held every island.
+  // No allocation: the list once had every island.
   world.awake.insert(std::lower_bound(world.awake.begin(), world.awake.end(), index), index);
 }
 
-// Wakes it and tells it by `forget` what happened. What touches an immovable body may touch every island: rare enough
-// not to look up which.
+// Wakes the body's island and calls forget(island). A change of an immovable body is rare and wakes every island.
 template <class S, class F>
 void for_each_island_of(WorldData<S>& world, int body, F forget) {
   if (!world.prepared) return;

@@ -1,4 +1,4 @@
-// Saving, restoring and comparing the State of a World: its bytes, and a word on what they are a State of.
+// Saves, restores and compares the State of a World: its bytes and their Origin.
 #include <cstring>
 #include <fmt/format.h>
 #include <type_traits>
@@ -15,7 +15,7 @@
 namespace cdot {
 namespace {
 
-// Masses, and inertias in the bodies' frames: where those turn with the bodies, the ones in world axes are state.
+// Hashes masses, and inertias in the bodies' frames: inertias in world axes are state.
 template <class S>
 std::uint64_t hash_of_bodies(const WorldData<S>& world) {
   Hash hash;
@@ -26,7 +26,7 @@ std::uint64_t hash_of_bodies(const WorldData<S>& world) {
   return hash.value;
 }
 
-// Joints and effects as they were added, springs, drags, gravity. What they have been changed to since is state.
+// Hashes joints and effects as they were added, springs, drags and gravity. Later changes are state.
 template <class S>
 std::uint64_t hash_of_joints(const WorldData<S>& world) {
   Hash hash;
@@ -38,7 +38,7 @@ std::uint64_t hash_of_joints(const WorldData<S>& world) {
   return hash.value;
 }
 
-// Where prepare_topology() put what. A broken joint's rows have changed places since, and their slots with them.
+// Hashes the order of rows. Rows of broken joints have changed slots, so it hashes the joint of each block.
 template <class S>
 std::uint64_t hash_of_order(WorldData<S>& world) {
   Hash hash;
@@ -59,7 +59,7 @@ std::string method_of(const Settings& settings) {
                      name_of(integrators, settings.integrator), name_of(kernel_forms, settings.kernels));
 }
 
-// Its method is left empty.
+// Leaves Origin::method empty.
 template <class S>
 Snapshot::Origin origin_of(WorldData<S>& world) {
   return {{},
@@ -103,7 +103,7 @@ struct SnapshotAccess {
     to.bytes_ = world.block.bytes;
   }
 
-  // Joints that broke before the state's World was prepared have no place in its order of rows.
+  // Joints that broke before the preparation of the snapshot's World are not in its order of rows.
   template <class S>
   static void prepare_with_broken_joints(WorldData<S>& world, const Snapshot& from) {
     const std::byte* at = from.bytes_.data();
@@ -126,7 +126,7 @@ struct SnapshotAccess {
 
   template <class S>
   static void restore(WorldData<S>& world, const Snapshot& from) {
-    if (from.empty()) throw Error("an empty snapshot is no state of a World");
+    if (from.empty()) throw Error("the snapshot is empty");
     Snapshot::Origin origin = origin_of(world);
     origin.method = method_of<S>(world.settings);
     check_origin(from.origin_, origin);
@@ -154,7 +154,7 @@ std::vector<std::string> Snapshot::differences(const Snapshot& other) const {
     const bool both = k < items_.size() && k < other.items_.size() && items_[k] == other.items_[k];
     if (!both) {
       names.push_back(k < items_.size() ? items_[k].name : other.items_[k].name);
-      return names;  // what follows cannot be paired
+      return names;  // later items have no counterpart
     }
     const std::size_t bytes = items_[k].count * Snapshot::size_of(items_[k].type);
     if (std::memcmp(bytes_.data() + here, other.bytes_.data() + there, bytes) != 0) names.push_back(items_[k].name);

@@ -1,4 +1,4 @@
-// step(): all islands that are awake, part by part; and what becomes of a step that fails.
+// step(): steps all awake islands, rolls back a failed step, repeats it in parts.
 #include <algorithm>
 #include <cmath>
 
@@ -26,7 +26,7 @@ bool finite(const WorldData<S>& world, const Island<S>& island) {
   return std::isfinite(sum);
 }
 
-// Over h in so many parts. Stops at the first island whose step fails.
+// Steps over h in `parts` parts. Stops at the first island that fails.
 template <class S>
 StepResult attempt(WorldData<S>& world, double h, int parts) {
   StepResult result;
@@ -50,9 +50,9 @@ StepResult attempt(WorldData<S>& world, double h, int parts) {
   return result;
 }
 
-// --- the rest is for steps that fail ---
+// --- failed steps ---
 
-// How much it moved, by itself: the largest of its velocities.
+// The largest component of a body's velocity.
 template <class S>
 double speed_of(const WorldData<S>& world, int body) {
   typename S::Scalar numbers[S::freedom];
@@ -67,8 +67,8 @@ bool finite(const std::vector<T>& numbers, int begin, int end) {
   return std::all_of(numbers.begin() + begin, numbers.begin() + end, [](T number) { return std::isfinite(number); });
 }
 
-// Which joint to look at, where the step began: one whose kernel is not finite, or the one that is off most, or pulls
-// most.
+// Finds the joint to blame at the start of the step. A kernel that is not finite comes first, then the largest C, then
+// the largest force.
 template <class S>
 void blame_joint(WorldData<S>& world, Island<S>& island, StepResult& result) {
   double worst = -1;
@@ -100,7 +100,7 @@ void blame(WorldData<S>& world, StepResult& result) {
   blame_joint(world, island, result);
 }
 
-// In the next attempts.
+// Replaces the solver for the next attempts.
 template <class S>
 void solve_by(WorldData<S>& world, const RowSolver<S>& solver) {
   for (int index : world.awake) {
@@ -154,7 +154,7 @@ StepResult BasicWorld<S>::step(double h) {
     if (world.on_failure == OnFailure::retry) result = try_again(world, h);
     if (!result) {
       blame(world, result);
-      roll_back(world);  // whom to blame was found by evaluating
+      roll_back(world);  // blame() evaluated rows
     }
   }
   result.time = start, result.length = h;

@@ -1,4 +1,4 @@
-// Setting up a World, and step(). Looking at it is in world/queries.cpp.
+// Sets a World up and changes it. world/queries.cpp has the queries, world/step.cpp has step().
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -30,11 +30,11 @@ void check(const Settings& s) {
   require(s.sleep_after >= 0 && s.sleep_speed >= 0, "sleep settings must be >= 0");
 }
 
-// What bodies of both dimensions have in common.
+// Checks that bodies of both dimensions share.
 template <class Definition>
 void check_common(const Definition& d, bool moves, std::initializer_list<double> numbers) {
   for (double number : numbers) require(std::isfinite(number), "every number of a body must be finite");
-  require(d.is_static || d.mass > 0, "a body needs a mass > 0, or to be static");
+  require(d.is_static || d.mass > 0, "a body that is not static needs a mass > 0");
   require(d.mass >= 0, "mass and inertia must not be negative");
   require(!d.is_static || !moves, "a static body has no velocity");
   require(d.linear_damping >= 0 && d.angular_damping >= 0, "damping must not be negative");
@@ -67,7 +67,7 @@ void check_finite(const typename S::Velocity& v, const char* message) {
   for (auto number : numbers) require(std::isfinite(number), message);
 }
 
-// In the World's own precision, which may be float.
+// Checks in the World's own precision, which may be float.
 template <class S>
 void check_finite(const typename S::Pose& q) {
   typename S::Scalar numbers[S::pose_numbers];
@@ -86,8 +86,8 @@ void check_in_precision(const typename S::BodyDefinition& d) {
   std::fill_n(numbers, S::freedom, typename S::Scalar(1));
   one = S::read_velocity(numbers);
   weighted = S::weighted(S::inverse_mass_of(d), one);
-  check_finite<S>(weighted, "a mass or inertia is so small that the precision has no number for its inverse");
-  require(d.is_static || weighted.x > 0, "a mass is so large that the precision has no number for its inverse");
+  check_finite<S>(weighted, "a mass or inertia is too small: its inverse overflows in this precision");
+  require(d.is_static || weighted.x > 0, "a mass is too large: its inverse underflows in this precision");
 }
 
 template <class S>
@@ -143,7 +143,7 @@ BasicWorld<S>& BasicWorld<S>::operator=(BasicWorld&&) noexcept = default;
 
 template <class S>
 void BasicWorld<S>::set_origin(double x, double y, double z) {
-  require(data_->bodies.count() == 0, "the origin must be set before there are bodies");
+  require(data_->bodies.count() == 0, "set_origin() must come before the first add_body()");
   require(std::isfinite(x) && std::isfinite(y) && std::isfinite(z), "the origin must be finite");
   data_->origin = {x, y, z};
 }

@@ -19,7 +19,7 @@ std::string bytes_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Each with its line end, if it has one.
+// The lines with their line ends.
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   for (std::size_t at = 0, end; at < text.size(); at = end) {
@@ -29,7 +29,7 @@ std::vector<std::string> lines_of(const std::string& text) {
   return lines;
 }
 
-// One byte of the character at `at`, unless that character is to be seen and copied: then all of it.
+// Length of the character at `at` if it is printable and copied as a whole, else 1.
 std::size_t length_of_plain_character(const std::string& text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
   const unsigned first = byte(at);
@@ -94,7 +94,7 @@ std::string text_of(const BrokenInput& c) {
          written(c.messages);
 }
 
-// The lines of one case, from behind its mark to its end.
+// Parses the lines of one case after its `--- case` line.
 BrokenInput parse_case(std::string name, const std::vector<std::string>& lines) {
   const bool escapes = name.ends_with(escaped_mark);
   if (escapes) name.erase(name.size() - escaped_mark.size());

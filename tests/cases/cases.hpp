@@ -1,4 +1,4 @@
-// Many small inputs in one file, each with the messages that it must give:
+// Many small inputs in one file, each with its expected messages:
 //
 //   A text about the theme, up to the first case.
 //
@@ -10,10 +10,9 @@
 //
 //   --- case ...
 //
-// A line of an input has in its messages the number that it has in its case. One empty line before `--- case` belongs
-// to neither case. `--- case NAME escaped` is for bytes that an editor cannot show: there `\xNN` is a byte, `\\` a
-// backslash, and `\` at the end of a line joins it with the next. A case without messages is one that is still being
-// written; with CDOT_UPDATE=1 the test writes them.
+// Messages count lines from the first line of their case. One empty line before `--- case` belongs to neither case.
+// `--- case NAME escaped` is for bytes that an editor cannot show: there `\xNN` is a byte, `\\` a backslash, and `\` at
+// the end of a line joins the line with the next. With CDOT_UPDATE=1 the test writes the messages.
 #pragma once
 
 #include <filesystem>
@@ -37,18 +36,18 @@ struct Theme {
   std::vector<BrokenInput> cases;
 };
 
-// Throws std::runtime_error, with the line, where the file is not as above, or two cases have one name.
+// Throws std::runtime_error with the line if the file violates the format or two cases have the same name.
 Theme read_theme(const std::filesystem::path& file);
 Theme parse_theme(const std::string& text, const std::filesystem::path& file);
 std::string text_of(const Theme& theme);
 
-// Every *.cases of a folder, by name; names of cases are unique among them.
+// All *.cases files of a folder, sorted by name; names of cases are unique in the folder.
 std::vector<Theme> themes_in(const std::filesystem::path& folder);
-// Those of all themes. Throws std::out_of_range if none has the name.
+// The cases of all themes. The second function throws std::out_of_range if the name is unknown.
 std::vector<BrokenInput> cases_of(const std::vector<Theme>& themes);
 BrokenInput case_named(const std::vector<Theme>& themes, const std::string& name);
 
-// With CDOT_UPDATE=1: gives every case the messages that `say` has of it, and writes the files anew.
+// With CDOT_UPDATE=1: replaces every case's messages by those of `say` and writes the files.
 void update_if_asked(std::vector<Theme>& themes, const std::function<std::string(const BrokenInput&)>& say);
 
 }  // namespace cdot::test

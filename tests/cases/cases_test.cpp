@@ -1,4 +1,4 @@
-// The format of files of cases: what is written is read again, to the byte, and mistakes are named.
+// The format of case files: writing and reading keeps every byte, and errors name the line.
 #include "tests/cases/cases.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The inputs of a folder of cases as files: split_cases FOLDER OUTPUT. What a fuzzer starts from.
+// Writes the inputs of a folder of cases as files, the start of a fuzzer: split_cases FOLDER OUTPUT.
 #include <cstdio>
 #include <exception>
 #include <fstream>

@@ -1,5 +1,5 @@
 // One test per case, over all ways that claim to hold it. `hard_cases_tests --table` writes the table of README.md,
-// `hard_cases_tests --try [CASE]` tries all ways there are, also those that claim nothing.
+// `hard_cases_tests --try [CASE]` runs all ways, also those that claim nothing.
 #include <algorithm>
 #include <cstdio>
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ class HardCase : public testing::Test {
   Case case_;
 };
 
-// Of every way that claims nothing for a case: it says why, or it holds together all the same.
+// Every way that claims nothing for a case reports the reason or stays together.
 class Silence : public testing::Test {
  public:
   explicit Silence(Case hard_case) : case_(std::move(hard_case)) {}
@@ -51,7 +51,7 @@ class Silence : public testing::Test {
   Case case_;
 };
 
-// README.md has a row for every case, with the ways that claim to hold it, and no other.
+// README.md has exactly one row for every case, with the ways that claim to hold it.
 class Table : public testing::Test {
  public:
   void TestBody() override {
@@ -67,7 +67,7 @@ class Table : public testing::Test {
   }
 };
 
-// What no way may hide: the ways that hold it, and what is said of the others, or what they come to in silence.
+// Prints the ways that hold a case, the reports of the others, and the findings of those without a report.
 void try_all(std::string_view wanted) {
   for (const Case& hard_case : all_cases()) {
     if (wanted.empty() ? hard_case.large : hard_case.fault != wanted) continue;

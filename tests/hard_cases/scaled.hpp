@@ -1,5 +1,5 @@
-// A scene of another size and mass that moves as it does, in the same time through the same angles: lengths, velocities
-// and gravity grow with the size.
+// A copy of a scene with another size and mass and the same motion in angles and time: lengths, velocities and gravity
+// scale with the size.
 #pragma once
 
 #include "runtime/tool/scene/scene.hpp"

@@ -1,5 +1,5 @@
-// Hard cases as `cdot-run simulate` sees them: reports, notes, refusals with their line, and single numbers that are
-// known closer than tests/hard_cases asks of every way. Steps as in the scene, mostly 1/60 s, unless said.
+// Hard cases in `cdot-run simulate`: reports, notes, refusals with their line, and numbers with closer bounds than
+// those for every way. Steps are those of the scene, mostly 1/60 s, unless stated.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -57,7 +57,7 @@ TEST(HardCasesInScenes, BallAndChain) {
   expect_finite_in_float(scene);
 }
 
-// The ball and chain when at rest: the top joint carries all of the weight.
+// The ball and chain at rest: the top joint carries the whole weight.
 TEST(HardCasesInScenes, BallAndChainAtRestCarriesItsWeight) {
   Scene scene = hard("ball_and_chain");
   for (SceneBody& body : scene.bodies) {
@@ -100,10 +100,10 @@ TEST(HardCasesInScenes, LightChainHeavyLoadAtRest) {
 
 TEST(HardCasesInScenes, FeatherBetweenAnvils) {
   Scene scene = hard("feather_between_anvils");
-  scene.settings.substeps = 32;  // the energy of the swing is off by a share of the step
+  scene.settings.substeps = 32;  // the energy of the swing has an error proportional to the step
   const RunResult result = run(scene);
   EXPECT_LT(result.worst_error, 1e-3);
-  const double swing = 1000 * 9.81 * (0.5 + 2.5);  // what the anvils gain by hanging straight down [J]
+  const double swing = 1000 * 9.81 * (0.5 + 2.5);  // energy of the swing: the anvils' potential above the vertical [J]
   EXPECT_LT(result.energy_drift, 0.005 * swing);
   expect_finite_in_float(scene);
 }
@@ -155,7 +155,7 @@ TEST(HardCasesInScenes, SliderCrankThroughItsDeadCentres) {
   };
   run(scene, options);
   const Reference reference = read_reference("slider_crank", 0.2);
-  // 0.2 s are 6553.6 steps: the row before the end is turned on by the rate.
+  // 0.2 s are 6553.6 steps: the last row is advanced to the end with the rate.
   const double late = 0.2 - std::floor(0.2 / scene.step) * scene.step;
   EXPECT_NEAR(crank.angle + crank.w * late, reference.samples.back().bodies.at("crank").angle, 1e-3);
   EXPECT_LT(guide, 1e-5);
@@ -168,8 +168,7 @@ TEST(HardCasesInScenes, DistanceBetweenCoincidentPoints) {
   expect_finite_in_float(scene);
 }
 
-// A distance of 0 has no direction where it holds: refused in the line of the joint, with what to
-// write instead.
+// A distance of length 0 has no direction on C = 0: refused in the joint's line, with a replacement.
 TEST(HardCasesInScenes, DistanceOfLengthZeroIsRefused) {
   const Scene scene = read_scene(std::string_view("[[body]]\nname = \"ball\"\nmass = 1\nshape = { disc = 1 }\n"
                                                   "[[joint]]\nname = \"zero\"\ntype = \"distance\"\n"
@@ -211,8 +210,7 @@ TEST(HardCasesInScenes, BothBodiesStatic) {
   expect_finite_in_float(scene);
 }
 
-// 1000 km away a double resolves 1e-10 m: that much, and no more, may the pendulum differ from the
-// one at the origin.
+// 1000 km away a double resolves 1e-10 m; the pendulum may differ by that from the one at the origin.
 TEST(HardCasesInScenes, FarFromTheOrigin) {
   const auto states_of = [](const Scene& scene) {
     std::vector<BodyState> states;

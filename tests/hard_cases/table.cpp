@@ -1,4 +1,4 @@
-// README.md: of all cases the ways that hold them, the criterion, and the worst that was measured.
+// Prints README.md: for each case the ways that hold it, the criterion and the worst measured number.
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -9,24 +9,24 @@ namespace {
 
 constexpr const char* head = R"(# Hard cases
 
-What is known to break engines of this kind, each as a scene, run in every way that claims to hold it: solver and
-integrator, in double and in float. A test fails where a number is above its bound. Steps are 1/60 s in one substep, with
-ten iterations, unless the case says otherwise; each folder's .cpp has its criterion.
+Known cases that break engines of this kind, each as a scene, run in every way that claims to hold it: solver and
+integrator, in double and in float. A test fails if a number exceeds its bound. Steps are 1/60 s in one substep, with
+ten iterations, unless the case states otherwise; each folder's .cpp has its criterion.
 
     build/dev/tests/hard_cases/hard_cases_tests                  # the tests
-    build/dev/tests/hard_cases/hard_cases_tests --try [FAULT]    # what is said of the ways that claim nothing
+    build/dev/tests/hard_cases/hard_cases_tests --try [FAULT]    # reports of the ways that claim nothing
     build/dev/tests/hard_cases/hard_cases_tests --table > tests/hard_cases/README.md
 
-A way that is not among those that hold a case says why before or while it runs, as `cdot-run diagnose` and
-`cdot-run simulate` do, or is merely inexact: `NoSilence.*` tests that none is lost without a word.
+A way that does not hold a case reports the reason before or during the run, like `cdot-run diagnose` and
+`cdot-run simulate`, or is merely inaccurate: `NoSilence.*` tests that no way fails without a report.
 
-The last command wrote this page. Of each number the worst over the ways is shown, and its bound.
+The last command wrote this page. It shows the worst of each number over the ways, and its bound.
 
 | case | held by | in double | in float |
 |---|---|---|---|
 )";
 
-// The worst of one finding over the ways of one precision.
+// The worst number of one finding over the ways of one precision.
 struct Worst {
   std::string what;
   double value, bound;

@@ -75,7 +75,7 @@ void Trial::say(const std::string& what) {
   if (listening_) throw Warned{what};
 }
 
-// As `cdot-run simulate` does, but after times that grow: cases are of very different lengths.
+// Diagnoses like `cdot-run simulate`, but at growing intervals, because the lengths of cases differ widely.
 void Trial::diagnose(double by) {
   if (!listening_ || ++steps_ < next_diagnosis_) return;
   next_diagnosis_ = steps_ + steps_ / 2 + 1;

@@ -1,5 +1,5 @@
-// A hard case: a scene, the ways that claim to hold it, and what must come out, as numbers. A trial is one run of it in
-// one way; what it finds is printed, tested and put into the table of README.md.
+// A hard case: a scene, the ways that claim to hold it, and bounds for numbers. A trial is one run of a case in one
+// way. Its findings are printed, tested and written to the table of README.md.
 #pragma once
 
 #include <functional>
@@ -17,12 +17,12 @@
 
 namespace cdot::hard {
 
-inline constexpr double h = 1.0 / 60;  // the step, unless a scene or its criterion says otherwise [s]
+inline constexpr double h = 1.0 / 60;  // the step, unless a scene or its criterion has another [s]
 inline constexpr double g = 9.81;
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double finite_only = std::numeric_limits<double>::infinity();
 
-// value <= bound is to hold; a bound of finite_only asks for a number, whichever.
+// Holds if value <= bound; with finite_only, if the value is finite.
 struct Finding {
   std::string what;  // "gap [m]"
   double value, bound;
@@ -30,10 +30,10 @@ struct Finding {
   bool together() const;
 };
 
-// What was seen at the ends of the steps of a run.
+// Extremes at the ends of a run's steps.
 struct Watch {
   double gap = 0;             // the largest |C| of any joint [m], [rad]
-  double rise = 0, fall = 0;  // of the energy, against the start [J]
+  double rise = 0, fall = 0;  // change of the energy since the start [J]
   double speed = 0;           // of the fastest body [m/s]
   bool finite = true;
   double drift() const { return rise > fall ? rise : fall; }
@@ -41,7 +41,7 @@ struct Watch {
 
 using AnyWorld = std::variant<World<double>, World<float>, SpatialWorld<double>, SpatialWorld<float>>;
 
-// Moves the bodies of a trial, and puts into its World where they went.
+// Moves the bodies of a trial and copies their states to its World.
 class Mover {
  public:
   virtual ~Mover() = default;
@@ -50,8 +50,8 @@ class Mover {
   virtual int sleeping_islands() const = 0;
 };
 
-// Who moves the bodies of all trials, if not their Worlds: another engine. Its World is one of doubles and measures
-// poses and velocities.
+// If set, another engine moves the bodies of all trials. The World is then in doubles and measures poses and
+// velocities.
 extern std::function<std::unique_ptr<Mover>(const Scene&, AnyWorld&)> another_engine;
 
 class Trial {
@@ -62,10 +62,10 @@ class Trial {
   const Way way;
   Scene scene;  // may be changed until start()
 
-  void start();                          // the World of the scene, on its joints if the scene asks for it
-  bool refused(const std::string& why);  // start(), which is to fail and to say this
-  // Goes on for so many seconds in steps of the scene, or of `step`; `each` is called after every one. Ends early if
-  // something is not finite.
+  void start();                          // builds the World of the scene, projected if the scene asks for it
+  bool refused(const std::string& why);  // true if start() fails with this reason
+  // Runs for `seconds` in steps of the scene, or of `step`; calls `each` after every step. Ends early if the state is
+  // not finite.
   Watch run(double seconds, double step = 0, const std::function<void()>& each = {});
   void step(double by);
 
@@ -73,9 +73,9 @@ class Trial {
   BodyState body(const std::string& name) const;
   Frame frame() const;
   double energy() const;
-  double gap() const;  // the largest norm of a joint's C now [m], [rad]
+  double gap() const;  // the largest norm of a joint's present C [m], [rad]
   double norm_of_error(int joint) const;
-  double force(int joint) const;  // the norm of what the joint exerts on its last body [N]; NaN if nobody knows
+  double force(int joint) const;  // the norm of the joint's force on its last body [N]; NaN if unknown
   double coordinate(int joint, const char* name) const;
   int sleeping_islands() const;
   bool finite() const;
@@ -91,7 +91,7 @@ class Trial {
     return std::visit(change, *world_);
   }
 
-  // In float the bound may be another: what that precision can tell apart.
+  // A bound for float may differ, by the resolution of that precision.
   void at_most(const std::string& what, double value, double bound);
   void at_most(const std::string& what, double value, double bound, double bound_in_float);
   void near(const std::string& what, double value, double right, double within);
@@ -99,8 +99,8 @@ class Trial {
 
   const std::vector<Finding>& findings() const { return findings_; }
 
-  // What the runtime says of itself to whoever listens: of the method, before and while running, and of steps that fail
-  // or that were left to another method. The trial ends with it.
+  // Thrown at the runtime's first warning: about the method, before or during the run, or about steps that failed or
+  // fell back to another method. It ends the trial.
   struct Warned {
     std::string what;
   };
@@ -120,10 +120,10 @@ class Trial {
 struct Case {
   std::string fault;  // the folder
   std::string scene;  // a file in it, without .toml
-  Ways ways;          // that claim to hold it
+  Ways ways;          // ways that claim to hold the case
   std::function<void(Trial&)> run;
-  std::string variant = {};  // tells cases of the same scene apart, in words
-  bool large = false;        // too large to be tried in ways that claim nothing
+  std::string variant = {};  // name of the case among those of the same scene
+  bool large = false;        // too large for ways that claim nothing
 };
 
 std::string name_of(const Case& hard_case);  // "fault_scene" or "fault_scene_variant"
@@ -131,23 +131,23 @@ std::string name_of(const Case& hard_case);  // "fault_scene" or "fault_scene_va
 // In the order of their names.
 std::vector<Case> all_cases();
 
-// One at namespace scope per case makes it known.
+// Registers a case; one object at namespace scope for each.
 struct Register {
   explicit Register(Case hard_case);
 };
 
-// Runs it; what is thrown becomes a finding that does not hold.
+// Runs the case; an exception becomes a finding that fails.
 std::vector<Finding> findings_of(const Case& hard_case, const Way& way);
-// Of a way that claims nothing: that it holds the case all the same, or what the runtime says of it, or neither.
+// The result of a way that claims nothing: it holds the case, or the runtime gives a reason, or neither.
 struct Verdict {
   bool held = false;
-  // Inexact, as a method of low order is, but in one piece: every number finite, every gap within ten times its bound.
+  // True if merely inaccurate: every number is finite and every gap within ten times its bound.
   bool together = true;
-  std::string said, off;  // off: what does not hold
+  std::string said, off;  // off: the findings that fail
 };
 Verdict verdict_on(const Case& hard_case, const Way& way);
 
-// README.md, and how the row of a case begins there: what it has beside measured numbers.
+// The text of README.md, and the start of a case's row without measured numbers.
 std::string table(const std::vector<Case>& cases);
 std::string table_row_start(const Case& hard_case);
 

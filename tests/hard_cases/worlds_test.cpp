@@ -1,5 +1,5 @@
-// Set-ups that are known to break engines, each with a number to stay below. 1/60 s, doubles,
-// unless said; every one must also stay finite in floats.
+// Known cases that break engines, each with a bound. 1/60 s and doubles unless stated; each must also stay finite in
+// floats.
 #include <fmt/core.h>
 
 #include "tests/runtime/support.hpp"
@@ -108,7 +108,7 @@ TEST(HardCasesInWorlds, FeatherBetweenAnvils) {
   add_feather_between_anvils(world);
   const Extremes e = watch(world, 5);
   EXPECT_LT(e.gap, 1e-3);
-  const double scale = 2000 * g * 3;  // what the fall over the chain's length is worth
+  const double scale = 2000 * g * 3;  // energy of the fall over the chain's length
   EXPECT_LT(std::max(e.rise, e.fall), 5e-3 * scale);
   World<float> coarse(s);
   add_feather_between_anvils(coarse);
@@ -212,7 +212,7 @@ TEST(HardCasesInWorlds, ZeroLengthDistanceIsRefusedAndAZeroStartIsNot) {
   EXPECT_TRUE(finite(world));
 }
 
-// One side of a pulley is pulled up to its wheel and through it.
+// One side of a pulley is pulled up to its wheel and past it.
 template <class T>
 void pulley_to_zero(Solver solver, double step, double* gap, double* rise) {
   World<T> world(settings(solver, Drift::projection, -g));
@@ -255,8 +255,7 @@ TEST(HardCasesInWorlds, SliderCrankThroughItsDeadCentres) {
   EXPECT_LT(std::max(e.rise, e.fall), 1e-3);  // of 7.5 J
 }
 
-// A parallelogram four-bar passes the pose in which all its bars lie in one line, where rank is
-// lost.
+// A parallelogram four-bar passes the flat pose, at which J loses a rank.
 TEST(HardCasesInWorlds, FourBarThroughTheFlatPose) {
   World<double> world(settings(Solver::direct, Drift::projection));
   const int a = world.add_body({.y = 0.5, .angle = pi / 2, .vx = -0.5, .w = 1, .mass = 1, .inertia = 1.0 / 12});
@@ -274,8 +273,7 @@ TEST(HardCasesInWorlds, FourBarThroughTheFlatPose) {
   EXPECT_NEAR(world.pose(b).angle, 0, 1e-3);
 }
 
-// The same mechanism at the origin and far from it: the joints hold to the resolution of the
-// numbers there.
+// The same mechanism at the origin and far from it: |C| stays at the resolution of the numbers there.
 TEST(HardCasesInWorlds, FarFromTheOrigin) {
   for (double place : {1e3, 1e6, 1e9}) {
     World<double> here(settings(Solver::direct, Drift::projection, -g));
@@ -301,7 +299,7 @@ TEST(HardCasesInWorlds, FarFromTheOrigin) {
   }
 }
 
-// A pendulum at 0.1 s and 0.25 s, where one step turns it by more than half a radian.
+// A pendulum with steps of 0.1 s and 0.25 s, each a rotation of more than half a radian.
 TEST(HardCasesInWorlds, VeryLargeStep) {
   for (double step : {0.1, 0.25}) {
     World<double> world(settings(Solver::direct, Drift::projection, -g));

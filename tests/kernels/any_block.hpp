@@ -1,5 +1,5 @@
-// A row block of any joint behind one face of plain numbers, so that a law is written once, as an
-// ordinary function, and says in its failures which joint and block broke it.
+// A row block of any joint behind one interface of plain numbers. A law is then one ordinary function, and its failures
+// name joint and block.
 #pragma once
 
 #include <array>
@@ -42,13 +42,13 @@ inline constexpr std::array<std::string_view, number_of_functions> function_name
     "inverse_mass_jacobian_isotropic", "local_jacobian", "euler_jacobian"};
 // clang-format on
 
-// What a variant does not have of its own, but of the block that it is a variant of.
+// True for functions that a variant inherits from its block.
 constexpr bool inherited_by_variants(Function f) {
   return f == gamma || f == time_derivative || f == stiffness || f == local_jacobian || f == euler_jacobian;
 }
 
-// All that a block's functions read, laid out as in the contract: x y c s angle of each body, ...
-// or, in space, x y z e0 e1 e2 e3 xx ... zz. Sphere-like bodies have the masses in m_isotropic.
+// The inputs of a block's functions, laid out as in the contract: x y c s angle of each body, ... or, in space, x y z
+// e0 e1 e2 e3 xx ... zz. m_isotropic has the masses of isotropic bodies.
 struct Inputs {
   std::vector<double> q, v, m, m_isotropic, p, lambda, rhs, time;
 };
@@ -65,7 +65,7 @@ struct Operations {
 
 struct Outputs {
   std::array<std::vector<double>, number_of_functions> of;
-  std::array<Operations, number_of_functions> cost;  // only from a scalar type that counts
+  std::array<Operations, number_of_functions> cost;  // only with a counting scalar type
 };
 
 struct AnyBlock {
@@ -73,15 +73,15 @@ struct AnyBlock {
   std::string joint, block;  // "line", "slide.a_immovable"; the ledger's names
   int bodies, rows;
   int immovable;        // index of a body, or -1
-  std::size_t general;  // index, among the blocks, of this block with every body movable
+  std::size_t general;  // index of the same block with every body movable
   bool is_coordinate, explicit_time;
   std::span<const std::string_view> row_names;
   std::span<const RowKind> row_kinds;
   std::span<const ParameterInfo> parameters;
 
-  // Every function on as many inputs at once as the scalar type has lanes.
+  // Evaluates every function for one input per lane of the scalar type.
   std::vector<Outputs> (*evaluate)(std::span<const Inputs> lanes);
-  // factor and solve for a K (lower triangle) that no pose has to give.
+  // factor and solve for any K (lower triangle), also one that belongs to no pose.
   std::vector<double> (*factor_and_solve)(const std::vector<double>& K, const std::vector<double>& rhs);
   // Overwrites the parameters that have a default, in their order.
   void (*set_defaults)(Inputs& in);
@@ -95,11 +95,11 @@ struct AnyBlock {
   std::size_t columns() const { return width() * static_cast<std::size_t>(bodies); }
 };
 
-// Every block of the registry, computing in T.
+// Every block of the registry, computed in T.
 template <class T>
 const std::vector<AnyBlock>& blocks();
 
-// Those of one joint in the plane and one in space, in a pack T.
+// The blocks of one planar and one spatial joint, in a pack T.
 template <class T>
 const std::vector<AnyBlock>& some_blocks();
 

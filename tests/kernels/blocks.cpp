@@ -1,4 +1,4 @@
-// Every block of the registry in one scalar type, which the build gives: compiled once for each.
+// Every block of the registry in one scalar type, which the build defines; compiled once for each type.
 #include "tests/kernels/counted.hpp"
 #include "tests/kernels/erase_block.hpp"
 #include "tests/kernels/packs.hpp"

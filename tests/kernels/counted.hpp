@@ -1,6 +1,5 @@
-// A user's own scalar type: a double that counts what is done to it, by the ledger's rules (a
-// negation is an addition; a guarded inverse a division and a comparison; a guarded pivot another
-// product besides).
+// A user's own scalar type: a double that counts its operations by the ledger's rules. A negation is an addition; a
+// guarded inverse is a division and a comparison; a guarded pivot is the same plus a product.
 #pragma once
 
 #include <cmath>

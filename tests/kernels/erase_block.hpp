@@ -1,4 +1,4 @@
-// From the generated structs to AnyBlock: the only place that sees the joints' types.
+// Generated structs -> AnyBlock: only this file uses the joints' types.
 #pragma once
 
 #include <algorithm>
@@ -42,7 +42,7 @@ struct Lanes<packs::Packs> {
   }
 };
 
-// How many numbers of type T a struct or an array of structs consists of.
+// The number of values of type T in a struct or an array of structs.
 template <class T, class Struct, std::size_t bytes = sizeof(Struct)>
 inline constexpr std::size_t numbers_in = bytes / sizeof(T);
 
@@ -59,7 +59,7 @@ void load(Target& target, std::span<const Inputs> lanes, std::vector<double> Inp
   }
 }
 
-// Appends what `function` computed, and what it cost if T counts.
+// Appends the result of `function` and, if T counts, its cost.
 template <class T, class Source>
 void keep(std::vector<Outputs>& outputs, Function function, const Source& source) {
   if constexpr (requires { T::taken; }) outputs[0].cost[function] += std::exchange(T::taken, {});
@@ -89,7 +89,7 @@ struct Space {
   using Joints = spatial::Joints;
 };
 
-// What only blocks in space have for sphere-like bodies.
+// The functions for isotropic bodies, only in space.
 template <class Block, class T, class Jacobian, class Velocity>
 void evaluate_isotropic(std::span<const Inputs> lanes, const Jacobian& J, const T (&lambda)[Block::rows], Velocity& v,
                         std::vector<Outputs>& out) {
@@ -102,8 +102,7 @@ void evaluate_isotropic(std::span<const Inputs> lanes, const Jacobian& J, const 
   Block::apply(J, m, lambda, v), keep<T>(out, apply_isotropic, v);
 }
 
-// J by the other forms of velocity in space, from J of `General`: that a variant is a variant of, or
-// the block itself.
+// J by the other forms of velocity in space, from J of `General`, the block without immovable bodies.
 template <class General, class Block, class T, class Pose, class Parameters>
 void evaluate_forms(const Pose& q, const Parameters& p, T time, std::vector<Outputs>& out) {
   constexpr int n = Block::bodies, rows = Block::rows;

@@ -60,7 +60,7 @@ void expect_near(const AnyBlock& block, std::string_view law, const Eigen::Matri
   for (Eigen::Index i = 0; i < actual.rows(); ++i) {
     for (Eigen::Index j = 0; j < actual.cols(); ++j) {
       const double a = actual(i, j), e = expected(i, j);
-      // Written so that NaN fails.
+      // A NaN fails this comparison.
       if (std::abs(a - e) <= tolerance * (1 + std::abs(e))) continue;
       ADD_FAILURE() << block.space() << ' ' << block.joint << ", " << block.block << ": " << law << ": row " << i
                     << ", column " << j << " is " << a << ", not " << e;

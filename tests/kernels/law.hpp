@@ -1,5 +1,4 @@
-// What the laws share: a block's outputs as matrices, derivatives by differences, and failures that
-// name the place.
+// Helpers of the laws: a block's outputs as matrices, derivatives by differences, failures with their place.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -33,7 +32,7 @@ Eigen::MatrixXd derivative_at_zero(const std::function<Eigen::MatrixXd(double)>&
 void expect_near(const AnyBlock& block, std::string_view law, const Eigen::MatrixXd& actual,
                  const Eigen::MatrixXd& expected, double tolerance);
 
-// The law for every block at several random inputs.
+// Checks the law for every block at several random inputs.
 void for_all(const std::function<void(const AnyBlock&, const Inputs&)>& law);
 
 }  // namespace cdot

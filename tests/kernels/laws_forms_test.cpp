@@ -1,4 +1,4 @@
-// In space: J by the other forms of velocity, and bodies whose inertia is alike about every axis.
+// In space: J by the other forms of velocity, and isotropic bodies.
 #include <cmath>
 
 #include "tests/kernels/law.hpp"
@@ -15,7 +15,7 @@ void for_all_in_space(const std::function<void(const AnyBlock&, const Inputs&)>&
   });
 }
 
-// J of the block with every body movable, from which a variant has its forms.
+// J of the block with every body movable, the source of a variant's forms.
 Eigen::MatrixXd general_jacobian(const AnyBlock& block, const Inputs& in) {
   return dense_jacobian(blocks<double>()[block.general], in);
 }
@@ -49,8 +49,7 @@ TEST(Forms, local_is_J_times_A) {
   });
 }
 
-// K is a number of the world's, whatever the columns of J are counted in: J_b with the inertia
-// tensor in body axes.
+// K does not depend on the axes of J's columns: J_b with the inertia tensor in body axes gives the same K.
 TEST(Forms, local_has_the_same_K) {
   for_all_in_space([](const AnyBlock& block, const Inputs& in) {
     const Outputs out = evaluate_one(block, in);
@@ -79,8 +78,7 @@ TEST(Forms, euler_is_J_times_2G) {
   });
 }
 
-// The columns of the Euler parameters against differences of C itself, along rates that keep
-// e . edot = 0.
+// Compares the columns of the Euler parameters with differences of C along rates with e . edot = 0.
 TEST(Forms, euler_is_the_difference_of_position_where_parameters_stay_of_length_one) {
   for_all_in_space([](const AnyBlock& block, const Inputs& in) {
     for (const RowKind kind : block.row_kinds) {

@@ -1,5 +1,4 @@
-// C, J and what derives from both by one more derivative: each against differences of the function
-// before it.
+// Compares J, gamma, dC/dt and the stiffness with differences of the function that they differentiate.
 #include <algorithm>
 
 #include "tests/kernels/law.hpp"
@@ -8,12 +7,12 @@ using namespace cdot;
 
 namespace {
 
-// Columns of the body that a variant holds still are absent from its J.
+// True for columns of a variant's immovable body, which its J lacks.
 bool held(const AnyBlock& block, std::size_t column) {
   return static_cast<int>(column / block.width()) == block.immovable;
 }
 
-// Along a motion that starts with v: q(s) = q + s v to first order, t + s.
+// The inputs along a motion with velocity v: q(s) = q + s v to first order, t + s.
 Inputs after(const AnyBlock& block, Inputs in, double s) {
   for (std::size_t c = 0; c < in.v.size(); ++c) move(block, in, c, s * in.v[c]);
   in.time[0] += s;
@@ -34,7 +33,7 @@ Eigen::MatrixXd rate_at(const AnyBlock& block, const Inputs& in) {
   return dense_jacobian(block, in) * vector(in.v) + vector(evaluate_one(block, in).of[time_derivative]);
 }
 
-// d f / dq, column by column; zero for the held body.
+// d f / dq, column by column; 0 for the immovable body.
 Eigen::MatrixXd gradient(const AnyBlock& block, const Inputs& in,
                          Eigen::MatrixXd (*f)(const AnyBlock&, const Inputs&)) {
   Eigen::MatrixXd G = Eigen::MatrixXd::Zero(f(block, in).rows(), static_cast<Eigen::Index>(block.columns()));
@@ -49,9 +48,9 @@ Eigen::MatrixXd gradient(const AnyBlock& block, const Inputs& in,
   return G;
 }
 
-// H - H^T. In the plane nothing. In space two small turns one after the other depend on their
-// order: second derivatives along turns about axes i and j differ by the one along i x j, so that
-// each body's block of turns has -skew(torque) in it, the torque being that of J^T lambda.
+// H - H^T: 0 in the plane. In space small rotations do not commute: second derivatives along rotations about axes i and
+// j differ by the first derivative along i x j. Each body's block of rotations therefore contains -skew(torque) with
+// the torque of J^T lambda.
 Eigen::MatrixXd turning_part(const AnyBlock& block, const Inputs& in) {
   const auto columns = static_cast<Eigen::Index>(block.columns());
   Eigen::MatrixXd part = Eigen::MatrixXd::Zero(columns, columns);
@@ -121,7 +120,7 @@ TEST(Laws, gamma_is_minus_the_difference_of_the_rate_at_constant_velocity) {
 
 TEST(Laws, stiffness_is_the_difference_of_the_force) {
   for_all([](const AnyBlock& block, const Inputs& in) {
-    if (block.immovable >= 0) return;  // it is the general block's
+    if (block.immovable >= 0) return;  // inherited from the general block
     const Eigen::MatrixXd H = matrix(evaluate_one(block, in), stiffness, static_cast<Eigen::Index>(block.columns()));
     expect_near(block, "H = d(J^T lambda)/dq", H, gradient(block, in, force_at), 1e-7);
     if (!has_velocity_row(block)) {

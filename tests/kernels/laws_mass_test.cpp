@@ -1,5 +1,4 @@
-// K, its factors, the impulse, and variants: each against the same thing put together from J with
-// its zeros.
+// Compares K, its factors, the impulse and variants with results from the dense J.
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,7 @@ bool all_finite(const std::vector<double>& numbers) {
   return std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); });
 }
 
-// J with its zeros, M^-1 and K = J M^-1 J^T the long way.
+// Dense J, M^-1 and K = J M^-1 J^T.
 struct Expected {
   Eigen::MatrixXd J, inverse_mass, K;
 };
@@ -98,7 +97,7 @@ TEST(Laws, a_variant_is_the_general_block_with_a_body_at_rest_and_infinitely_hea
       if (i % (width * n) / width == held) general.of[dense][i] = 0;
     }
     for (int f = 0; f < number_of_functions; ++f) {
-      if (f == jacobian) continue;  // stores other fields
+      if (f == jacobian) continue;  // has other fields
       expect_near(block, function_names[static_cast<std::size_t>(f)], vector(of_variant.of[f]), vector(general.of[f]),
                   f == solve || f == factor ? 1e-9 : mass_round_off);
     }
@@ -115,8 +114,8 @@ TEST(Guards, infinite_masses_give_no_impulse) {
   }
 }
 
-// K = sum of g g^T over fewer vectors g than rows: rows repeat each other. A right-hand side that
-// such rows can all meet is met, without impulses that grow beyond all measure.
+// K = sum of g g^T over fewer vectors g than rows: some rows are redundant. A consistent right-hand side is satisfied
+// with bounded impulses.
 TEST(Guards, dependent_rows_share_the_impulse) {
   std::mt19937 random(7);
   const auto number = [&] { return static_cast<double>(random()) / 4294967296.0 - 0.5; };
@@ -124,8 +123,7 @@ TEST(Guards, dependent_rows_share_the_impulse) {
   for (const AnyBlock& block : blocks<double>()) {
     if (block.rows < 2) continue;
     ++blocks_with_several_rows;
-    // The factor is told by the kernel which entries of K are zero at every pose, so the pattern is
-    // K's own.
+    // The generated factor skips entries of K that are 0 at every pose, so the test uses K's own pattern.
     const std::vector<double> pattern = evaluate_one(block, random_inputs(block, 1)).of[effective_mass];
     if (std::count(pattern.begin(), pattern.end(), 0.0) > 0) continue;
     for (int repeat = 0; repeat < 200; ++repeat) {

@@ -1,4 +1,4 @@
-// What a joint may not do to the world: add momentum, or start apart.
+// A joint must not add momentum, and its defaults must satisfy C = 0.
 #include <Eigen/LU>
 #include <cmath>
 #include <fstream>
@@ -12,8 +12,7 @@ using namespace cdot;
 
 namespace {
 
-// The spec without its comments, and with what it includes: the text itself, not what the generator
-// made of it.
+// The text of the spec and of its includes without comments, read without the generator.
 std::string spec_text(const std::string& space, const std::string& joint) {
   std::ifstream file(CDOT_SPECS "/" + space + "/" + joint + ".joint");
   EXPECT_TRUE(file) << "no spec of " << joint;
@@ -41,8 +40,8 @@ bool joins_bodies_only(const AnyBlock& block) {
          !has_word(spec_text(std::string(block.space()), block.joint), "world");
 }
 
-// Linear momentum, and angular momentum about the origin: the sums of p and of x cross p + I w. In
-// the plane the third of the former and the first two of the latter are zero.
+// Linear momentum, sum of p, and angular momentum about the origin, sum of x cross p + I w. In the plane the third
+// component of the former and the first two of the latter are 0.
 Eigen::VectorXd momentum(const AnyBlock& block, const Inputs& in, const std::vector<double>& v) {
   const Eigen::VectorXd p = inverse_masses(block, in).inverse() * vector(v);
   const Eigen::Index dimension = block.planar() ? 2 : 3;
@@ -61,8 +60,7 @@ Eigen::VectorXd momentum(const AnyBlock& block, const Inputs& in, const std::vec
 
 }  // namespace
 
-// Where the joint holds (C = 0): apart, the opposite forces on two points of pa = pb have a moment,
-// as they should.
+// On C = 0 only: if pa and pb differ, their opposite forces have a moment.
 TEST(Physics, a_joint_without_world_keeps_momentum) {
   std::set<std::string> free;
   for_all([&](const AnyBlock& block, const Inputs& random) {
@@ -83,8 +81,7 @@ TEST(Physics, moving_all_bodies_together_changes_nothing) {
     if (!joins_bodies_only(block)) return;
     const Inputs moved = moved_together(block, in);
     const Outputs before = evaluate_one(block, in), after = evaluate_one(block, moved);
-    // Rows along the world's axes (x and y of pa = pb) turn with the bodies and mix: what they
-    // measure together stays.
+    // Rows along world axes (x and y of pa = pb) mix under a common rotation; their norm is constant.
     EXPECT_NEAR(vector(after.of[position]).norm(), vector(before.of[position]).norm(), 1e-12)
         << block.space() << ' ' << block.joint << ", " << block.block << ": length of C";
     const Eigen::MatrixXd K = symmetric(before.of[effective_mass], block.rows);
@@ -96,15 +93,14 @@ TEST(Physics, moving_all_bodies_together_changes_nothing) {
   });
 }
 
-// Parameters left out are taken from the initial pose such that the joint starts together. A point
-// on a curve or a surface cannot be: where it does not pass, no default of its parameters moves it
-// there; nor are directions that a scene gives turned to be perpendicular or within a cone.
+// Defaults from the initial pose satisfy C = 0. Exceptions: no default moves a point onto a curve or a surface, or
+// makes given directions perpendicular or moves them into a cone.
 TEST(Physics, defaults_start_the_joint_at_rest_position) {
   const std::set<std::string> without_promise = {"sine_track", "surface", "n1", "cone", "lesson_example"};
   for_all([&](const AnyBlock& block, const Inputs& random) {
     if (block.immovable >= 0 || block.is_coordinate || without_promise.contains(block.joint)) return;
     Inputs in = random;
-    in.time[0] = 0;  // a driven angle has its default at time 0
+    in.time[0] = 0;  // the default of a driven angle is that at time 0
     block.set_defaults(in);
     const Eigen::VectorXd C = vector(evaluate_one(block, in).of[position]);
     expect_near(block, "C = 0 with default parameters", C, 0 * C, 1e-12);

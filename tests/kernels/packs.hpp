@@ -1,5 +1,5 @@
-// All packs side by side in one scalar type, so that every kernel is compiled once for the six of them: an operation is
-// that of each pack, apart from the others.
+// All six packs side by side in one scalar type, so every kernel is compiled once for all. An operation applies to each
+// pack separately.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ struct Masks {
   cdot::Mask<double, 16> d16;
 };
 
-// f of the operands' parts that are of one pack, for each pack.
+// Applies f to the operands' parts of each pack.
 template <class Result, class F, class... Operands>
 Result each(F f, const Operands&... x) {
   return {f(x.f4...), f(x.f8...), f(x.f16...), f(x.d4...), f(x.d8...), f(x.d16...)};
@@ -79,7 +79,7 @@ auto at_lane(Packs& p, std::size_t lane, F f) {
   return f(p.d16, i - 8);
 }
 
-// Where the lanes of a pack begin among them.
+// The first lane of a pack among all lanes.
 template <class Pack>
 inline constexpr std::size_t first_lane = 0;
 template <>

@@ -30,7 +30,7 @@ Eigen::Quaterniond random_turn(Random& random) {
   return Eigen::Quaterniond(e[0], e[1], e[2], e[3]).normalized();
 }
 
-// The axes of a random frame, one after the other, as many numbers of them as are asked for.
+// The first `numbers` numbers of the axes of a random frame, one axis after the other.
 std::vector<double> random_axes(const AnyBlock& block, int numbers, Random& random) {
   if (block.planar()) {
     const double angle = random.between(-3, 3);
@@ -87,7 +87,7 @@ void turn(const AnyBlock& block, double* pose, const Eigen::Vector3d& axis, doub
   }
 }
 
-// Inverse masses, and in space inverse inertia tensors: any that are positive definite.
+// Inverse masses and, in space, positive definite inverse inertia tensors.
 std::vector<double> random_masses(const AnyBlock& block, Random& random) {
   std::vector<double> all;
   for (int b = 0; b < block.bodies; ++b) {

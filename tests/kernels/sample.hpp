@@ -1,5 +1,4 @@
-// Inputs for the laws: random ones in general position, and the places where formulas divide by
-// zero.
+// Inputs for the laws: random ones, and singular ones at which formulas divide by zero.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,9 +10,8 @@
 
 namespace cdot {
 
-// Poses within 2 m, any orientation; velocities and impulses within 1; unit parameters of length 1,
-// scalars around 1; masses around 1, with the variant's immovable body at rest and infinitely
-// heavy. Equal seeds, equal numbers.
+// Poses within 2 m, any orientation; velocities and impulses within 1; unit parameters of length 1, scalars around 1;
+// masses around 1, with the variant's immovable body at rest and with inverse mass 0. Equal seeds give equal numbers.
 Inputs random_inputs(const AnyBlock& block, std::uint32_t seed);
 
 struct SingularInputs {
@@ -23,14 +21,14 @@ struct SingularInputs {
 // Coincident points, zero lengths, zero parameters, infinite masses.
 std::vector<SingularInputs> singular_inputs(const AnyBlock& block, std::uint32_t seed);
 
-// The pose after a motion by `step` along one column of J: x, y, angle of each body in turn; in
-// space x, y, z and a turn about a world axis.
+// Moves a body by `step` along one column of J: x, y, angle of each body; in space x, y, z and rotations about the
+// world axes.
 void move(const AnyBlock& block, Inputs& in, std::size_t column, double step);
 // The tensor of a spatial::InverseMass that starts at `mass`.
 Eigen::Matrix3d inverse_inertia(const double* mass);
-// e0 e1 e2 e3 of a spatial pose, made of length 1, and the rotation matrix that belongs to them.
+// Writes normalised e0 e1 e2 e3 and their rotation matrix to a spatial pose.
 void set_orientation(double* pose, const Eigen::Vector4d& parameters);
-// All bodies turned together about the origin, and shifted.
+// Rotates all bodies together about the origin and shifts them.
 Inputs moved_together(const AnyBlock& block, const Inputs& in);
 
 }  // namespace cdot

@@ -1,5 +1,5 @@
-// One kernel, many kinds of number: packs give the bits of their lanes, floats come close to
-// doubles, and a user's own type that counts agrees with the ledger.
+// One kernel, many scalar types: packs have the bits of their lanes, floats approximate doubles, and a counting type
+// agrees with the ledger.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -23,8 +23,7 @@ using PackTypes =
     testing::Types<Pack<float, 4>, Pack<float, 8>, Pack<float, 16>, Pack<double, 4>, Pack<double, 8>, Pack<double, 16>>;
 TYPED_TEST_SUITE(Packs, PackTypes);
 
-// As many inputs as lanes; singular ones among them, so that what one lane guards against must not
-// leak.
+// One input per lane, some of them singular: a guarded division in one lane must not affect others.
 std::vector<Inputs> lanes_of_inputs(const AnyBlock& block, std::uint32_t seed) {
   std::vector<Inputs> lanes;
   for (const SingularInputs& singular : singular_inputs(block, seed)) {
@@ -77,7 +76,7 @@ std::string text(const Operations& o) {
 
 }  // namespace
 
-// As many inputs as a scalar type has lanes, which for all packs are those of each pack in turn.
+// One input per lane of a scalar type; `all packs` has the lanes of each pack in turn.
 template <class T>
 std::vector<Inputs> inputs_for(const AnyBlock& block, std::uint32_t seed) {
   const std::vector<Inputs> inputs = lanes_of_inputs(block, seed);
@@ -89,7 +88,7 @@ std::vector<Inputs> inputs_for(const AnyBlock& block, std::uint32_t seed) {
   return spread;
 }
 
-// Each lane of a Pack from `first` on, of a block that computes in Wide, against the same block in the pack's scalar.
+// Compares each lane of a Pack, from lane `first` of Wide on, with the same block in the pack's scalar.
 template <class Wide, class Pack>
 void expect_bits_of_the_scalar(const AnyBlock& wide, const AnyBlock& narrow, std::size_t first) {
   for (std::uint32_t seed = 1; seed <= 4; ++seed) {
@@ -109,7 +108,7 @@ TYPED_TEST(Packs, every_lane_has_the_bits_of_the_scalar) {
     expect_bits_of_the_scalar<packs::Packs, TypeParam>(wide[b], narrow[b], packs::first_lane<TypeParam>);
 }
 
-// That all packs at once are each by itself.
+// A kernel compiled for all packs at once has the same bits as one compiled for a single pack.
 TYPED_TEST(Packs, a_kernel_compiled_for_one_pack_has_these_bits) {
   ASSERT_GE(some_blocks<TypeParam>().size(), 8u);
   for (const AnyBlock& wide : some_blocks<TypeParam>()) {
@@ -174,7 +173,7 @@ TEST(Counted, agrees_with_the_ledger) {
       ++compared;
     }
   }
-  // Besides, the ledger has C, J and K of each block that is no variant.
+  // The ledger also has C, J and K of each block that is not a variant.
   std::size_t general = 0;
   for (const AnyBlock& block : blocks<double>()) general += block.immovable < 0;
   EXPECT_EQ(compared + 3 * general, ledger.size()) << "rows of joints or blocks that do not exist";

@@ -1,4 +1,4 @@
-// A joint in the plane and one in space with all their blocks, compiled for each pack by itself, as a user would.
+// All blocks of one planar and one spatial joint, compiled for each pack alone, as in a user's program.
 #include "tests/kernels/erase_block.hpp"
 
 namespace cdot {

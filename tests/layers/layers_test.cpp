@@ -1,6 +1,6 @@
-// The architecture as a table: a room includes only itself and rooms above it in its list. Every #include in derive/
-// and runtime/ is held to that. derive/ and runtime/ do not know each other, but for one room that both use; nor does
-// either know the tests.
+// The architecture as a table: a room includes only itself and rooms above it in its list. The test checks every
+// #include in derive/ and runtime/. These two share one room and otherwise do not include each other; neither includes
+// the tests.
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
@@ -39,15 +39,15 @@ const std::vector<std::string> rooms = {
     "derive/commands",
     "derive",              // main()
 
-    // The runtime. <cdot/...> is what a program includes; detail/ is what compiling its own joints takes beside.
+    // The runtime. Programs include <cdot/...>; detail/ is for compiling a program's own joints.
     "runtime/include/cdot", "runtime/include/cdot/detail",
     "runtime/number",
     "runtime/space",       // plane and space
     "runtime/rows",        // joints as blocks of rows, and the laws of their impulses
     "runtime/direct",      // the sparse system of an island
     "runtime/state",       // all data of a World
-    "runtime/motion",      // forces and poses, apart from joints
-    "runtime/solve",       // what a step asks of the joints
+    "runtime/motion",      // forces and poses, without joints
+    "runtime/solve",       // rows of an island, their forces and projection
     "runtime/step",        // integrators
     "runtime/world",       // step() itself; islands, sleep, queries
     "runtime/effects",     // motor, limit, spring, friction, breaking
@@ -56,7 +56,7 @@ const std::vector<std::string> rooms = {
     "runtime/tool/scene", "runtime/tool/run", "runtime/tool/viewer", "runtime/tool/accuracy", "runtime/tool/commands",
     "runtime/tool",
 };
-// Rooms of one concern in two folders, which may include each other.
+// One room in two folders, which may include each other.
 const std::map<std::string, std::string> annexes = {{"derive/language/hand", "derive/language"}};
 // clang-format on
 
@@ -88,7 +88,7 @@ std::vector<fs::path> sources() {
   return found;
 }
 
-// The file that an #include of ours names, from the root; empty for others. Kernels are nobody's room.
+// The file of an #include of this project, from the root; empty for others and for kernels, which are in no room.
 fs::path included(const std::string& line) {
   static const std::regex quoted("#include \"((derive|runtime|tests|generated)/[^\"]*)\".*");
   static const std::regex published("#include <(cdot/[^>]*)>.*");

@@ -108,7 +108,7 @@ def pictures():
         status, said = run(f"cdot-run simulate {scene} --svg now.svg")
         kept, now = (source / match.group(1)).read_text(), (place / "now.svg").read_text()
         alike = number.sub("#", kept) == number.sub("#", now)
-        # Machines may differ in the last digits that they show.
+        # Machines may differ in the last digits.
         apart = max((abs(float(a) - float(b)) for a, b in zip(number.findall(kept), number.findall(now))), default=1)
         claim(status == 0 and alike and apart < 1, f"{match.group(1)} is a picture of {scene}")
 

@@ -1,5 +1,5 @@
-// Replaces the global operator new by one that counts. Apart from the test that reads the count, so
-// that the compiler does not see through a new and its delete.
+// Replaces the global operator new by one that counts. In its own file: otherwise the compiler could remove a new with
+// its delete.
 #include <cstdlib>
 #include <new>
 

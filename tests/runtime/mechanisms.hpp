@@ -1,5 +1,4 @@
-// Mechanisms of the sizes and shapes that a direct solver meets: what its tests and its benchmark
-// both solve.
+// Typical mechanisms for the direct solver, used by its tests and its benchmark.
 #pragma once
 
 #include <cmath>
@@ -27,14 +26,14 @@ inline int add_bar(World<double>& world, const Bar& bar, double mass = 1) {
                          .inertia = mass * l * l / 12});
 }
 
-// Holds two bodies together at a point of the world.
+// Pins two bodies together at a point of the world.
 inline int pin(World<double>& world, int a, int b, double x, double y) {
   const auto q = world.pose(a);
   const double dx = x - q.x, dy = y - q.y;
   return world.add_joint({"revolute", {a, b}, {{"pa", {q.c * dx + q.s * dy, q.c * dy - q.s * dx}}}, {}});
 }
 
-// So many links hanging from the ground, a zigzag.
+// A zigzag of `links` links that hangs from the ground.
 inline void add_zigzag(World<double>& world, int links) {
   int before = world.ground();
   double x = 0, y = 0;
@@ -68,8 +67,8 @@ inline void add_four_bar(World<double>& world) {
   pin(world, c, world.ground(), 1.2, 0);
 }
 
-// n x n rotating squares, each hinged to its neighbours at its corners: as one closes all close.
-// Of 2 (2 n (n - 1)) + 2 rows all but (n - 2)^2 are independent; flat at phi = 0.
+// n x n rotating squares, each hinged to its neighbours at its corners: all close together. Of 2 (2 n (n - 1)) + 2 rows
+// all but (n - 2)^2 are independent; flat at phi = 0.
 inline void add_rotating_squares(World<double>& world, int n, double phi, double rate = 0) {
   const double arm = 0.5, pitch = 2 * arm * std::cos(phi), opening = -2 * arm * std::sin(phi) * rate;
   std::vector<int> unit;

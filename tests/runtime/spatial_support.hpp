@@ -1,4 +1,4 @@
-// What tests of Worlds in space share.
+// Helpers for tests of Worlds in space.
 #pragma once
 
 #include <cdot/rotation.hpp>
@@ -29,7 +29,7 @@ SpatialMomentum momentum(const SpatialWorld<T>& world) {
   return sum;
 }
 
-// How far the quaternion is from a unit one, and A from a rotation.
+// The errors of |e| = 1 and of A as a rotation matrix.
 template <class T>
 double off_unit(const spatial::Pose<T>& q) {
   const double length =
@@ -54,7 +54,7 @@ int join(SpatialWorld<T>& world, const char* type, int a, int b, std::vector<Nam
   return world.add_joint({type, {a, b}, std::move(values), soft});
 }
 
-// Four bricks in free space: balls, a hinge with a motor and a limit, something soft, a spring.
+// Four bricks in free space: ball joints, a hinge with a motor and a limit, a soft joint, a spring.
 template <class T>
 void add_free_mechanism(SpatialWorld<T>& world) {
   std::vector<int> bricks;

@@ -1,4 +1,4 @@
-// Small worlds that several tests build.
+// Small worlds for several tests.
 #pragma once
 
 #include <cmath>
@@ -42,8 +42,7 @@ inline BodyDefinition rod(double x, double y, double angle, double mass = 1) {
   return d;
 }
 
-// Rods of length 1 end to end from the origin; joint i holds rod i to the one before, joint 0 to
-// the ground.
+// Rods of length 1 end to end from the origin; joint i connects rod i to the previous one, joint 0 to the ground.
 template <class T>
 std::vector<int> add_chain(World<T>& world, int links, double angle, double mass = 1) {
   std::vector<int> rods;
@@ -77,7 +76,7 @@ void run(BasicWorld<S>& world, double duration, double h) {
   for (long i = 0; i < steps; ++i) world.step(h);
 }
 
-// The largest distance of the energy from what it was, in the first quarter of so many seconds and in the rest.
+// The largest change of the energy since the start, in the first quarter of a run and in the other three quarters.
 struct EnergyOff {
   double early = 0, late = 0;
 };

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-// That of a few points of the same mass in the box: every tensor that a body may have, and no other.
+// The inertia of a few points of equal mass in the box: all tensors of rigid bodies, and no others.
 Inertia random_inertia(Random& random, double mass, double size) {
   Inertia I;
   constexpr int points = 4;
@@ -36,7 +36,7 @@ std::vector<double> cut(const std::array<double, 3>& v, Dimension dimension) {
   return {v.begin(), v.begin() + (dimension == Dimension::planar ? 2 : 3)};
 }
 
-// In the frame of the body, within its size; in the world's, near another body of the joint.
+// In a body's frame: within the body's size. In the world: near another body of the joint.
 std::vector<double> random_point(Random& random, const Scales& scales, const Scene& scene,
                                  const std::vector<int>& bodies, int body) {
   const bool in_space = scene.dimension == Dimension::spatial;
@@ -198,7 +198,7 @@ Softness random_softness(Random& random, const Scales& scales, bool turns) {
   return s;
 }
 
-// One effect, or two, on a coordinate that stands at `now`.
+// One or two effects on a coordinate with the value `now`.
 CoordinateEffects random_effects(Random& random, const Scales& scales, const CoordinateInfo& info, double now) {
   CoordinateEffects effects;
   effects.coordinate = info.name;
@@ -245,7 +245,7 @@ void push(Random& random, const Scales& scales, SceneBody& body) {
 
 }  // namespace
 
-// An angle about an axis has no value where the axes it is told by are antiparallel: the World refuses effects on it.
+// An angle between antiparallel axes jumps: the World refuses effects on it.
 template <class S>
 bool has_value(BasicWorld<S> world, int joint, std::string_view coordinate) {
   try {

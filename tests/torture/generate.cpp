@@ -11,7 +11,7 @@
 namespace cdot::torture {
 namespace {
 
-// The mechanism while it grows. What is not told by a length is told by this length, this rate and this mass.
+// A growing mechanism with its scales of length, rate and mass.
 class Growth {
  public:
   Growth(Random& random, const Wish& wish) : random_(random), wish_(wish) {}
@@ -53,7 +53,7 @@ void Growth::choose_scales() {
   anchored_ = random_.chance(0.55);
 }
 
-// Of what floats freely mostly joints that do so too.
+// For a freely floating mechanism mostly joints without a connection to the world.
 const std::string& Growth::any_type() {
   const auto types = joint_types(made_.scene.dimension);
   const auto holds_the_world = [](const JointType& type) {
@@ -107,7 +107,7 @@ void Growth::add_bodies() {
   }
 }
 
-// The child among bodies that are there before it, in any order; the world where there are too few.
+// The child and earlier bodies, in any order; the world if there are too few.
 std::vector<int> Growth::bodies_for(const JointType& type, int child) {
   std::vector<int> others;
   for (int k = 0; k < static_cast<int>(made_.scene.bodies.size()); ++k)
@@ -125,7 +125,7 @@ std::vector<int> Growth::bodies_for(const JointType& type, int child) {
   return bodies;
 }
 
-// Added to the World as well, so that what this one refuses is left out at once.
+// Adds the joint to the World too, so a refused joint is left out at once.
 template <class S>
 bool Growth::add_joint(BasicWorld<S>& world, const std::string& type, int child) {
   const JointType& info = *find_joint_type(S::dimension, type);
@@ -157,7 +157,7 @@ void Growth::add_tree(BasicWorld<S>& world) {
     if (random_.chance(0.9)) add_joint(world, any_type(), child);
 }
 
-// Joints beyond the tree: close a loop, or are there already.
+// Joints beyond the tree: they close a loop or repeat a joint.
 template <class S>
 void Growth::add_loops(BasicWorld<S>& world) {
   const int bodies = static_cast<int>(made_.scene.bodies.size());
@@ -170,7 +170,7 @@ void Growth::add_loops(BasicWorld<S>& world) {
   }
 }
 
-// The poses, disturbed, brought back onto all joints; velocities that fit. False if that cannot be done.
+// Disturbs the poses and projects them and the velocities onto all joints. False if the projection fails.
 template <class S>
 bool Growth::settled(bool disturbed) {
   Scene trial = made_.scene;
@@ -191,7 +191,7 @@ void Growth::settle() {
   for (;;) {
     try {
       if ((disturbed && settled<S>(true)) || settled<S>(false) || made_.scene.joints.empty()) return;
-    } catch (const SceneError& error) {  // a joint has no direction where the poses were disturbed to
+    } catch (const SceneError& error) {  // a joint has no direction at the disturbed poses
       made_.refused.push_back(error.what());
     }
     made_.scene.joints.pop_back();

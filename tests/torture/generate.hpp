@@ -1,4 +1,4 @@
-// Random mechanisms as scenes: trees, loops, redundant loops, all joints, any masses, any method; from a seed alone.
+// A seed -> a random mechanism as a scene: trees, loops, redundant loops, all joints, any masses, any method.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@
 
 namespace cdot::torture {
 
-// What is not left to chance.
+// Choices that are not random.
 struct Wish {
-  std::string joint = {};  // this one is among them
+  std::string joint = {};  // the mechanism contains this joint
   std::optional<Dimension> dimension = {};
   std::optional<Solver> solver = {};
   std::optional<Integrator> integrator = {};
@@ -22,8 +22,8 @@ struct Wish {
 
 struct Mechanism {
   Scene scene;
-  std::vector<std::string> refused;  // by the World while it grew: joints that were left out, and why
-  int left_out = 0;                  // joints taken away because the poses could not be brought onto all of them
+  std::vector<std::string> refused;  // reasons for joints that the World refused during growth
+  int left_out = 0;                  // joints removed because the projection failed with them
 };
 
 Mechanism generate(std::uint64_t seed, const Wish& wish = {});

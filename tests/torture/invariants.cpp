@@ -11,25 +11,25 @@
 namespace cdot::torture {
 namespace {
 
-constexpr double resolved = 0.5;  // of Accounts::roughest: above, a step does not resolve the motion
+constexpr double resolved = 0.5;  // largest Accounts::roughest of a resolved motion
 
 constexpr int most_steps = 30000;  // of a run with shorter steps
 constexpr int dear = 300;          // evaluations of an island's accelerations in a step, on average
 
 template <class T>
 constexpr double start_tolerance = std::is_same_v<T, double> ? 1e-9 : 1e-4;
-// What is left of C after a step, as a share of the row's size, by Newton down to round-off.
+// The largest C after a step with Newton, as a share of the row's size.
 template <class T>
 constexpr double held_tolerance = std::is_same_v<T, double> ? 1e-10 : 1e-4;
-// Where one-sided rows act, Runge-Kutta goes on until they have just passed: up to this share of the row's size.
+// With one-sided rows Runge-Kutta steps end just after an event: C up to this share of the row's size.
 template <class T>
 constexpr double just_passed = std::is_same_v<T, double> ? 3e-9 : 3e-4;
 
 constexpr double turns_round = 0.5;   // of unit rows, in a step
 constexpr double nearly_lost = 0.05;  // of the rows' independence at the start
 
-// Of its row's diagonal: what a pivot of K must be to be told from round-off, and from what joints that are a little
-// open leave of a row too many.
+// The smallest pivot of K, as a share of the diagonal, that differs from round-off and from the pivot of a redundant
+// row at small errors of C.
 template <class T>
 constexpr double told_apart = Ldlt::pivot_share<T>;
 
@@ -51,7 +51,7 @@ Verdict verdict(Outcome outcome, std::string what, std::string detail, double va
   return v;
 }
 
-// Rounded operations on a body's velocity in a step, at most about: each row of each of its joints, once per solve.
+// An estimate of the rounded operations on a body's velocity in a step: each row of each of its joints, once per solve.
 double operations_of(const Scene& scene) {
   std::vector<int> rows(scene.bodies.size() + 1, 1);
   for (const SceneJoint& joint : scene.joints)
@@ -73,7 +73,7 @@ class Trial {
       : scene_(&scene), asked_(&asked), steps_(steps_of(scene)), operations_(operations_of(scene)) {}
 
   Verdict run();
-  // The most that a row turns in one of the steps.
+  // The largest rotation of a row in one step.
   double most_turned() const;
 
  private:
@@ -82,14 +82,14 @@ class Trial {
   StepResult step(BasicWorld<S>& world, int k) const;
   Verdict watch(BasicWorld<S>& world);
   std::optional<Verdict> look(BasicWorld<S>& world, int k);
-  // Why no method needs to hold it together now; nullptr if there is no reason.
+  // The reason why methods may fail on this mechanism now; nullptr if there is none.
   const char* excuse(BasicWorld<S>& world) const;
   Gap gap_now(BasicWorld<S>& world) const;
   std::optional<Verdict> look_at_momentum(const Motion& now, const BasicWorld<S>& world, double gap, int k);
   std::optional<Verdict> look_at_energy(double energy, int k) const;
   Verdict bits() const;
 
-  // What sweeps leave unsolved is no part of an order above the first.
+  // The error of sweeps is of first order in the step for every method.
   bool sweeps_only() const {
     return scene_->settings.solver == Solver::iterative && order_of(scene_->settings.integrator) > 1;
   }
@@ -108,7 +108,7 @@ class Trial {
   Snapshot middle_, end_;
 };
 
-// As cdot-run starts it.
+// Starts the World like cdot-run.
 template <class S>
 BasicWorld<S> Trial<S>::started() const {
   BasicWorld<S> world = build_world_in<S>(*scene_);
@@ -136,7 +136,7 @@ std::optional<Verdict> Trial<S>::look_at_momentum(const Motion& now, const Basic
   for (int j = 0; j < world.joint_count(); ++j)
     for (const double lambda : world.impulse(j)) impulses += std::abs(lambda);
   torques_ += impulses * (gap * sizes_.length + operations_ * std::numeric_limits<T>::epsilon() * sizes_.length);
-  // M takes up h dJ'lambda/dq: an impulse on an arm, times the turn of a step.
+  // M contains h dJ'lambda/dq: an impulse with a lever arm, times the rotation of a step.
   if (scene_->settings.integrator == Integrator::implicit) {
     double fastest = 0;
     for (const BodyMotion& body : now.bodies) fastest = std::max(fastest, norm(body.w) + norm(body.v) / sizes_.length);
@@ -167,7 +167,7 @@ std::optional<Verdict> Trial<S>::look_at_energy(double energy, int k) const {
   return {};
 }
 
-// Told by the sizes of the rows at the start, or at present where they have become larger.
+// Relative to the sizes of the rows at the start, or at present if they are larger.
 template <class S>
 Gap Trial<S>::gap_now(BasicWorld<S>& world) const {
   const double slack = works_on_accelerations(scene_->settings.integrator) ? just_passed<T> : 0;
@@ -230,7 +230,7 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
       return verdict(Outcome::limited, fmt::format("the World says: {}", name_of(result.problem)), "", 0, 0, k);
     }
     if (k == steps_ / 2) middle_ = world.snapshot();
-    if (k == steps_) end_ = world.snapshot();  // before look(): energy() leaves traces in what the next step overwrites
+    if (k == steps_) end_ = world.snapshot();  // before look(): energy() changes numbers that the next step overwrites
     if (auto broken = look(world, k)) {
       if (world.step_counts().rescued > 0 && judged_by_order(broken->what)) {
         broken->outcome = Outcome::limited;
@@ -245,7 +245,8 @@ Verdict Trial<S>::watch(BasicWorld<S>& world) {
   return first;
 }
 
-// The same bits: in two threads at once, and from the middle's snapshot through text, in a World of the scene's text.
+// Equal bits: in two threads at once, and from the snapshot at half time, through text, in a World from the scene's
+// text.
 template <class S>
 Verdict Trial<S>::bits() const {
   Snapshot twice[2];
@@ -322,7 +323,7 @@ Verdict judge_in(const Scene& scene, const Asked& asked) {
   }
 }
 
-// f(S{}), S being the space that the scene is in.
+// f(S{}) with the scene's space S.
 template <class F>
 auto in_space_of(const Scene& scene, F f) {
   if (scene.dimension == Dimension::planar) return scene.single ? f(Planar<float>{}) : f(Planar<double>{});
@@ -337,8 +338,8 @@ double most_turned(const Scene& scene, const Asked& asked) {
   return in_space_of(scene, [&](auto space) { return Trial<decltype(space)>(scene, asked).most_turned(); });
 }
 
-// Bits are kept by any step, and linear momentum, as long as what is added up does not grow beyond it; the rest only by
-// a step that is short enough.
+// True for invariants that need a short step. Equal bits hold at every step; so does linear momentum while the summed
+// terms stay bounded.
 bool may_be_the_step(const Verdict& v) {
   return v.what == "finite" || v.what == "C" || v.what == "momentum" || judged_by_order(v.what);
 }

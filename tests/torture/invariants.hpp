@@ -1,5 +1,5 @@
-// What must hold of any mechanism, whichever way it is run, and whether it did: judge() runs a scene and says so.
-// README.md has the bounds and where they come from.
+// The invariants of every mechanism with every method: judge() runs a scene and checks them. README.md derives the
+// bounds.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,9 @@ namespace cdot::torture {
 
 enum class Outcome {
   held,
-  refused,  // not run: the World, or its start, was refused with a reason
-  limited,  // a known limitation of the method, told by `what`
-  broken    // an invariant
+  refused,  // not run: the World or its start was refused with a reason
+  limited,  // a known limitation of the method, named by `what`
+  broken    // violates an invariant
 };
 
 struct Verdict {
@@ -21,26 +21,27 @@ struct Verdict {
   std::string what;  // the invariant, the limitation, or the refusal: the same words for the same kind
   std::string detail;
   double value = 0, bound = 0;
-  int step = 0;         // after which it was seen
-  double roughest = 0;  // how much the acceleration changed within a step, relative; above 0.5 no step resolves it
-  double length = 1;    // of the mechanism [m]
+  int step = 0;  // number of the step that showed it
+  double roughest =
+      0;  // largest relative change of the acceleration in a step; above 0.5 the step does not resolve the motion
+  double length = 1;  // of the mechanism [m]
   bool judged_energy = false, judged_momentum = false;
   bool broken() const { return outcome == Outcome::broken; }
 };
 
-// Of tests of the tests: called after every step, may push a body of the World.
+// For tests of the torture itself: called after every step, may push a body of the World.
 using Push = std::function<void(int body, double impulse)>;
 using Sabotage = std::function<void(const Scene& scene, int step, const Push& push)>;
 
 struct Asked {
-  bool bits = true;     // also repeat it, in two threads at once, and from a snapshot
-  int refinements = 4;  // how often a step at which something breaks is made four times shorter
+  bool bits = true;     // also repeats the run in two threads at once and from a snapshot
+  int refinements = 4;  // how often a step is divided by four after a violation
   Sabotage sabotage;
 };
 
 Verdict judge(const Scene& scene, const Asked& asked = {});
 
-// So many steps the scene has.
+// The number of steps of the scene.
 int steps_of(const Scene& scene);
 
 }  // namespace cdot::torture

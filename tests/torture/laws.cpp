@@ -20,7 +20,7 @@ bool immovable(const Scene& scene, int body) {
   return body == world_body || scene.bodies[static_cast<std::size_t>(body)].is_static;
 }
 
-// By a body that never moves, or by a place in the world that a parameter names.
+// True if the joint has a static body or a parameter in the world.
 bool holds_the_world(const Scene& scene, const SceneJoint& joint) {
   for (const int body : joint.definition.bodies)
     if (immovable(scene, body)) return true;
@@ -49,7 +49,7 @@ bool is_free(const Scene& scene) {
   return !pushed_from_outside(scene);
 }
 
-// Do all rows let everything turn together about the origin, at the start? A gear against the ground does not.
+// True if all rows allow a common rotation about the origin at the start. A gear against the ground does not.
 template <class S>
 bool turns_as_one(const Scene& scene) {
   BasicWorld<S> world = build_world_in<S>(scene);
@@ -81,10 +81,10 @@ bool turns_as_one(const Scene& scene) {
 
 bool has_damping(const Softness& s) { return s.damping_ratio != 0 || s.damping != 0; }
 
-// What a scene has that gives energy, or takes it.
+// Sources and sinks of energy in a scene.
 struct Exchange {
   bool gives = false, takes = false;
-  // A spring told by its frequency has another stiffness in every pose: its force has no potential.
+  // A spring by frequency changes its stiffness with the pose, so its force has no potential.
   void spring(const Softness& s) { gives |= s.by_frequency, takes |= has_damping(s); }
 };
 
@@ -100,7 +100,7 @@ Exchange exchange_of(const Scene& scene) {
     const auto damped = [](const auto& d) { return d.linear_damping != 0 || d.angular_damping != 0; };
     exchange.takes |= damped(body.definition) || damped(body.spatial);
     const SpatialBodyDefinition& s = body.spatial;
-    exchange.gives |= s.torque_x != 0 || s.torque_y != 0 || s.torque_z != 0;  // has no potential
+    exchange.gives |= s.torque_x != 0 || s.torque_y != 0 || s.torque_z != 0;  // without potential
   }
   for (const SceneJoint& joint : scene.joints) {
     const JointType& type = type_of(scene, joint);
@@ -117,14 +117,14 @@ Exchange exchange_of(const Scene& scene) {
   return exchange;
 }
 
-// A body that never turns takes any torque.
+// A body with fixed rotation absorbs every torque.
 bool takes_torque(const Scene& scene) {
   return std::any_of(scene.bodies.begin(), scene.bodies.end(), [](const SceneBody& body) {
     return body.definition.fixed_rotation || body.spatial.fixed_rotation;
   });
 }
 
-// A soft row pushes along its own direction only: with several, the force need not point along the stretch.
+// Each soft row acts along its own direction; with several rows the force need not be along the stretch.
 bool has_soft_rows(const Scene& scene) {
   return std::any_of(scene.joints.begin(), scene.joints.end(),
                      [](const SceneJoint& joint) { return joint.definition.soft.has_value(); });
@@ -139,7 +139,7 @@ bool is_smooth(const Scene& scene) {
   });
 }
 
-// By time, by a motor of any force, or by rolling: the velocities are told, not the places.
+// True if time, a motor of unlimited force or rolling prescribes velocities.
 bool prescribes_motion(const Scene& scene) {
   return std::any_of(scene.joints.begin(), scene.joints.end(), [&](const SceneJoint& joint) {
     const JointType& type = type_of(scene, joint);
@@ -151,8 +151,8 @@ bool prescribes_motion(const Scene& scene) {
   });
 }
 
-// Ropes, limits, bodies that never turn, or a loop: joints that hold bodies which hang together without them. All that
-// never moves is one.
+// True if the scene has ropes, limits, bodies with fixed rotation or a loop: a joint between bodies that are already
+// connected. All static bodies count as one.
 bool may_stop_a_motion(const Scene& scene) {
   if (takes_torque(scene)) return true;
   std::vector<int> group(scene.bodies.size() + 1);
@@ -172,7 +172,7 @@ bool may_stop_a_motion(const Scene& scene) {
   return false;
 }
 
-// 1 / m of a pull on the body, 1 / I of a turn, at most.
+// The largest 1 / m and 1 / I of a body.
 struct Lightness {
   double pull = 0, turn = 0;
 };
@@ -183,7 +183,7 @@ Lightness lightness_of(const Scene& scene, const std::vector<int>& bodies, doubl
     const SceneBody& body = scene.bodies[static_cast<std::size_t>(index)];
     const bool planar = scene.dimension == Dimension::planar;
     const Inertia& I = body.spatial.inertia;
-    // The trace of an inverse tensor is at most 3 over its least moment, which is at least det / (trace / 2)^2.
+    // trace(I^-1) <= 3 / least moment, and the least moment >= det / (trace / 2)^2.
     const double det =
         I.xx * (I.yy * I.zz - I.yz * I.yz) - I.xy * (I.xy * I.zz - I.yz * I.xz) + I.xz * (I.xy * I.yz - I.yy * I.xz);
     const double half = (I.xx + I.yy + I.zz) / 2;

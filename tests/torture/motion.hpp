@@ -1,4 +1,4 @@
-// The motion of a World at one moment as a physicist sees it: momenta, kinetic energy, how much the velocities changed.
+// The motion of a World at one moment: momenta, kinetic energy, changes of velocity.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace cdot::torture {
 
-// Of one body, in doubles, in world axes.
+// The motion of one body, in doubles, in world axes.
 struct BodyMotion {
   double mass = 0;
   std::array<double, 3> x{}, v{}, w{}, spin{};  // spin: its angular momentum about its own centre
@@ -18,9 +18,9 @@ struct BodyMotion {
 };
 
 struct Motion {
-  std::vector<BodyMotion> bodies;             // those that move
+  std::vector<BodyMotion> bodies;             // movable ones
   std::array<double, 3> linear{}, angular{};  // momenta; angular about the origin
-  double linear_size = 0, angular_size = 0;   // sums of the bodies' absolute momenta: what round-off is told by
+  double linear_size = 0, angular_size = 0;   // sums of the bodies' absolute momenta, the scale of round-off
   double spin_size = 0, root_mass = 0;        // sum of the bodies' own angular momenta; root of the sum of masses
   double kinetic = 0;
 };
@@ -74,7 +74,7 @@ Motion motion_of(const BasicWorld<S>& world) {
   return motion;
 }
 
-// What <a, M b> is of two changes of velocity, body by body.
+// The terms of <a, M b> for two changes of velocity, by body.
 struct VelocityChange {
   std::vector<std::array<double, 6>> bodies;
 };
@@ -90,7 +90,7 @@ inline VelocityChange change(const Motion& from, const Motion& to) {
   }
   return d;
 }
-// What the turning of the inertia tensors makes of w over h: h I^-1 (I w x w).
+// The change of w over h by the turning of inertia tensors: h I^-1 (I w x w).
 inline VelocityChange turning(const Motion& from, double h) {
   VelocityChange d;
   for (const BodyMotion& body : from.bodies) {

@@ -1,4 +1,4 @@
-// Every number of a scene, in turn, to be changed: f(double&).
+// f(double&) for every number of a scene, which f may change.
 #pragma once
 
 #include "runtime/tool/scene/scene.hpp"
@@ -80,7 +80,7 @@ void each_number(SpringDefinition& s, F f) {
   for (double* x : {&s.ax, &s.ay, &s.az, &s.bx, &s.by, &s.bz, &s.stiffness, &s.rest_length, &s.damping}) f(*x);
 }
 
-// But for its duration, which the step goes into.
+// All except the duration, which depends on the step.
 template <class F>
 void each_number_of_settings(Scene& scene, F f) {
   Settings& s = scene.settings;

@@ -23,7 +23,7 @@ double pushed_by_forces(const Scene& scene) {
   return scene.step / s.substeps * std::sqrt(sum);
 }
 
-// D with turns counted by a length, each row as 1.
+// D with rotations scaled by a length, each row scaled to 1.
 Eigen::MatrixXd unit_rows(const SystemMatrix& system, double length) {
   const int lengths = system.freedom == 3 ? 2 : 3;
   Eigen::MatrixXd D(system.rows, system.columns);
@@ -75,9 +75,9 @@ Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double e
       springs_(std::move(springs)),
       last_(start) {}
 
-// Per step: (|dv| (|dv| + |h F|) + what springs miss) rho^(p-1), rho being how much the acceleration changes within a
-// step, against the largest so far. What joints do against the turning of a tensor does not show in dv: the larger one,
-// with it or without.
+// Per step: (|dv| (|dv| + |h F|) + missed_work) rho^(p-1), where rho is the change of acceleration in a step relative
+// to the largest so far. dv does not show joint forces against the turning of a tensor, so the larger dv, with or
+// without that turning, counts.
 void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations,
                     long long taken) {
   const VelocityChange d = change(last_, now);
@@ -100,7 +100,7 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
     rough_before_ = rough;
     pending_ = 0;
   } else {
-    pending_ = first_order;  // of the step that had none before it
+    pending_ = first_order;  // of the first step
   }
   // An error of local_error in every pose and velocity, at the end of each step taken.
   const double chosen = double(taken - taken_) * local_error_ *
@@ -108,7 +108,7 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
   order_error_ += chosen;
   angular_order_ += chosen * (largest_speed_ > 0 ? now.angular_size / (largest_speed_ * largest_speed_) : 0);
   for (const BodyMotion& body : now.bodies) farthest_ = std::max(farthest_, norm(body.x));
-  // Places are rounded too, and a force takes that for way.
+  // Positions are rounded too, and forces do work on the rounding errors.
   round_off_ += operations * epsilon_ * (largest_energy_ + pushed_ / step_ * now.root_mass * farthest_);
   momentum_ += operations * epsilon_ * now.linear_size;
   angular_ += operations * epsilon_ * now.angular_size;

@@ -1,4 +1,4 @@
-// Watches the steps of a World and keeps the accounts that the bounds are made of.
+// Observes the steps of a World and sums the terms of the bounds.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace cdot::torture {
 
 using test::order_of;
 
-// What C of one is, by row of a joint: |J| of a displacement of the mechanism's size and of a turn of one radian.
+// The size of each row of a joint: |J| of a displacement by the mechanism's size and of a rotation by one radian.
 struct RowSizes {
   std::vector<std::vector<double>> of_joint;
   double length = 1;  // of the mechanism: the longest distance between two bodies, or arm of a joint
@@ -38,7 +38,7 @@ RowSizes row_sizes(BasicWorld<S>& world) {
       const auto p = place(a), q = place(b);
       longest = std::max(longest, norm({p[0] - q[0], p[1] - q[1], p[2] - q[2]}));
     }
-  std::vector<std::array<double, 2>> rows;  // |J| of lengths and of turns
+  std::vector<std::array<double, 2>> rows;  // |J| of lengths and of rotations
   for (int r = 0; r < D.rows; ++r) {
     double straight = 0, turning = 0;
     for (int c = 0; c < D.columns; ++c) {
@@ -57,14 +57,13 @@ RowSizes row_sizes(BasicWorld<S>& world) {
   return sizes;
 }
 
-// How independent the rows are of each other in the metric of the masses: the least eigenvalue of K, its diagonal made
-// 1, that is no round-off, and its root. A pose where it is small has a direction that hardly any row holds.
+// A measure of the rows' independence in the metric of the masses: the root of the least eigenvalue above round-off of
+// K, with the diagonal of K scaled to 1. A small value means a pose near a singular one.
 double independence(const SystemMatrix& system, double round_off);
-// How far the row turned that turned most, of as many unit rows: 2 where one turned round.
+// The largest change of a unit row between two matrices; 2 if a row reversed.
 double turned(const SystemMatrix& before, const SystemMatrix& after, double length);
 
-// The largest C as a share of its row's size, and whose it is. Of inequalities what is beyond
-// `slack`, a share too.
+// The largest C as a share of its row's size, and its joint. Inequality rows count beyond `slack`, also a share.
 struct Gap {
   double share = 0;
   int joint = -1;
@@ -89,15 +88,15 @@ Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes
   return gap;
 }
 
-// See README.md: how far energy and angular momentum may be off after the steps so far.
+// The bounds of energy and angular momentum after the steps so far; see README.md.
 class Accounts {
  public:
   Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene, double epsilon);
 
-  // `taken`: steps of an integrator that chooses its own, so far.
+  // `taken`: adaptive steps so far.
   void step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations, long long taken);
 
-  // Of RATTLE, whose steps keep another energy that is h^2 (v'V''v / 12 - F'M^-1 F / 24) away, that way as well.
+  // For RATTLE plus the distance to the energy that its steps conserve, h^2 (v'V''v / 12 - F'M^-1 F / 24).
   double order_error() const {  // [J]
     const double away = largest_change_ + pushed_;
     return order_error_ + (order_ == 2 ? away * away / 8 : 0);

@@ -1,4 +1,4 @@
-// Numbers drawn from a 64-bit seed: the same on every machine, as the distributions of the standard library are not.
+// Random numbers from a 64-bit seed, equal on every machine; the standard library's distributions are not.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ class Random {
   }
   double unit() { return double(next() >> 11) * 0x1p-53; }  // 0 <= x < 1
   double between(double low, double high) { return low + (high - low) * unit(); }
-  // Every decade alike.
+  // Uniform in the logarithm.
   double log_between(double low, double high) { return low * std::exp(std::log(high / low) * unit()); }
   double either_sign(double x) { return next() & 1 ? x : -x; }
   bool chance(double probability) { return unit() < probability; }
@@ -30,7 +30,7 @@ class Random {
   const T& of(const std::vector<T>& all) {
     return all[static_cast<std::size_t>(below(static_cast<int>(all.size())))];
   }
-  // In the cube of that half side, flat where the space is.
+  // A point in the cube with that half side; in the plane z = 0.
   std::array<double, 3> in_cube(double half, bool in_space) {
     const double x = between(-half, half), y = between(-half, half);
     return {x, y, in_space ? between(-half, half) : 0};

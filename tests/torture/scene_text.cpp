@@ -109,7 +109,7 @@ std::string softness(const Softness& s) {
                         : fmt::format("stiffness = {}, damping = {}", s.stiffness, s.damping);
 }
 
-// A damper is a spring without stiffness that has no say about its rest.
+// A damper is a spring without stiffness and without a given rest.
 bool is_damper(const CoordinateSpring& spring) {
   return !spring.softness.by_frequency && spring.softness.stiffness == 0 && spring.rest == 0.0;
 }

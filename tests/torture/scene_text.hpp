@@ -1,4 +1,4 @@
-// A Scene as the TOML text that reads back as the same Scene, to the bit: what is drawn (shapes, traces) left out.
+// A Scene -> TOML text that reads back as the same Scene to the bit, without shapes and traces.
 #pragma once
 
 #include <string>
@@ -7,11 +7,11 @@
 
 namespace cdot::torture {
 
-// The reader knows no -0: no number of the scene may be one (plain_zeros). Frames in space are written by two axes:
-// their parameters must have three or six numbers.
+// The reader does not keep -0, so the scene must not contain it (plain_zeros). Frames in space have two axes in the
+// text: their parameters must have three or six numbers.
 std::string text_of(const Scene& scene);
 
-// Every -0 becomes 0.
+// Replaces every -0 by 0.
 void plain_zeros(Scene& scene);
 
 }  // namespace cdot::torture

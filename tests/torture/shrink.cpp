@@ -12,7 +12,7 @@ namespace {
 
 using Change = std::function<void(Scene&)>;
 
-// The scene without that body, and without what is attached to it.
+// Removes a body and everything attached to it.
 void remove_body(Scene& scene, int body) {
   const auto uses = [&](const std::vector<int>& bodies) { return std::count(bodies.begin(), bodies.end(), body) > 0; };
   std::erase_if(scene.joints, [&](const SceneJoint& joint) { return uses(joint.definition.bodies); });
@@ -28,7 +28,7 @@ auto rounder(int digits) {
   return [digits](double& x) { x = std::strtod(fmt::format("{:.{}e}", x, digits - 1).c_str(), nullptr) + 0.0; };
 }
 
-// The number of steps stays.
+// Rounds the settings but keeps the number of steps.
 void round_settings(Scene& scene, int digits) {
   const int steps = steps_of(scene);
   each_number_of_settings(scene, rounder(digits));
@@ -53,7 +53,7 @@ class Shrinker {
   }
 
  private:
-  // Kept if the same invariant still breaks.
+  // Applies the change if the same invariant still breaks.
   bool attempt(const Change& change) {
     if (best_.tries >= most_tries_) return false;
     Scene scene = best_.scene;
@@ -64,7 +64,7 @@ class Shrinker {
     best_.scene = std::move(scene), best_.verdict = seen;
     return true;
   }
-  // From the last to the first, so that an index stays good when something is gone.
+  // From last to first, so indices stay valid after a removal.
   bool each(std::size_t count, const std::function<void(Scene&, std::size_t)>& change) {
     bool smaller = false;
     for (std::size_t k = count; k-- > 0;) smaller |= attempt([&](Scene& scene) { change(scene, k); });

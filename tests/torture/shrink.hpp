@@ -1,5 +1,5 @@
-// Makes a scene in which an invariant breaks as small as it can while the same one breaks: fewer bodies, joints and
-// effects, plain settings, round numbers, fewer steps.
+// Shrinks a scene that breaks an invariant while the same invariant still breaks: fewer bodies, joints and effects,
+// plain settings, round numbers, fewer steps.
 #pragma once
 
 #include "tests/torture/invariants.hpp"

@@ -1,5 +1,4 @@
-// What pushes as a spring does (springs between points, those on coordinates, the rows of soft joints): what the bound
-// of the energy asks of it.
+// The terms of springs in the bound of the energy: springs between points, springs on coordinates, rows of soft joints.
 #pragma once
 
 #include <algorithm>
@@ -13,18 +12,18 @@
 namespace cdot::torture {
 
 struct SpringRow {
-  int joint = -1;          // -1: of none
-  double c = 0, rate = 0;  // its stretch, from anywhere, and how fast that grows
+  int joint = -1;          // -1: none
+  double c = 0, rate = 0;  // stretch, up to a constant, and its rate
   double force = 0;        // without damping
   double stiffness = 0;
-  double mass = 0;  // 0: broken. K of the row: |M^-1 J'| of a unit force in the metric of the masses, squared
+  double mass = 0;  // K of the row: |M^-1 J'|^2 in the metric of the masses; 0: broken
 };
 
-// Rows of batches that a law pushes, at the present poses.
+// Rows of batches under a law with a force, at the present poses.
 template <class S>
 void add_spring_rows(const WorldData<S>& state, const Batch<S>& batch, std::vector<SpringRow>& springs) {
   using T = typename S::Scalar;
-  Batch<S> rows = batch;  // the next step may start from the World's own as they are
+  Batch<S> rows = batch;  // a copy, because the next step may start from the World's own rows
   const int count = rows.ops->rows;
   const std::vector<T> no_rate(static_cast<std::size_t>(count));
   std::vector<T> force(no_rate), further(no_rate);
@@ -71,14 +70,14 @@ std::vector<SpringRow> spring_rows(BasicWorld<S>& world) {
   return springs;
 }
 
-// |h F| of all of them, in the metric of the masses, at most.
+// An upper bound of |h F| of all springs, in the metric of the masses.
 inline double push_of(const std::vector<SpringRow>& springs, double h) {
   double sum = 0;
   for (const SpringRow& s : springs) sum += h * std::abs(s.force) * std::sqrt(s.mass);
   return sum;
 }
 
-// What a first-order step may miss of a spring's work. c goes from c0 to c1 by h J v + beta, J being that of the start,
+// The largest error of a first-order step in a spring's work. c goes from c0 to c1 by h J v + beta with J of the start,
 // under one force f, which is f0 or, implicitly, f1 + k beta:
 //   h J v f - (f0 + f1) (c1 - c0) / 2, at most |c1 - c0| |f1 - f0| / 2 + |beta| (|f0| + 2 |f1| + k |beta|),
 //   beta = (c1 - c0) - h J v0 - h J dv, |J dv| <= sqrt(K) |dv|.

@@ -8,7 +8,7 @@
 namespace cdot::torture {
 namespace {
 
-// One line of a reason, numbers as #: what is told twice about other numbers is one kind.
+// The first line of a reason with # for numbers: reasons that differ only in numbers are one kind.
 std::string kind_of(const std::string& reason) {
   std::string kind;
   for (const char c : reason) {

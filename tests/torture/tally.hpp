@@ -1,4 +1,4 @@
-// What was drawn and what came of it: joints x ways, refusals and limitations by their words.
+// Counts of mechanisms and verdicts: joints x ways, refusals and limitations by reason.
 #pragma once
 
 #include <map>
@@ -17,9 +17,9 @@ class Tally {
 
   int mechanisms() const { return mechanisms_; }
   int count(Outcome outcome) const;
-  // Of how many mechanisms a joint of that space was part.
+  // The number of mechanisms with that joint.
   int drawn(Dimension dimension, const std::string& joint) const;
-  // Tables of all of it.
+  // All counts as tables.
   std::string text() const;
 
  private:

@@ -1,4 +1,4 @@
-// Draws mechanisms until told to stop, judges each, shrinks and keeps those in which an invariant breaks.
+// Draws and judges mechanisms until stopped; shrinks and saves those that break an invariant.
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
@@ -25,7 +25,7 @@ struct Options {
   bool no_bits = false, no_shrink = false, print = false;
 };
 
-// "direct", "rattle", "float" or several of them.
+// One or more of "direct", "rattle", "float", ...
 void read_method(const std::string& method, Wish& wish) {
   std::istringstream words(method);
   for (std::string word; words >> word;) {
@@ -50,7 +50,7 @@ void keep(const Options& options, const std::string& name, const std::string& te
   std::ofstream(options.keep + "/" + name) << text;
 }
 
-// Prints what breaks, the smallest scene in which it does, and how to see it again.
+// Prints the broken invariant, the shrunk scene and the command that repeats it.
 void report(const Options& options, std::uint64_t seed, const Scene& scene, const Verdict& verdict) {
   fmt::print("\nBROKEN {}\n  seed {:#x}, {}\n", told(verdict), seed, way_of(scene));
   std::fflush(stdout);  // shrinking may take a while

@@ -1,5 +1,5 @@
-// The bounded torture: fixed seeds, every joint of both registries; scenes that once broke; and whether the torture
-// itself finds, shrinks and writes down what is made to break.
+// The bounded torture: fixed seeds, every joint of both registries; scenes that once broke; a test that the torture
+// finds, shrinks and prints a deliberate fault.
 #include <filesystem>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -54,7 +54,7 @@ void each_scene_in(const std::string& folder, F f) {
   fmt::print("{} scenes\n", scenes);
 }
 
-// What the long run found, and what was mended since.
+// Scenes from the long run whose faults are fixed.
 TEST(Torture, FoundAndMended) {
   each_scene_in(CDOT_FOUND, [](const std::string& file, const Scene& scene) {
     const Verdict verdict = judge(scene);
@@ -62,8 +62,8 @@ TEST(Torture, FoundAndMended) {
   });
 }
 
-// What no step of the scene's length can hold: the one that fails says so, names island and joint, and leaves the state
-// as it was before it; all before it held.
+// Scenes that no step of their length can solve: the failed step names island and joint and restores the state; all
+// earlier steps satisfy the invariants.
 TEST(Torture, FoundAndTold) {
   each_scene_in(CDOT_FOUND "/told", [](const std::string& file, const Scene& scene) {
     const Verdict verdict = judge(scene);
@@ -100,10 +100,10 @@ Snapshot after(const Scene& scene, int count) {
                                               : after<Spatial<double>>(scene, count);
 }
 
-// A scene, written and read, is the same scene: its run has the same bits, its text the same letters.
+// A scene that is written and read again has a run with the same bits and the same text.
 TEST(Torture, WrittenSceneReadsBack) {
   for (std::uint64_t seed = 1; seed <= 80; ++seed) {
-    // Not Runge-Kutta, whose steps may be many, where this asks for none of its own.
+    // Not Runge-Kutta, which may take many steps of its own.
     const Scene scene =
         generate(seed, {.integrator = seed % 2 ? Integrator::rattle : Integrator::implicit, .steps = 3}).scene;
     const Scene copy = read_scene(text_of(scene), "copy");
@@ -113,8 +113,8 @@ TEST(Torture, WrittenSceneReadsBack) {
   }
 }
 
-// Gives every joint of that type, now and then, a push on one of its bodies that the other does not feel: as if an
-// impulse had the wrong sign.
+// Sometimes pushes one body of every joint of that type without the opposite push on the other, like an impulse with a
+// wrong sign.
 Sabotage wrong_sign(const std::string& type) {
   return [type](const Scene& scene, int step, const Push& push) {
     if (step % 5 != 0) return;
@@ -129,7 +129,7 @@ Sabotage wrong_sign(const std::string& type) {
   };
 }
 
-// Found in many seeds, shrunk to what has it, and the scene that is printed shows it.
+// Many seeds find the fault, the shrunk scene contains the joint, and the printed scene shows the fault.
 TEST(Torture, FindsAndShrinksWhatIsSabotaged) {
   Asked asked;
   asked.bits = false;

@@ -1,5 +1,5 @@
-// The equations of each island at the present poses: rank, condition, redundant and contradicting rows, and the
-// stiffness of the motion. The World's state does not change.
+// The equations of each island at the present poses: rank, condition, redundant and contradicting rows, fastest
+// oscillation. The World's state does not change.
 #pragma once
 
 #include <vector>
@@ -12,36 +12,36 @@ struct Diagnosis {
   struct Row {
     int joint = -1, row = -1;
   };
-  // A row that follows from others, or contradicts them.
+  // A row that is a combination of others: redundant, or contradicting if `missed` is not 0.
   struct Redundant {
     Row row;
-    std::vector<int> joints;  // its own and the others that take part, ascending
-    double missed = 0;        // [m, rad]: part of C that no motion of the bodies removes, to first order
+    std::vector<int> joints;  // the row's joint and the joints of the other rows, ascending
+    double missed = 0;        // [m, rad]: part of C that no small motion of the bodies removes
     bool conflicting = false;
   };
-  // Small oscillations about the present motion, within the joints, by the forces that a step takes from its start:
-  // gravity, springs between points, for other than Euler's methods springs on coordinates, and the tensions of joints,
-  // whose directions turn with the bodies.
+  // The fastest small oscillation about the present motion that the joints allow. It counts the forces that a step
+  // evaluates at its start: gravity, springs between points, and the joints' tensions, whose directions turn with the
+  // bodies. Springs on coordinates count unless the method is one of Euler's.
   struct Stiffest {
-    double square = 0;   // [1/s^2] omega^2, the largest in size; negative if the motion grows instead of oscillating
-    int body = -1;       // the one that moves most
-    double tension = 0;  // part of omega^2 from the joints' forces; springs make the rest
+    double square = 0;   // [1/s^2] omega^2, largest in size; negative: the motion grows instead of oscillating
+    int body = -1;       // with the largest amplitude
+    double tension = 0;  // part of omega^2 from the joints' forces; the other part comes from springs
   };
   struct Island {
     std::vector<int> bodies;  // movable ones
-    int rows = 0, rank = 0;   // of inequalities the active ones
-    // Largest over smallest eigenvalue of K, of its independent rows scaled to K_ii = 1. A power iteration with K and
-    // its factors estimates it from below.
+    int rows = 0, rank = 0;   // active inequality rows count
+    // Largest over smallest eigenvalue of K, for its independent rows scaled to K_ii = 1. A power iteration with K and
+    // its factors estimates this ratio from below.
     double condition = 1;
-    double smallest_pivot = 1;  // of L D L^T of that K, among its independent rows
-    Row weakest;                // of that pivot
+    double smallest_pivot = 1;  // of L D L^T of that K, over its independent rows
+    Row weakest;                // row of that pivot
     std::vector<Redundant> redundant;
     Stiffest stiffest;
     double lightest = 0, heaviest = 0;  // [kg]
     double fastest_spin = 0;            // [rad/s]
-    int spinning = -1;                  // the body that has it
+    int spinning = -1;                  // body with that spin
     double size = 1;                    // [m] its longest arm or distance between joined bodies
-    double farthest = 0;                // [m] of its bodies from the origin of poses
+    double farthest = 0;                // [m] largest distance of a body from the origin of poses
   };
   std::vector<Island> islands;
 };

@@ -1,8 +1,8 @@
 // Effects on the free coordinates of a joint. Each effect is one row of the coordinate with its own bias, softness and
-// bounds. A World without effects spends nothing on them in step(). `coordinate` is a name of the joint's spec
+// bounds. In a World without effects step() spends no time on them. `coordinate` is a name from the joint's spec
 // ("angle", "slide"). All functions throw cdot::Error on misuse.
 //
-// A kind of effect is a struct here, its member and its kind in the lists below, and one file, effects/<kind>.cpp.
+// A kind of effect consists of a struct here, an entry in each list below, and one file, effects/<kind>.cpp.
 #pragma once
 
 #include <limits>
@@ -31,7 +31,7 @@ struct Motor {
 
 struct CoordinateSpring {
   Softness softness;                 // a damper alone: stiffness 0 and a damping
-  std::optional<double> rest = 0.0;  // [m] or [rad]; none: the coordinate's value when the spring is added
+  std::optional<double> rest = 0.0;  // [m] or [rad]; without it: the coordinate's value when the spring is added
   bool acts_one_way() const { return softness.damping > 0 || softness.damping_ratio > 0; }
 };
 
@@ -69,8 +69,8 @@ struct CoordinateEffects {
 template <class S, class Effect>
 int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Effect& effect);
 
-// Changes the constants of an effect from the next step on, and wakes the joint's island. A largest force of 0 switches
-// a motor off, ends at -unlimited and unlimited a limit. A limit with two ends cannot become a lock, nor a lock a
+// Changes the constants of an effect from the next step on and wakes the joint's island. max_force = 0 switches a motor
+// off; the ends -unlimited and unlimited switch a limit off. A limit with two ends cannot become a lock, nor a lock a
 // limit.
 template <class S, class Effect>
 void set_effect(BasicWorld<S>& world, int joint, int number, const Effect& effect);
@@ -82,7 +82,7 @@ void set_breaking_load(BasicWorld<S>& world, int joint, double load);
 // --- The kinds, as a scene writes them: angle.motor = { speed = 2, max = 10 }.
 
 struct EffectNumber {
-  enum Range { as_coordinate, any, positive, not_negative };  // as_coordinate: any sign, and an angle like it
+  enum Range { as_coordinate, any, positive, not_negative };  // as_coordinate: any sign, in the coordinate's unit
   const char* key = nullptr;
   Range range = any;
   const char* example = nullptr;  // of a required number
@@ -91,7 +91,7 @@ struct EffectNumber {
 struct EffectKind {
   // A number, a table of numbers, or a table that may be written as a pair.
   enum Form { number, table, pair };
-  // A number as read: written without a value, it is wrong.
+  // A number as read; `written` without a value is an error.
   struct Given {
     bool written = false;
     std::optional<double> value;

@@ -1,5 +1,5 @@
-// The integrators, a row each: everything that others ask of a method. runtime/step/integrators.cpp has the functions
-// that take their steps.
+// The integrators, one row each: all properties that other parts need. runtime/step/integrators.cpp has the functions
+// that take the steps.
 #pragma once
 
 #include <array>
@@ -20,21 +20,21 @@ struct IntegratorRow {
   std::string_view name;
   int order;
   Level level;
-  bool stiffens;          // it takes what the joints' tension stiffens implicitly
+  bool stiffens;          // takes the stiffness from the joints' tension implicitly
   bool projects;          // drift = projection is a part of the method
   bool forces_springs;    // springs on coordinates act as forces; otherwise they are rows of the solver
   bool symmetric;         // a step of -h undoes a step of h
-  double stable_radians;  // up to which it follows an oscillation: h omega
+  double stable_radians;  // largest h omega at which an oscillation stays bounded
 };
 
-// Symplectic Euler and RATTLE are stable up to 2 exactly; the Runge-Kutta methods up to where their stability regions
-// cut the imaginary axis.
+// stable: symplectic Euler and RATTLE are stable up to 2 exactly. The Runge-Kutta methods are stable up to the point
+// where their stability regions cut the imaginary axis.
 // clang-format off
 inline constexpr std::array integrator_rows{
     //                                          order, level,                stiffens, projects, springs, symmetric, stable
     // Symplectic Euler: cheap.
     IntegratorRow{Integrator::euler,    "euler",    1, Level::velocity,     false,    false,    false,   false,     2},
-    // Linearly implicit in what tension stiffens: heavy loads on light chains stay quiet.
+    // Linearly implicit in the stiffness from tension: light chains under heavy loads stay stable.
     IntegratorRow{Integrator::implicit, "implicit", 1, Level::velocity,     true,     false,    false,   false,     2},
     // RATTLE keeps C and Cdot to round-off.
     IntegratorRow{Integrator::rattle,   "rattle",   2, Level::velocity,     false,    true,     true,    true,      2},

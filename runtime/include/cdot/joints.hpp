@@ -1,5 +1,4 @@
-// The joints by name: what the generated registry holds, as data that a reader of scenes can list
-// and look up.
+// The joints of the generated registry as data: a reader of scenes lists them and finds them by name.
 #pragma once
 
 #include <span>
@@ -17,7 +16,7 @@ struct CoordinateInfo {
 
 struct JointType {
   std::string_view name;
-  std::string_view title;  // what it does, in a sentence
+  std::string_view title;  // one sentence on its purpose
   int bodies;
   std::vector<std::string_view> body_names;  // "a", "b", ...
   std::vector<std::string_view> row_names;
@@ -35,7 +34,7 @@ void add_joint_type(Dimension dimension, JointType type);
 
 // Every registered joint of a dimension, in the order of its registry.
 std::span<const JointType> joint_types(Dimension dimension);
-// nullptr if there is none of that name.
+// nullptr if no joint has that name.
 const JointType* find_joint_type(Dimension dimension, std::string_view name);
 
 }  // namespace cdot

@@ -1,11 +1,12 @@
 // The contract between generated kernels and everything that runs them.
 //
 // A kernel is a struct of static function templates, one struct per joint (`cdot::planar::line`), written by
-// `cdot derive`. A solver sees a *row block*: some rows of C(q, t) over some bodies. Three kinds of struct are row
-// blocks and have the same members: a joint, one of its coordinates (`line::slide`, always one row), and a joint or
-// coordinate with one body immovable (`line::a_immovable`: that body's terms are gone from J, K and the impulse). What
-// no inner loop of a solver calls, such a variant has from the block with all bodies movable: gamma, dC/dt, the
-// stiffness and, in space, the two other forms of J, which take the Jacobian<T> of that block.
+// `cdot derive`. A solver sees a *row block*: one or more rows of C(q, t) over one or more bodies. Three kinds of
+// struct are row blocks with the same members. The first is a joint, the second one of its coordinates (`line::slide`,
+// always one row). The third is a variant of these with one body immovable (`line::a_immovable`, without that body's
+// terms in J, K and the impulse). A variant inherits gamma, dC/dt and the stiffness from the block with all bodies
+// movable, because no inner loop of a solver calls them. In space it also inherits the two other forms of J, which take
+// the Jacobian<T> of that block.
 //
 //   members of a row block B                                                                 shapes
 //   B::bodies, B::rows                                             number of bodies, of rows
@@ -32,10 +33,10 @@
 //   B::local_jacobian  (q, J, D)                                   J by v and w' = A^T w (body axes), D[rows][6 bodies]
 //   B::euler_jacobian  (q, J, D)                                   J by v, rates of e0 e1 e2 e3, D[rows][7 bodies]
 //
-// What the three kinds of row block have besides (strings are std::string_view, arrays std::array):
+// Further members of the three kinds of row block (strings are std::string_view, arrays std::array):
 //   members of a joint                                             and of
 //   name                                                           a coordinate: "line"; "slide"
-//   title                                                          what it does, in a sentence
+//   title                                                          its purpose in one sentence
 //   unit                                                           a coordinate only: "m", "rad"
 //   body_names, row_names, row_kinds                               a coordinate: the last two
 //   Parameters<T>, parameters                                      the numbers, and a ParameterInfo for each parameter
@@ -43,8 +44,8 @@
 //   Coordinates                                                    std::tuple of the coordinates
 //   Immovable                                                      a coordinate: std::tuple of the variants
 //   immovable_body                                                 a variant only: the index of that body
-// A variant inherits from the block that it is a variant of whatever is the same there.
-// T is float, double, cdot::Pack, or any type with + - * /, comparison, select and the functions used.
+// A variant inherits every unchanged member from its block. T is float, double, cdot::Pack, or any type with + - * /,
+// comparison, select and the functions used.
 #pragma once
 
 #include <array>
@@ -55,7 +56,7 @@
 
 namespace cdot {
 
-// Raised when the members above change; every kernel asserts the number it was written for.
+// Raised when the members above change. Every kernel asserts the number that it was generated for.
 inline constexpr int kernel_contract = 2;
 
 enum class RowKind {
@@ -67,7 +68,7 @@ enum class RowKind {
 enum class ParameterKind {
   point,   // a point fixed on a body, in that body's frame; 2 numbers in the plane, 3 in space [m]
   vector,  // a vector fixed in a body, in that body's frame; 2 numbers, 3 in space
-  unit,    // the same of length 1; the runtime normalises what a scene gives and refuses a zero vector
+  unit,    // the same of length 1; the runtime normalises a scene's vector and refuses a zero vector
   frame,   // a triad fixed in a body: its x axis in the body's frame, 2 numbers; in space x, y and z axis, 9 numbers
   scalar   // 1 number
 };
@@ -92,19 +93,19 @@ struct ScalarOf {
   using type = T;
 };
 
-// The smallest positive normal number of T: what a kernel's guards compare with.
+// The smallest positive normal number of T: the threshold of a kernel's guards.
 template <class T>
 inline T smallest() {
   return T(std::numeric_limits<typename ScalarOf<T>::type>::min());
 }
 
-// a where the condition holds, else b, without a branch on data.
+// a where the condition is true, else b, without a branch on data.
 template <class T>
 inline T select(bool condition, T a, T b) {
   return condition ? a : b;
 }
 
-// 1/x, and 0 where |x| is below the smallest normal number: what every division in a kernel does.
+// 1/x; 0 where |x| is below the smallest normal number. Kernels divide only by this function.
 template <class T>
 inline T inverse(T x) {
   return select(abs(x) >= smallest<T>(), T(1) / x, T(0));
@@ -116,8 +117,8 @@ inline T sign(T x) {
   return select(x > T(0), T(1), select(x < T(0), T(-1), T(0)));
 }
 
-// 1/d for a pivot d of K = L D L^T that elimination left of the diagonal entry k; 0 where d is round-off beside k: that
-// row depends on those before it, and its impulse stays zero.
+// 1/d for a pivot d of K = L D L^T; k is the diagonal entry of K before elimination. 0 where d is round-off beside k:
+// the row depends on earlier rows, and its impulse stays 0.
 template <class T>
 inline T pivot(T d, T k) {
   constexpr auto epsilon = std::numeric_limits<typename ScalarOf<T>::type>::epsilon();
@@ -148,8 +149,8 @@ struct InverseMass {
 
 namespace spatial {
 
-// Centre of mass [m], orientation as Euler parameters (a unit quaternion, e0 its scalar part) and the rotation matrix
-// A(e) that belongs to them, row by row: the body's x axis is (xx, yx, zx) in the world.
+// Centre of mass [m], orientation as Euler parameters (a unit quaternion, e0 its scalar part), and their rotation
+// matrix A(e), row by row. The body's x axis is (xx, yx, zx) in the world.
 template <class T>
 struct Pose {
   T x, y, z;
@@ -170,7 +171,7 @@ struct InverseMass {
   T m, Ixx, Iyy, Izz, Ixy, Ixz, Iyz;
 };
 
-// The same of a body whose inertia is alike about every axis (a ball, a cube).
+// The same for a body with equal inertia about every axis (a ball, a cube).
 template <class T>
 struct IsotropicInverseMass {
   T m, I;

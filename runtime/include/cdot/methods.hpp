@@ -1,5 +1,5 @@
-// The names of solvers, drift corrections, integrators, forms of kernels, precisions and answers to a step that fails,
-// as scenes, commands and reports spell them: one table each.
+// The names in scenes, commands and reports: one table each for solvers, drift corrections, integrators, forms of
+// kernels, precisions and reactions to a failed step.
 #pragma once
 
 #include <array>
@@ -39,7 +39,7 @@ inline constexpr std::array<Named<Kernels>, 3> kernel_forms{{
     {"robust", Kernels::robust},
 }};
 
-// Is it float?
+// True if float.
 inline constexpr std::array<Named<bool>, 2> precisions{{
     {"double", false},
     {"float", true},
@@ -57,7 +57,7 @@ std::vector<std::string> names_of(const Table& table) {
   return names;
 }
 
-// What `name` stands for; it must be a name of the table.
+// The value of `name`, which must be in the table.
 template <class Table>
 auto method_called(const Table& table, std::string_view name) {
   auto found = table.front().method;

@@ -1,6 +1,5 @@
-// A thin pack of 4, 8 or 16 numbers over the vector extensions of GCC and Clang: what a kernel
-// needs to run as many joints at once. Every operation is lane by lane what the scalar one is, so
-// that the bits agree.
+// A pack of 4, 8 or 16 numbers over the vector extensions of GCC and Clang: a kernel then runs that many joints at
+// once. Every operation is the scalar one in each lane, so the bits agree with scalar code.
 #pragma once
 
 #include <cmath>
@@ -9,15 +8,15 @@
 
 #include <cdot/kernel.hpp>
 
-// Vectors wider than the target's registers pass through memory. Everything here is inlined, so the
-// calling convention that GCC warns about does not matter.
+// GCC warns about the calling convention of vectors wider than the registers. All functions here are inlined, so the
+// convention does not apply.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif
 
 namespace cdot {
 
-// One by one: GCC 12 drops the attribute where the number of bytes depends on a template parameter.
+// One specialisation per width: GCC 12 drops the attribute if the size depends on a template parameter.
 template <class T, int width>
 struct VectorOf;
 template <>
@@ -51,7 +50,7 @@ struct VectorOf<double, 16> {
   typedef long long Bits __attribute__((vector_size(128)));
 };
 
-// What a comparison gives: per lane all bits set, or none.
+// The result of a comparison: per lane all bits set or none.
 template <class T, int width>
 struct Mask {
   using Vector = typename VectorOf<T, width>::Bits;
@@ -70,8 +69,7 @@ struct Pack {
 
   Pack() = default;
   Pack(const Vector& v) : lanes(v) {}
-  // Every lane x. A template, so that T(1) and T(0.5) in a kernel mean the same in a pack of
-  // floats.
+  // x in every lane. A template, because kernels write T(1) and T(0.5) also for packs of floats.
   template <class Number>
   requires(std::is_arithmetic_v<Number>) Pack(Number x) : lanes(Vector{} + static_cast<T>(x)) {}
 
@@ -104,7 +102,7 @@ struct Pack {
   friend Comparison operator==(const Pack& a, const Pack& b) { return {a.lanes == b.lanes}; }
   friend Comparison operator!=(const Pack& a, const Pack& b) { return {a.lanes != b.lanes}; }
 
-  // Bitwise, as the hardware does it: an Inf or NaN in the lane not chosen does not leak.
+  // Bitwise, as in hardware: an Inf or NaN of the operand not chosen has no effect.
   friend Pack select(const Comparison& condition, const Pack& a, const Pack& b) {
     using Bits = typename Comparison::Vector;
     Bits x, y;
@@ -122,7 +120,7 @@ struct ScalarOf<Pack<T, width>> {
   using type = T;
 };
 
-// f lane by lane through the scalar library function: equal bits, whatever the width.
+// Calls the scalar function f in each lane: equal bits at every width.
 template <class T, int width, class F>
 Pack<T, width> each_lane(const Pack<T, width>& a, F f) {
   Pack<T, width> result;

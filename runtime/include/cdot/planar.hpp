@@ -1,6 +1,5 @@
-// Everything that the runtime knows about the plane: what a pose is, how it moves, what a velocity
-// weighs. The solvers see only this struct's members, so another dimension is another struct like
-// it.
+// The plane as the runtime sees it: poses, velocities, masses and their arithmetic. The solvers use only this struct's
+// members, so another dimension is another struct with the same members.
 #pragma once
 
 #include <cmath>
@@ -13,7 +12,7 @@
 namespace cdot {
 
 namespace planar {
-// What a caller hands in and out, in doubles whatever the World computes in.
+// A pose in arguments and results, in doubles for every precision of the World.
 struct Place {
   double x, y, angle;
 };
@@ -32,7 +31,7 @@ struct Planar {
   using Place = planar::Place;
   using Wrench = planar::Wrench;
   static constexpr Dimension dimension = Dimension::planar;
-  static constexpr bool has_gyroscopes = false;  // an inertia is one number and never turns
+  static constexpr bool has_gyroscopes = false;  // the inertia is one number and does not turn with the body
   struct Gyroscope {};
   using Pose = planar::Pose<T>;
   using Velocity = planar::Velocity<T>;  // also a displacement, an acceleration, or an impulse by components
@@ -59,13 +58,12 @@ struct Planar {
     sum.torque += double(impulse.w / time);
   }
 
-  // c and s are recomputed from the angle: composing rotations would let them leave the unit
-  // circle.
+  // c and s are recomputed from the angle: a product of rotations would drift off the unit circle.
   static Pose moved(const Pose& q, const Velocity& d) { return pose(q.x + d.x, q.y + d.y, q.angle + d.w); }
 
-  // A pose as plain numbers, for integrators that combine them: {x, y, angle}, and their rates of change.
+  // Poses {x, y, angle} and their rates as plain numbers, for integrators that combine them.
   static constexpr int pose_numbers = 3;
-  static constexpr int lengths = 2;  // the first of these, and of a Velocity
+  static constexpr int lengths = 2;  // leading numbers of a pose and of a Velocity that are lengths
   static void write(const Pose& q, T* to) { to[0] = q.x, to[1] = q.y, to[2] = q.angle; }
   static Pose read(const T* from) { return pose(from[0], from[1], from[2]); }
   static void write(const Velocity& v, T* to) { to[0] = v.x, to[1] = v.y, to[2] = v.w; }
@@ -84,7 +82,7 @@ struct Planar {
   // M^-1 f
   static Velocity weighted(const InverseMass& m, const Velocity& f) { return {m.m * f.x, m.m * f.y, m.I * f.w}; }
 
-  // M a: what a force would have to be
+  // M a: the force for an acceleration a
   static Velocity force(const InverseMass& m, const Velocity& a) {
     return {inverse(m.m) * a.x, inverse(m.m) * a.y, inverse(m.I) * a.w};
   }
@@ -108,11 +106,10 @@ struct Planar {
   static PointSpring point_spring(const SpringDefinition& d) {
     return {d.body_a, d.body_b, T(d.ax), T(d.ay), T(d.bx), T(d.by), T(d.stiffness), T(d.rest_length), T(d.damping)};
   }
-  // Length, and the direction from a to b together with the arms: what its force and its energy
-  // need.
+  // Length, direction from a to b, and the arms, for the spring's force and energy.
   struct Stretch {
     T length, x, y;  // direction of length 1; zero where the points coincide
-    T arm_a, arm_b;  // r x direction: the levers of a pull along it
+    T arm_a, arm_b;  // r x direction: the lever arms of the tension
   };
   static Stretch stretch(const PointSpring& spring, const Pose& a, const Pose& b) {
     const T ra_x = a.c * spring.ax - a.s * spring.ay, ra_y = a.s * spring.ax + a.c * spring.ay;
@@ -122,7 +119,7 @@ struct Planar {
     const T x = dx * scale, y = dy * scale;
     return {length, x, y, ra_x * y - ra_y * x, rb_x * y - rb_y * x};
   }
-  // The pull on a; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
+  // The force on a along the direction; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
   static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a, const Velocity& b) {
     const T rate = s.x * (b.x - a.x) + s.y * (b.y - a.y) + s.arm_b * b.w - s.arm_a * a.w;
     return spring.stiffness * (s.length - spring.rest_length) + spring.damping * rate;
@@ -130,14 +127,14 @@ struct Planar {
   static Velocity pull_on_a(const Stretch& s, T f) { return {f * s.x, f * s.y, f * s.arm_a}; }
   static Velocity pull_on_b(const Stretch& s, T f) { return {-f * s.x, -f * s.y, -f * s.arm_b}; }
 
-  // What a row block's d(J^T lambda)/dq says about one body's turning; the rest is left alone, so
-  // that linear momentum stays what it is.
+  // The part of a row block's d(J^T lambda)/dq that concerns one body's own rotation. The other parts stay out, which
+  // conserves linear momentum.
   using Stiffness = T;
   template <int width>
   static void subtract(Stiffness& stiffness, const T (&H)[width][width], int body) {
     stiffness -= H[3 * body + 2][3 * body + 2];
   }
-  // I + h stiffness, where that stiffens (tension).
+  // I + h stiffness, if the stiffness is positive (tension).
   static InverseMass stiffened(const InverseMass& m, Stiffness stiffness, T h) {
     const T added = select(stiffness > T(0), h * stiffness, T(0));
     return {m.m, m.I / (T(1) + added * m.I)};

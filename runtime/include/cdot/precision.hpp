@@ -1,5 +1,5 @@
-// What a World computes in, and what depends on that: float, double, or extended precision, which is long double. That
-// has 64 or more bits where double has 53, or, with some compilers and machines, is double under another name.
+// The precisions of a World: float, double, or extended precision, which is long double. A long double has 64 or more
+// bits of mantissa, a double 53. On some compilers and machines long double equals double.
 #pragma once
 
 #include <limits>
@@ -10,16 +10,16 @@ namespace cdot {
 template <class T>
 inline constexpr bool is_extended = std::is_same_v<T, long double>;
 
-// What K is formed and factored in: never less than double.
+// The number type in which K is formed and factored: at least double.
 template <class T>
 using ExactNumber = std::conditional_t<std::is_same_v<T, float>, double, T>;
 
-// A threshold of round-off: what it is for doubles and, for numbers that are finer, as much smaller as these are finer.
+// A threshold of round-off, given for doubles. For finer numbers it shrinks in proportion to their epsilon.
 template <class T>
 constexpr double by_precision(double of_doubles) {
   return of_doubles * static_cast<double>(std::numeric_limits<T>::epsilon() / std::numeric_limits<double>::epsilon());
 }
-// Floats have their own.
+// The same with a threshold of its own for floats.
 template <class T>
 constexpr double by_precision(double of_floats, double of_doubles) {
   return std::is_same_v<T, float> ? of_floats : by_precision<T>(of_doubles);

@@ -1,5 +1,5 @@
-// Vectors, symmetric tensors and rotations in space, as far as the runtime needs them: an inertia
-// tensor that turns with its body, and the exact rotation by a vector.
+// Vectors, symmetric tensors and rotations in space, for inertia tensors that turn with their bodies and for the exact
+// rotation by a vector.
 #pragma once
 
 #include <algorithm>
@@ -48,18 +48,18 @@ struct Symmetric {
   }
 };
 
-// 1 over the size of a tensor, as a power of two, which rounds nothing: products of three moments of inertia leave the
-// range of floats. 1 for the zero tensor.
+// A power of two near 1 / size of the tensor; 1 for the zero tensor. Scaling by it is exact and keeps products of three
+// moments of inertia within the range of floats.
 template <class T>
 T unit_of(const Symmetric<T>& S) {
   const T largest = std::max({std::abs(S.xx), std::abs(S.yy), std::abs(S.zz)});
   return largest > T(0) ? std::scalbn(T(1), -std::ilogb(largest)) : T(1);
 }
 
-// Beside the kernels' inverse of a number, which the tensor's would hide from kernels that are included later.
+// Without this the tensor's inverse would hide the kernels' inverse of a number from headers that follow.
 using cdot::inverse;
 
-// S^-1 by its cofactors; 0 of the zero tensor.
+// S^-1 by cofactors; 0 for the zero tensor.
 template <class T>
 Symmetric<T> inverse(const Symmetric<T>& tensor) {
   const T unit = unit_of(tensor);
@@ -70,8 +70,7 @@ Symmetric<T> inverse(const Symmetric<T>& tensor) {
           scale * cxz, scale * (S.xy * S.xz - S.xx * S.yz)};
 }
 
-// S without its negative eigenvalues: Jacobi's rotations, each of which makes one entry beside the
-// diagonal vanish, until nothing is left there.
+// S with its negative eigenvalues set to 0. Each Jacobi rotation zeroes one off-diagonal entry, until all are 0.
 template <class T>
 Symmetric<T> positive_part(const Symmetric<T>& S) {
   T A[3][3] = {{S.xx, S.xy, S.xz}, {S.xy, S.yy, S.yz}, {S.xz, S.yz, S.zz}};
@@ -125,7 +124,7 @@ Symmetric<T> turned(const Pose<T>& q, const Symmetric<T>& S) {
   return {dot(x, Sx), dot(y, Sy), dot(z, Sz), dot(x, Sy), dot(x, Sz), dot(y, Sz)};
 }
 
-// From Euler parameters of any length but 0: normalised, and A(e) with them.
+// A pose from Euler parameters of any length but 0: normalises them and computes A(e).
 template <class T>
 Pose<T> oriented(T x, T y, T z, T e0, T e1, T e2, T e3) {
   const T scale = T(1) / std::sqrt(e0 * e0 + e1 * e1 + e2 * e2 + e3 * e3);
@@ -149,14 +148,14 @@ Pose<T> oriented(T x, T y, T z, T e0, T e1, T e2, T e3) {
           T(1) - two * (e1 * e1 + e2 * e2)};
 }
 
-// sin(a/2)/a, also near 0: half of sinc(a/2).
+// sin(a/2) / a = sinc(a/2) / 2, accurate near 0.
 template <class T>
 T half_sinc(T a) {
   return a * a < std::numeric_limits<T>::epsilon() ? T(0.5) - a * a / T(48) : std::sin(a / 2) / a;
 }
 
-// exp(turn) q: the rotation by |turn| about turn, exact however far, after the pose's own. The
-// product of unit quaternions is normalised again, so that round-off never adds up.
+// exp(turn) q: the exact rotation by |turn| about turn, applied after the pose's own. Normalising the product keeps
+// round-off from accumulating.
 template <class T>
 Pose<T> turned_by(const Pose<T>& q, const Vector<T>& turn) {
   const T angle = norm(turn);
@@ -167,7 +166,7 @@ Pose<T> turned_by(const Pose<T>& q, const Vector<T>& turn) {
                   c * q.e2 + y * q.e0 + z * q.e1 - x * q.e3, c * q.e3 + z * q.e0 + x * q.e2 - y * q.e1);
 }
 
-// The vector of the rotation that takes `from` to `to`, the shorter way round: |turn| <= pi.
+// The rotation vector that takes `from` to `to` by the shorter way: |turn| <= pi.
 template <class T>
 Vector<T> turn_between(const Pose<T>& from, const Pose<T>& to) {
   T c = to.e0 * from.e0 + to.e1 * from.e1 + to.e2 * from.e2 + to.e3 * from.e3;

@@ -1,5 +1,5 @@
-// What a scene says to a World: plain data with its defaults, in doubles whatever the World
-// computes in. Apart from cdot/world.hpp so that a reader of scenes can fill it without seeing a World.
+// The definitions of a World, its bodies and its joints: plain data with defaults, always in doubles. This header
+// stands apart from cdot/world.hpp: a reader of scenes fills the data without a World.
 #pragma once
 
 #include <optional>
@@ -11,8 +11,7 @@
 
 namespace cdot {
 
-// Thrown by everything that sets a World up, with a sentence that says what is wrong and what would
-// be right. step() never throws.
+// Thrown by all functions that set a World up; the text names the error and the fix. step() never throws.
 struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -22,7 +21,7 @@ enum class Solver {
   direct      // sparse LDL^T of each island's K: exact to round-off, for mechanisms
 };
 
-// Settings::iterations counts.
+// True if Settings::iterations applies.
 constexpr bool sweeps(Solver solver) { return solver == Solver::iterative; }
 
 enum class Drift {
@@ -31,44 +30,43 @@ enum class Drift {
   projection  // Newton on C after every step, the velocities projected as well
 };
 
-// How the iterative solver solves the rows of one joint together, where a joint has several; tests/bench/ulp has what
-// each costs and what it is worth.
+// How the iterative solver solves the rows of one joint together. tests/bench/ulp measures cost and accuracy of each.
 enum class Kernels {
-  fast,      // K^-1 of two rows kept in place of its factors
+  fast,      // stores K^-1 of two rows in place of its factors
   balanced,  // K = L D L^T
-  robust     // the same factors from J, without K: half the digits lost to long arms and heavy loads
+  robust     // the same factors from J, without K: long arms and heavy loads cost half as many digits
 };
 
 struct Settings {
   Solver solver = Solver::direct;
   Integrator integrator = Integrator::euler;
-  // Of rk4 and dop853: 0: step(h) takes steps of h / substeps; above, it covers h in steps of their own length, each
-  // with an estimated error below this, in [m], [rad], [m/s] and [rad/s].
+  // For rk4 and dop853. 0: step(h) takes steps of h / substeps. Above 0: the method chooses its steps, each with an
+  // estimated error below this, in [m], [rad], [m/s] and [rad/s].
   double local_error = 0;
   Drift drift = Drift::projection;
   int iterations = 10;     // of the iterative solver, per substep
   int substeps = 1;        // step(h) takes this many steps of h / substeps
   double baumgarte = 0.2;  // share of C removed per step, 0 to 1
   Kernels kernels = Kernels::balanced;
-  bool warm_start = true;  // the iterative solver starts from the impulses of the step before
+  bool warm_start = true;  // the iterative solver starts from the last step's impulses
   double gravity_x = 0;    // [m/s^2]
   double gravity_y = 0;
   double gravity_z = 0;       // in space
-  double sleep_after = 0;     // [s] that an island must rest before it sleeps; 0: nothing ever sleeps
+  double sleep_after = 0;     // [s] of rest before an island sleeps; 0: islands never sleep
   double sleep_speed = 1e-3;  // [m/s] and [rad/s] below which a body counts as resting
 };
 
-// Why these methods do not go together; nullptr if they do.
+// Why these methods exclude each other; nullptr if they do not.
 constexpr const char* wrong_with_methods(const Settings& s) {
   const bool accelerations = works_on_accelerations(s.integrator);
   if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4 and dop853 only";
   if (row_of(s.integrator).projects && s.drift != Drift::projection)
-    return "rattle holds the joints by itself: it needs drift = projection";
+    return "rattle includes the projection: it needs drift = projection";
   if (!accelerations) return nullptr;
   if (s.drift == Drift::baumgarte)
-    return "baumgarte feeds velocities of Euler's steps: rk4 and dop853 need drift = projection";
+    return "baumgarte corrects velocities of Euler's steps only: rk4 and dop853 need drift = projection";
   if (s.drift == Drift::none && sweeps(s.solver))
-    return "what the iterative solver leaves in accelerations only drift = projection takes away";
+    return "only drift = projection removes the error that the iterative solver leaves in accelerations";
   return nullptr;
 }
 
@@ -90,7 +88,7 @@ struct Inertia {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
 };
 
-// Why no body has this tensor; nullptr if one may, or if it is 0.
+// Why no rigid body can have this tensor; nullptr if one can or if the tensor is 0.
 const char* wrong_with(const Inertia& inertia);
 
 struct SpatialBodyDefinition {
@@ -109,14 +107,13 @@ struct SpatialBodyDefinition {
 
 struct NamedValue {
   std::string name;
-  // In the plane 2 for a point, vector, unit or frame; in space 3, and for a frame its x axis (3),
-  // its x and y axes (6) or all three (9); 1 for a scalar.
+  // Scalar: 1. Point, vector or unit: 2 in the plane, 3 in space. Frame: 2 in the plane; in space its x axis (3), x and
+  // y axes (6) or all three (9).
   std::vector<double> numbers;
 };
 
-// How stiff something soft is: either a frequency [Hz] with a damping ratio, referred to the
-// effective mass that the row sees, or a stiffness [N/m, N m/rad] with a damping [N s/m, N m
-// s/rad]. Which one is told by `by_frequency`.
+// Stiffness and damping of a soft row. by_frequency true: frequency [Hz] and damping ratio, referred to the row's
+// effective mass. False: stiffness [N/m, N m/rad] and damping [N s/m, N m s/rad].
 struct Softness {
   bool by_frequency = true;
   double frequency = 0, damping_ratio = 0;
@@ -126,12 +123,12 @@ struct Softness {
 struct JointDefinition {
   std::string type;                    // as in the specs: "revolute", "distance", ...
   std::vector<int> bodies;             // in the order of the spec: a, b, ...
-  std::vector<NamedValue> parameters;  // the others take the spec's default from the present pose
+  std::vector<NamedValue> parameters;  // the others get the spec's defaults at the present poses
   std::optional<Softness> soft;        // the joint's own equality rows as springs
 };
 
-// A spring with damping between a point of one body and a point of another: tension = stiffness *
-// (length - rest) + damping * d(length)/dt.
+// A damped spring between a point of one body and a point of another: tension = stiffness (length - rest_length) +
+// damping d(length)/dt.
 struct SpringDefinition {
   int body_a = 0, body_b = 0;
   double ax = 0, ay = 0, az = 0;  // in the frames of the bodies [m]; z only in space
@@ -141,7 +138,7 @@ struct SpringDefinition {
   double damping = 0;      // [N s/m]
 };
 
-// What was accepted but does nothing, in a sentence about that joint.
+// A joint or an effect that was accepted but has no influence, with the reason.
 struct Note {
   int joint;
   std::string text;

@@ -1,5 +1,5 @@
-// The state of a World at one moment, apart from the World: to go back to, to compare, to keep in a file. A run that
-// goes on from it has the same bits as one that was never interrupted.
+// A copy of a World's state at one moment: to restore, to compare, to write to a file. A run that continues from a
+// snapshot has the same bits as one without a break.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace cdot {
 
 class Snapshot {
  public:
-  // What it is a state of. Only a World with the same of everything takes it back.
+  // Identifies the World. restore() accepts the snapshot only in a World with an equal Origin.
   struct Origin {
     std::string method;  // space, solver, integrator, kernels: in words
     int body_count = 0, joint_count = 0;
@@ -20,7 +20,7 @@ class Snapshot {
                   order = 0;  // hashes: of masses; of joints and effects; of how rows are laid out
     bool operator==(const Origin&) const = default;
   };
-  // One array, by name, of numbers of one type.
+  // One array: its name and the type of its numbers.
   struct Item {
     std::string name;
     char type;  // d, f, e: double, float, long double; i, l: int, long long; c: a byte
@@ -39,12 +39,12 @@ class Snapshot {
   const Origin& origin() const { return origin_; }
   double time() const;  // [s]; 0 if empty
 
-  // Every bit of it.
+  // True if every bit is equal.
   bool operator==(const Snapshot&) const = default;
-  // Names of the arrays whose bits are not the same; of one that the other lacks as well.
+  // Names of the arrays whose bits differ or that only one snapshot has.
   std::vector<std::string> differences(const Snapshot& other) const;
 
-  // As lines of text, numbers to the bit, and back. read() throws cdot::Error, naming the line.
+  // Writes and reads the snapshot as lines of text, every number to the bit. read() throws cdot::Error with the line.
   std::string text() const;
   static Snapshot read(std::string_view text);
 

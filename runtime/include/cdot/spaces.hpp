@@ -1,6 +1,6 @@
-// The spaces that the runtime is compiled for. Every stage is one template, instantiated for each of them by
-// CDOT_FOR_EACH_SPACE(declaration), where `declaration` is a macro of the space. The same files once more, with
-// CDOT_EXTENDED, are a library apart, of Worlds in extended precision without snapshots, changes and diagnoses.
+// The spaces that the runtime is compiled for. Every stage is one template. CDOT_FOR_EACH_SPACE(declaration)
+// instantiates it for each space; `declaration` is a macro of the space. With CDOT_EXTENDED the same files make a
+// second library: Worlds in extended precision, without snapshots, changes and diagnoses.
 #pragma once
 
 #include <cdot/planar.hpp>
@@ -11,7 +11,7 @@
 #ifdef CDOT_EXTENDED
 #define CDOT_FOR_EACH_SPACE(declaration) CDOT_FOR_EACH_EXTENDED_SPACE(declaration)
 #define CDOT_FOR_EACH_NUMBER(declaration) declaration(long double)
-#define CDOT_EXACT_NUMBER long double  // what their K is formed in
+#define CDOT_EXACT_NUMBER long double  // number type of K
 #else
 #define CDOT_FOR_EACH_SPACE(declaration) \
   declaration(Planar<double>) declaration(Planar<float>) declaration(Spatial<double>) declaration(Spatial<float>)

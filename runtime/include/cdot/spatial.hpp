@@ -1,5 +1,4 @@
-// Everything that the runtime knows about space, member by member what runtime/include/cdot/planar.hpp knows
-// about the plane.
+// Space as the runtime sees it, with the same members as cdot/planar.hpp.
 #pragma once
 
 #include <algorithm>
@@ -91,14 +90,14 @@ struct Spatial {
     set_inertia(g, placed(place_of(d)), m, velocity_of(d));
     return g;
   }
-  // The tensors at a pose that was set; w stays.
+  // The tensors at a pose that was set; keeps w.
   static void set_inertia(Gyroscope& g, const Pose& q, InverseMass& m, const Velocity& v) {
     g.world = spatial::turned(q, g.inertia);
     m = inverse_mass(m.m, spatial::turned(q, g.inverse));
     g.spin = angular(v);
     g.momentum = g.world * g.spin;
   }
-  // The tensors at a pose that the body moved to; L = I w stays.
+  // The tensors at a pose that the body moved to; keeps L = I w.
   static void turn(Gyroscope& g, const Pose& q, InverseMass& m, Velocity& v) {
     g.momentum = g.momentum + g.world * (angular(v) - g.spin);
     g.world = spatial::turned(q, g.inertia);
@@ -107,16 +106,16 @@ struct Spatial {
     set_angular(v, g.spin);
   }
   static void set_torque(Gyroscope& g, const Velocity& f) { g.torque = angular(f); }
-  // rate += -I^-1 (w x I w), w as it was when the tensors were set
+  // rate += -I^-1 (w x I w), with the w of the last update of the tensors
   static void add_gyroscopic_rate(const Gyroscope& g, const InverseMass& m, Velocity& rate) {
     const Vector torque = spatial::cross(g.momentum, g.spin);
     set_angular(rate, angular(rate) + inverse_inertia(m) * torque);
   }
-  // The part of the acceleration that turns with the tensor.
+  // I^-1 torque: the part of the acceleration that changes with the tensor.
   static void turn_acceleration(const Gyroscope& g, const InverseMass& m, Velocity& acceleration) {
     set_angular(acceleration, inverse_inertia(m) * g.torque);
   }
-  // Puts the mean spin of the step in place of w, and back.
+  // Replaces w by the mean spin of the step, until restore_spin().
   static void lend_mean_spin(Gyroscope& g, const Pose& q, Velocity& v, T h) {
     g.lent = angular(v);
     set_angular(v, spatial::mean_spin(g, q, g.lent, h));
@@ -146,11 +145,11 @@ struct Spatial {
     return to;
   }
 
-  // A pose as plain numbers, for integrators that combine them: {x, y, z, e0, e1, e2, e3}, and their rates of change.
-  // Off the unit sphere, where stages of a step lie, e stands for e / |e|: along the sphere the field is the same, so
-  // that a method keeps its order.
+  // Poses {x, y, z, e0, e1, e2, e3} and their rates as plain numbers, for integrators that combine them. Stages lie off
+  // the unit sphere; there e stands for e / |e|. On the sphere the vector field is unchanged, so a method keeps its
+  // order.
   static constexpr int pose_numbers = 7;
-  static constexpr int lengths = 3;  // the first of these, and of a Velocity
+  static constexpr int lengths = 3;  // leading numbers of a pose and of a Velocity that are lengths
   static void write(const Pose& q, T* to) {
     to[0] = q.x, to[1] = q.y, to[2] = q.z;
     to[3] = q.e0, to[4] = q.e1, to[5] = q.e2, to[6] = q.e3;
@@ -189,7 +188,7 @@ struct Spatial {
     return {m.m * f.x, m.m * f.y, m.m * f.z, w.x, w.y, w.z};
   }
 
-  // M a: what a force would have to be
+  // M a: the force for an acceleration a
   static Velocity force(const InverseMass& m, const Velocity& a) {
     const T mass = inverse(m.m);
     const Vector torque = spatial::inverse(inverse_inertia(m)) * angular(a);
@@ -219,11 +218,11 @@ struct Spatial {
     return {d.body_a,         d.body_b,    {T(d.ax), T(d.ay), T(d.az)}, {T(d.bx), T(d.by), T(d.bz)}, T(d.stiffness),
             T(d.rest_length), T(d.damping)};
   }
-  // Length, and the direction from a to b together with the arms.
+  // Length, direction from a to b, and the arms.
   struct Stretch {
     T length;
     Vector direction;     // of length 1; zero where the points coincide
-    Vector arm_a, arm_b;  // r x direction: the levers of a pull along it
+    Vector arm_a, arm_b;  // r x direction: the lever arms of the tension
   };
   static Stretch stretch(const PointSpring& spring, const Pose& a, const Pose& b) {
     const Vector ra = spatial::to_world(a, spring.a), rb = spatial::to_world(b, spring.b);
@@ -232,7 +231,7 @@ struct Spatial {
     const Vector n = inverse(length) * d;
     return {length, n, spatial::cross(ra, n), spatial::cross(rb, n)};
   }
-  // The pull on a; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
+  // The force on a along the direction; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
   static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a, const Velocity& b) {
     const T rate = spatial::dot(s.direction, Vector{b.x - a.x, b.y - a.y, b.z - a.z}) +
                    spatial::dot(s.arm_b, angular(b)) - spatial::dot(s.arm_a, angular(a));
@@ -241,7 +240,7 @@ struct Spatial {
   static Velocity pull_on_a(const Stretch& s, T f) { return impulse(f * s.direction, f * s.arm_a); }
   static Velocity pull_on_b(const Stretch& s, T f) { return impulse(-f * s.direction, -f * s.arm_b); }
 
-  // What a row block's d(J^T lambda)/dq says about one body's turning.
+  // The part of a row block's d(J^T lambda)/dq that concerns one body's own rotation.
   using Stiffness = Symmetric;
   template <int width>
   static void subtract(Stiffness& stiffness, const T (&H)[width][width], int body) {
@@ -254,7 +253,7 @@ struct Spatial {
                                       half * (H[x][z] + H[z][x]),
                                       half * (H[y][z] + H[z][y])};
   }
-  // I + h stiffness, with the part of it that stiffens.
+  // I + h positive_part(stiffness).
   static InverseMass stiffened(const InverseMass& m, const Stiffness& stiffness, T h) {
     if (m.Ixx == T(0)) return m;
     const Symmetric inertia = spatial::inverse(inverse_inertia(m));

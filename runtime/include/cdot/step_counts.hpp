@@ -1,4 +1,4 @@
-// What the steps came to, over all islands; but for `retried` of the integrators that choose their own.
+// Counts over all islands. All but `retried` and `direct` count only for integrators that choose their steps.
 #pragma once
 
 #include <limits>
@@ -8,12 +8,12 @@ namespace cdot {
 struct StepCounts {
   long long evaluations = 0;          // of an island's accelerations
   long long taken = 0, rejected = 0;  // the error estimate was too large
-  long long events = 0;               // located: something touched, let go, slipped or stuck
-  // Ends of steps left to the linearly implicit Euler's: events without end, no step short enough, or, of fixed steps,
-  // one whose error was estimated to be larger than the motion in its smallest parts as well.
+  long long events = 0;               // located: a row came into reach, let go, slipped or stuck
+  // Step ends that linearly implicit Euler took over: too many events, or no step short enough. With fixed steps also:
+  // an error estimate above the motion itself even in the smallest parts.
   long long rescued = 0;
-  long long retried = 0;  // steps that failed and succeeded in parts,
-  long long direct = 0;   // and those of them for which the iterative solver had to step back
+  long long retried = 0;  // failed steps that succeeded in parts
+  long long direct = 0;   // of these: steps that needed the direct solver in place of the iterative one
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // [s]
 };
 

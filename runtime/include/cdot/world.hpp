@@ -1,5 +1,5 @@
-// A World: bodies, joints by name, and step(). What a scene asks for beyond joints (limits, motors, ...) is added by
-// runtime/include/cdot/effects.hpp, so that a program which never asks does not even link it.
+// A World: bodies, joints by name, and step(). Effects (limits, motors, ...) are added by cdot/effects.hpp: a program
+// without effects does not link them.
 //
 //   cdot::World<double> world(settings);
 //   int rod = world.add_body({.x = 1, .mass = 1, .inertia = 0.1});
@@ -61,40 +61,40 @@ class BasicWorld {
 
   // --- setting up: throws cdot::Error, may allocate ---
 
-  // Poses are counted from here inside: a World of floats far from 0 keeps its resolution. What is handed in and
-  // place() stay in the world's coordinates, pose() does not. Only before there are bodies.
+  // The World stores poses relative to this point: floats then keep their resolution far from 0. Arguments and place()
+  // stay in world coordinates; pose() is relative to the origin. Call it before the first add_body().
   void set_origin(double x, double y, double z = 0);
   int add_body(const BodyDefinition& definition);  // returns its index: 0, 1, ...
-  int ground();  // the index of one static body at the origin, made when first asked for
+  int ground();                                    // the index of one static body at the origin, made by the first call
   int add_joint(const JointDefinition& definition);
   int add_spring(const SpringDefinition& definition);
   void set_force(int body, const Wrench& force);
   void on_failure(OnFailure what);  // of step(); stop unless set
 
-  // Rows of joints that the present pose or velocity violates by more than the tolerance ([m] or
-  // [rad], and /s).
+  // Joint rows that the present poses or velocities violate by more than the tolerance ([m] or [rad], and /s).
   std::vector<Inconsistency> inconsistencies(double tolerance) const;
-  // Moves the bodies onto C = 0 and their velocities onto Cdot = 0 by the least mass-weighted
-  // change. False if that did not succeed: the joints contradict each other.
+  // Projects the poses onto C = 0 and the velocities onto Cdot = 0 by the least mass-weighted change. Returns false if
+  // the projection fails because the joints contradict each other.
   bool project(double tolerance);
   const std::vector<Note>& notes() const;
-  // Analyses islands and patterns now rather than in the next step(), which then does not allocate.
+  // Analyses islands and sparsity patterns now. The next step() then allocates nothing.
   void prepare();
 
   // --- running: step() never throws and, once prepared, never allocates ---
 
-  // With Settings::local_error the state at its end may lie between the ends of a step that the method chose: by the
-  // method's interpolant, brought back onto the joints. Asking often then costs no steps.
+  // With Settings::local_error the method chooses its own steps. If time + h lies inside such a step, the state is the
+  // method's interpolant, projected onto the joints. Short h therefore cost no extra steps.
   //
-  // A step that fails leaves the State of the World as it was, to the bit, and says so.
+  // A step that fails restores the World's State to the bit; the result gives the reason.
   StepResult step(double h);
 
-  // What it held together is free of it from the next step on, which analyses islands anew. Its number stays taken.
+  // The joint's bodies are free of it from the next step on. That step analyses the islands again. The joint's number
+  // is not reused.
   void remove_joint(int joint);
-  // These parameters of a joint get other numbers, the rest keeps its own: from the next step on, which moves the
-  // bodies to where C = 0 now is and leaves their velocities, but for what J v = 0 takes of them. A length that shall
-  // change with a velocity belongs into the joint's spec, as a function of t. Throws cdot::Error and changes nothing
-  // where add_joint() would not take them.
+  // Changes the named parameters of a joint; the others keep their numbers. The next step projects the bodies onto the
+  // new C = 0. It keeps their velocities except for the part that violates J v = 0. A length that changes at a given
+  // rate belongs in the joint's spec as a function of t. Throws cdot::Error and changes nothing if add_joint() would
+  // refuse the numbers.
   void set_parameters(int joint, const std::vector<NamedValue>& parameters);
 
   // Each of these wakes the body's island.
@@ -104,12 +104,13 @@ class BasicWorld {
 
   // --- going back ---
 
-  // All that a run depends on: one that goes on from it has the same bits. Prepares the World.
+  // The complete state: a run that continues from a snapshot has the same bits as one without a break. Prepares the
+  // World.
   Snapshot snapshot() const;
-  // The same into one at hand: without allocation once it has been a snapshot of this World.
+  // Writes into an existing snapshot; allocates nothing if that was a snapshot of this World.
   void snapshot_into(Snapshot& snapshot) const;
-  // Of this World, or of one to which the same was added in the same order. Throws cdot::Error and leaves the World as
-  // it is, if it is of another.
+  // The snapshot must be of this World, or of a World built by the same calls in the same order. Otherwise throws
+  // cdot::Error and changes nothing.
   void restore(const Snapshot& snapshot);
 
   // --- looking ---
@@ -118,8 +119,8 @@ class BasicWorld {
   const Settings& settings() const;
 
   int body_count() const;
-  typename S::Pose pose(int body) const;  // counted from the origin that was set, if one was
-  Place place(int body) const;            // the same in doubles, in the world
+  typename S::Pose pose(int body) const;  // relative to set_origin()
+  Place place(int body) const;            // the same in world coordinates, in doubles
   typename S::Velocity velocity(int body) const;
   typename S::InverseMass inverse_mass(int body) const;
   bool is_static(int body) const;
@@ -128,31 +129,29 @@ class BasicWorld {
   int joint_count() const;
   const JointType& joint_type(int joint) const;
   std::vector<int> joint_bodies(int joint) const;
-  // All numbers of Parameters<T>, given or defaulted, units normalised, laid out by
-  // ParameterInfo::offset.
+  // All numbers of Parameters<T>, given or defaulted, laid out by ParameterInfo::offset; units have length 1.
   std::vector<double> joint_parameters(int joint) const;
   bool broken(int joint) const;                         // or removed
   std::vector<double> position_error(int joint) const;  // C
   std::vector<double> velocity_error(int joint) const;  // Cdot = J v + dC/dt
   std::vector<double> impulse(int joint) const;         // lambda of the last (sub)step [N s, N m s]
-  // What a joint exerted on a body in the last step.
+  // Force and torque of a joint on a body in the last step.
   Wrench reaction(int joint, int body) const;
-  // Value of a free coordinate [m, rad]. An angle in space lies within (-pi, pi], unless an effect
-  // acts on it: then whole turns count.
+  // Value of a free coordinate [m, rad]. An angle in space lies within (-pi, pi]; under an effect whole turns count.
   double coordinate(int joint, std::string_view name) const;
   double coordinate_rate(int joint, std::string_view name) const;  // and its rate
 
-  // Over all joints that are neither soft nor broken; an inequality counts where C < 0.
+  // Over all joints that are neither soft nor broken; inequality rows count only if C < 0.
   WorstError worst_position_error() const;
   // At the present poses; inequality rows do not count.
   WorstError worst_velocity_error() const;
-  // Kinetic energy + gravity and constant forces (zero where each body was added) + springs, soft
-  // joints included. A constant torque has a potential in the plane; in space it has none, and is
-  // counted along the shortest turn from the start.
+  // Kinetic energy + potential of gravity and constant forces (0 at each body's first pose) + springs, soft joints
+  // included. A constant torque has a potential in the plane. In space it has none: its work is taken along the
+  // shortest rotation from the first pose.
   double energy() const;
-  // Rows that the direct solver found to depend on others in its last factorisation.
+  // Rows that the direct solver found redundant in its last factorisation.
   int redundant_rows() const;
-  // Of rk4 and dop853, since the World was made.
+  // Counts of rk4 and dop853 since the World was made.
   const StepCounts& step_counts() const;
   int island_count() const;
   int sleeping_islands() const;

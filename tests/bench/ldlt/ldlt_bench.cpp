@@ -19,8 +19,8 @@ namespace {
 using Sparse = Eigen::SparseMatrix<double>;
 using Library = Eigen::SimplicialLDLT<Sparse, Eigen::Lower, Eigen::AMDOrdering<int>>;
 
-// K without its exact zeros. Where rows are redundant Eigen would stop at a pivot of 0: it gets a
-// share on the diagonal that lets it go through.
+// K without its exact zeros. At redundant rows Eigen would stop with a pivot of 0, so its K gets a small share on the
+// diagonal.
 Sparse sparse(const SystemMatrix& system) {
   const Eigen::Map<const Eigen::MatrixXd> K(system.K.data(), system.rows, system.rows);
   Sparse lower = K.sparseView();
@@ -44,7 +44,7 @@ struct Bench {
     island = &world.data().islands.at(0);
     const SystemMatrix system = system_matrix(world);
     K = sparse(system);
-    // K x, so that no redundant row contradicts the others.
+    // b = K x, so no redundant row contradicts the others.
     const Eigen::VectorXd forces = Eigen::VectorXd::LinSpaced(system.rows, -1, 2);
     b = K.selfadjointView<Eigen::Lower>() * forces;
     right_side.resize(forces.size());
@@ -160,7 +160,7 @@ std::vector<std::string> mechanisms;
 
 template <class S>
 void add(const std::string& name, const std::function<void(BasicWorld<S>&)>& build) {
-  static std::map<std::string, std::unique_ptr<Bench<S>>> built;  // when first measured
+  static std::map<std::string, std::unique_ptr<Bench<S>>> built;  // built at the first measurement
   mechanisms.push_back(name);
   const auto stage = [&](const char* of, void (*run)(benchmark::State&, Bench<S>&)) {
     benchmark::RegisterBenchmark((name + "/" + of).c_str(), [=](benchmark::State& state) {

@@ -30,7 +30,7 @@ namespace {
 std::vector<double> two_per_halving(const Problem& problem, double steps_per_second) {
   const double interval = problem.duration / double(problem.times.size());
   const double coarsest =
-      2 * std::ceil(interval * steps_per_second / 2);  // even, so that half as many more is whole too
+      2 * std::ceil(interval * steps_per_second / 2);  // even, so 1.5 times as many is a whole number too
   std::vector<double> all{interval / coarsest};
   for (int halvings = 0; halvings <= 14; ++halvings)
     for (const double part : {1.5, 2.0}) all.push_back(interval / std::ldexp(part * coarsest, halvings));

@@ -1,4 +1,4 @@
-// Vectors and quaternions as plain arrays: what all adapters need to place bodies and joints.
+// Vectors and quaternions as plain arrays, for all adapters.
 #pragma once
 
 #include <algorithm>
@@ -22,13 +22,13 @@ inline Quaternion operator*(const Quaternion& p, const Quaternion& q) {
   return {p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3], p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
           p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1], p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0]};
 }
-// The vector u turned by the unit quaternion q.
+// The vector u rotated by the unit quaternion q.
 inline Vec3 turned(const Quaternion& q, const Vec3& u) {
   const Vec3 e{q[1], q[2], q[3]}, t = 2.0 * cross(e, u);
   return u + q[0] * t + cross(e, t);
 }
 
-// A point or a direction of the world in a body's frame; the world's own is the world's.
+// A point or a direction of the world in a body's frame; unchanged for the world.
 inline Vec3 local_point(const Problem& problem, int body, const Vec3& p) {
   if (body == world) return p;
   const State& s = problem.bodies[std::size_t(body)].start;
@@ -39,8 +39,8 @@ inline Vec3 local_direction(const Problem& problem, int body, const Vec3& u) {
   return turned(conjugate(problem.bodies[std::size_t(body)].start.q), u);
 }
 
-// The turns of a joint in their order; where one alone is free, it may come first, since the angle in the middle is
-// singular at a right angle.
+// The rotations of a joint in order. A single free rotation may come first, because the middle angle is singular at a
+// right angle.
 inline std::vector<Turn> turns_of(const Joint& joint, bool free_first) {
   std::vector<Turn> turns = joint.turns;
   if (free_first && joint.kind == JointKind::six_dof)
@@ -59,11 +59,11 @@ inline Push damping(const Body& body, const State& s) {
   return {(-body.damping * body.mass) * s.v, -body.damping * turned(s.q, spin)};
 }
 
-// Of planar poses.
+// The angle of a planar pose.
 inline double angle(const Quaternion& q) { return 2 * std::atan2(q[3], q[0]); }
 inline Quaternion about_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
 
-// The angle of the shortest turn between two orientations, exact also where it is tiny.
+// The angle of the shortest rotation between two orientations, accurate for tiny angles.
 inline double angle_between(const Quaternion& p, const Quaternion& q) {
   const Quaternion d = conjugate(p) * q;
   return 2 * std::atan2(std::sqrt(d[1] * d[1] + d[2] * d[2] + d[3] * d[3]), std::fabs(d[0]));

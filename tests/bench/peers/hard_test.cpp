@@ -1,4 +1,4 @@
-// That the page of hard cases is whole, and that what an engine makes of a case is not a mistake of its adapter.
+// The page of hard cases is complete, and an engine's result is not an error of its adapter.
 #include "tests/bench/peers/hard_test.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ TEST(HardCases, HaveACellForEveryCaseAndEngine) {
   std::printf("%d cells\n", cells);
 }
 
-// Small steps: 1/6000 s, or a hundredth of a radian; and so many.
+// Length of small steps, 1/6000 s or a hundredth of a radian, and their number.
 constexpr int moment = 120;
 double fine_step(const Problem& problem) {
   double spin = 60;
@@ -63,7 +63,7 @@ Setting exact(const Problem& problem) {
   throw std::logic_error("no such setting");
 }
 
-// How far a start is from its joints, and the largest number in it.
+// The largest |C| at the start, and the largest number in the start.
 double open(const Problem& problem) {
   double gap = 0;
   for (const Joint& joint : problem.joints) gap = std::max(gap, norm(joint.anchor_b - joint.anchor));
@@ -76,7 +76,7 @@ double scale(const Problem& problem) {
   return most;
 }
 
-// Sweeps come closer slowly where masses are a million apart.
+// Sweeps converge slowly at mass ratios of a million.
 double share(const Problem& problem) {
   double least = never, most = 0;
   for (const Body& body : problem.bodies) {
@@ -86,8 +86,7 @@ double share(const Problem& problem) {
   return most > 1e5 * least ? 0.12 : 0.02;
 }
 
-// Settings that the page knows to end the process, or to be no number at once, which ends some: they would end the
-// test.
+// Settings that, by the page, end the process or give NaN at once; they would end the test.
 bool ends_at_once(const nlohmann::json& cell, const std::string& setting) {
   const std::vector<Outcome> all = cell_of(cell).settings;
   return std::any_of(all.begin(), all.end(), [&](const Outcome& o) {
@@ -95,13 +94,13 @@ bool ends_at_once(const nlohmann::json& cell, const std::string& setting) {
   });
 }
 
-// How far bodies came in that moment, or would fall.
+// The distance that bodies move in that time, or the free fall.
 double way(const Problem& problem, const std::vector<State>& right) {
   const double time = moment * fine_step(problem);
   return std::max(apart(right, starts(problem)), 0.5 * norm(problem.gravity) * time * time);
 }
 
-// The least that a setting is off, against what it may be; never if none could be asked.
+// The smallest error of a setting relative to its bound; infinite if no setting can run.
 double least_off(const Question& asked, const Problem& problem, const nlohmann::json& cell, const std::string& what) {
   double off = 0, best = never;
   const std::vector<State> right = after_a_moment(problem, exact(problem), off);
@@ -122,13 +121,13 @@ double least_off(const Question& asked, const Problem& problem, const nlohmann::
   return best / bound;
 }
 
-// Where no setting may be asked, all fail for reasons that the page tells.
+// True if all settings fail for reasons on the page.
 bool all_end_at_once(const nlohmann::json& cell) {
   const std::vector<Outcome> all = cell_of(cell).settings;
   return std::all_of(all.begin(), all.end(), [&](const Outcome& o) { return ends_at_once(cell, o.setting); });
 }
 
-// In small steps, in the best of its settings, every engine goes where Cdot goes.
+// With small steps and its best setting every engine follows Cdot.
 TEST(HardCases, AreTheSameForEveryEngineInSmallSteps) {
   const nlohmann::json found = committed();
   int agreed = 0;
@@ -152,7 +151,8 @@ TEST(HardCases, AreTheSameForEveryEngineInSmallSteps) {
   EXPECT_GT(agreed, 200);
 }
 
-// What is spoilt is one thing: without it no engine refuses the same scene, and Cdot refuses it or does nothing.
+// Each invalid problem has one fault: without the fault every engine accepts the scene; with it Cdot refuses or does
+// nothing.
 TEST(HardCases, HaveQuestionsThatMayBeRefusedForOneReason) {
   int asked = 0, refused = 0;
   for (const Row& row : rows()) {

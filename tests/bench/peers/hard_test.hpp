@@ -1,4 +1,4 @@
-// What the tests of the adapters share.
+// Helpers of the adapters' tests.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace cdot::peers {
 
-// The farthest that two have the same body from each other.
+// The largest distance between the same bodies of two states.
 inline double apart(const std::vector<State>& a, const std::vector<State>& b) {
   double worst = 0;
   for (std::size_t k = 0; k < a.size(); ++k) worst = std::max(worst, norm(a[k].x - b[k].x));

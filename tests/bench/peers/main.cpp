@@ -1,4 +1,4 @@
-// cdot-peers: what accuracy costs in Cdot and in today's engines, in one run on one machine.
+// cdot-peers: the cost of accuracy in Cdot and in today's engines, in one run on one machine.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace cdot::peers;
 
-// Said before the clock starts: do all engines answer the same question?
+// Before the timing: checks that all engines solve the same problem.
 void compare_answers(const Measured& m) {
   for (const std::string& name : present(m.points)) {
     const std::vector<std::size_t> best = frontier(m.points, name);
@@ -52,7 +52,7 @@ void write_down(const std::string& folder, const std::string& command, const Opt
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"What accuracy costs in Cdot and in today's engines."};
+  CLI::App app{"The cost of accuracy in Cdot and in today's engines."};
   Options options;
   std::string problem, output;
   app.add_option("--problem", problem, "Only problems whose name contains this");

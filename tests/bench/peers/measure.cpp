@@ -16,7 +16,7 @@ double error_of(const Problem& problem, const State& is, const State& should) {
   return std::isfinite(error) ? error : never;
 }
 
-// Always the same work, of the kind that runs do: a dependent chain of products and sums.
+// A fixed amount of typical work: a dependent chain of products and sums.
 double beat() {
   const double start = thread_seconds();
   volatile double sink = 0;
@@ -26,7 +26,7 @@ double beat() {
   return (void)sink, thread_seconds() - start;
 }
 
-// As many whole runs as make up `at_least` seconds; seconds of one.
+// Repeats whole runs for `at_least` seconds; returns the seconds of one.
 double timed(const Problem& problem, const Point& point, double at_least) {
   const int count = int(std::clamp(at_least / point.probe, 1.0, 64.0));
   std::vector<std::unique_ptr<Run>> runs;
@@ -44,18 +44,18 @@ bool beaten(const std::vector<Point>& points, const Point& point) {
   });
 }
 
-// Knobs in a row that bring nothing, before a series ends: three halvings of a step.
+// Consecutive knobs without progress that end a series: three halvings of a step.
 constexpr int most_in_vain = 6;
 
-// Whether finer knobs stopped to help.
+// True if finer knobs no longer reduce the error.
 bool stalled(const std::vector<double>& errors) {
   if (errors.size() < 2 * most_in_vain) return false;
   const double before = *std::min_element(errors.begin(), errors.end() - most_in_vain);
   return std::isfinite(before) && *std::min_element(errors.end() - most_in_vain, errors.end()) > 0.8 * before;
 }
 
-// Adds the runs of one series, from coarse to fine, until they take too long, stop to help, or are beaten by what the
-// engine did before again and again (large errors say nothing yet).
+// Adds the runs of one series from coarse to fine, until they take too long, no longer reduce the error, or repeatedly
+// lose against the engine's earlier settings (large errors do not count yet).
 void probe(const Problem& problem, const Options& options, const Engine& engine, const Series& series,
            std::vector<Point>& points) {
   std::vector<double> errors;
@@ -138,7 +138,7 @@ void time(const Problem& problem, const Options& options, std::vector<Point>& po
   for (int round = 0; round < options.rounds; ++round) {
     told(round);
     for (std::size_t k = 0; k < worth.size(); ++k) {
-      // Another order each round, so that neighbours change.
+      // Another order in each round, so neighbours change.
       Point& point = *worth[(k * 7919 + std::size_t(round)) % worth.size()];
       metronome().push_back(beat());
       point.seconds.push_back(timed(problem, point, options.at_least));

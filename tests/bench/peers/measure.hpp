@@ -1,4 +1,4 @@
-// The measurement: every setting is first run and compared with the reference; then those worth timing run in
+// The measurement: every setting runs once and is compared with the reference; then the useful ones are timed in
 // interleaved rounds.
 #pragma once
 
@@ -16,10 +16,10 @@ constexpr double never = std::numeric_limits<double>::infinity();
 
 double thread_seconds();  // CPU time of this thread
 
-// The largest error over bodies and sample times; infinite if the engine gave up or the run is no number.
+// The largest error over bodies and sample times; infinite if the engine gave up or the state is not finite.
 double error_of(const Problem& problem, Run& run);
 
-// What the engine says of the start, against what it was told: it would else solve another problem.
+// The difference between the engine's start and the given one; a large one means another problem.
 double start_error(const Problem& problem, const Run& run);
 
 // One knob of one series of one engine.
@@ -29,10 +29,10 @@ struct Point {
   double knob;
   double error = never;
   double probe = 0;             // CPU seconds of the run that gave the error
-  std::vector<double> seconds;  // CPU seconds of a whole run, per round; empty if not worth timing
+  std::vector<double> seconds;  // CPU seconds of a whole run, per round; empty if not timed
 };
 
-// CPU seconds that a whole run takes: the median of the rounds, or the probe's where there are none.
+// CPU seconds of a whole run: the median of the rounds, or the probe's time without rounds.
 double cost(const Point& point);
 // Half the middle half of the rounds, relative to the median.
 double spread(const Point& point);
@@ -44,17 +44,18 @@ struct Options {
   std::string engine;       // only engines whose name contains this
 };
 
-// Runs every series from coarse to fine while that helps.
+// Runs every series from coarse to fine while the error shrinks.
 std::vector<Point> probe(const Problem& problem, const Options& options);
 
-// Fills Point::seconds of the points that no other of the same engine beats clearly. `told` hears of every round.
+// Fills Point::seconds of the points that no other point of the same engine clearly beats. Calls `told` after every
+// round.
 void time(const Problem& problem, const Options& options, std::vector<Point>& points,
           const std::function<void(int round)>& told);
 
-// How long the same fixed arithmetic took, once between any two points: the machine's own noise.
+// The times of fixed arithmetic between any two points, a measure of the machine's noise.
 std::vector<double>& metronome();
 
-inline constexpr double noticeable = 0.02;  // an error smaller by less is no gain
+inline constexpr double noticeable = 0.02;  // a smaller reduction of the error does not count
 
 // The indices of an engine's points by rising cost and falling error: none is as cheap and as accurate (to 2 %).
 std::vector<std::size_t> frontier(const std::vector<Point>& points, const std::string& engine);

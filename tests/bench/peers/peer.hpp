@@ -1,5 +1,5 @@
-// What a problem is, whoever solves it, and what an engine offers to be measured: a list of series
-// of settings, each of which starts a run. An engine is one file in engines/ that registers itself.
+// The description of a problem for all engines, and the interface of an engine: a list of series of settings, each of
+// which starts a run. An engine is one file in engines/ that registers itself.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace cdot::peers {
 using Vec3 = std::array<double, 3>;
 using Quaternion = std::array<double, 4>;  // e0 (scalar), e1, e2, e3; from the body to the world
 
-// Of one body: centre of mass, orientation, and their rates in world axes.
+// The state of one body: centre of mass, orientation, and their rates in world axes.
 struct State {
   Vec3 x{};
   Quaternion q{1, 0, 0, 0};
@@ -28,14 +28,14 @@ struct Body {
   Vec3 inertia{};  // about the axes of the body's frame, which are principal
   State start;
   bool moves = true;
-  bool turns = true;   // its orientation is not held
+  bool turns = true;   // false: the orientation is fixed
   Vec3 torque{};       // constant [N m]
   double damping = 0;  // force = -mass * damping * velocity, and likewise for its spin [1/s]
   int number = 0;      // in the scene
 };
 
-// `distance` keeps two points apart, `max_distance` is a string, `orientation` keeps two bodies from turning against
-// each other; `six_dof` has its slides held, and of its turns what is said.
+// `distance` is a rod, `max_distance` a string; `orientation` locks the relative rotation of two bodies. `six_dof`
+// locks slides, and rotations as given.
 enum class JointKind {
   revolute,
   prismatic,
@@ -49,7 +49,7 @@ enum class JointKind {
   pulley
 };
 
-// What drives a hinge from a to b, and what stops it; in the plane an angle is zero where both bodies' are equal.
+// Motor and stops of a hinge, for the angle from a to b; in the plane it is 0 if both bodies' angles are equal.
 struct Motor {
   double speed = 0, most = 0;  // [rad/s], [N m]
 };
@@ -63,7 +63,8 @@ struct Spring {
 
 inline constexpr int world = -1;
 
-// About one of several axes at right angles: the first fixed in a, the last in b, each moved by those before it.
+// A rotation about one of several perpendicular axes: the first is fixed in a, the last in b, and earlier rotations
+// move later axes.
 struct Turn {
   Vec3 axis{};  // at the start, in world axes, of length 1
   bool held = false;
@@ -74,41 +75,41 @@ struct Joint {
   JointKind kind = JointKind::revolute;
   int a = 0, b = 0;            // indices of bodies, or `world`
   Vec3 anchor{};               // of a, at the start, in world axes
-  Vec3 axis{};                 // likewise: what it turns about or slides along, of any length but 0
-  std::optional<Vec3> axis_b;  // what b has for it, if not the same
-  Vec3 anchor_b{};             // of b: elsewhere where a joint starts open
-  double length = 0;           // of a rope over wheels, its part at a and `ratio` times that at b
+  Vec3 axis{};                 // likewise: axis of rotation or sliding, of any length but 0
+  std::optional<Vec3> axis_b;  // the axis in b, if different
+  Vec3 anchor_b{};             // of b; differs if the joint starts open
+  double length = 0;           // of a rope over wheels: the part at a plus `ratio` times the part at b
   Vec3 wheel{}, wheel_b{};     // of a pulley, in the world
   double ratio = 1;
-  std::vector<Turn> turns;  // of a universal joint two, of one of six degrees three
+  std::vector<Turn> turns;  // two for a universal joint, three for a six-degree joint
   std::optional<Motor> motor;
   std::optional<Stops> stops;
-  std::optional<Spring> spring;  // of a hinge or a slider, at rest where it starts
-  std::optional<Spring> soft;    // how it holds, if not for good
+  std::optional<Spring> spring;  // of a hinge or a slider, unstretched at the start
+  std::optional<Spring> soft;    // softness of the joint itself
   int number = 0;                // in the scene
 };
 
-// What an engine has no words for.
+// Thrown for a feature that an engine does not support.
 struct CannotSay : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What an error is the largest of, over bodies and sample times.
+// The quantity whose maximum over bodies and sample times is the error.
 enum class Measure {
-  place,       // distance of the centre of mass from where it should be [m]
-  orientation  // angle of the body from where it should be [rad]
+  place,       // distance of the centre of mass from the reference [m]
+  orientation  // angle of the body from the reference [rad]
 };
 
 struct Problem {
   std::string name, title, scene;
-  bool planar = false;  // all in the plane of x and y; inertias about x and y are free then
+  bool planar = false;  // motion in the x-y plane; inertias about x and y are then arbitrary
   Vec3 gravity{};
-  double sleep_after = 0;  // [s] that bodies rest before they sleep; 0: they never do
+  double sleep_after = 0;  // [s] of rest before sleep; 0: never
   double duration = 0;
   Measure measure = Measure::place;
   std::vector<Body> bodies;
   std::vector<Joint> joints;
-  std::vector<double> times;                  // at which answers are compared
+  std::vector<double> times;                  // sample times of the comparison
   std::vector<std::vector<State>> reference;  // at these times, every body
 };
 
@@ -119,15 +120,15 @@ class Run {
   virtual void step(double by) = 0;     // likewise
   virtual State state(int body) const = 0;
 
-  // Between two steps: bodies by their place in the problem, joints by their numbers. What acts on a body's centre:
+  // Changes between two steps: bodies by index in the problem, joints by number. Actions on a body's centre:
   virtual void strike(int, const Vec3& /*impulse*/) { throw CannotSay("no impulse on a body"); }
-  // `now` is the problem with the bodies' present states as its start. False where the engine has no words for it, and
-  // has to be made anew.
+  // `now` is the problem with the present states as its start. Returns false if the engine does not support the change
+  // and must be rebuilt.
   virtual bool add(const Problem& /*now*/, const Joint&) { return false; }
   virtual bool remove(int /*joint*/) { return false; }
   virtual bool change(const Problem& now, const Joint& joint) { return remove(joint.number) && add(now, joint); }
 
-  // What a joint carried in the last step [N].
+  // The force in a joint during the last step [N].
   virtual double force(int /*joint*/) const { throw CannotSay("it does not tell what a joint carries"); }
   virtual bool asleep(int /*body*/) const { throw CannotSay("nothing sleeps in it"); }
 };
@@ -148,7 +149,7 @@ class SteppedRun : public Run {
 // One way to use an engine, with the one knob that trades time for accuracy.
 struct Series {
   std::string name;
-  std::string changed;        // every default that it changes, in words; "" if none
+  std::string changed;        // description of every changed default; "" if none
   std::string knob;           // "h" [s], or "accuracy"
   std::vector<double> knobs;  // coarse to fine
   std::function<std::unique_ptr<Run>(double knob)> start;
@@ -158,9 +159,9 @@ struct Engine {
   std::string name;
   std::string version;
   std::string number;   // "double" or "float"
-  std::string colour;   // in pictures
-  std::string changed;  // the defaults that all its series change
-  // Empty if it cannot pose the problem. The problem outlives the series.
+  std::string colour;   // in diagrams
+  std::string changed;  // defaults changed by all its series
+  // Empty if the engine cannot pose the problem. The problem outlives the series.
   std::function<std::vector<Series>(const Problem&)> series;
 };
 

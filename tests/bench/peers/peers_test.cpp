@@ -1,4 +1,4 @@
-// That every engine is asked the same question as Cdot, and answers it as well as the committed table says.
+// Every engine gets the same problem as Cdot and reaches the accuracy of the committed table.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -30,7 +30,7 @@ void expect_near(const Vec3& a, const Vec3& b, double bound, const std::string& 
   EXPECT_LE(norm(a - b), bound) << what;
 }
 
-// From the World that a scene makes, by its masses and velocities.
+// Totals of a scene's World from its masses and velocities.
 template <class S>
 Totals totals_of_world(const BasicWorld<S>& world, const Problem& problem) {
   std::vector<State> states;
@@ -89,7 +89,7 @@ TEST_P(Problems, StartWithTheTotalsOfTheScene) {
               of_scene.kinetic, of_scene.potential);
 }
 
-// The reference leaves the invariants alone, whatever made it.
+// The reference conserves the invariants.
 TEST_P(Problems, ReferencesKeepEnergy) {
   const Problem problem = load(GetParam());
   const Totals start = totals(problem, starts(problem));
@@ -136,7 +136,7 @@ std::unique_ptr<peers::Run> start(const Problem& problem, const Row& row) {
 
 TEST_P(Problems, AreSolvedByEveryEngineAsWellAsTheTableSays) {
   const Problem problem = load(GetParam());
-  std::map<std::string, Row> best;  // of what a test may take
+  std::map<std::string, Row> best;  // within the time of a test
   for (const Row& row : committed(problem)) {
     if (row.seconds > 0.1) continue;
     const auto [at, fresh] = best.try_emplace(row.engine, row);
@@ -157,7 +157,7 @@ TEST_P(Problems, AreSolvedByEveryEngineAsWellAsTheTableSays) {
 
 INSTANTIATE_TEST_SUITE_P(All, Problems, testing::ValuesIn(problem_rows()), name_of);
 
-// Solved elsewhere by other means: Gauss-Legendre in minimal coordinates, elliptic functions.
+// Independent solutions: Gauss-Legendre in minimal coordinates, elliptic functions.
 TEST(References, AgreeWithThePublishedSolutions) {
   const std::map<std::string, double> ends{
       {"double_pendulum", 1e-11}, {"slider_crank", 1e-11}, {"torque_free_body", 1e-11}};

@@ -1,4 +1,4 @@
-// The table of problems, and the way from a scene to a problem that any engine can be asked.
+// The table of problems; a scene -> a problem for every engine.
 #include "tests/bench/peers/problem.hpp"
 
 #include <algorithm>
@@ -60,21 +60,21 @@ Body body_of(const BasicWorld<S>& built, const SceneBody& source, int number) {
   return body;
 }
 
-// Three of the numbers of one of the joint's parameters.
+// Up to three numbers of one of the joint's parameters.
 template <class S>
 Vec3 parameter(const BasicWorld<S>& built, int joint, std::string_view name, int from = 0) {
   for (const ParameterInfo& info : built.joint_type(joint).parameters) {
     if (info.name != name) continue;
     const std::vector<double> all = built.joint_parameters(joint);
     const auto at = all.begin() + info.offset + from, end = all.end();
-    Vec3 numbers{};  // up to three; those of the next parameter do no harm
+    Vec3 numbers{};  // may include numbers of the next parameter, which are not used
     std::copy_n(at, std::min<std::ptrdiff_t>(end - at, S::dimension == Dimension::spatial ? 3 : 2), numbers.begin());
     return numbers;
   }
   throw std::runtime_error(fmt::format("no parameter {}", name));
 }
 
-// What is fixed in a body of the World, in world axes.
+// A vector fixed in a body of the World, in world axes.
 template <class S>
 Vec3 world_direction(const BasicWorld<S>& built, int body, const Vec3& u) {
   return turned(state_of(built.place(body), built.velocity(body)).q, u);
@@ -106,7 +106,7 @@ Spring spring_of(const SceneJoint& source, const Softness& softness) {
   return {softness.stiffness, softness.damping};
 }
 
-// How long a direction is as it was given, where the World has it with length 1.
+// The length of a direction in the scene; the World normalises it.
 double given_length(const SceneJoint& source) {
   for (const NamedValue& value : source.definition.parameters)
     if (value.name == "t" || value.name == "fa")
@@ -118,7 +118,8 @@ bool locks(const CoordinateEffects& effects) {
   return effects.limit && effects.limit->lower.value_or(-1) == 0 && effects.limit->upper.value_or(1) == 0;
 }
 
-// Angles differ by their order, and twists from them, but not where one turn is free at most: only that is asked.
+// Cardan angles depend on their order and differ from twists, except if at most one rotation is free; only that case is
+// supported.
 void take_turns(const SceneJoint& source, Joint& joint) {
   static const std::map<std::string_view, std::size_t> places{
       {"bend_a", 0}, {"bend_b", 1}, {"twist_x", 0}, {"twist_y", 1}, {"twist_z", 2}};
@@ -140,7 +141,7 @@ void take_turns(const SceneJoint& source, Joint& joint) {
     throw CannotSay(source.name + ": adapters know joints of six degrees without slides and with one turn, or all");
 }
 
-// What the World does not tell of a joint, as the scene has it.
+// Copies properties of a joint from the scene that the World does not report.
 void take_given(const SceneJoint& source, Joint& joint) {
   joint.axis = given_length(source) * joint.axis;
   if (source.definition.soft) joint.soft = spring_of(source, *source.definition.soft);
@@ -162,7 +163,7 @@ int index_of(const Problem& problem, int number) {
   return at != problem.bodies.end() && at->number == number ? int(at - problem.bodies.begin()) : world;
 }
 
-// The axes of a joint that turns about several, which start at right angles.
+// The axes of a joint with several rotations, perpendicular at the start.
 template <class S>
 std::vector<Turn> turns_of(const BasicWorld<S>& built, int number, JointKind kind) {
   const std::vector<int> bodies = built.joint_bodies(number);
@@ -199,7 +200,7 @@ Joint joint_of(const Problem& problem, const BasicWorld<S>& built, int number) {
   if (joint.kind == JointKind::orientation) return joint;
   joint.anchor = anchor_of(built, number, a, "pa");
   joint.anchor_b = anchor_of(built, number, b, "pb");
-  if (joint.kind == JointKind::prismatic) joint.anchor_b = joint.anchor;  // apart by what it has slid
+  if (joint.kind == JointKind::prismatic) joint.anchor_b = joint.anchor;  // differ by the slide
   if (joint.kind == JointKind::distance || joint.kind == JointKind::max_distance)
     joint.length = parameter(built, number, "l")[0];
   if (joint.kind == JointKind::pulley) take_rope(built, number, joint);
@@ -217,7 +218,7 @@ Joint joint_of(const Problem& problem, const BasicWorld<S>& built, int number) {
   return joint;
 }
 
-// Whether all that holds it goes through its centre, so that nothing turns it.
+// True if all joints of the body act at its centre, so its torque is 0.
 bool held_at_centre(const Problem& problem, int body) {
   return std::all_of(problem.joints.begin(), problem.joints.end(), [&](const Joint& joint) {
     if (joint.a != body && joint.b != body) return true;
@@ -226,7 +227,7 @@ bool held_at_centre(const Problem& problem, int body) {
   });
 }
 
-// Where nothing turns it, a body with any inertia moves the same.
+// Without torque the inertia of the body is irrelevant.
 void hold_orientation(Problem& problem, int body) {
   Body& made = problem.bodies[std::size_t(body)];
   made.turns = held_at_centre(problem, body);
@@ -266,7 +267,7 @@ Problem problem_of(const Scene& scene, const BasicWorld<S>& built) {
   for (int k = 0; k < built.joint_count(); ++k) {
     if (built.broken(k)) continue;
     const Joint joint = joint_of(problem, built, k);
-    if (joint.a == world && joint.b == world) continue;  // it does nothing
+    if (joint.a == world && joint.b == world) continue;  // without influence
     problem.joints.push_back(joint);
     if (k < int(scene.joints.size())) take_given(scene.joints[std::size_t(k)], problem.joints.back());
   }

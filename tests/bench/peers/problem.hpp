@@ -1,5 +1,4 @@
-// The problems by name: Cdot's own scenes, so that every engine is asked the same, with the times at which answers are
-// compared and the reference there.
+// The problems by name: Cdot's scenes for all engines, with the sample times and the reference.
 #pragma once
 
 #include <string>
@@ -10,7 +9,7 @@
 
 namespace cdot::peers {
 
-// How a scene is measured.
+// A scene and its measure.
 struct ProblemRow {
   const char* name;
   const char* title;
@@ -25,9 +24,9 @@ const std::vector<ProblemRow>& problem_rows();
 template <class S>
 Problem problem_of(const Scene& scene, const BasicWorld<S>& built);
 
-// Without its reference.
+// The problem without its reference.
 Problem pose(const ProblemRow& row);
-// With it, from references/; throws std::runtime_error if that is of another problem.
+// The problem with its reference from references/; throws std::runtime_error if that belongs to another problem.
 Problem load(const ProblemRow& row);
 
 std::string reference_file(const std::string& problem);

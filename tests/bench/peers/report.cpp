@@ -43,7 +43,7 @@ std::string header_of(const std::vector<std::string>& cells) {
   return row_of(cells) + rule + "\n";
 }
 
-// Price at each level, with its ratio to Cdot's; and by what settings.
+// Price at each level with its ratio to Cdot's, and the settings.
 std::string levels_table(const Measured& m) {
   const std::vector<std::string> names = present(m.points);
   std::vector<std::string> head{"error"};
@@ -70,7 +70,7 @@ std::string levels_table(const Measured& m) {
          "\n</details>\n";
 }
 
-// At one level: the cheapest engine but Cdot, and what it costs against Cdot.
+// The cheapest engine besides Cdot at one level, and its price relative to Cdot's.
 std::string rival(const Measured& m, double level) {
   const Point *ours = cheapest(m.points, "Cdot", level), *best = nullptr;
   for (const std::string& name : present(m.points)) {
@@ -94,7 +94,7 @@ std::string summary(const std::vector<Measured>& all) {
   return table;
 }
 
-// Whether an engine answers the same question: how far it gets.
+// The smallest error of each engine, which shows that it solves the same problem.
 std::string answers_table(const Measured& m) {
   std::string table = header_of({"engine", "smallest error", "by", "µs per simulated second"});
   for (const std::string& name : present(m.points)) {
@@ -149,7 +149,7 @@ std::string noise_text(const std::vector<Measured>& all) {
 
 std::string page(const std::string& command, const Options& options, const std::vector<Measured>& all) {
   std::string text = fmt::format(
-      "# What accuracy costs, here and elsewhere\n\n"
+      "# The cost of accuracy, here and elsewhere\n\n"
       "Written by `{}`.\n\n"
       "Microseconds of CPU time (one thread) per simulated second, for the cheapest setting of each "
       "engine whose error stays below the level; in brackets its ratio to Cdot's cheapest. The error "

@@ -1,4 +1,4 @@
-// What a measurement looks like: a page of tables, a CSV, a JSON, and one picture per problem.
+// A measurement -> a page of tables, a CSV, a JSON, and one diagram per problem.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ struct Measured {
   std::vector<Point> points;
 };
 
-// Writes README.md, points.csv, frontiers.json and <problem>.svg; `command` is what remakes them.
+// Writes README.md, points.csv, frontiers.json and <problem>.svg; `command` repeats the measurement.
 void write_report(const std::string& folder, const std::string& command, const Options& options,
                   const std::vector<Measured>& all);
 
@@ -23,7 +23,7 @@ std::string picture(const Measured& measured);
 std::string knob_text(const Point& point);
 // Microseconds of CPU per simulated second.
 double price(const Problem& problem, const Point& point);
-// Names of the engines that have a point, in their order.
+// Names of the engines with a point, in order.
 std::vector<std::string> present(const std::vector<Point>& points);
 
 }  // namespace cdot::peers

@@ -1,4 +1,4 @@
-// The spanning tree, nearest to the world first, so that loops close at their far end.
+// The spanning tree, from the world outwards, so loops close at their far end.
 #include "tests/bench/peers/tree.hpp"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-// What a problem may say beside bodies that move freely and joints that hold for good, and an adapter have no words
-// for.
+// Optional features of a problem that an adapter may not support.
 #pragma once
 
 #include <algorithm>
@@ -29,14 +28,14 @@ inline void check(const Problem& problem, const Lacks& lacks) {
   }
 }
 
-// Thrown where an engine has no joint of that kind.
+// Thrown if an engine has no joint of that kind.
 inline CannotSay no_such(const Joint& joint) {
   return CannotSay(joint.kind == JointKind::pulley         ? "no rope over wheels"
                    : joint.kind == JointKind::max_distance ? "no string"
                                                            : "no joint that keeps a distance");
 }
 
-// Where there are joints of six degrees, all ways are asked for both orders of their turns.
+// With six-degree joints every way runs with both orders of rotations.
 template <class Way>
 std::vector<Way> with_free_turns_first(const Problem& problem, std::vector<Way> ways) {
   if (std::none_of(problem.joints.begin(), problem.joints.end(),

@@ -1,4 +1,4 @@
-// That every word of the adapters does to every engine what it does to Cdot.
+// Every feature of the adapters has the same effect in every engine as in Cdot.
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace cdot::peers {
 namespace {
 
-// A chain of three rods that swings in the plane, with all that a problem can say of it.
+// A chain of three rods that swings in the plane, the base of all problems here.
 Problem swinging() {
   Problem problem;
   problem.planar = true;
@@ -41,7 +41,7 @@ Joint& last_joint(Problem& problem) { return problem.joints.back(); }
 
 using Done = std::function<void(Run&, const Problem& now)>;
 
-// A word, and what is done after half the time.
+// A feature, and an action after half the time.
 struct Word {
   const char* name;
   std::function<void(Problem&)> say;
@@ -54,7 +54,7 @@ const std::vector<Word>& words() {
     problem.bodies[2].start.v = {0, -1, 0};
     problem.bodies[2].start.w = {};
   };
-  // In space the last link also turns aside, and not about its length.
+  // In space the last link also rotates sideways, not about its length.
   const auto bend = [](Problem& problem) {
     problem.planar = false;
     for (Body& body : problem.bodies) body.inertia = {0.02, 0.1, 0.12};
@@ -72,7 +72,7 @@ const std::vector<Word>& words() {
     problem.bodies[2].start.w = free == 1 ? Vec3{0, 4, 0} : Vec3{0, 0, 5};
     problem.bodies[2].start.v = free == 1 ? Vec3{0, 0, -2} : Vec3{0, 2.5, 0};
   };
-  // The end of the chain hangs from the link before it, or over wheels.
+  // The last body hangs from the previous link, or over wheels.
   const auto hang = [](Problem& problem, JointKind kind) {
     Joint rope;
     rope.kind = kind;
@@ -88,7 +88,7 @@ const std::vector<Word>& words() {
     rope.number = 3;
     problem.joints.push_back(rope);
   };
-  // It is tied to a point of the world, and starts at rest.
+  // The last body is tied to a point of the world and starts at rest.
   const auto tie = [=](Problem& problem, JointKind kind) {
     hang(problem, kind);
     Joint& rope = problem.joints.back();
@@ -172,7 +172,7 @@ const std::vector<Word>& words() {
 constexpr int steps_of_a_word = 2000;
 constexpr double half_a_step_late = 4e-4;  // [m]: Chipmunk moves bodies before it speeds them up
 
-// Over a quarter of a second, in small steps.
+// Runs a quarter of a second in small steps.
 std::vector<State> said(const Problem& problem, const Setting& setting, const Done& done) {
   const double h = 0.25 / steps_of_a_word;
   const auto run = setting.series.start(setting.knob > 0 ? setting.knob : h);
@@ -185,7 +185,8 @@ std::vector<State> said(const Problem& problem, const Setting& setting, const Do
   return states;
 }
 
-// The first of an engine's settings that is as near as that, or else the best; why is what it says if it cannot.
+// The error of the first of an engine's settings within the bound, or of the best one; `why` gets the reason if none
+// runs.
 double least_apart(const Engine& engine, const Problem& problem, const Done& done, const std::vector<State>& right,
                    double enough, std::string& why) {
   double best = never;
@@ -202,7 +203,7 @@ double least_apart(const Engine& engine, const Problem& problem, const Done& don
   return best;
 }
 
-// What the top pin of the chain carries, in the best of an engine's settings, as a share of what it carries in Cdot.
+// The load of the chain's top pin with an engine's best setting, relative to Cdot's.
 TEST(Words, SayWhatJointsCarry) {
   const Problem plain = swinging();
   const auto carried = [&](const Setting& setting) {
@@ -226,7 +227,7 @@ bool means_another(const Word& word, const Engine& engine) {
   return engine.name == "Box2D" && word.name == std::string("soft");
 }
 
-// Every word does to every engine that knows it what it does to Cdot, which without it goes elsewhere.
+// Every feature has the same effect in every engine that supports it, and Cdot moves differently without the feature.
 TEST(Words, MeanTheSameToEveryEngine) {
   const Problem plain = swinging();
   const std::vector<State> without = said(plain, settings(named("Cdot"), plain).front(), {});

@@ -1,5 +1,5 @@
-// A long double with its derivative by one input, as a scalar of the kernels: tells how much a function's result
-// changes with each of its inputs.
+// A long double with its derivative by one input, as a scalar of the kernels: gives the sensitivity of a function to
+// each input.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// A number of CLN with 60 decimal digits, as a scalar of the kernels: what every other scalar is compared with.
+// A number of CLN with 60 decimal digits, as a scalar of the kernels: the exact values for all other scalars.
 #pragma once
 
 #include <cln/complex.h>
@@ -50,14 +50,14 @@ inline Exact cos(const Exact& a) { return Exact(cln::cos(a.value())); }
 inline Exact tan(const Exact& a) { return Exact(cln::tan(a.value())); }
 inline Exact exp(const Exact& a) { return Exact(cln::exp(a.value())); }
 inline Exact log(const Exact& a) { return of_real(cln::ln(a.value())); }
-// CLN's has its arguments the other way round, and refuses 0, 0.
+// CLN's atan takes its arguments in reverse order and refuses (0, 0).
 inline Exact atan2(const Exact& y, const Exact& x) {
   if (cln::zerop(y.value()) && cln::zerop(x.value())) return Exact(0);
   return of_real(cln::atan(cln::cl_R(x.value()), cln::cl_R(y.value())));
 }
 inline Exact asin(const Exact& a) { return of_real(cln::realpart(cln::asin(a.value()))); }
 inline Exact inverse(const Exact& a) { return cln::zerop(a.value()) ? Exact(0) : Exact(1) / a; }
-// Only what is zero to almost all digits is no pivot here.
+// Only a number that is zero to almost all digits is not a pivot here.
 inline Exact pivot(const Exact& d, const Exact& k) { return d > Exact(1e-45) * abs(k) ? Exact(1) / d : Exact(0); }
 
 }  // namespace exact

@@ -1,4 +1,4 @@
-// Algebraically equal forms of C that the generated kernels do not have, measured against the same truth.
+// Algebraically equal forms of C outside the generated kernels, compared with the same exact values.
 #pragma once
 
 #include <cdot/planar/distance.hpp>
@@ -29,8 +29,8 @@ struct DistanceBySquares : planar::distance {
   }
 };
 
-// asin(rxz) for atan2(rxz, sqrt(ryz^2 + rzz^2)), which is the same while the axes stand at right angles. Without the
-// bounds, round-off would take rxz beyond 1 and C out of the numbers.
+// asin(rxz) for atan2(rxz, sqrt(ryz^2 + rzz^2)), equal for perpendicular axes. Without the bounds round-off could make
+// |rxz| > 1 and C a NaN.
 struct TurnByArcSine : spatial::six_dof::turn_y {
   static constexpr std::string_view block = "turn_y by asin", of = "turn_y";
   static constexpr int operations = 38;

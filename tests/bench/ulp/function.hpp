@@ -1,4 +1,4 @@
-// What is measured of a row block, and the numbers that its functions read.
+// The measured functions of a row block and their inputs.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ using Arguments = std::array<std::vector<T>, number_of_pieces>;
 
 enum class Measured {
   position,
-  jacobian,  // J alone: C is position's
+  jacobian,  // J only; position measures C
   effective_mass,
   factor,
   solve,

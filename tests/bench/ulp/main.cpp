@@ -1,5 +1,5 @@
 // bench_ulp FOLDER [--samples n] [--only joint] [--at-most u]: writes FOLDER/accuracy.csv and FOLDER/accuracy.md; the
-// exit status is 1 if a generated function was off by more than u units of its natural scale.
+// exit status is 1 if a generated function has an error above u units of its natural scale.
 #include <CLI/CLI.hpp>
 #include <fstream>
 #include <iostream>

@@ -1,5 +1,5 @@
-// What is compared: each function in T with the same function in 60 digits, both from the same numbers of T. What a
-// function reads of other functions (J, K, F) is what T computed.
+// Compares each function in T with the same function in 60 digits, both from the same numbers of T. J, K and F as
+// inputs are those computed in T.
 #include "tests/bench/ulp/measure.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ double unit_in_last_place(double x) {
   return std::ldexp(1.0, std::ilogb(std::fabs(x)) - digits + 1);
 }
 
-// No digit right is an error of 1 / epsilon, however wrong.
+// An error without a correct digit counts as 1 / epsilon.
 template <class T>
 double in_units(double error, double of) {
   constexpr double no_digit = 1 / static_cast<double>(std::numeric_limits<T>::epsilon());
@@ -60,7 +60,7 @@ const MeasuredFunction<T>* find(const MeasuredBlock<T>& block, Measured which) {
   return nullptr;
 }
 
-// The numbers of T that a sample consists of; J, K and F as T computes them.
+// The numbers of a sample in T; T computes J, K and F.
 template <class T>
 Arguments<T> arguments(const MeasuredBlock<T>& block, const Inputs& in) {
   Arguments<double> rounded;
@@ -76,10 +76,9 @@ Arguments<T> arguments(const MeasuredBlock<T>& block, const Inputs& in) {
   return a;
 }
 
-// The natural scale of a function's results: how much they change when every input changes by its own size, so that an
-// error of one unit of it is what rounding the inputs costs already. Where a result does not change when all bodies
-// shift together, a position counts by its distance from their middle, since differences of positions that are near
-// each other are exact.
+// The natural scale of a function's results: their change if every input changes by its own size. Rounding the inputs
+// already costs one unit of this scale. If a common shift of all bodies does not change a result, positions count by
+// their distance from the bodies' middle, because differences of nearby positions are exact.
 class Scale {
  public:
   Scale(const MeasuredBlock<Dual>& block, const MeasuredFunction<Dual>& f, const Arguments<Dual>& in)
@@ -145,7 +144,7 @@ class Scale {
   std::vector<long double> sum_;
 };
 
-// An angle's errors by whole turns are none: who reads it counts the turns.
+// Whole turns are no error of an angle, because the reader counts turns.
 double without_turns(double error) {
   constexpr double turn = 6.283185307179586;
   return std::fabs(error - turn) < 1e-2 ? std::fabs(error - turn) : error;
@@ -167,7 +166,7 @@ Spread spread(std::vector<Sample> samples) {
   return {at(0.5), at(0.99), at(1), at(1) == 0 ? "" : family_names[samples.back().family]};
 }
 
-// The median over some runs, each over all inputs often enough to be seen by the clock.
+// The median over several runs, each long enough for the clock.
 template <class T>
 double nanoseconds(const MeasuredFunction<T>& f, const std::vector<Arguments<T>>& in) {
   using Clock = std::chrono::steady_clock;
@@ -192,7 +191,7 @@ struct Samples {
   int guarded = 0;
 };
 
-// One sample's errors in one function, appended. An impulse of exactly 0 is that of a row that was dropped.
+// One sample's errors in one function, appended. An impulse of exactly 0 belongs to a dropped row.
 template <class T>
 void compare(std::size_t index, std::size_t function, const Arguments<T>& in, std::size_t family, Samples& samples) {
   const MeasuredBlock<T>& block = measured_blocks<T>()[index];
@@ -212,7 +211,7 @@ void compare(std::size_t index, std::size_t function, const Arguments<T>& in, st
   }
   const MeasuredBlock<Exact>& exact_block = measured_blocks<Exact>()[block.shape.general];
   const MeasuredBlock<Dual>& slopes = measured_blocks<Dual>()[block.shape.general];
-  const Measured truth = impulse ? Measured::impulse_balanced : f.which;  // one truth for all forms
+  const Measured truth = impulse ? Measured::impulse_balanced : f.which;  // the exact value of all forms
   const std::vector<Exact> expected = call(*find(exact_block, truth), converted<Exact>(in));
   const Scale scale(slopes, *find(slopes, truth), converted<Dual>(in));
   for (std::size_t o = 0; o < f.outputs; ++o) {

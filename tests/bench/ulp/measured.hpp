@@ -1,5 +1,5 @@
-// A generated kernel's functions behind one face: numbers in, numbers out, in any scalar. Apart from what measures
-// them, because only this sees the joints' types, and is compiled for each group of joints and each scalar.
+// A generated kernel's functions behind one interface: numbers in, numbers out, in any scalar. Only this file uses the
+// joints' types; it is compiled for each group of joints and each scalar.
 #pragma once
 
 #include <array>
@@ -18,17 +18,17 @@ template <class T>
 struct MeasuredFunction {
   Measured which;
   std::size_t outputs;
-  // For each of `count` inputs, the outputs one after the other.
+  // Evaluates `count` inputs; the outputs follow one another.
   void (*many)(const Arguments<T>* in, std::size_t count, T* out);
 };
 
 template <class T>
 struct MeasuredBlock {
-  AnyBlock shape;  // without its functions; shape.general: the block whose exact values are the truth
+  AnyBlock shape;  // without functions; shape.general: the block with the exact values
   std::size_t fields;
   std::vector<MeasuredFunction<T>> functions;
   void (*set_defaults)(Inputs& in);  // overwrites the parameters that have a default
-  int operations = 0;                // of a form that is not generated, so not in the ledger
+  int operations = 0;                // of a form outside generated/ and the ledger
 };
 
 template <class Scalar>
@@ -49,7 +49,7 @@ struct Space {
   using IsotropicInverseMass = spatial::IsotropicInverseMass<T>;
 };
 
-// Generated structs hold numbers of type T and nothing else; here they lie in arrays of T.
+// Generated structs consist of numbers of type T only; this reads them from arrays of T.
 template <class Target, class Number>
 auto& as(Number* numbers) {
   using Result = std::conditional_t<std::is_const_v<Number>, const Target, Target>;
@@ -174,7 +174,7 @@ struct Calls {
       }
     }
   }
-  // One row has but one form; K is inverted where it has two.
+  // One row has only one form; K^-1 exists for two rows.
   static constexpr bool has(Measured which) {
     if (which == Measured::impulse_fast) return rows == 2;
     if (which == Measured::impulse_balanced || which == Measured::impulse_robust) return rows > 1;
@@ -237,7 +237,7 @@ void add_joint(std::vector<MeasuredBlock<typename S::T>>& all) {
   }(std::type_identity<typename Joint::Coordinates>{});
 }
 
-// Every row block of the registry, computing in T.
+// Every row block of the registry, computed in T.
 template <class T>
 const std::vector<MeasuredBlock<T>>& measured_blocks();
 

@@ -86,7 +86,7 @@ std::string cost(const Line& line) {
   return fmt::format("{}: {:.1f} / {:.1f}", line.operations, line.in_float.nanoseconds, line.in_double.nanoseconds);
 }
 
-// Forms of C that are not generated, each below the one that is.
+// Other forms of C, each below the generated one.
 std::string forms_of_C(const std::vector<Line>& lines) {
   std::string s =
       "| form | operations | float: ns | ulp: median | p99 | scale: p99 | worst | at | double: ns | "
@@ -158,7 +158,7 @@ std::string markdown(const std::vector<Line>& lines, int samples_per_family) {
       "## Every function, in units of its natural scale\n\n"
       "Median and p99 of the middle kernel; the worst input of the worst kernel.\n\n{}\n"
       "## Every kernel: the worst input, in units of the natural scale, float / double\n\n{}\n"
-      "## What it costs: operations, then nanoseconds in float / double\n\n{}\n"
+      "## Cost: operations, then nanoseconds in float / double\n\n{}\n"
       "## Other forms of C, each below the generated one\n\n{}\n"
       "## From J to the impulse by `kernels = \"fast\"`, `\"balanced\"`, `\"robust\"`: in float\n\n"
       "p99 and worst in units of the natural scale; dropped: inputs of which a row was taken for dependent.\n\n"

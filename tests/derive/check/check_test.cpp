@@ -1,4 +1,4 @@
-// `cdot check`: what it finds in specs that no kernel should be made of.
+// `cdot check`: findings in bad specs.
 #include "derive/check/check.hpp"
 
 #include <algorithm>
@@ -65,12 +65,12 @@ TEST(Check, ACoordinateThatARowHoldsIsAnError) {
   EXPECT_TRUE(mentions(said, "fix: remove the coordinate")) << said;
 }
 
-// A limit constrains no coordinate: below the limit it is free.
+// An inequality does not constrain a coordinate, which is free below the limit.
 TEST(Check, AnInequalityHoldsNoCoordinate) {
   EXPECT_TRUE(checked("  norm(pa - pb) <= 2 [m]\n  coordinate length = norm(pa - pb)\n").clean());
 }
 
-// A revolute's angle in a weld: gone from the joint, and no mistake of its spec.
+// A weld drops the angle of its included revolute without an error.
 TEST(Check, WhatAnIncludeLeavesFreeAndARowHoldsIsDropped) {
   const SpecsFolder folder(std::filesystem::path(CDOT_SOURCE_DIR) / "specs");
   for (const auto& [name, row] : {std::pair{"weld", "angular"}, {"driven_crank", "crank"}}) {

@@ -1,4 +1,4 @@
-// A folder of one's own with some specs in it, and `cdot` run there as a person runs it.
+// A temporary folder with specs, in which `cdot` runs.
 #pragma once
 
 #include <cstdio>
@@ -34,7 +34,7 @@ class Derive : public testing::Test {
   }
   void TearDown() override { fs::remove_all(place_); }
 
-  // From the catalogue.
+  // Copies a spec of the catalogue.
   void take(const std::string& spec) const {
     fs::create_directories((place_ / "specs" / spec).parent_path());
     fs::copy(fs::path(CDOT_SOURCE_DIR "/specs") / spec, place_ / "specs" / spec);

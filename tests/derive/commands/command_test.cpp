@@ -1,5 +1,4 @@
-// `cdot derive` as a person meets it: what it writes, what --check says, and that nothing is written
-// from a broken spec.
+// `cdot derive` from the command line: its files, --check, and no output for a broken spec.
 #include "tests/derive/commands/command.hpp"
 
 #include <algorithm>
@@ -11,7 +10,7 @@
 namespace {
 
 const char* const broken = "joint broken planar\n  \"x\"\n  point pa on a\n  norm(pb) = 0\n";
-// Angles of bodies that do not cancel: readable, but it has no proof.
+// Angles of bodies that do not cancel: valid syntax without a proof.
 const char* const wrong = "joint wrong planar\n  \"x\"\n  angle(a) + angle(b) = 0\n";
 const char* const pin =
     "joint pin_on_line planar\n  \"A line with a second row.\"\n  include line\n"
@@ -19,7 +18,7 @@ const char* const pin =
 
 }  // namespace
 
-// What a mistake about operators sends a person to.
+// Errors about operators refer to this help.
 TEST_F(Derive, TheOperatorsAreInTheHelpOfCheck) {
   const Result help = cdot("check --help");
   EXPECT_EQ(help.status, 0);
@@ -82,7 +81,7 @@ TEST_F(Derive, WritesNothingFromABrokenSpec) {
   const auto before = files("generated");
   for (const char* const text : {broken, wrong}) {
     write("specs/planar/bad.joint", text);
-    write("specs/planar/line.joint", pin);  // would change something
+    write("specs/planar/line.joint", pin);  // changes generated files
     for (const char* const command : {"derive", "derive --check"}) {
       const Result result = cdot(command);
       EXPECT_EQ(result.status, 2) << result.said;
@@ -114,7 +113,7 @@ TEST_F(Derive, TakesUpANewJointThatIncludesAnother) {
   EXPECT_FALSE(files("generated").contains("planar/pin_on_line.hpp"));
 }
 
-// A reader in the middle of a write sees the old file or the new one.
+// During a write a reader sees the old file or the new one.
 TEST_F(Derive, NeverShowsHalfAFile) {
   const std::string one = content_of(fs::path(CDOT_SOURCE_DIR "/specs") / "planar/line.joint");
   const std::string other = one + "  second: angle(a) = angle(b)\n";

@@ -1,5 +1,5 @@
-// Writes the kernels of the given specs without proving them: what the determinism test repeats
-// often. usage: regenerate SPECS_FOLDER OUTPUT SPEC...
+// Writes the kernels of the given specs without proofs, for the repetitions of the determinism test. usage: regenerate
+// SPECS_FOLDER OUTPUT SPEC...
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-// `cdot diff` as a person or a program meets it: JSON, exit status, errors.
+// `cdot diff` from the command line: JSON, exit status, errors.
 #include <array>
 #include <cstdio>
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ using nlohmann::json;
 
 struct Result {
   int status = -1;
-  std::string out;  // with what went to the standard error, where that was asked for
+  std::string out;  // with the standard error, if requested
 };
 
 Result diff(const std::string& arguments, bool errors_too = true, const std::filesystem::path& specs = specs_folder()) {
@@ -52,7 +52,7 @@ void expect_item(const json& item, const std::string& where) {
   EXPECT_TRUE(whats.contains(item["what"])) << where << item["what"];
   EXPECT_TRUE(kinds.contains(item["kind"])) << where << item["kind"];
   for (const char* name : {"hand", "sentence", "confirmed"}) EXPECT_NE(item[name], "") << where << name;
-  // Where one of two numbers does not exist, there is no difference either.
+  // Without one of two values there is no difference.
   EXPECT_EQ(item["generated"] == "", item["difference"] == "") << where;
 }
 
@@ -96,7 +96,7 @@ TEST(Command, AnEntryCanBeAskedForByItsId) {
   const json entries = json::parse(one.out);
   ASSERT_EQ(entries.size(), 1u);
   EXPECT_EQ(entries[0]["id"], "LIN-4");
-  // Beside two joints there is an entry GEA-5.
+  // Two joints have an entry GEA-5.
   EXPECT_EQ(json::parse(diff("--json GEA-5", false).out).size(), 2u);
   EXPECT_EQ(diff("ANG-1").status, 0);
 }

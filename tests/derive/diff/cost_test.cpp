@@ -1,5 +1,5 @@
-// Which published formulas the ledger counts beside the generated ones: those that say the same
-// wherever the joint is. What the counts are is a test of the ledger's.
+// The ledger counts published formulas beside the generated ones if they agree at every pose. The ledger's tests check
+// the counts.
 #include <algorithm>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ using Rows = std::vector<std::string>;
 }  // namespace
 
 TEST(Cost, IsNotCountedOfWhatNeedsAnAssumption) {
-  // On u = 0 the term from the turning normal may be left out, and costs nothing then.
+  // On u = 0 the term of the turning normal is 0 and costs nothing.
   const Judgement judgement = judged("line", R"(
   assume pa = pb
   K = 1/m(a) + 1/m(b) + cross(ra, t)^2/I(a) + cross(rb, t)^2/I(b)

@@ -1,4 +1,4 @@
-// What `cdot diff` says of derivations that are wrong in known ways, and what it forgives.
+// `cdot diff` on derivations with known errors and with allowed deviations.
 #include <algorithm>
 #include <gtest/gtest.h>
 #include <ostream>
@@ -12,7 +12,7 @@ using derive::Agreement;
 using derive::Difference;
 using derive::Judgement;
 
-// A wrong Jacobian of the prismatic joint, and every word that has to be said about it.
+// A wrong Jacobian of the prismatic joint and the complete expected report.
 struct Lesson {
   const char* mistake;
   const char* J;
@@ -109,13 +109,13 @@ TEST(Diff, ForgivesTheSignOfCAndSaysSo) {
   EXPECT_EQ(j.remarks[0], "C has the opposite sign: J changes its sign, K does not");
 }
 
-// C and J with one sign, b with that of the other: b is what differs, and it alone.
+// C and J with one sign, b with the other: only b differs.
 TEST(Diff, ChoosesTheSignWithWhichTheFewestItemsDiffer) {
   const Judgement b = judged("angle", "  C = angle(b) - angle(a) + phi\n  J = [ 0, -1, 0, 1 ]\n  b = w(b) - w(a)\n");
   ASSERT_EQ(b.differences.size(), 1u);
   EXPECT_EQ(b.differences[0].what, "b");
   EXPECT_EQ(b.differences[0].kind, "sign");
-  // No sign makes this C right; with one of them a single term is wrong.
+  // Neither sign makes this C right; with one sign only a single term is wrong.
   const Judgement C = judged("angle", "  C = angle(b) - angle(a) - phi\n");
   ASSERT_EQ(C.differences.size(), 1u);
   EXPECT_EQ(C.differences[0].sentence, "C, row 1: it has -phi where phi belongs");
@@ -148,7 +148,7 @@ TEST(Diff, UpdatesMustMakeTheVelocityConstraintHold) {
   EXPECT_EQ(swapped.differences[0].kind, "wrong body");
 }
 
-// A condition that the entry states itself is kept while others are looked for.
+// The entry's own condition stays in force during the search for others.
 TEST(Diff, LooksForConditionsWithinWhatIsAssumed) {
   const std::string K = "  K = 1/I(b) + abs(ratio)/I(a)\n";
   const Judgement anywhere = judged("angle_ratio", K);
@@ -159,7 +159,7 @@ TEST(Diff, LooksForConditionsWithinWhatIsAssumed) {
   EXPECT_NE(negative.differences[0].sentence.find("equal only where ratio = -1"), std::string::npos);
 }
 
-// Vector rows in world axes turn with the bodies: J v = w x C, which is zero where the joint holds.
+// For vector rows in world axes a common rotation gives J v = w x C, which is 0 on C = 0.
 TEST(Diff, MomentumIsJudgedWhereTheJointHolds) {
   EXPECT_TRUE(judged("revolute", "  J = [ E, S(ra), -E, -S(rb) ]\n").remarks.empty());
   const Judgement broken = judged("revolute", "  J = [ E, S(ra), -E, -S(ra) ]\n");

@@ -1,5 +1,4 @@
-// Every published entry beside the specs. No verdict is written down here: each difference is held
-// against its numbers.
+// Every published entry beside the specs. The test has no list of verdicts: numbers confirm each difference.
 #include <cstdio>
 #include <gtest/gtest.h>
 #include <map>
@@ -93,12 +92,12 @@ TEST(Published, MomentumIsMissedOnlyWhereSomethingDiffers) {
     broken.insert(j.id);
     EXPECT_EQ(j.agreement, Agreement::differs) << j.id;
   }
-  // Exact though in world axes: J of a common rotation is w x C.
+  // Exact although in world axes: J times a common rotation is w x C.
   for (const char* id : {"P2P-1", "P2P-3", "P2P-4", "WLD-1", "WLD-4", "MOT-1"}) EXPECT_FALSE(broken.contains(id)) << id;
   for (const char* id : {"PRI-5", "GEA-3", "LIN-7", "FRI-1"}) EXPECT_TRUE(broken.contains(id)) << id;
 }
 
-// A sentence can be read in one breath; long formulas stand in the lines below it.
+// Sentences are short; long formulas are on the lines below.
 TEST(Published, SentencesAreShort) {
   for (const Judgement& j : published()) {
     for (const Difference& d : j.differences) {

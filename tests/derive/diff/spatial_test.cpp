@@ -1,5 +1,4 @@
-// `cdot diff` in space: three-wide blocks, the three forms of velocity, tensors, one mistake in
-// vectors told once.
+// `cdot diff` in space: three-wide blocks, the three forms of velocity, tensors, one report for an error in vectors.
 #include <fstream>
 #include <gtest/gtest.h>
 #include <unistd.h>

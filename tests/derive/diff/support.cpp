@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 fs::path specs_folder() { return fs::path(CDOT_SOURCE_DIR) / "specs"; }
 
 fs::path write_hand(const std::string& joint, const std::string& items) {
-  // Tests run side by side, each in a process of its own.
+  // Tests run in parallel processes.
   const fs::path folder = fs::path(testing::TempDir()) / ("cdot_diff_" + std::to_string(getpid()));
   fs::create_directories(folder);
   const fs::path hand = folder / (fs::path(joint).filename().string() + ".hand");

@@ -1,5 +1,4 @@
-// What the tests of `cdot diff` share: the catalogue's folder, and one hand-made entry to be
-// judged.
+// Helpers for tests of `cdot diff`: the catalogue's folder and the judgement of one entry.
 #pragma once
 
 #include <filesystem>
@@ -11,11 +10,10 @@ namespace cdot::test {
 
 std::filesystem::path specs_folder();
 
-// A .hand file with one entry X-1, in a folder of its own.
+// Writes a .hand file with one entry X-1 to a folder of its own.
 std::filesystem::path write_hand(const std::string& joint, const std::string& items);
 
-// Judges one entry, written as a person would, against a joint of the catalogue ("line",
-// "spatial/line"), and prints what is said of it.
+// Judges one entry against a joint of the catalogue ("line", "spatial/line") and prints the report.
 derive::Judgement judged(const std::string& joint, const std::string& items);
 
 }  // namespace cdot::test

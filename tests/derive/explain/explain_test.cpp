@@ -1,5 +1,5 @@
-// What the derivation says is true: each chain of equal formulas is equal in numbers, J v is Cdot;
-// and it reads as it was read by a person (golden texts; CDOT_UPDATE=1 rewrites them).
+// The derivation is true: the formulas of each chain have equal values, and J v = Cdot. The text equals the golden
+// texts (CDOT_UPDATE=1 rewrites them).
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
@@ -13,10 +13,10 @@ namespace {
 
 struct Told {
   int equations = 0;
-  std::string wrong;  // what was found false
+  std::string wrong;  // errors found
 };
 
-// Every formula of a chain that stands for numbers equals every other.
+// All formulas of a chain with numeric values are equal.
 void check_chain(const std::string& heading, const Chain& chain, const Values& values, Told& told) {
   std::vector<const Formula*> formulas{&chain.left};
   for (const Link& link : chain.links) formulas.push_back(&link.formula);
@@ -116,7 +116,7 @@ TEST(Explain, EveryEquationOfUnusualJointsIsTrue) {
   }
 }
 
-// The check can fail: a sign flipped anywhere in a derivation is found.
+// The check can fail: it finds a flipped sign anywhere in a derivation.
 TEST(Explain, AFlippedSignIsFound) {
   const Derivation derivation = read_spec("line");
   const Explanation right = explain(derivation);
@@ -154,7 +154,7 @@ TEST(Explain, ReadsAsItWasRead) {
   }
 }
 
-// The same text from every run: nothing depends on addresses or on what was derived before.
+// The text is the same in every run: it depends neither on addresses nor on earlier derivations.
 TEST(Explain, SaysTheSameTwice) {
   for (const std::string& name : spec_names()) {
     EXPECT_EQ(explanation_text(explain(read_spec(name))), explanation_text(explain(read_spec(name)))) << name;

@@ -1,5 +1,5 @@
-// The other formats: HTML is well-formed and needs nothing from elsewhere, LaTeX compiles or at
-// least balances, and the JSON says the truth when another program evaluates it.
+// The other formats: HTML is well-formed and self-contained, LaTeX compiles or is at least balanced, and another
+// program confirms the JSON.
 #include <cstdlib>
 #include <fstream>
 #include <regex>
@@ -29,7 +29,7 @@ Ran run(const std::string& command) {
   return ran;
 }
 
-// An empty folder of this test's own.
+// An empty folder for this test.
 fs::path folder(const std::string& name) {
   const fs::path path = fs::temp_directory_path() / ("cdot_explain_" + name + "_" + std::to_string(getpid()));
   fs::remove_all(path);
@@ -65,7 +65,7 @@ std::string quoted(const fs::path& path) { return "'" + path.string() + "'"; }
 
 const std::string python = CDOT_PYTHON;
 
-// By sympy, in a process of its own.
+// Runs sympy in a separate process.
 Ran check_json(const fs::path& files) {
   return run(python + " " + quoted(fs::path(CDOT_SOURCE_DIR "/tests/derive/explain") / "check_json.py") + " " +
              quoted(files));
@@ -141,7 +141,7 @@ TEST(ExplainJson, IsTrueForUnusualJointsWhenSympyEvaluatesIt) {
   fs::remove_all(files);
 }
 
-// What check_json.py says yes to, it says no to once an entry is wrong.
+// check_json.py rejects a file that it accepted before one entry was changed.
 TEST(ExplainJson, TheCheckFindsAWrongEntry) {
   const fs::path files = folder("wrong_json");
   for (const std::string key : {"J", "K", "gamma", "Cdot"}) {

@@ -1,6 +1,5 @@
-// J in the forms (b) and (c), as it is shown: times the velocities of that form it is Cdot; and
-// what is said about dC/de is true, by finite differences of C in Euler parameters that need not
-// stay of length 1.
+// The displayed J in forms (b) and (c) times the velocities of that form is Cdot. Finite differences of C in Euler
+// parameters of any length confirm the statement about dC/de.
 #include <algorithm>
 #include <cmath>
 
@@ -156,5 +155,5 @@ TEST(ExplainForms, AWrongPartialDerivativeIsFound) {
       product({number(-2), shaped(Shape::skew, leaf(s.joint.pool->find("ra"))), leaf({}, "G_a")}), s.values);
   double worst = 0;
   for (std::size_t i = 0; i < seen.size(); ++i) worst = std::max(worst, std::fabs(seen[i] - alone.entries[i]));
-  EXPECT_GT(worst, 1e-3);  // J_euler alone is not dC/de
+  EXPECT_GT(worst, 1e-3);  // J_euler differs from dC/de
 }

@@ -63,7 +63,7 @@ Array skew(const Array& r) {
   return {3, 3, {0, -z, y, z, 0, -x, -y, x, 0}};
 }
 
-// Blocks side by side and one under the other; a 0 fills whatever its place asks for.
+// Assembles blocks in rows and columns; a 0 takes the size of its place.
 Array assembled(const Formula& f, const std::vector<Array>& blocks) {
   const std::size_t n = static_cast<std::size_t>(f.columns), m = blocks.size() / n;
   std::vector<std::size_t> heights(m, 1), widths(n, 1), tops(m + 1), lefts(n + 1);
@@ -100,7 +100,7 @@ double called(const std::string& name, const std::vector<Array>& args) {
   if (name == "abs") return std::fabs(x);
   if (name == "sign") return x > 0 ? 1 : x < 0 ? -1 : 0;
   if (name == "atan2") return std::atan2(x, args[1].entries[0]);
-  if (name == "twist") throw NoValue(name);  // its frames are more than their x axes
+  if (name == "twist") throw NoValue(name);  // needs whole frames, not only their x axes
   if (name == "angle") {
     const Array sine = cross_product(args[0], args[1]);
     return std::atan2(sine.entries.size() == 1 ? sine.entries[0] : length(sine),
@@ -117,7 +117,7 @@ Array tensor(Expr leaf, const Values& values) {
   return a;
 }
 
-// A_a, G_a and e_a of a body, from its Euler parameters e_a_0 to e_a_3.
+// A_a, G_a and e_a of a body from its Euler parameters e_a_0 to e_a_3.
 Array of_orientation(const std::string& name, const Values& values) {
   const bool known = name.size() == 3 && name[1] == '_' && values.contains("e_" + name.substr(2) + "_0");
   if (!known) throw NoValue(name);

@@ -1,5 +1,4 @@
-// Written formulas as numbers, on a way of their own: no builder of the generator is asked what a
-// formula equals.
+// Displayed formulas -> numbers, independent of the generator's builders.
 #pragma once
 
 #include <stdexcept>
@@ -15,7 +14,7 @@ struct Array {
   double at(std::size_t i, std::size_t j) const { return entries[i * columns + j]; }
 };
 
-// A formula with a leaf that stands for no expression (J, M).
+// A formula has a leaf without an expression (J, M).
 struct NoValue : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -24,11 +23,11 @@ struct NoValue : std::runtime_error {
 cdot::derive::Values world_values(const cdot::derive::Joint& joint, const cdot::derive::Sample& sample);
 
 Array value_of_formula(const cdot::derive::Formula& f, const cdot::derive::Values& values);
-// J, block by block, times the velocities: one of them for each column of blocks.
+// J times the velocities, block by block: one velocity for each column of blocks.
 std::vector<double> blocks_times(const cdot::derive::Formula& J, const std::vector<std::vector<double>>& velocities,
                                  const cdot::derive::Values& values);
 
-// What has to have a value: v and w of every body, and everything that is shown.
+// The leaves that need values: v and w of every body, and all displayed ones.
 std::vector<cdot::derive::Expr> leaves_shown(const cdot::derive::Joint& joint,
                                              const cdot::derive::Explanation& explanation);
 void collect_leaves(const cdot::derive::Formula& f, std::vector<cdot::derive::Expr>& leaves);

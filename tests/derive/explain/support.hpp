@@ -1,4 +1,4 @@
-// The catalogue's specs, read for the tests.
+// Reads the catalogue's specs.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@ inline std::vector<std::string> spec_names() {
   return names;
 }
 
-// A name for a file beside those of the others: "planar_line".
+// A file name without folders: "planar_line".
 inline std::string flat(std::string name) {
   std::replace(name.begin(), name.end(), '/', '_');
   return name;
@@ -33,7 +33,6 @@ inline cdot::derive::Derivation read_spec(const std::string& name) {
   return cdot::derive::derive(*read.joint);
 }
 
-// Further joints that use what the catalogue does not: angles between directions, functions,
-// velocity rows, roots.
+// Joints with operators that the catalogue does not use: angles between directions, functions, velocity rows, roots.
 std::vector<std::pair<std::string, std::string>> unusual_specs();
 cdot::derive::Derivation read_text(const std::string& name, const std::string& text);

@@ -1,4 +1,4 @@
-// Builders keep values, equal expressions are one node, and rationals refuse to overflow.
+// Builders keep values, equal expressions share one node, and rationals throw on overflow.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Every row of the table of functions: each is what <cmath> has by that name, its derivative is that of its values, and
+// Every row of the table of functions equals the <cmath> function of that name. Differences confirm its derivative, and
 // exact arithmetic agrees with both.
 #include "derive/expression/functions.hpp"
 
@@ -10,7 +10,7 @@
 namespace cdot::derive {
 namespace {
 
-// Where all functions are smooth, and far from the pole of tan: the central difference has an error of h^2 f'''/6.
+// All functions are smooth here, far from the pole of tan: the central difference has an error of h^2 f'''/6.
 constexpr double places[] = {0.2, 0.7, 1.1};
 
 TEST(Functions, HaveTheDerivativeOfTheirValues) {
@@ -46,7 +46,8 @@ TEST(Functions, KnowTheirExactValues) {
   }
 }
 
-// cosh^2 - sinh^2 = 1, sinh 2x = 2 sinh x cosh x and cosh 2x = cosh^2 + sinh^2 hold modulo the prime, and no neighbour.
+// cosh^2 - sinh^2 = 1, sinh 2x = 2 sinh x cosh x and cosh 2x = cosh^2 + sinh^2 hold modulo the prime; neighbouring
+// values do not satisfy them.
 TEST(Functions, ObeyTheLawsOfTheHyperbola) {
   Pool pool;
   const Expr x = pool.symbol("x", Role::parameter), s = call(Fn::sinh, x), c = call(Fn::cosh, x);

@@ -109,7 +109,7 @@ void RandomExpressions::grow_vector() {
   }
 }
 
-// By a quarter turn in the plane; in space by a cross product.
+// Adds a quarter turn in the plane, a cross product in space.
 void RandomExpressions::grow_turned(const KnownVector& u, const KnownVector& v) {
   if (pool_.dimension() == 2) return keep(KnownVector{perp(u.e), {-u.value[1], u.value[0], 0}});
   keep(KnownVector{cross(u.e, v.e), cross_product(u.value, v.value)});

@@ -1,5 +1,4 @@
-// Random expressions beside their values: each built twice, by the builders under test and in plain
-// numbers.
+// Random expressions with their values: built by the builders under test and computed in plain numbers.
 #pragma once
 
 #include <vector>
@@ -18,8 +17,8 @@ struct KnownVector {
   Triple<double> value;
 };
 
-// Grows from leaves by builders chosen at random, in the plane or in space as the pool; keeps what
-// is neither huge nor too close to a place where it is undefined.
+// Grows from leaves by random builders, in the space of the pool. Keeps expressions that are neither huge nor near a
+// singularity.
 class RandomExpressions {
  public:
   RandomExpressions(Pool& pool, std::uint64_t seed);
@@ -48,8 +47,7 @@ class RandomExpressions {
   std::vector<KnownVector> vectors_;
 };
 
-// The outputs of a program, operation by operation, without sharing anything with printers or
-// passes.
+// Evaluates a program operation by operation, without code of printers or passes.
 std::vector<double> run(const Program& program, const Values& inputs);
 
 }  // namespace cdot::derive

@@ -1,4 +1,4 @@
-// Units as the language has them: what multiplies, what hides, how they are said.
+// Units of the language: products, vanishing radians, names.
 #include <gtest/gtest.h>
 
 #include "derive/expression/unit.hpp"

@@ -1,5 +1,4 @@
-// Fuzz target: any bytes as a spec or as hand derivations. They are read, and every message is
-// shown.
+// Fuzz target: reads any bytes as a spec or as hand derivations and formats every message.
 #include <cstddef>
 #include <cstdint>
 
@@ -9,7 +8,7 @@ namespace {
 
 using namespace cdot::derive;
 
-// What the bytes may include and, if they are hand derivations, what they are about.
+// The joints that the bytes may include or, as hand derivations, refer to.
 const Library& library() {
   static const auto file = [](std::string name, std::string text) {
     return std::make_shared<const SourceFile>(name + ".joint", std::move(text));

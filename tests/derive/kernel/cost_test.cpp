@@ -11,13 +11,11 @@
 
 namespace {
 
-// Space, joint, block, C or J or K; and what it is about, if not all rows of the spec as it stands:
-// "of pin", "with t on a".
+// Space, joint, block, C or J or K, and a restriction such as "of pin" or "with t on a".
 using Quantity = std::array<std::string, 5>;
 
-// What a quantity costs from poses and parameters, after the passes that kernels go through: the
-// number of operations, and the same weighted by what each kind takes, roughly in cycles of a
-// throughput-bound loop.
+// The cost of a quantity from poses and parameters after the passes of kernels: the number of operations, and the sum
+// weighted by the cycles of each kind in a throughput-bound loop.
 struct Cost {
   int total = 0, weighted = 0;
 };
@@ -64,7 +62,7 @@ Ledger read_ledger() {
   return ledger;
 }
 
-// What is published of the joints of one space.
+// The published formulas of the joints of one space.
 struct Compared {
   std::set<std::string> joints, quantities;
   int all = 0, cheaper = 0, scoped = 0;
@@ -100,8 +98,7 @@ Compared compare(const std::string& space) {
 
 }  // namespace
 
-// The ledger has those that agree wherever the joint is. One that agrees only where an assumption
-// holds computes something else, and may well be cheaper.
+// The ledger has the formulas that agree at every pose. A formula that agrees only under an assumption may be cheaper.
 TEST(Ledger, has_no_published_derivation_in_the_plane_cheaper_than_the_generated) {
   const Compared compared = compare("planar");
   EXPECT_EQ(compared.quantities, (std::set<std::string>{"C", "J", "K"}));

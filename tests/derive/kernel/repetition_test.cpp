@@ -1,4 +1,4 @@
-// generated/ says nothing twice under two names. Apart from the other tests, since it reads what is committed.
+// generated/ has no two equal kernels under different names. This test reads the committed files.
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace {
 
-// A header from its code on, without the joint's name and its title.
+// The code of a header without the joint's name and title.
 std::string kernel_without_names(const std::filesystem::path& header) {
   std::ifstream file(header);
   std::string text{std::istreambuf_iterator<char>(file), {}};

@@ -1,5 +1,5 @@
-// Every case of broken/ gives exactly the messages that stand below it (tests/cases/cases.hpp). CDOT_UPDATE=1 writes
-// them: read each as the person who made the mistake.
+// Every case of broken/ gives exactly the messages below it (tests/cases/cases.hpp). CDOT_UPDATE=1 writes them: read
+// each from the view of the user who made the error.
 #include <algorithm>
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// Every spec and every hand derivation of the catalogue is read without a complaint.
+// Every spec and every hand derivation of the catalogue is read without messages.
 #include <gtest/gtest.h>
 
 #include "tests/derive/language/reading.hpp"

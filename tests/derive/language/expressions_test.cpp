@@ -1,5 +1,4 @@
-// Expressions: what the grammar makes of them, exact numbers, and every operator of the table at
-// least once.
+// Expressions: grammar, exact numbers, and every operator of the table at least once.
 #include <gtest/gtest.h>
 #include <set>
 
@@ -9,8 +8,7 @@
 namespace cdot::derive {
 namespace {
 
-// `expression` as a let of a joint that declares one of everything; the let's value and unit as
-// text.
+// `expression` as a let of a joint with all kinds of parameters -> the let's value and unit as text.
 std::string value_of(const std::string& expression, const std::string& space = "planar") {
   const std::string text = "joint j " + space +
                            "\n point pa on a\n point pb on b\n unit t on b\n vector d [m] on a\n frame f "
@@ -72,7 +70,7 @@ TEST(Expressions, KnowVelocitiesOfPoints) {
   EXPECT_EQ(value_of("w(b)"), "w_b [rad/s]");
 }
 
-// One call of each operator of the specs; adding an operator means adding it here.
+// One call of each operator of the specs; a new operator must be added here.
 TEST(Operators, AreAllCalled) {
   const std::map<std::string, std::string> calls = {{"dot", "dot(t, d)"},
                                                     {"cross", "cross(d, t)"},

@@ -1,4 +1,4 @@
-// Hand derivations: blocks to matrices, what entries assume, and formulas that have no value.
+// Hand derivations: matrices from blocks, assumptions of entries, formulas without a value.
 #include <gtest/gtest.h>
 
 #include "tests/derive/language/reading.hpp"
@@ -13,7 +13,7 @@ struct Read {
   Diagnostics diagnostics;
 };
 
-// The only entry, with `body` as its items, about the slider (a line and an angle).
+// Reads one entry with the items `body` about the slider (a line and an angle).
 std::unique_ptr<Read> read(const std::string& body) {
   auto r = std::make_unique<Read>();
   const Library library = library_of(CDOT_SOURCE_DIR "/tests/derive/language/parts");

@@ -1,4 +1,4 @@
-// What specs mean: parameters and their leaves, rows, includes, anchors.
+// The meaning of specs: parameters and their leaves, rows, includes, anchors.
 #include <gtest/gtest.h>
 
 #include "tests/derive/language/reading.hpp"

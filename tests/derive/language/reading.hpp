@@ -1,5 +1,4 @@
-// What the reader's tests and its fuzzer share: reading joints and hand derivations without a
-// derivation behind them.
+// Helpers of the reader's tests and its fuzzer: reading joints and hand derivations without a derivation.
 #pragma once
 
 #include <string>
@@ -9,15 +8,14 @@
 
 namespace cdot::derive {
 
-// Stands in for what Cdot derives: matrices of the right size whose entries are free symbols.
+// Replaces Cdot's derivation by matrices of the right size with free symbols.
 GeneratedRows stand_in(const ReadResult& read);
 
-// Every message about a file of hand derivations, its remarks and the formulas that have no value,
-// as text.
+// All messages about a file of hand derivations, with remarks and formulas without a value, as text.
 std::string messages_about_hand(const std::shared_ptr<const SourceFile>& hand,
                                 const std::shared_ptr<const SourceFile>& joint, const Library& library);
 
-// The specs of a folder, named without the folder, so that messages are the same everywhere.
+// The specs of a folder, named without the folder, so messages do not depend on its path.
 Library library_of(const std::filesystem::path& folder);
 std::shared_ptr<const SourceFile> file_of(const std::filesystem::path& path);
 

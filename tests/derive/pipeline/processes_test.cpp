@@ -1,4 +1,4 @@
-// `cdot derive` in several processes: the same bytes however many, and a word on what became of one that died.
+// `cdot derive` in several processes: the same bytes for every number of them, and a report of a process that died.
 #include <csignal>
 #include <thread>
 
@@ -19,7 +19,7 @@ TEST(Processes, HandOverInOrderWhateverIsDoneFirst) {
     for (std::size_t i = 12; i-- > 0;) tasks.order.push_back(i);
     tasks.run = [](std::size_t i) {
       std::this_thread::sleep_for(i % 3 * 10ms);
-      return std::string(i * 30000, static_cast<char>('a' + i));  // more than a pipe holds
+      return std::string(i * 30000, static_cast<char>('a' + i));  // more than a pipe's buffer
     };
     std::size_t next = 0;
     tasks.take = [&](std::size_t i, const Answer& answer) {
@@ -51,7 +51,7 @@ TEST(Processes, TellWhyThereIsNoResult) {
 
 class DeriveAtOnce : public Derive {
  protected:
-  // Children of a process, once it has some.
+  // Waits for children of a process and returns them.
   static std::string children_of(const std::string& process) {
     for (int i = 0; i < 500; ++i, std::this_thread::sleep_for(10ms)) {
       const std::string children = content_of("/proc/" + process + "/task/" + process + "/children");
@@ -59,7 +59,7 @@ class DeriveAtOnce : public Derive {
     }
     return "";
   }
-  // In the background, where a shell ignores Ctrl-C, on a spec that takes seconds; what it says goes to `said`.
+  // Starts in the background, where a shell ignores Ctrl-C, on a spec that takes seconds; the output goes to `said`.
   std::string begin() const {
     fs::copy(fs::path(CDOT_SOURCE_DIR "/specs") / "spatial", place_ / "specs/spatial");
     const std::string started = run("env --default-signal=INT " CDOT " derive screw line >said 2>&1 & echo $!").said;
@@ -89,7 +89,7 @@ TEST_F(DeriveAtOnce, TheSameBytesHoweverManyAtOnce) {
     EXPECT_EQ(cdot("derive --fresh -j " + jobs).said, one.said);
     EXPECT_EQ(files("generated"), right);
   }
-  // What is wrong is told in the same order, too.
+  // Errors appear in the same order too.
   write("specs/planar/bad.joint", "joint bad planar\n  \"x\"\n  point pa on a\n  norm(pb) = 0\n");
   write("specs/planar/wrong.joint", "joint wrong planar\n  \"x\"\n  angle(a) + angle(b) = 0\n");
   EXPECT_EQ(cdot("derive --fresh -j 3").said, cdot("derive --fresh -j 1").said);

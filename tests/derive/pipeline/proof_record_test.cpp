@@ -1,4 +1,4 @@
-// generated/proofs.csv: a proof on record is not done again, gives the same bytes, and holds for that derivation only.
+// generated/proofs.csv: a recorded proof is not repeated, gives the same bytes, and is valid for its derivation only.
 #include "derive/pipeline/proof_record.hpp"
 
 #include <functional>
@@ -22,7 +22,7 @@ class Recorded : public Derive {
     right_ = files("generated");
   }
 
-  // Of the four specs, how many have their proof on record.
+  // The number of the four specs with a recorded proof.
   int on_record(const std::string& arguments = "derive") {
     const Result result = cdot(arguments);
     EXPECT_EQ(result.status, 0) << result.said;
@@ -100,7 +100,7 @@ TEST_F(Recorded, NotByADamagedRecord) {
   }
 }
 
-// A row that claims too much, for the right derivation: what CI does finds it.
+// A false row for the right derivation: the check in CI finds it.
 TEST_F(Recorded, AFreshCheckFindsAFalseRecord) {
   take("spatial/p1.joint");
   ASSERT_EQ(cdot("derive p1 -o one").status, 0);
@@ -123,7 +123,7 @@ TEST_F(Recorded, NotWhatIsNotProved) {
   EXPECT_FALSE(fs::exists(place_ / "one"));
 }
 
-// The kernel of a coordinate is emitted, so it has to obey the laws as the rows do.
+// The kernel of a coordinate is emitted, so it must obey the laws like the rows.
 TEST_F(Recorded, ACoordinateThatBreaksALawIsRefused) {
   write("specs/planar/wrong.joint",
         "joint wrong planar\n  \"x\"\n  angle(a) = angle(b)\n  coordinate sum = angle(a) + angle(b) + angle(c)\n");

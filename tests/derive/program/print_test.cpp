@@ -1,4 +1,4 @@
-// Programs as text: names from the spec, none that C++ or the kernel has taken, lines that fit.
+// Programs as text: names from the spec without clashes with C++ or the kernel, lines of limited length.
 #include "derive/program/print.hpp"
 
 #include <algorithm>
@@ -71,7 +71,7 @@ TEST(Print, computes_nothing_twice) {
   EXPECT_EQ(std::distance(std::sregex_iterator(text.begin(), text.end(), minus), {}), count(program).add) << text;
 }
 
-// For a type that counts, -T(2) * a would be a negation more than the ledger says.
+// For a counting type -T(2) * a would cost one negation more than in the ledger.
 TEST(Print, has_no_minus_sign_that_a_number_can_take) {
   Symbols s;
   const Rational minus_one(-1), minus_two(-2);

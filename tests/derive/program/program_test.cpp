@@ -1,5 +1,4 @@
-// Programs: what the passes rewrite keeps its value and never costs more; known kernels cost what a
-// person's would.
+// Passes keep the value of programs and never raise their cost; known kernels cost no more than code by hand.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Algebra that would take hours is given up: the laws are then shown at random points, the same ones
-// on every run, and a derivation that breaks them is still found out.
+// Algebra that would take hours ends at a budget. The laws are then checked at random points, the same in every run,
+// which still find a wrong derivation.
 #include <cstdio>
 #include <gtest/gtest.h>
 
@@ -40,7 +40,7 @@ TEST(Budget, WhatIsTooLongIsShownAtRandomPoints) {
   }
 }
 
-// The order in which GiNaC keeps terms changes with the symbols made before.
+// GiNaC's order of terms depends on earlier symbols.
 TEST(Budget, TheSameLawsAreProvedWhateverCameBefore) {
   std::string first;
   for (int run = 0; run < 2; ++run) {

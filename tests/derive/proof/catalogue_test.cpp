@@ -1,5 +1,4 @@
-// Every spec of the catalogue, a test each: the laws hold for its rows and coordinates, and the
-// check finds nothing but notes.
+// One test per spec of the catalogue: its rows and coordinates obey the laws, and the check reports notes only.
 #include <gtest/gtest.h>
 
 #include "derive/check/check.hpp"

@@ -1,5 +1,5 @@
-// Each law fails for a derivation that breaks it; and J, in plain numbers, is the slope of C for every spec of the
-// catalogue. That the laws hold for all of it is in catalogue_test.cpp.
+// Each law fails for a derivation that breaks it, and J equals finite differences of C for every spec of the catalogue.
+// catalogue_test.cpp tests the laws for the catalogue.
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -60,7 +60,7 @@ struct BrokenEmission {
   std::function<void(Derivation&)> damage;
 };
 
-// All that kernels are made of is proved: variants, coordinates and the K of isotropic bodies, each by itself.
+// Variants, coordinates and K of isotropic bodies each have their own proof.
 TEST(Laws, EachFailsForADerivationThatWouldEmitSomethingElse) {
   const BrokenEmission table[] = {
       {"a variant with a flipped sign in J", "line", LawId::immovable,
@@ -118,7 +118,7 @@ TEST(Laws, AllHoldOfWhatIsEmitted) {
   }
 }
 
-// all: C, then the columns of J body by body.
+// all: C, then the columns of J, body by body.
 void expect_finite_differences(const Joint& joint, const ScalarRow& row, const std::vector<Expr>& all,
                                const Sample& sample, int dimension) {
   const std::size_t width = (all.size() - 1) / joint.bodies.size();
@@ -137,14 +137,14 @@ void expect_finite_differences(const Joint& joint, const ScalarRow& row, const s
   }
 }
 
-// A third route, in plain numbers: no algebra, no rule of differentiation.
+// A third route by numbers, without algebra or rules of differentiation.
 TEST(Laws, JacobianEqualsFiniteDifferences) {
   const SpecsFolder folder(specs_folder);
   for (const std::filesystem::path& spec : folder.all()) {
     const Joint joint = joint_of(spec.string());
     const int dimension = joint.pool->dimension();
     for (const ScalarRow& row : derive_rows(joint).rows) {
-      if (row.kind == RowKind::velocity) continue;  // has no C
+      if (row.kind == RowKind::velocity) continue;  // without C
       std::vector<Expr> all = {row.C};
       for (const JacobianEntry& e : row.J) {
         const std::vector<Expr> columns = columns_of(e);

@@ -1,4 +1,4 @@
-// Two specs that differ in names only give kernels that differ in names only, whatever the names collide with.
+// Two specs that differ only in names give kernels that differ only in names, for all clashes of names.
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
@@ -28,7 +28,7 @@ TEST(Twins, compute_the_same) {
       const Inputs in = random_inputs(plain[b], seed);
       const Outputs one = evaluate_one(taken[b], in), other = evaluate_one(plain[b], in);
       for (std::size_t f = 0; f < number_of_functions; ++f) {
-        // The order of terms goes by names, so the last bits may differ, and the stored fields their order.
+        // Names determine the order of terms and of stored fields, so the last bits may differ.
         if (f == jacobian) continue;
         const Eigen::VectorXd expected = vector(other.of[f]);
         expect_near(taken[b], function_names[f], vector(one.of[f]), expected, 1e-9 * (1 + expected.norm()));

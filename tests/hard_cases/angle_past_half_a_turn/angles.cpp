@@ -1,4 +1,4 @@
-// Angles wrap at half a turn; limits and counts of turns must not.
+// Angles wrap at half a turn; limits and counted turns must not.
 #include <cmath>
 
 #include "tests/hard_cases/trial.hpp"

@@ -1,4 +1,4 @@
-// Axes that point against each other are parallel, but angles measured about them are not defined.
+// Antiparallel axes are parallel, but angles about them are undefined.
 #include <cmath>
 
 #include "tests/hard_cases/trial.hpp"
@@ -15,7 +15,7 @@ void swing(Trial& t) {
   t.at_most("leans by [rad]", 2 * std::hypot(b.e1, b.e2), 1e-9, 1e-4);
 }
 
-// An angle told by axes that point against each other has no value for a motor to act on: refused, with what to do.
+// An angle between antiparallel axes has no value for a motor: refused, with a fix.
 void motor(Trial& t) {
   SceneJoint& hinge = t.scene.joints.front();
   hinge.definition.type = "hinge";

@@ -1,4 +1,4 @@
-// What slept has impulses, factors and guesses of long ago.
+// An island that slept has old impulses, factors and start values.
 #include <algorithm>
 #include <cmath>
 
@@ -7,13 +7,13 @@
 namespace cdot::hard::awakened {
 namespace {
 
-// The impulse that a World takes is in doubles.
+// A World takes impulses in doubles.
 template <class T>
 planar::Velocity<double> exact(const planar::Velocity<T>&);
 template <class T>
 spatial::Velocity<double> exact(const spatial::Velocity<T>&);
 
-// It moves on as one that never slept.
+// It moves like an island that never slept.
 void strike(Trial& t) {
   Trial restless(t.file, t.way);
   restless.scene.settings.sleep_after = 0;

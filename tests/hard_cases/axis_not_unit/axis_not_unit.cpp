@@ -17,7 +17,7 @@ void slide(Trial& t) {
     apart = std::max(apart, std::hypot(b.x - one.x, b.y - one.y, b.z - one.z));
   }
   t.at_most("apart [m]", apart, 1e-12, 1e-5);
-  // g sin 30 t^2 / 2, and what a method of first order adds to it: half a step.
+  // g sin 30 t^2 / 2, plus the error of a first-order method: half a step.
   const double way = std::hypot(one.x, one.y, one.z);
   t.at_most("way short of 9.81 m, relative", 1 - way / 9.81, 1e-9, 1e-5);
   t.at_most("way beyond it, relative", way / 9.81 - 1, 1.0 / 120 + 1e-9, 1.0 / 120 + 1e-5);

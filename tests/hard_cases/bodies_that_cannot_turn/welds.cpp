@@ -1,4 +1,4 @@
-// The rows of angles of bodies without inverse inertia: K has zeros on its diagonal.
+// Angle rows between bodies with zero inverse inertia: K has zeros on its diagonal.
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::hard::bodies_that_cannot_turn {

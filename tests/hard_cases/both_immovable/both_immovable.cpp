@@ -1,4 +1,4 @@
-// A joint between two bodies that cannot move has no effective mass: it does nothing, and says so. A massless body is
+// A joint between two immovable bodies has no effective mass and no influence; a note reports it. A massless body is
 // refused.
 #include <cmath>
 

@@ -7,7 +7,7 @@
 namespace cdot::hard::change_point {
 namespace {
 
-// |angle| of the coupler, which the parallel branch keeps level: from its orientation's turn in space.
+// |angle| of the coupler, which stays level on the parallel branch; in space from its orientation.
 double tilt(const BodyState& coupler, Dimension dimension) {
   if (dimension == Dimension::planar) return std::abs(std::remainder(coupler.angle, 2 * pi));
   return 2 * std::atan2(std::hypot(coupler.e1, coupler.e2, coupler.e3), std::abs(coupler.e0));

@@ -7,8 +7,8 @@
 namespace cdot::hard::changed_while_running {
 namespace {
 
-// A joint that welds two rods as they just stand takes their relative spin away, and nothing is thrown about: the
-// energy falls by what the least impulse takes, and later by nothing.
+// A joint that welds two rods in their present pose removes their relative spin. The energy falls only by the work of
+// the least impulse.
 void add(Trial& t) {
   t.start();
   t.run(0.5);
@@ -23,7 +23,7 @@ void add(Trial& t) {
   t.at_most("energy gained, of the fall's", w.rise / (4 * g * 2), 5e-3);
 }
 
-// A pin that is no more: the rods below fall freely, the centre of their mass by g t^2 / 2.
+// After a pin is removed the rods below fall freely: their centre of mass falls by g t^2 / 2.
 void let_go(Trial& t, int pin) {
   t.at_most("not broken", t.ask([&](const auto& world) { return world.broken(pin) ? 0.0 : 1.0; }), 0);
   const bool planar = t.scene.dimension == Dimension::planar;
@@ -37,7 +37,7 @@ void let_go(Trial& t, int pin) {
   };
   const double y = height(), v = speed();
   const Watch w = t.run(1);
-  // A method of first order takes the gravity of a step at its start or its end: half a step's speed.
+  // A first-order method applies a step's gravity at its start or its end: an error of half a step's speed.
   t.near("free fall after 1 s [m]", height() - y, v - 0.5 * g, g / 480 + 1e-9, g / 480 + 1e-3);
   t.at_most("gap [m]", w.gap, 1e-4);
 }
@@ -59,8 +59,8 @@ void remove(Trial& t) {
   let_go(t, pin);
 }
 
-// Every pin wanders 1 mm a step along its rod, forth and back, for a second: what is moved is moved by that, and the
-// swing neither gains nor falls apart.
+// Every pin moves 1 mm a step along its rod, back and forth, for a second. The rods follow, and the swing neither gains
+// energy nor breaks apart.
 void change(Trial& t) {
   t.start();
   t.run(0.5);

@@ -1,4 +1,4 @@
-// Inequality rows that come and go at every step.
+// Inequality rows that become active and inactive at every step.
 #include "tests/hard_cases/scaled.hpp"
 #include "tests/hard_cases/trial.hpp"
 
@@ -13,7 +13,7 @@ void swing(Trial& t) {
   t.at_most("energy gained, of the throw's", w.rise / start, 0.01);
 }
 
-// When a rope is slack and when taut is told by what its length, rate and force are made of, at any scale.
+// The resolution of a rope's length, rate and force decides whether the rope is taut, at every scale.
 void swing_scaled(Trial& t, double length, double mass) {
   scale(t.scene, length, mass);
   t.start();

@@ -1,4 +1,4 @@
-// Many closed loops driven for a minute: drift would add up.
+// Many closed loops, driven for a minute: drift would accumulate.
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::hard::closed_loops {

@@ -7,7 +7,7 @@
 namespace cdot::hard::dead_centre {
 namespace {
 
-// Of the shared problem slider_crank, by Gauss-Legendre of order 12 [rad].
+// Final angle of the shared problem slider_crank, by Gauss-Legendre of order 12 [rad].
 constexpr double angle_at_end = 18.394450982997107;
 
 void turn(Trial& t) {

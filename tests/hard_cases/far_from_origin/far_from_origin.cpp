@@ -1,4 +1,4 @@
-// 1000 km away: what is lost there is the place, never the joint.
+// 1000 km away: positions lose digits, joints do not.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// 10 000 rad/s: a wheel about its own axis, 167 rad a step; and what has to be resolved, at half a radian a step.
+// 10 000 rad/s: a wheel about its own axis, 167 rad a step; other spins at half a radian a step.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double fine = 5e-5;  // [s]
 
-// The rod swings as if the wheel did not turn, and the wheel turns on.
+// The rod swings as if the wheel did not rotate, and the wheel keeps its spin.
 void wheel(Trial& t) {
   Trial still(t.file, t.way);
   still.scene.bodies[1].definition.w = 0;
@@ -29,7 +29,7 @@ void wheel(Trial& t) {
   t.at_most("gap [m]", t.gap(), 1e-5);
 }
 
-// Thrown round a pin at its end: gravity is nothing beside that, it turns on evenly.
+// A rod with a fast spin about a pin at its end: gravity is negligible, so the spin is constant.
 void thrown(Trial& t) {
   t.scene.bodies.erase(t.scene.bodies.begin(), t.scene.bodies.begin() + 2);
   t.scene.joints.erase(t.scene.joints.begin(), t.scene.joints.begin() + 2);

@@ -1,4 +1,4 @@
-// A mass ratio of a million both ways through one body.
+// A mass ratio of a million on both sides of one body.
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::hard::feather_between_anvils {
@@ -8,11 +8,11 @@ void fall(Trial& t) {
   t.start();
   const Watch w = t.run(5);
   t.at_most("gap [m]", w.gap, 1e-3);
-  const double swing = 1000 * g * (0.5 + 2.5);  // what the anvils gain by hanging straight down [J]
+  const double swing = 1000 * g * (0.5 + 2.5);  // energy of the swing: the anvils' potential above the vertical [J]
   t.at_most("energy off, of the swing's", w.drift() / swing, 5e-3);
 }
 
-// Methods of low order: the energy of the swing is off by a share of the step.
+// Methods of low order: the energy of the swing has an error proportional to the step.
 void finer(Trial& t) {
   t.scene.settings.substeps = 32;
   fall(t);

@@ -1,4 +1,4 @@
-// Where two of three Cardan angles are one.
+// Two of the three Cardan angles coincide.
 #include <algorithm>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace cdot::hard::gimbal_lock {
 namespace {
 
-// The arm turns about one axis at 1 rad/s: the other two components of its orientation stay zero.
+// The arm rotates about one axis at 1 rad/s: the other two components of its orientation stay 0.
 void universal(Trial& t) {
   t.start();
   double locked = 0, off = 0;
@@ -22,7 +22,7 @@ void universal(Trial& t) {
   t.at_most("gap [m, rad]", w.gap, 1e-3);
 }
 
-// The locks let it go on about y, past 90 degrees to 172, and about nothing else.
+// The locks allow rotation about y only, past 90 degrees to 172.
 void six_dof(Trial& t) {
   t.start();
   double locked = 0;

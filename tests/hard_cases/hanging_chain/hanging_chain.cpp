@@ -1,4 +1,4 @@
-// 100 links between two fixed points, in their exact equilibrium: there they stay.
+// 100 links between two fixed points stay in their exact equilibrium.
 #include <algorithm>
 #include <cmath>
 

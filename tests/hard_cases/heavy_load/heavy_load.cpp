@@ -1,5 +1,5 @@
-// A light chain stiffened by the weight at its end: 1000 kg, then a million, on ten links of 1 kg: rods, which the
-// tension turns, and beads on bars, whose places it couples.
+// A light chain stiffened by the weight at its end: 1000 kg, then a million, on ten links of 1 kg: rods, which tension
+// rotates, and beads on bars, whose positions tension couples.
 #include "tests/hard_cases/trial.hpp"
 
 namespace cdot::hard::heavy_load {
@@ -30,7 +30,7 @@ void plain(Trial& t) {
   kick(t, mass);
   rest(t, mass);
 }
-// First order: what the energy swings by is a share of the step.
+// First order: the energy oscillates in proportion to the step.
 template <int mass>
 void finer(Trial& t) {
   t.scene.settings.substeps = 8;

@@ -1,4 +1,4 @@
-// Joints that contradict each other: no pose fits. The bodies come to rest, and stay there.
+// Contradicting joints: no pose satisfies C = 0. The bodies come to rest and stay there.
 #include <cmath>
 
 #include "tests/hard_cases/trial.hpp"
@@ -14,7 +14,7 @@ void settle(Trial& t) {
   t.at_most("energy after 1 s [J]", energy, 1e-6);
   t.at_most("its growth after that [J]", w.rise, 1e-12);
   t.at_most("gap moves by [m]", std::abs(t.gap() - gap), 1e-6);
-  if (t.way.solver == Solver::direct)  // shared by all three joints: that is the least sum of squares
+  if (t.way.solver == Solver::direct)  // the least sum of squares: all three joints share the error
     t.near("gap off 0.02 / 3 [m]", w.gap, 0.02 / 3, 1e-9, 1e-6);
   else t.at_most("gap [m]", w.gap, 0.02);
 }

@@ -1,5 +1,4 @@
-// A hanging chain at rest in steps of 1/30 s and 1/240 s at random: impulses kept for warm starting are of the wrong
-// size.
+// A hanging chain at rest in steps of 1/30 s and 1/240 s at random: the impulses for warm starting have the wrong size.
 #include <algorithm>
 #include <cmath>
 #include <random>

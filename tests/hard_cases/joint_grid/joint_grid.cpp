@@ -1,4 +1,4 @@
-// Almost twice as many pins as bodies: as many independent loops as bodies.
+// Almost twice as many pins as bodies, so as many independent loops as bodies.
 #include <cmath>
 
 #include "tests/hard_cases/trial.hpp"
@@ -34,7 +34,7 @@ void hang(Trial& t, int n, int steps) {
   const Watch w = t.run(steps * h);
   t.at_most("gap [m]", w.gap, 1e-2);
 }
-// 5 s, and as much of the whole grid as takes a few seconds of CPU time.
+// 5 s of a small grid, and a few CPU seconds of the whole grid.
 void small(Trial& t) { hang(t, 25, 300); }
 void whole(Trial& t) { hang(t, 100, t.way.single ? 2 : 12); }
 

@@ -1,4 +1,4 @@
-// A thousand rods, one from another, none of them in a loop: they hold as exactly as ten do.
+// A thousand rods in chains or trees without loops: the joints are as exact as with ten.
 #include <algorithm>
 #include <cmath>
 
@@ -10,16 +10,16 @@ namespace {
 constexpr int rods = 1000;
 
 struct Kind {
-  int branches;       // that hang from each rod
-  const char* joint;  // by which they do
+  int branches;       // rods that hang from each rod
+  const char* joint;  // their joint
 };
 constexpr Kind pin_chain{1, "revolute"}, pin_tree{2, "revolute"}, ball_chain{1, "spherical"},
     cross_tree{2, "universal"};
 
-// Against the vertical, where they are let go [rad].
+// Angle to the vertical at the start [rad].
 double slant_of(int rod) { return rod % 2 == 0 ? 0.4 : -0.3; }
 
-// From where it hangs, in the plane of x and up.
+// Places a rod below its joint, in the plane of x and the vertical.
 void place(SceneBody& rod, Dimension dimension, const Vec3& top, double slant) {
   const double x = top[0] + std::sin(slant) / 2, up = top[1] - std::cos(slant) / 2;
   if (dimension == Dimension::planar) {
@@ -45,7 +45,7 @@ void add_joint(Trial& t, const Kind& kind, int a, int b, double slant) {
   t.scene.joints.push_back(joint);
 }
 
-// Returns what they have above hanging straight down [J].
+// Returns the potential energy above the vertical pose [J].
 double hang(Trial& t, const Kind& kind, bool slanting) {
   const SceneBody one = t.scene.bodies[0];
   std::vector<Vec3> ends;
@@ -93,7 +93,7 @@ Case swaying(const char* scene, const Kind& kind, const std::string& variant) {
   return {"long_chains_and_trees", scene, direct(), [kind](Trial& t) { sway(t, kind); }, variant, true};
 }
 
-// A thousand metres down floats are 6e-5 m apart: RATTLE's drift onto the joints does not end there.
+// A thousand metres down the spacing of floats is 6e-5 m: RATTLE's drift does not converge there.
 Ways but_rattle_in_float() { return without(direct(), {Integrator::rattle}) + in_double(direct()); }
 
 const Register all[] = {Register(resting("planar", direct(), pin_chain, "chain")),

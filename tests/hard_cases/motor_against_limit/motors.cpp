@@ -1,4 +1,4 @@
-// Rows that want different things of one coordinate: the limit wins, and nothing shakes.
+// Rows with different goals for one coordinate: the limit wins without oscillation.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr double degree = pi / 180;
 
-// Without the motor of any strength: that and a limit cannot both be had.
+// Without the motor of unlimited force, which contradicts a limit.
 void fight(Trial& t) {
   t.scene.joints.erase(t.scene.joints.begin() + 1);
   t.start();

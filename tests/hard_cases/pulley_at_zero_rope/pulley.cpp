@@ -1,4 +1,4 @@
-// One side of a pulley is pulled up to its wheel, where its rope has no direction, and through it.
+// One side of a pulley is pulled up to its wheel, where the rope has no direction, and past it.
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// 20 rows of rank 5: the door swings, and is carried, as by one hinge.
+// 20 rows of rank 5: the door swings, and its load is carried, as with one hinge.
 #include <array>
 #include <cmath>
 
@@ -7,7 +7,7 @@
 namespace cdot::hard::redundant_hinges {
 namespace {
 
-// The sum over all hinges of what they exert on the door.
+// The sum of all hinges' forces on the door.
 std::array<double, 3> reaction(const Trial& t) {
   return t.ask([](const auto& world) {
     std::array<double, 3> sum{};

@@ -1,4 +1,4 @@
-// Joints between bodies whose frames are turned against each other by any multiple of 45 degrees.
+// Joints between bodies whose frames differ by all multiples of 45 degrees.
 #include <algorithm>
 #include <cmath>
 
@@ -16,7 +16,7 @@ void stay(Trial& t) {
   for (std::size_t k = 0; k < end.bodies.size(); ++k) {
     const BodyState &a = start.bodies[k], &b = end.bodies[k];
     moved = std::max(moved, std::hypot(a.x - b.x, a.y - b.y, a.z - b.z));
-    // |q - p| is half of a small turn's angle.
+    // |q - p| is half the angle of a small rotation.
     turned =
         std::max(turned, 2 * std::hypot(std::hypot(a.e0 - b.e0, a.e1 - b.e1), std::hypot(a.e2 - b.e2, a.e3 - b.e3)));
   }

@@ -1,4 +1,4 @@
-// Exact copies of a joint: 18 of 20 rows, or 45 of 50, say nothing new.
+// Exact copies of a joint: 18 of 20 rows, or 45 of 50, are redundant.
 #include <algorithm>
 #include <cmath>
 

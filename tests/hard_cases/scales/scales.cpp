@@ -1,4 +1,4 @@
-// Equations of motion have no scale: neither may thresholds.
+// Equations of motion have no scale, so thresholds must not have one.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace cdot::hard::scales {
 namespace {
 
-// Against the same mechanism of metres and kilograms.
+// Compares with the same mechanism in metres and kilograms.
 void swing(Trial& t, double length, double mass) {
   Trial usual(t.file, t.way);
   usual.start();
@@ -37,7 +37,7 @@ struct Scale {
 
 struct RegisterAll {
   RegisterAll() {
-    // In float the first-order steps do not hold everywhere: `--try scales` has where.
+    // In float the first-order methods fail at some scales; `--try scales` lists them.
     const Ways small = in_double(direct()) + only(direct(), {Integrator::rattle, Integrator::rk4, Integrator::dop853});
     const Ways large = small + only(direct(), {Integrator::euler});
     const Scale scales[] = {{"1e-6 m, 1e-9 kg", 1e-6, 1e-9, small}, {"1e-6 m, 1e9 kg", 1e-6, 1e9, small},

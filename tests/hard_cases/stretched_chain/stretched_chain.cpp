@@ -9,7 +9,7 @@ void snap(Trial& t) {
   const Watch w = t.run(1);
   t.at_most("gap after 1 s [m]", t.gap(), 5e-3);
   t.at_most("speed [m/s]", w.speed, 40);
-  // Of what the chain has above where it hangs straight down.
+  // Potential energy of the chain above the vertical pose.
   const double mass = 40 * 0.12566370614359174;
   t.at_most("energy gained, of the fall's", w.rise / (mass * g * 40), 0.01);
 }

@@ -1,4 +1,4 @@
-// A body spun about its middle axis turns over, at known times.
+// A body that spins about its intermediate axis turns over at known times.
 #include <cmath>
 #include <vector>
 

@@ -1,4 +1,4 @@
-// The bending moment of ten blocks goes through ten welds.
+// Ten welds carry the bending moment of ten blocks.
 #include <cmath>
 
 #include "tests/hard_cases/trial.hpp"

@@ -1,4 +1,4 @@
-// Where the points of a distance joint meet, its direction is 0/0.
+// The direction of a distance joint is 0/0 where its points coincide.
 
 #include "tests/hard_cases/trial.hpp"
 
@@ -11,7 +11,7 @@ void coincident_start(Trial& t) {
   t.at_most("gap [m]", w.gap, 1e-4);
 }
 
-// A length of 0 has no direction where it holds: refused, with what to write instead.
+// A length of 0 has no direction on C = 0: refused, with a replacement.
 void length_zero(Trial& t) {
   for (SceneJoint& joint : t.scene.joints)
     for (NamedValue& value : joint.definition.parameters)

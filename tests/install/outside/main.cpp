@@ -1,4 +1,4 @@
-// A pendulum on a shipped joint, a bead on a joint of this project's own; both keep their energy and C.
+// A pendulum on a shipped joint, a bead on this project's own joint; both conserve energy and keep C = 0.
 #include <cmath>
 #include <cstdio>
 

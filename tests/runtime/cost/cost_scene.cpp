@@ -1,5 +1,5 @@
-// A small program whose steps cost_test.cpp counts instruction by instruction. Built twice: with
-// CDOT_LINK_EFFECTS the code of the effects is linked in, and used if asked to.
+// A small program whose steps cost_test.cpp counts instruction by instruction. Built twice: CDOT_LINK_EFFECTS links the
+// code of the effects; an argument selects an effect.
 //
 //   cost_scene direct|iterative PENDULUMS [none|limit|motor|friction|spring|breaking|sleep] [LINKS]
 #include <cstdio>
@@ -15,7 +15,7 @@ namespace {
 
 using cdot::World;
 
-// So many links from the ground; returns its last joint.
+// Adds a pendulum of `links` links; returns its last joint.
 int add_pendulum(World<double>& world, double x, bool hanging, int links) {
   int before = world.ground(), joint = -1;
   for (int i = 0; i < links; ++i) {
@@ -32,7 +32,7 @@ int add_pendulum(World<double>& world, double x, bool hanging, int links) {
 }
 
 #ifdef CDOT_LINK_EFFECTS
-// Each so weak or so far away that the motion stays what it was, to the bit.
+// Each effect is so weak or so far away that the motion keeps its bits.
 void add_effect(World<double>& world, int joint, const std::string& effect) {
   if (effect == "limit") add_limit(world, joint, "angle", {.lower = -1e9, .upper = 1e9});
   if (effect == "motor") add_motor(world, joint, "angle", {.speed = 1, .max_force = 0});
@@ -45,7 +45,7 @@ void add_effect(World<double>& world, int joint, const std::string& effect) {
 
 }  // namespace
 
-// What is counted. Not inlined and not renamed, so that valgrind finds it.
+// The counted function: not inlined and not mangled, so valgrind finds its name.
 extern "C" __attribute__((noinline)) void measured_steps(World<double>& world) {
   for (int i = 0; i < 20; ++i) world.step(1e-3);
 }

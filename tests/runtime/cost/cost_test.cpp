@@ -1,5 +1,5 @@
-// Only what a scene calls for costs anything: instructions of step(), counted by callgrind,
-// compared exactly.
+// A scene pays only for the features that it uses: callgrind counts the instructions of step(), and the counts must be
+// equal.
 #include <array>
 #include <cstdio>
 #include <fstream>
@@ -58,7 +58,7 @@ TEST(Cost, EffectsNotAskedForCostNoInstruction) {
   }
 }
 
-// What an effect in one joint adds does not depend on how many other joints there are.
+// The cost of an effect in one joint does not depend on the number of other joints.
 TEST(Cost, AnEffectAddsToItsOwnJointAlone) {
   for (const std::string& solver : both) {
     const long few = count(with, solver + "2").instructions;
@@ -73,8 +73,7 @@ TEST(Cost, AnEffectAddsToItsOwnJointAlone) {
   }
 }
 
-// A direct solve of a chain: no fill, whatever its length. Rounds of Newton differ a little with the
-// motion.
+// A direct solve of a chain has no fill-in at any length. The number of Newton rounds varies a little with the motion.
 TEST(Cost, AChainCostsInProportionToItsLength) {
   long instructions[3];
   for (int k = 0; k < 3; ++k) {

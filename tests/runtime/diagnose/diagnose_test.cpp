@@ -1,4 +1,4 @@
-// What a diagnosis says, against what is known in closed form or from the dense K.
+// Compares diagnoses with closed forms and with the dense K.
 #include <Eigen/Dense>
 #include <fmt/core.h>
 
@@ -68,8 +68,8 @@ TEST(Diagnose, StiffestMotionOfAHangingThread) {
   check_hanging_beads<float>(2e-2);
 }
 
-// A rod from its end: omega^2 = 3 g / 2 l, in the plane and in space, the same with the iterative solver. Upside down
-// it does not swing, it falls.
+// A rod that hangs by its end: omega^2 = 3 g / 2 l, in the plane and in space, with both solvers. Upside down omega^2
+// is negative: the rod falls.
 TEST(Diagnose, StiffestMotionOfAPendulum) {
   for (const auto& [name, solver] : solvers) {
     World<double> world(settings(solver, Drift::projection, -9.81));
@@ -81,7 +81,7 @@ TEST(Diagnose, StiffestMotionOfAPendulum) {
   }
 }
 
-// omega^2 = k (1 / m_a + 1 / m_b), of the lighter.
+// omega^2 = k (1 / m_a + 1 / m_b), at the lighter body.
 TEST(Diagnose, StiffestMotionOfASpring) {
   World<double> world(settings(Solver::direct));
   const int heavy = world.add_body({.mass = 3, .inertia = 1}),
@@ -95,8 +95,8 @@ TEST(Diagnose, StiffestMotionOfASpring) {
   EXPECT_EQ(found.islands[0].rows, 0);
 }
 
-// On a coordinate, with a damper: sqrt(k / I) of a rod about its end where the spring's force is taken as it is,
-// nothing where it is solved for.
+// A spring on a coordinate, with a damper: omega = sqrt(k / I) of a rod about its end for methods with explicit spring
+// forces, 0 for methods that solve for them.
 TEST(Diagnose, StiffestMotionOfASpringOnACoordinate) {
   for (const auto& [name, integrator] : integrators) {
     Settings s = settings(Solver::direct);
@@ -109,9 +109,9 @@ TEST(Diagnose, StiffestMotionOfASpringOnACoordinate) {
   }
 }
 
-// The linearly implicit step takes the tension that turns rods and that which pulls beads into line: nothing is left
-// that swings by more than 1 rad per step. To the sweeps of the other solver beads stay as stiff as they are.
-TEST(Diagnose, KnowsWhatTheImplicitStepTakesOff) {
+// The linearly implicit step removes the stiffness of tension on rods and on beads: no oscillation exceeds 1 rad per
+// step. With the iterative solver the stiffness on beads remains.
+TEST(Diagnose, SubtractsTheStiffnessThatTheImplicitStepRemoves) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);
   s.integrator = Integrator::implicit;
   constexpr double step = 1.0 / 60;
@@ -162,7 +162,7 @@ TEST(Diagnose, ConditionIsThatOfTheDenseK) {
   }
 }
 
-// Ten revolutes in one place: 18 of 20 rows say nothing new, each with the joint that says it already.
+// Ten revolutes in one place: 18 of 20 rows are redundant, and each names the joint that it repeats.
 TEST(Diagnose, NamesRedundantRows) {
   World<double> world(settings(Solver::direct));
   const int body = world.add_body(rod(0, 0, 0));
@@ -177,8 +177,8 @@ TEST(Diagnose, NamesRedundantRows) {
   }
 }
 
-// A side 0.02 m too long: whichever row is said to be too much misses the others by that, and all three take part.
-TEST(Diagnose, TellsConflictsByHowMuch) {
+// A side is 0.02 m too long: the contradicting row is off by that length, and all three joints take part.
+TEST(Diagnose, ReportsTheSizeOfConflicts) {
   World<double> world(settings(Solver::direct));
   const auto side = [&](double x, double length) {
     return world.add_body({.x = x, .mass = 1, .inertia = length / 12});
@@ -201,7 +201,7 @@ TEST(Diagnose, TellsConflictsByHowMuch) {
   }
 }
 
-// Looking changes nothing: not a bit, in any method, of the state or of the run.
+// A diagnosis changes no bit of the state or of the run, with any method.
 template <class S, class Build>
 void check_that_looking_is_free(Build build) {
   const int methods = for_each_method(settings(Solver::direct, Drift::projection, -9.81),

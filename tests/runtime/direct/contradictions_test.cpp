@@ -1,5 +1,5 @@
-// Joints that cannot all hold: the bodies rest where the sum of the squares of what is left of C is least, whichever
-// row elimination meets last, and nothing else about their motion is disturbed.
+// Contradicting joints: the bodies rest at the least sum of squares of C for every order of elimination, and the other
+// motion is undisturbed.
 #include <cmath>
 #include <fmt/core.h>
 
@@ -46,7 +46,7 @@ TEST(Contradiction, IsSharedByTheJointsOfATriangle) {
   }
 }
 
-// Falling, it falls like a stone: the contradiction is an inner matter.
+// The triangle's centre of mass falls freely: the contradiction adds no momentum.
 TEST(Contradiction, MovesNoCentreOfMass) {
   for (const Integrator integrator : all_integrators) {
     Settings s = settings(Solver::direct, Drift::projection, -9.81);
@@ -64,7 +64,7 @@ TEST(Contradiction, MovesNoCentreOfMass) {
   }
 }
 
-// A door whose four hinges do not line up: no small displacement or turn of the door leaves smaller squares.
+// A door whose four hinges do not line up: no small displacement or rotation of the door reduces the sum of squares.
 TEST(Contradiction, OfADoorOnCrookedHingesIsLeast) {
   for (const Integrator integrator : all_integrators) {
     Settings s = settings(Solver::direct, Drift::projection, -9.81);

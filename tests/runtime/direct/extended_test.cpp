@@ -1,5 +1,5 @@
-// Worlds in extended precision: closer to closed forms than any double is. Where long double is double, as with some
-// compilers, there is nothing to show.
+// Worlds in extended precision are closer to closed forms than any double. The tests do nothing if long double equals
+// double.
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -23,7 +23,7 @@ constexpr bool finer = std::numeric_limits<Real>::digits > std::numeric_limits<d
 
 // --- the factor ---
 
-// K = J J^T of a chain of blocks with as many rows; each has columns of its own and some in common with the next.
+// K = J J^T of a chain of blocks with as many rows; each has its own columns and shares columns with the next.
 struct Chain {
   BasicLdlt<Real> ldlt;
   Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> K;
@@ -90,7 +90,7 @@ struct Jacobi {
 
 constexpr double mass = 1.5, inertia = 0.3, length = 0.75, gravity = 9.75, step = 1.0 / 128;
 
-// A body let go level, hung up `length` beside its centre.
+// A body released level, on a pin `length` beside its centre.
 template <class T>
 World<T> pendulum() {
   World<T> world({.integrator = Integrator::dop853, .gravity_y = -gravity});
@@ -142,7 +142,7 @@ TEST(Extended, APendulumKeepsItsPlaceAndItsEnergy) {
 
 // --- the symmetric top without torque ---
 
-// It goes round its angular momentum L at |L| / I1, and about its own axis at (1 - I3 / I1) w3.
+// It precesses about its angular momentum L at |L| / I1 and rotates about its own axis at (1 - I3 / I1) w3.
 constexpr double across = 0.5, along = 0.25, spins[] = {0.75, 0, 2};
 
 struct Turn {

@@ -1,5 +1,5 @@
-// Grids of discs with so many redundant rows that elimination cannot tell which: what contradicts is shared by all as
-// in small systems, and a saved state goes on with the same bits.
+// Grids of discs with so many redundant rows that elimination cannot identify them. Contradictions are distributed as
+// in small systems, and a saved state continues with the same bits.
 #include <cmath>
 #include <fmt/core.h>
 
@@ -13,8 +13,8 @@ namespace {
 constexpr int side = 25;  // 618 discs that move, 2388 rows, 534 of them redundant
 constexpr double h = 1.0 / 60;
 
-// Pinned to the right and the lower neighbour, seven at the top standing still, the pin right of the middle 1 cm beside
-// its place. Returns the discs, and the pins of each.
+// Each disc is pinned to its right and its lower neighbour. Seven discs at the top are static; the pin right of the
+// middle is 1 cm off. Returns the discs, and the pins of each.
 template <class T>
 std::vector<std::pair<int, std::vector<int>>> add_grid(World<T>& world) {
   const double radius = 0.4, mass = pi * radius * radius;
@@ -47,7 +47,7 @@ double squares(const World<T>& world, const std::vector<int>& joints) {
   return sum;
 }
 
-// No small displacement or turn of any one disc leaves smaller squares, and what is left stays the same.
+// No small displacement or rotation of a single disc reduces the sum of squares, and the remaining C stays constant.
 TEST(LargeGrid, WithAWrongPinRestsWhereSquaresAreLeast) {
   World<double> world(settings(Solver::direct, Drift::projection, -9.81));
   const auto discs = add_grid(world);
@@ -76,7 +76,7 @@ TEST(LargeGrid, WithAWrongPinRestsWhereSquaresAreLeast) {
 
 TEST(LargeGrid, GoesOnFromASnapshotWithTheSameBits) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);
-  s.integrator = Integrator::rattle;  // whose step begins with the factor that the one before ended with
+  s.integrator = Integrator::rattle;  // its step begins with the last step's factor
   World<double> one(s), other(s);
   add_grid(one), add_grid(other);
   one.step(h);

@@ -17,7 +17,7 @@ struct Joints {
   std::vector<std::pair<int, int>> bodies;  // of each joint; -1: the ground
 };
 
-// A system with its K also as a dense matrix, in the order of the unknowns.
+// A system and its K as a dense matrix, in the order of the unknowns.
 struct Problem {
   Ldlt ldlt;
   Eigen::MatrixXd J, K;
@@ -59,7 +59,7 @@ void assemble(Problem& problem) {
       if (problem.K(i, j) != 0) problem.ldlt.values()[problem.ldlt.place(i, j).at] = problem.K(i, j);
 }
 
-// Sizes of all kinds in a connected tangle.
+// Joints of different sizes in a connected graph.
 Joints tangle(int count, int bodies, std::mt19937& random) {
   const int sizes[] = {1, 2, 3, 5, 6, 4, 9};
   Joints joints;
@@ -94,7 +94,7 @@ std::vector<char> free(const Problem& problem) {
   return std::vector<char>(static_cast<size_t>(problem.ldlt.size()), 0);
 }
 
-// As many columns a body as make every row independent.
+// Enough columns per body to make every row independent.
 constexpr int ample = 40;
 
 TEST(Ldlt, AgreesWithADenseSolve) {
@@ -151,8 +151,8 @@ TEST(Ldlt, RowsThatAreOutAndAddedDiagonals) {
   }
 }
 
-// More rows than the bodies have freedom: as many are dropped as the rank lacks, also where small
-// pivots have magnified the round-off, and what is left solves every consistent system.
+// More rows than degrees of freedom: the number of dropped rows is the rank deficiency, also if small pivots magnify
+// round-off. The remaining rows solve every consistent system.
 TEST(Ldlt, DependentRowsAreCountedAndDropped) {
   std::mt19937 random(3);
   int inexact = 0;
@@ -176,10 +176,10 @@ TEST(Ldlt, DependentRowsAreCountedAndDropped) {
   EXPECT_LE(inexact, 2);
 }
 
-// A row that was redundant from the start stays dropped while the joints are a little open, as it
-// would lock what moves; a row that was not is kept down to round-off; and where the neighbour that
-// said the same goes, it is needed.
-TEST(Ldlt, WhatIsRedundantByDesignStaysDropped) {
+// A row that was redundant from the start stays dropped at small errors of C, because it would lock the mechanism. A
+// row that was independent stays in use down to round-off. After the removal of the neighbour that it repeated, the
+// dropped row is used again.
+TEST(Ldlt, RowsRedundantByDesignStayDropped) {
   std::mt19937 random(8);
   Joints joints = chain(4, 3);
   Problem problem = random_problem(joints, 6, random);
@@ -208,7 +208,7 @@ TEST(Ldlt, WhatIsRedundantByDesignStaysDropped) {
   EXPECT_EQ(dependent(passing, 1e-3, all), 0);
 }
 
-// Chains, combs and trees have an order that couples nothing but what K couples.
+// Chains, combs and trees have an order without fill-in.
 TEST(Ldlt, ChainsAndTreesFillNothingIn) {
   std::mt19937 random(5);
   Joints comb = chain(20, 2), tree = chain(1, 3);
@@ -246,8 +246,8 @@ TEST(Ldlt, AChainCostsInProportionToItsLength) {
   }
 }
 
-// Discs in a square, each joined to its right and its lower neighbour, seven of them at the top on the ground. Joints
-// of two rows that share a disc are coupled.
+// Discs in a square, each joined to its right and its lower neighbour, seven at the top joined to the ground. Joints
+// have two rows; joints that share a disc are coupled.
 long multiplications_of_grid(int n) {
   std::vector<std::vector<int>> joints_at(static_cast<size_t>(n * n));
   std::vector<int> rows;
@@ -272,7 +272,7 @@ long multiplications_of_grid(int n) {
   return ldlt.multiplications();
 }
 
-// By nested dissection a grid of n bodies costs in proportion to n^1.5.
+// With nested dissection the cost of a grid of n bodies grows as n^1.5.
 TEST(Ldlt, AGridCostsLittleMoreThanByDissection) {
   const long small = multiplications_of_grid(25), middle = multiplications_of_grid(50),
              large = multiplications_of_grid(100);
@@ -285,8 +285,7 @@ TEST(Ldlt, AGridCostsLittleMoreThanByDissection) {
   EXPECT_LT(exponent(middle, large, 4), 1.6);
 }
 
-// From both ends: the middle joint comes last, and its first neighbour is not the one before it in
-// the order.
+// The middle joint is eliminated last, and its first neighbour is not its predecessor in the order.
 TEST(Ldlt, AChainIsEliminatedFromBothItsEnds) {
   std::mt19937 random(7);
   const Problem problem = random_problem(chain(9, 2), 3, random);
@@ -295,9 +294,9 @@ TEST(Ldlt, AChainIsEliminatedFromBothItsEnds) {
   EXPECT_EQ(place, (std::vector<int>{0, 2, 4, 6, 8, 7, 5, 3, 1}));
 }
 
-// Rows e0 + eps (e1 + ... + ek): each leaves eps^2 of itself beside the one before, and none of them depends on others.
-// What each pivot adds to the noise of those to come doubles it from row to row, to 5e-12 at the tenth: above every
-// pivot. Only the row before counts: y = (0, ..., 0, 1). A copy of the last depends on it all the same.
+// Rows e0 + eps (e1 + ... + ek): each pivot is eps^2, and all rows are independent. The bound on noise doubles from row
+// to row, to 5e-12 at the tenth row, above every pivot. The true noise comes only from the previous row: y = (0, ...,
+// 0, 1). A copy of the last row is redundant.
 TEST(Ldlt, RowsAreNotDroppedForNoiseThatIsOverstated) {
   constexpr int rows = 10;
   const double eps = std::sqrt(5e-13);

@@ -1,5 +1,5 @@
-// Mechanisms with more rows than their motion needs: the surplus is counted, dropped at every step
-// alike, and what is left moves as if it had never been there.
+// Mechanisms with redundant rows: every step counts and drops the same number of rows, and the motion is that without
+// them.
 #include <fmt/core.h>
 #include <set>
 
@@ -9,7 +9,7 @@
 namespace cdot::test {
 namespace {
 
-// How many rows were dropped, over all steps of a run.
+// Numbers of dropped rows over all steps of a run.
 template <class S>
 std::set<int> dropped_rows(BasicWorld<S>& world, double duration, double h) {
   std::set<int> counts;
@@ -29,14 +29,14 @@ TEST(Redundancy, RotatingSquaresThroughTheFlatPose) {
       add_rotating_squares(world, 5, 0.3, -1);
       EXPECT_EQ(dropped_rows(world, 0.6, h), std::set<int>{9}) << h;
       EXPECT_LT(world.pose(0).angle, -0.2);
-      for (int i = 2; i < 25; ++i)  // alike on a chessboard's black, and on its white
+      for (int i = 2; i < 25; ++i)  // equal on all black squares of a chessboard, and on all white ones
         EXPECT_NEAR(world.pose(i).angle, world.pose(i % 2).angle, 1e-10);
     }
   }
 }
 
-// The same swinging and hit off its symmetry. On its way it comes so close to poses without rank
-// that single rows almost depend on those before them, and round-off grows in those after.
+// The same mechanism after an asymmetric impulse. Its motion passes near singular poses: single rows are almost
+// redundant, and round-off grows in later rows.
 TEST(Redundancy, RotatingSquaresNearPosesWithoutRank) {
   for (double h : {1.0 / 60, 1.0 / 240, 1.0 / 960}) {
     for (Drift drift : {Drift::none, Drift::baumgarte, Drift::projection}) {
@@ -53,9 +53,8 @@ TEST(Redundancy, RotatingSquaresNearPosesWithoutRank) {
   }
 }
 
-// A planar four-bar and the same with hinges in space, where 3 of 20 rows say nothing new: hit out
-// of its plane, so that open joints tilt the axes against each other. All 20 rows together would
-// let nothing move then.
+// A planar four-bar and its twin with hinges in space, where 3 of 20 rows are redundant. An impulse out of the plane
+// opens the joints and tilts the axes. All 20 rows together would then lock the mechanism.
 TEST(Redundancy, HingeLoopMovesLikeItsPlanarTwin) {
   for (Drift drift : {Drift::baumgarte, Drift::projection}) {
     SpatialWorld<double> space(settings(Solver::direct, drift, -9.81));
@@ -72,8 +71,7 @@ TEST(Redundancy, HingeLoopMovesLikeItsPlanarTwin) {
   }
 }
 
-// Four equal bars carry a platform: 2 of 16 rows are redundant, and where all bars lie flat a third
-// one is.
+// Four equal bars carry a platform: 2 of 16 rows are redundant, and 3 if all bars lie flat.
 template <class T>
 void add_parallel_bars(World<T>& world) {
   const int ground = world.ground();

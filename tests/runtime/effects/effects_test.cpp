@@ -1,4 +1,4 @@
-// Effects on coordinates against what a person computes by hand.
+// Compares effects on coordinates with results by hand.
 #include <cdot/methods.hpp>
 
 #include "tests/runtime/support.hpp"
@@ -104,7 +104,7 @@ TEST(Limit, OneSideOnlyAndNoPullFromIt) {
   }
 }
 
-// Both ends the same: held from both sides, and let go of by nobody.
+// Equal ends lock the coordinate in both directions.
 TEST(Limit, WithoutRoomLocks) {
   for (Solver solver : both) {
     for (Drift drift : {Drift::baumgarte, Drift::projection}) {
@@ -202,7 +202,7 @@ TEST(BreakingLoad, OfOneJointAmongMany) {
     const auto impulse = world.impulse(2);
     EXPECT_EQ(impulse[0], 0);
     EXPECT_LT(world.worst_position_error().value, 1e-3);
-    world.add_body({.mass = 1});  // and the topology is made anew without the broken joint
+    world.add_body({.mass = 1});  // analyses the islands again, without the broken joint
     run(world, 0.5, 0.005);
     EXPECT_EQ(world.island_count(), 3);
     EXPECT_LT(world.pose(rods[4]).y, -2);
@@ -231,7 +231,7 @@ TEST(Effects, MistakesAreRefused) {
   }
 }
 
-// dw/dt = F / I by every method; and F C is energy, which second order and more keep.
+// dw/dt = F / I with every method. F C counts as energy, which methods of second and higher order conserve.
 TEST(Load, TurnsAWheelByAllMethodsAndKeepsTheEnergy) {
   for (Solver solver : both)
     for (const auto& [name, integrator] : integrators) {
@@ -261,7 +261,7 @@ TEST(Load, HangsAMassOnASpring) {
   EXPECT_NEAR(world.coordinate(joint, "angle"), 0.3, 1e-9);
 }
 
-// A damped spring on an angle: every way of second order or more comes to the same motion.
+// A damped spring on an angle: all methods of second and higher order give the same motion.
 TEST(Effects, ADampedSpringMovesTheSameByEveryIntegrator) {
   const auto end_by = [](Integrator integrator, Solver solver) {
     Settings s = settings(solver, Drift::projection, -9.81);

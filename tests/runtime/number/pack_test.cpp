@@ -27,7 +27,7 @@ bool same_bits(T a, T b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
-// Numbers around zero, among them those that divisions and roots dislike.
+// Numbers around zero, with special cases of division and square root.
 template <class T>
 T number(int i) {
   const T special[] = {T(0), -T(0), T(1), T(-1), std::numeric_limits<T>::min(), T(1e30)};

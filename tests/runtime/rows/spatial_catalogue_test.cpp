@@ -1,5 +1,5 @@
-// Every joint in space runs: between bricks in free space, moved onto its rows, pushed, by both
-// solvers. Momentum is that of the push, unless the joint holds on to the world.
+// Runs every joint in space with both solvers, between bricks in free space: projected onto C = 0, then pushed. The
+// momentum is that of the push, unless the joint connects to the world.
 #include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {
@@ -15,7 +15,7 @@ bool holds_the_world(const JointType& type) {
 
 class Catalogue : public testing::TestWithParam<const JointType*> {};
 
-TEST_P(Catalogue, RunsAndKeepsWhatItMust) {
+TEST_P(Catalogue, RunsAndConservesMomentum) {
   const JointType& type = *GetParam();
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     Settings s = settings(solver);

@@ -1,4 +1,4 @@
-// Joints in space: what they conserve, what they carry, and angles beyond half a turn.
+// Joints in space: conservation laws, loads, and angles beyond half a turn.
 #include "tests/runtime/spatial_support.hpp"
 
 namespace cdot::test {
@@ -15,7 +15,7 @@ TEST(SpatialJoints, MomentumOfAFreeMechanism) {
       run(world, 3, 1.0 / 240);
       const SpatialMomentum after = momentum(world);
       EXPECT_LT(norm(after.linear - before.linear), 1e-11);
-      // The points of a joint coincide only where gaps are closed: else impulses have a lever.
+      // Without projection the two points of a joint differ, and impulses have a lever arm.
       if (solver == Solver::direct && drift == Drift::projection) {
         EXPECT_LT(norm(after.angular - before.angular), 1e-12);
       }
@@ -23,7 +23,7 @@ TEST(SpatialJoints, MomentumOfAFreeMechanism) {
   }
 }
 
-// A heavy brick on a ball: wavers at first order, and does not drift.
+// A heavy brick on a ball joint: the energy oscillates at first order and does not drift.
 TEST(SpatialJoints, EnergyOfAPendulumHasNoDrift) {
   double before = 0;
   for (double h : {2e-3, 1e-3}) {
@@ -61,8 +61,8 @@ TEST(SpatialJoints, ReactionsOfAHangingChain) {
   }
 }
 
-// An angle that is told by axes has no value where these point against each other, and none that a motor could act on:
-// refused. Where it is only small, large, or has a kink, effects are taken.
+// An angle between axes jumps where the axes are antiparallel: effects on it are refused. Effects are accepted at small
+// and large angles and at kinks.
 template <class T>
 std::string refusal_of(const char* type, const char* coordinate, double lean) {
   SpatialWorld<T> world(settings(Solver::direct));
@@ -95,8 +95,8 @@ TEST(SpatialJoints, AnAngleWithoutValueIsRefused) {
   check(refusal_of<float>);
 }
 
-// The same of a row, and of parameters that change while a World runs: what was stays.
-TEST(SpatialJoints, ChangesThatTakeAnAngleItsValueAreRefused) {
+// The same for a row and for changed parameters of a running World: a refusal changes nothing.
+TEST(SpatialJoints, ChangesThatMakeAnAngleJumpAreRefused) {
   SpatialWorld<double> world(settings(Solver::direct));
   const int body = world.add_body(brick(0.5, 0, 0));
   const int wheel = world.add_body(brick(0, 2, 0));
@@ -105,7 +105,7 @@ TEST(SpatialJoints, ChangesThatTakeAnAngleItsValueAreRefused) {
   EXPECT_THROW(join(world, "gear", body, wheel, {{"fa", up}, {"fb", up}, {"ga", down}, {"gb", up}, {"ratio", {1}}}),
                Error);
   EXPECT_EQ(world.joint_count(), 1);
-  world.set_parameters(hinge, {{"fb", down}});  // nothing acts on its angle
+  world.set_parameters(hinge, {{"fb", down}});  // no effect acts on its angle
   world.set_parameters(hinge, {{"fb", up}});
   add_motor(world, hinge, "angle", {.speed = 1});
   EXPECT_THROW(world.set_parameters(hinge, {{"fb", down}}), Error);
@@ -122,7 +122,7 @@ TEST(SpatialJoints, AnglesGoOnBeyondHalfATurn) {
     add_motor(world, hinge, "angle", {.speed = 5, .max_force = 20});
     add_limit(world, hinge, "angle", {.lower = -1, .upper = 19});
     run(world, 2, 0.005);
-    EXPECT_NEAR(world.coordinate(hinge, "angle"), 9.7, 0.1);  // 10 but for the start
+    EXPECT_NEAR(world.coordinate(hinge, "angle"), 9.7, 0.1);  // 10 except for the start
     run(world, 3, 0.005);
     EXPECT_NEAR(world.coordinate(hinge, "angle"), 19, 1e-6);
     EXPECT_NEAR(world.coordinate_rate(hinge, "angle"), 0, 1e-9);
@@ -146,7 +146,7 @@ TEST(SpatialJoints, AGearCountsTurns) {
   EXPECT_NEAR(world.velocity(a).wz, 4, 1e-9);
   EXPECT_NEAR(world.velocity(b).wz, -1.6, 1e-9);
   EXPECT_LT(std::abs(world.position_error(gear)[0]), 1e-9);
-  EXPECT_NEAR(world.pose(b).xx, std::cos(32.0), 0.05);  // but for the first step's start
+  EXPECT_NEAR(world.pose(b).xx, std::cos(32.0), 0.05);  // except for the first step
 }
 
 TEST(SpatialJoints, EqualBitsOnRepetition) {
@@ -168,7 +168,7 @@ TEST(SpatialJoints, InFloats) {
   EXPECT_LT(world.worst_position_error().value, 1e-3);
 }
 
-// A triad from its x axis alone, from two axes, and from three.
+// A triad given by one axis, by two axes and by three.
 TEST(SpatialJoints, FramesInEveryWayOfGivingThem) {
   SpatialWorld<double> world;
   const int body = world.add_body(brick(1, 0, 0));
@@ -195,8 +195,7 @@ TEST(SpatialJoints, FramesInEveryWayOfGivingThem) {
   EXPECT_THROW(frame({0, 0}), Error);
 }
 
-// Six degrees of freedom, each locked, free or limited, against the joints that have just those
-// rows.
+// six_dof with each coordinate locked, free or limited, compared with the joints of the same rows.
 struct SixDof {
   const char* like;
   std::vector<const char*> free;
@@ -265,7 +264,7 @@ TEST(SpatialJoints, SixDofStaysWithinItsLimits) {
   }
 }
 
-// Heavy loads on light links in space: quiet with the geometric stiffness.
+// Heavy loads on light links in space stay stable with the geometric stiffness.
 TEST(SpatialJoints, GeometricStiffnessHoldsAHeavyLoad) {
   Settings s = settings(Solver::direct);
   s.gravity_z = -9.81;

@@ -1,4 +1,4 @@
-// Settings::kernels: the same impulses by three ways, and what the robust one is for.
+// Settings::kernels: three ways give the same impulses; a case that only `robust` solves.
 #include <Eigen/Core>
 
 #include <cdot/detail/kernel_forms.hpp>
@@ -35,8 +35,8 @@ TEST(Kernels, AgreeWhereNothingIsExtreme) {
   for (const Kernels kernels : all_kernels) EXPECT_NEAR(gap_of_pendulum<World<double>>(kernels, 0.1), expected, 1e-12);
 }
 
-// K of such a bob is (1/m) E + (r^2/I) t t': its second pivot is a difference of 5e6 and 5e6 that leaves 2, of which
-// floats keep nothing. The row is taken for one that repeats the first, and the bob falls out of its joint.
+// K of such a bob is (1/m) E + (r^2/I) t t': its second pivot is 2, a difference of two numbers near 5e6, which floats
+// cannot represent. The row counts as redundant, and the bob falls out of its joint.
 TEST(Kernels, RobustHoldsALongArmOnLittleInertia) {
   const double lost = gap_of_pendulum<World<float>>(Kernels::balanced, 1e-7);
   const double held = gap_of_pendulum<World<float>>(Kernels::robust, 1e-7);
@@ -46,7 +46,7 @@ TEST(Kernels, RobustHoldsALongArmOnLittleInertia) {
   EXPECT_LT(held, 1.1 * ideal + 1e-3);
 }
 
-// Two rows that say the same: one impulse for both, which meets both.
+// Two equal rows: one impulse satisfies both.
 TEST(Kernels, AnInverseOfDependentRowsMeetsThem) {
   for (const double ratio : {0.5, 1.0, 3.0, 0.0}) {
     const double K[3] = {2, 2 * ratio, 2 * ratio * ratio}, rhs[2] = {0.7, 0.7 * ratio};
@@ -68,7 +68,7 @@ TEST(Kernels, FactorsByRowsAreThoseOfK) {
   planar::weld::Jacobian<double> J;
   double C[3], K[6], from_K[6], by_rows[6];
   planar::weld::jacobian(q, p, 0.0, C, J);
-  // The last: neither body turns, so that the third row of K is zero.
+  // 0: neither body turns, so the third row of K is zero.
   for (const double turning : {1.7, 0.0}) {
     const planar::InverseMass<double> m[2] = {{0.5, turning}, {2, 0.3 * turning}};
     planar::weld::effective_mass(J, m, K);

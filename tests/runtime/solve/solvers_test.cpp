@@ -1,5 +1,4 @@
-// The direct solver is exact, the iterative one tends to it, both do the same to the bit every
-// time.
+// The direct solver is exact, the iterative one converges to it, and both reproduce their bits.
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
@@ -35,7 +34,7 @@ TEST(Solvers, IterativeTendsToDirect) {
   }
 }
 
-TEST(Solvers, WarmStartingBringsTheSameSweepsFurther) {
+TEST(Solvers, WarmStartingReducesTheErrorOfTheSameSweeps) {
   double gap[2];
   for (bool warm : {false, true}) {
     Settings s = settings(Solver::iterative, Drift::baumgarte, -9.81);
@@ -76,7 +75,7 @@ TEST(Solvers, SameBitsEveryTime) {
   }
 }
 
-// Two worlds in one: islands do not feel each other, to the bit.
+// Two worlds in one: islands do not influence each other's bits.
 TEST(Solvers, IslandsAreIndependent) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     World<double> alone(settings(solver, Drift::projection, -9.81));

@@ -1,4 +1,4 @@
-// The iterative solver sweeps along chains, from the tips to the roots, whatever order the joints were added in.
+// The iterative solver sweeps along chains from the tips to the roots, for every order of add_joint().
 #include "runtime/solve/sweep_order.hpp"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct Link {
 
 constexpr int links = 20;
 
-// A chain thrown out level, held at one end or at both; its joints added in an order of the caller's.
+// A horizontal chain with initial velocities, pinned at one end or at both; its joints in a given order.
 World<double> chain(bool bridge, unsigned shuffled) {
   World<double> world({.solver = Solver::iterative, .iterations = 10, .gravity_y = -9.81});
   std::vector<Link> all;
@@ -35,7 +35,7 @@ World<double> chain(bool bridge, unsigned shuffled) {
   return world;
 }
 
-// The same bits; of a bridge, which may be swept from either end, as small a gap.
+// A chain gives the same bits; a bridge, which may be swept from either end, an equally small gap.
 TEST(SweepOrder, DoesNotDependOnTheOrderOfAdding) {
   for (const bool bridge : {false, true}) {
     World<double> first = chain(bridge, 0);
@@ -67,7 +67,7 @@ TEST(SweepOrder, GoesFromTheTipToTheRoot) {
   }
 }
 
-// A tree: each branch in one go, and the trunk after all of them.
+// A tree: each branch without interruption, and the trunk after all branches.
 TEST(SweepOrder, TakesEachBranchInOneGo) {
   World<double> world({.solver = Solver::iterative});
   const auto joint = [&](int a, int b) {

@@ -1,5 +1,5 @@
-// What tension stiffens between bodies, in the linearly implicit step: beads on bars, where no body's own turning has a
-// part in it. Closed forms first, then what a heavy load does to a light chain at 1/60 s.
+// Stiffness from tension between bodies in the linearly implicit step: beads on bars, without the bodies' own
+// rotations. First closed forms, then a heavy load on a light chain at 1/60 s.
 #include <cmath>
 #include <fmt/core.h>
 #include <utility>
@@ -22,8 +22,8 @@ int bar(World<double>& world, int a, int b, std::vector<double> pa = {0, 0}, std
   return world.add_joint({"distance", {a, b}, {{"pa", pa}, {"pb", pb}}, {}});
 }
 
-// A pendulum at rest pulls with m g, whatever the length of the step before. Pushed across, it feels m g / l times the
-// way of the step: v' = v / (1 + h^2 g / l).
+// A pendulum at rest has the tension m g, for every length of the last step. After a transverse push the force is m g /
+// l times the way of the step: v' = v / (1 + h^2 g / l).
 TEST(Tension, OfABarSlowsTheMotionAcrossIt) {
   for (const double length : {0.5, 2.0}) {
     World<double> world(implicit(Drift::none));
@@ -35,12 +35,12 @@ TEST(Tension, OfABarSlowsTheMotionAcrossIt) {
     world.step(h);
     EXPECT_NEAR(world.velocity(bead).x, 0.2 / (1 + h * h * g / length), 1e-14);
     EXPECT_NEAR(world.velocity(bead).y, 0, 1e-14);
-    // What changed the momentum is the bar's force in the direction that it has by now.
+    // The bar's force in its new direction changed the momentum.
     EXPECT_NEAR(-world.reaction(joint, world.ground()).force_x, 3 * (world.velocity(bead).x - 0.2) / h, 1e-4);
   }
 }
 
-// The same in space, in both directions across, the bar held at an arm of a body that may not turn.
+// The same in space, in both transverse directions, with the bar at an arm of a body with fixed rotation.
 TEST(Tension, OfABarSlowsTheMotionAcrossItInSpace) {
   Settings s = implicit(Drift::none);
   s.gravity_y = 0, s.gravity_z = -g;
@@ -57,8 +57,8 @@ TEST(Tension, OfABarSlowsTheMotionAcrossItInSpace) {
   EXPECT_NEAR(world.velocity(box).y, -0.1 * slowed, 1e-14);
 }
 
-// A rod of mass m that hangs on a bar of length l by its end, r above its centre: pushed, the step solves the 2 x 2
-// system of the bar's turn and the rod's own,
+// A rod of mass m hangs by its end, r above its centre, on a bar of length l. After a push the step solves the 2 x 2
+// system of both rotations,
 //   m (x' - x) = -h^2 m g / l (x' - r w'),   I (w' - w) = h^2 m g r / l (x' - r w') - h^2 m g r w'.
 TEST(Tension, OfABarActsAtItsArm) {
   const double m = 2, I = 0.3, l = 0.7, r = 0.4, k = h * h * m * g;
@@ -85,7 +85,7 @@ int add_beads(World<T>& world, double load) {
   return above;
 }
 
-// No bar is any stiffer for being there twice, and the second one is no news.
+// A second, equal bar adds no stiffness, and its row is redundant.
 TEST(Tension, LeavesRedundantRowsToTheJoints) {
   World<double> once(implicit()), twice(implicit());
   for (World<double>* world : {&once, &twice}) {
@@ -100,7 +100,7 @@ TEST(Tension, LeavesRedundantRowsToTheJoints) {
   EXPECT_LT(apart(once, twice), 1e-9);
 }
 
-// Pulled by 1e14 N, a bar is stiffer across than round-off tells from rigid: across it lies the other bar, which is.
+// At 1e14 N a bar's transverse stiffness equals rigidity up to round-off; the transverse bar is rigid.
 TEST(Tension, DoesNotCountAsRedundant) {
   World<double> world(implicit());
   const int bead = world.add_body({.y = -1, .mass = 1, .inertia = 1, .force_y = -1e14});
@@ -132,8 +132,8 @@ TEST(Tension, HoldsAHeavyLoadOnBeads) {
   }
 }
 
-// 100 beads on 101 bars between two points, where they hang in equilibrium: the force in bar k is (H, m g (k - 50)),
-// and H is such that they reach from one point to the other.
+// 100 beads on 101 bars between two points, in equilibrium: the force in bar k is (H, m g (k - 50)), where H follows
+// from the distance of the points.
 TEST(Tension, LeavesAHangingChainWhereItIs) {
   constexpr int beads = 100;
   constexpr double length = 0.1, mass = 0.1, span = 6;
@@ -170,9 +170,9 @@ TEST(Tension, LeavesAHangingChainWhereItIs) {
   EXPECT_NEAR(world.reaction(0, world.ground()).force_x / low, 1, 1e-6);
 }
 
-// A pendulum that a fixed angle holds against a constant torque: what holds it exerts that torque, however much the
-// tension stiffens the body's turning (here by 5.4 times its inertia).
-TEST(Tension, LeavesATorqueAtRestWhatItIs) {
+// A fixed angle holds a pendulum against a constant torque. The joint exerts that torque, although tension adds 5.4
+// times the body's inertia.
+TEST(Tension, KeepsATorqueAtRest) {
   World<double> world(implicit());
   const int body = world.add_body({.y = -2, .mass = 1000, .inertia = 1, .torque = 5});
   const int pin = revolute(world, world.ground(), body, 0, 0, 0, 2);

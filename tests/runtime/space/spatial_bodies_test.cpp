@@ -1,5 +1,4 @@
-// Bodies in space without joints: rotation, the inertia tensor that turns with a body, what is
-// conserved.
+// Bodies in space without joints: rotation, turning inertia tensors, conservation laws.
 #include <fmt/core.h>
 
 #include <cdot/methods.hpp>
@@ -14,7 +13,7 @@ namespace {
 using spatial::Symmetric;
 using spatial::Vector;
 
-// Tumbles about its middle axis: the motion that goes wrong first.
+// Tumbles about its intermediate axis, the most sensitive motion.
 SpatialBodyDefinition tumbling() {
   SpatialBodyDefinition d;
   d.mass = 2;
@@ -68,7 +67,7 @@ TEST(SpatialBody, KeepsMomentumEnergyAndTheUnitQuaternion) {
   }
 }
 
-// A rod, with a hundred times the inertia across that it has along: the mean spin of a step is found there as well.
+// A rod with a hundred times more inertia across than along: Newton finds the mean spin here too.
 TEST(SpatialBody, ThinBodiesKeepEnergyInStepsOfAThirdOfARadian) {
   double worst = 0;
   for (double along : {0.1, 1.0, 3.0}) {
@@ -88,8 +87,8 @@ TEST(SpatialBody, ThinBodiesKeepEnergyInStepsOfAThirdOfARadian) {
   EXPECT_LT(worst, 1e-10);
 }
 
-// The same with large steps, where Newton's iteration fails: the momentum still holds, the energy
-// stays between L^2 / (2 I) of the outer axes.
+// The same with large steps, at which Newton fails: the momentum is conserved, and the energy stays between L^2 / (2 I)
+// of the outer axes.
 TEST(SpatialBody, LargeStepsKeepTheMomentum) {
   SpatialWorld<double> world;
   SpatialBodyDefinition d = tumbling();
@@ -118,8 +117,8 @@ TEST(SpatialBody, FastSpinAboutAPrincipalAxisIsExact) {
   EXPECT_EQ(world.velocity(body).wx, 0);
 }
 
-// By what angle a symmetric top is off after 5 s in steps of h: it goes round L at the rate L / I_across, I_across
-// being 1 kg m^2, and round its axis e at 2 - 1.5 * 2 = -1 rad/s. e lies in the frame's y-z plane.
+// The angle error of a symmetric top after 5 s in steps of h. It precesses about L at the rate L / I_across with
+// I_across = 1 kg m^2, and rotates about its axis e at 2 - 1.5 * 2 = -1 rad/s. e lies in the frame's y-z plane.
 double top_off(const Vector<double>& e, double h) {
   SpatialWorld<double> world;
   SpatialBodyDefinition d;
@@ -133,14 +132,14 @@ double top_off(const Vector<double>& e, double h) {
   return norm(turn_between(spatial::turned_by(spatial::turned_by(start, -5.0 * e), 5.0 * L), world.pose(body)));
 }
 
-// About an axis of its frame it turns in closed form, however long the step.
+// With symmetry about a frame axis the rotation is in closed form for every step length.
 TEST(SpatialBody, SymmetricTopPrecesses) {
   for (double h : {0.005, 0.02, 0.1, 1.0, 2.5})
     for (const Vector<double>& e : {Vector<double>{0, 0, 1}, Vector<double>{0, 1, 0}})
       EXPECT_LT(top_off(e, h), 2e-12) << "h = " << h;
 }
 
-// The same body with its axis askew, of second order in the step.
+// The same body with an oblique axis: second order in the step.
 TEST(SpatialBody, TurnsOfSecondOrder) {
   const Vector<double> e = {0, 0.6, 0.8};
   double before = top_off(e, 0.02);
@@ -157,7 +156,7 @@ TEST(SpatialBody, TensorInAnotherFrame) {
   SpatialBodyDefinition d = tumbling();
   const int a = principal.add_body(d);
   const auto q = spatial::oriented(0.0, 0.0, 0.0, 0.3, -0.5, 0.4, 0.7);
-  // Body frame = the principal frame turned back by q, so that the tensor is turned by A(q).
+  // Body frame = the principal frame rotated by q^-1, so the tensor is rotated by A(q).
   const auto I = turned(q, Symmetric<double>{1, 2, 2.5, 0, 0, 0});
   d.inertia = {I.xx, I.yy, I.zz, I.xy, I.xz, I.yz};
   d.e0 = q.e0, d.e1 = -q.e1, d.e2 = -q.e2, d.e3 = -q.e3;
@@ -170,8 +169,7 @@ TEST(SpatialBody, TensorInAnotherFrame) {
   EXPECT_NEAR(v.wz, w.wz, 1e-12);
 }
 
-// A ball, a body that may not turn and a static one have no tensor to turn: nothing is kept for
-// them.
+// A ball, a body with fixed rotation and a static body have no turning tensor and no Gyroscope.
 TEST(SpatialBody, OnlyUnequalInertiasAreTurned) {
   SpatialWorld<double> world;
   SpatialBodyDefinition d = tumbling();
@@ -187,7 +185,7 @@ TEST(SpatialBody, OnlyUnequalInertiasAreTurned) {
   EXPECT_EQ(world.data().gyroscopes.size(), 1u);
 }
 
-// Torque times time, in the world's axes, whatever the tensor does in between.
+// Angular momentum = torque times time in world axes, for every motion of the tensor.
 TEST(SpatialBody, ConstantTorqueTurnsWithTheTensor) {
   for (const auto& [name, integrator] : integrators) {
     Settings settings;
@@ -212,11 +210,11 @@ TEST(SpatialBody, FallsAndIsDamped) {
   d.linear_damping = 2;
   const int body = world.add_body(d);
   run(world, 20, 0.01);
-  // Where damping holds gravity: v = v / (1 + 2 h) - 10 h
+  // Terminal velocity: v = v / (1 + 2 h) - 10 h
   EXPECT_NEAR(world.velocity(body).z, -5 * (1 + 2 * 0.01), 1e-9);
 }
 
-// Two bodies on a spring: round-off in momentum, first order in energy.
+// Two bodies on a spring: momentum to round-off, energy to first order.
 TEST(SpatialBody, SpringsBetweenPointsKeepMomentum) {
   double before = 0;
   for (double h : {2e-3, 1e-3}) {
@@ -256,7 +254,7 @@ TEST(SpatialBody, EqualBitsOnRepetition) {
   EXPECT_EQ(hash(), hash());
 }
 
-TEST(SpatialBody, RefusesWhatNoBodyIs) {
+TEST(SpatialBody, RefusesImpossibleBodies) {
   SpatialWorld<double> world;
   const auto refused = [&](auto change) {
     SpatialBodyDefinition d = tumbling();
@@ -268,7 +266,7 @@ TEST(SpatialBody, RefusesWhatNoBodyIs) {
   refused([](auto& d) { d.inertia.xy = NAN; });
   refused([](auto& d) { d.e0 = 0; });
   refused([](auto& d) { d.mass = 0; });
-  refused([](auto& d) { d.is_static = true; });  // and moves
+  refused([](auto& d) { d.is_static = true; });  // but with a velocity
 }
 
 TEST(SpatialBody, InFloats) {

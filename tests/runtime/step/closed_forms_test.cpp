@@ -62,7 +62,7 @@ double pendulum_period(double length, double g, double amplitude) {
   return 2 * pi * std::sqrt(length / g) / a;
 }
 
-// Time between the first two passages through the vertical in the same sense, interpolated.
+// Time between the first two passages through the vertical in the same direction, interpolated.
 double measured_period(World<double>& world, int bob, double h) {
   std::vector<double> passages;
   double before = world.pose(bob).x;
@@ -93,7 +93,7 @@ double oscillator(double k, double d, double m, double t) {
   return std::exp(-decay * t) * (std::cos(w * t) + decay / w * std::sin(w * t));
 }
 
-// Four ways to say the same spring: k = 50, d = 2, m = 2.
+// Four ways to define the same spring: k = 50, d = 2, m = 2.
 TEST(ClosedForms, SoftDistanceByStiffnessIsTheDampedOscillator) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     expect_first_order(2e-3, [&](double h) {
@@ -142,8 +142,7 @@ TEST(ClosedForms, CoordinateSpringIsTheDampedOscillator) {
   }
 }
 
-// The energy of the spring is counted: without damping the total wavers at first order but does not
-// drift.
+// The energy includes the spring: without damping the total oscillates at first order but does not drift.
 TEST(ClosedForms, EnergyOfSpringsIsCounted) {
   World<double> world;
   const int body = world.add_body({.x = 3, .mass = 2, .inertia = 1});

@@ -1,5 +1,4 @@
-// What no solver may create or destroy: momentum, angular momentum, and (slowly, at first order)
-// energy.
+// Every solver conserves momentum and angular momentum, and energy to first order.
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
@@ -55,9 +54,8 @@ TEST(Conservation, MomentumOfAFreeMechanism) {
   }
 }
 
-// Impulses act along one line, as long as the two points of a joint coincide: round-off for the
-// direct solver, which closes the gaps, also in the correction of the drift. The iterative one
-// leaves gaps, and with them a torque.
+// Impulses act along one line if the two points of a joint coincide. The direct solver with projection closes the gaps
+// to round-off. The iterative solver leaves gaps, which cause a torque.
 TEST(Conservation, AngularMomentumOfAFreeMechanism) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     World<double> world(settings(solver, Drift::projection));
@@ -68,8 +66,7 @@ TEST(Conservation, AngularMomentumOfAFreeMechanism) {
   }
 }
 
-// Energy of an undamped double pendulum: wavers at first order in h, with no drift over many
-// periods.
+// Energy of an undamped double pendulum: oscillates at first order in h, without drift over many periods.
 TEST(Conservation, EnergyOfTheDoublePendulumHasNoDrift) {
   double before = 0;
   for (double h : {2e-3, 1e-3, 5e-4}) {

@@ -1,5 +1,4 @@
-// What the tests of scenes share: paths, running a command, a folder that goes away, reference
-// trajectories.
+// Helpers for tests of scenes: paths, commands, temporary folders, reference trajectories.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +16,7 @@ std::filesystem::path scenes_dir();
 std::string read_text(const std::filesystem::path& path);
 // A scene of specs/scenes by its path there without .toml.
 Scene scene_named(const std::string& name);
-// Its states every so many seconds.
+// The states of a run at equal intervals.
 std::vector<Frame> run_of(Scene scene, double until, double every_seconds);
 
 // Every scene file of specs/scenes and of tests/hard_cases.
@@ -53,7 +52,7 @@ struct Reference {
   std::vector<ReferenceSample> samples;
 };
 Reference read_reference(const std::string& problem, double until);
-// Of tests/bench/peers: made by code that shares nothing with the runtime's.
+// A reference of tests/bench/peers, computed without the runtime's code.
 Reference read_reference_of_peers(const std::string& problem);
 
 // The largest differences from the reference over its samples and bodies, in SI units.

@@ -1,4 +1,4 @@
-// step() does not allocate: every operator new of the process is counted while it runs.
+// step() does not allocate: counts every operator new of the process while it runs.
 #include <cdot/methods.hpp>
 
 #include "tests/runtime/spatial_support.hpp"
@@ -9,8 +9,7 @@ extern long allocations;  // counting_new.cpp
 
 namespace {
 
-// Every kind of row and force there is, a joint that breaks and an island that falls asleep on the
-// way.
+// All kinds of rows and forces, a joint that breaks and an island that falls asleep during the run.
 template <class T>
 void add_everything(World<T>& world) {
   const auto rods = add_chain(world, 10, -0.4);
@@ -45,7 +44,7 @@ long allocations_of_a_run(Solver solver, Drift drift, Integrator integrator) {
   return made;
 }
 
-// Whether a World takes this combination; setup_test.cpp says which it refuses, and how.
+// True if a World accepts this combination; setup_test.cpp tests the refused ones.
 bool runs(Solver solver, Drift drift, Integrator integrator) {
   if (integrator == Integrator::rattle) return drift == Drift::projection;
   if (!works_on_accelerations(integrator)) return true;

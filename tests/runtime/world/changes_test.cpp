@@ -1,5 +1,5 @@
-// Joints removed, and joints and effects changed, while a World runs: from then on it does what a World does that was
-// built that way, from the same poses and velocities, in every method.
+// Removes joints and changes joints and effects in a running World. It must then move like a World built that way, from
+// the same poses and velocities, with every method.
 #include <fmt/format.h>
 
 #include "tests/methods.hpp"
@@ -11,7 +11,7 @@ extern long allocations;  // counting_new.cpp
 
 namespace {
 
-// The bodies of `to` go where those of `from` are.
+// Copies poses and velocities of `from` to `to`.
 template <class S>
 void follow(const BasicWorld<S>& from, BasicWorld<S>& to) {
   for (int body = 0; body < from.body_count(); ++body) {
@@ -25,7 +25,7 @@ void follow(const BasicWorld<S>& from, BasicWorld<S>& to) {
   }
 }
 
-// The largest difference of a number of their poses [m], or their velocities [m/s, rad/s].
+// The largest difference of their poses [m] or velocities [m/s, rad/s], by number.
 template <class S>
 double apart(const BasicWorld<S>& a, const BasicWorld<S>& b) {
   double worst = 0;
@@ -44,22 +44,24 @@ double apart(const BasicWorld<S>& a, const BasicWorld<S>& b) {
 
 constexpr double dt = 0.004;
 
-// build(world, changed) adds the same bodies either way; change(world) is to make of the one what the other is.
+// build(world, changed) adds the same bodies in both cases; change(world) must turn the unchanged World into the
+// changed one.
 template <class S, class Build, class Change>
 void check_change(const Settings& base, Build build, Change change) {
   Settings without_history = base;
   without_history.warm_start = false;
-  without_history.iterations = 200;  // so that nothing hangs on where the sweeps begin
+  without_history.iterations = 200;  // makes the result independent of the sweeps' start
   const int methods = for_each_method(without_history, [&](const Settings& s, const std::string& name) {
     BasicWorld<S> world(s), twin(s);
     build(world, false), build(twin, true);
     run(world, 25 * dt, dt);
     BasicWorld<S> unchanged(s);
     build(unchanged, false);
-    for (BasicWorld<S>* each : {&world, &twin, &unchanged}) follow(world, *each);  // to the end of no step, as it were
+    for (BasicWorld<S>* each : {&world, &twin, &unchanged})
+      follow(world, *each);  // a state that is not the end of a step
     change(world);
     for (BasicWorld<S>* each : {&world, &twin, &unchanged}) run(*each, 25 * dt, dt);
-    // The steps that a method chooses do not begin the same; and a built World has no impulses yet for `implicit`.
+    // Adaptive steps begin with different lengths, and a new World has no impulses for `implicit`.
     const bool history = s.local_error > 0 || s.integrator == Integrator::implicit;
     const double tolerance = history ? 2e-3 : std::is_same_v<typename S::Scalar, double> ? 1e-8 : 1e-3;
     EXPECT_LT(apart(world, twin), tolerance) << name;
@@ -76,7 +78,7 @@ Settings heavy_in_space() {
   return s;
 }
 
-// --- a joint is removed: what it held together is two islands ---
+// --- a joint is removed: its island splits ---
 
 template <class T>
 void chain_without(World<T>& world, bool cut) {
@@ -122,7 +124,7 @@ TEST(Changes, AJointRemovedIsNoMoreAndCanBeNamed) {
   run(world, 0.1, 0.01);
   EXPECT_EQ(world.island_count(), 1);
   world.remove_joint(1);
-  world.remove_joint(1);  // nothing more happens
+  world.remove_joint(1);  // no effect the second time
   EXPECT_TRUE(world.broken(1));
   EXPECT_FALSE(world.broken(0) || world.broken(2));
   run(world, 0.1, 0.01);
@@ -130,7 +132,7 @@ TEST(Changes, AJointRemovedIsNoMoreAndCanBeNamed) {
   for (double impulse : world.impulse(1)) EXPECT_EQ(impulse, 0);
 }
 
-// --- another number for every effect at once ---
+// --- new numbers for every effect at once ---
 
 template <class T>
 void with_effects(World<T>& world, bool other) {
@@ -159,7 +161,7 @@ TEST(Changes, EffectsTakeOtherNumbers) {
   check_change<Planar<double>>(heavy, with_effects<double>, change);
 }
 
-// A wheel of inertia I under the torque m: the speed changes by m t / I, until it is the motor's.
+// A wheel of inertia I under the torque m: the speed changes by m t / I until it equals the motor's.
 TEST(Changes, AMotorTurnsBack) {
   World<double> world(settings(Solver::direct));
   const int wheel = world.add_body({.mass = 1, .inertia = 0.5});
@@ -178,9 +180,9 @@ TEST(Changes, AMotorTurnsBack) {
   EXPECT_NEAR(world.velocity(wheel).w, -3, 1e-12);
 }
 
-// Pushed anew in every step with what pushes it anyway, a mechanism does what it does: to the bit, where a step has not
-// computed the accelerations at its end, for the next one to go on from.
-TEST(Changes, OfForcesThatChangeNothingDoNothing) {
+// Setting the present force, motor, friction and spring again after every step does not change the motion. The bits are
+// equal unless a step computes the accelerations for the next one (rk4, dop853).
+TEST(Changes, ToTheSameForcesDoNothing) {
   Settings base = heavy;
   base.iterations = 200;
   const int methods = for_each_method(base, [&](const Settings& s, const std::string& name) {
@@ -201,10 +203,10 @@ TEST(Changes, OfForcesThatChangeNothingDoNothing) {
 
 // --- every parameter of every joint ---
 
-// A number a little off, a direction a little turned.
+// Changes a number or a direction slightly.
 NamedValue nudged(const ParameterInfo& info, const std::vector<double>& numbers) {
   NamedValue value{std::string(info.name), {}};
-  const int size = info.size == 9 ? 6 : info.size;  // of a triad: x, and where y points
+  const int size = info.size == 9 ? 6 : info.size;  // of a triad: x and the direction of y
   for (int k = 0; k < size; ++k) value.numbers.push_back(1.01 * numbers[size_t(info.offset + k)] + 0.004 * (k + 1));
   return value;
 }
@@ -246,7 +248,7 @@ int check_parameters(const JointType& type, Integrator integrator) {
   int checked = 0;
   for (size_t k = 0; k < type.parameters.size(); ++k) {
     const ParameterInfo& info = type.parameters[k];
-    if (info.name.ends_with("_turns")) continue;  // the runtime's own
+    if (info.name.ends_with("_turns")) continue;  // counted by the runtime
     BasicWorld<S> world(s), twin(s);
     const int joint = add_sprung(world, type, some_values(type));
     world.project(1e-9);
@@ -258,7 +260,7 @@ int check_parameters(const JointType& type, Integrator integrator) {
     world.set_parameters(joint, {values[k]});
     const std::vector<double> now = world.joint_parameters(joint), wanted = twin.joint_parameters(0);
     for (size_t i = 0; i < now.size(); ++i) EXPECT_NEAR(now[i], wanted[i], 1e-15) << type.name << " " << info.name;
-    if (type.explicit_time) continue;  // its twin's clock is another
+    if (type.explicit_time) continue;  // its twin's time differs
     run(world, 10 * dt, dt), run(twin, 10 * dt, dt);
     EXPECT_LT(apart(world, twin), 1e-8) << type.name << " " << info.name;
     ++checked;
@@ -278,7 +280,7 @@ TEST(Changes, EveryParameterOfEveryJointTakesAnotherNumber) {
   EXPECT_GT(checked, 300);
 }
 
-// A point of the ground is one of the world, wherever poses are counted from; what is not named keeps its bits.
+// A point of the ground is a point of the world for every origin of poses; unnamed parameters keep their bits.
 TEST(Changes, PointsOfTheGroundAreThoseOfTheWorld) {
   World<double> world(heavy);
   world.set_origin(1e6, 2e6);
@@ -299,7 +301,7 @@ TEST(Changes, PointsOfTheGroundAreThoseOfTheWorld) {
 
 // --- other effects of a change ---
 
-TEST(Changes, WakeWhatSleeps) {
+TEST(Changes, WakeSleepingIslands) {
   Settings s = heavy;
   s.sleep_after = 0.1;
   const auto asleep = [&](auto change) {
@@ -319,8 +321,8 @@ TEST(Changes, WakeWhatSleeps) {
   EXPECT_FALSE(asleep([](auto& world, int) { world.remove_joint(0); }));
 }
 
-// Changes belong to the State: a snapshot from before brings it back, and so does one from before a joint was removed.
-TEST(Changes, ASnapshotBringsBackWhatWas) {
+// Changes belong to the State: an earlier snapshot undoes them, including the removal of a joint.
+TEST(Changes, AreUndoneByAnEarlierSnapshot) {
   for (Integrator integrator : {Integrator::euler, Integrator::rattle, Integrator::dop853}) {
     Settings s = heavy;
     s.integrator = integrator;

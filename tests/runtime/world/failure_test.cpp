@@ -1,5 +1,4 @@
-// A step that fails leaves the World as it was before it and says where and why; numbers that are not finite do not get
-// in.
+// A failed step restores the World and reports place and cause. The World refuses numbers that are not finite.
 #include <fmt/format.h>
 #include <limits>
 
@@ -46,8 +45,8 @@ int build(SpatialWorld<T>& world) {
   return body;
 }
 
-// The acceleration overflows: the step fails, in the second of three islands. Then the force is taken away and the run
-// goes on with the bits of one in which that never was.
+// The acceleration overflows, so the step fails in the second of three islands. After the removal of the force the run
+// has the bits of one without the failure.
 template <class S>
 void check_a_failure(const Settings& settings, const std::string& name) {
   BasicWorld<S> world(settings), spared(settings);
@@ -97,8 +96,8 @@ TEST(Failure, LeavesTheStateInSpace) {
   check_failures<Spatial<float>>();
 }
 
-// A joint breaks in the first part of the step, and the second part fails: the joint holds again.
-TEST(Failure, MendsWhatBrokeInTheSameStep) {
+// A joint breaks in the first part of the step, and the second part fails: the rollback restores the joint.
+TEST(Failure, RestoresAJointThatBrokeInTheSameStep) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);
   s.substeps = 2;
   World<double> world(s);
@@ -106,11 +105,11 @@ TEST(Failure, MendsWhatBrokeInTheSameStep) {
   add_limit(world, 1, "angle", {.lower = -1, .upper = 1});
   const int light = world.add_body({.x = 1, .y = 5, .mass = 1e-9, .inertia = 1e-9});
   revolute(world, world.ground(), light, 0, 5, -1, 0);
-  // Slack where it starts, not finite where it is after the first part.
+  // Slack at the start; its force is not finite after the first part.
   world.add_spring(
       {.body_a = light, .body_b = world.ground(), .bx = 1, .by = 9, .stiffness = 1.7e308, .rest_length = 4});
   world.prepare();
-  for (int joint : {1, 2}) set_breaking_load(world, joint, 1e-3);  // asked for late: the World is prepared
+  for (int joint : {1, 2}) set_breaking_load(world, joint, 1e-3);  // set when the World is already prepared
   const Snapshot before = world.snapshot();
   const StepResult result = world.step(0.01);
   EXPECT_FALSE(result);
@@ -121,23 +120,24 @@ TEST(Failure, MendsWhatBrokeInTheSameStep) {
   EXPECT_TRUE(world.broken(1) && world.broken(2));
 }
 
-TEST(Failure, IsToldInWords) {
+TEST(Failure, IsDescribedInWords) {
   World<double> world(settings(Solver::direct));
   const int body = build(world);
   world.set_force(body, huge<Planar<double>>());
   const StepResult result = world.step(0.01);
-  EXPECT_EQ(in_words(result, "the arm", "joint 5 (revolute)"),
-            "the step of 0.01 s at t = 0 s failed in island 1: a pose or velocity came out not finite; look at joint 5 "
-            "(revolute), row 1; the arm moved fastest");
+  EXPECT_EQ(
+      in_words(result, "the arm", "joint 5 (revolute)"),
+      "the step of 0.01 s at t = 0 s failed in island 1: a pose or velocity became infinite or NaN; look at joint 5 "
+      "(revolute), row 1; the arm moved fastest");
   EXPECT_FALSE(world.step(0));
   EXPECT_FALSE(world.step(-1));
   const StepResult none = world.step(std::nan(""));
   EXPECT_EQ(none.problem, StepProblem::bad_step);
-  EXPECT_EQ(in_words(none, "", ""), "there is no step of nan s");
+  EXPECT_EQ(in_words(none, "", ""), "a step of nan s is impossible");
   EXPECT_EQ(world.time(), 0);
 }
 
-// --- the border ---
+// --- arguments that are not finite ---
 
 template <class F>
 void refused(F f, const char* why) {
@@ -171,9 +171,9 @@ TEST(Failure, NumbersThatAreNotFiniteAreRefused) {
     refused([&] { space.set_velocity(0, {0, 0, 0, 0, 0, bad}); }, "velocity must be finite");
   }
   World<float> world(settings(Solver::direct));
-  refused([&] { world.add_body({.mass = 1e-39}); }, "so small");
-  refused([&] { world.add_body({.mass = 1, .inertia = 1e-39}); }, "so small");
-  refused([&] { world.add_body({.mass = 1e46}); }, "so large");
+  refused([&] { world.add_body({.mass = 1e-39}); }, "too small");
+  refused([&] { world.add_body({.mass = 1, .inertia = 1e-39}); }, "too small");
+  refused([&] { world.add_body({.mass = 1e46}); }, "too large");
   World<double> doubles(settings(Solver::direct));
   doubles.add_body({.mass = 1e-39});
 }

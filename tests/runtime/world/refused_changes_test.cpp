@@ -1,4 +1,4 @@
-// Changes of a running World that make no sense are refused, and leave every bit of its State.
+// A running World refuses invalid changes, and every bit of its State stays.
 #include "tests/methods.hpp"
 #include "tests/runtime/support.hpp"
 
@@ -32,13 +32,13 @@ TEST(Changes, ThatMakeNoSenseAreRefusedAndChangeNothing) {
   refused([&] { world.set_parameters(2, {{"l", {2}}, {"l", {1}}}); }, "given twice");
   world.set_pose(a, {5, 0, 0}), world.set_pose(b, {6, 0, 0});
   const Snapshot moved = world.snapshot();
-  EXPECT_THROW(world.set_parameters(2, {{"l", {0}}}), Error);  // its points are together: no direction
+  EXPECT_THROW(world.set_parameters(2, {{"l", {0}}}), Error);  // its points coincide: no direction
   EXPECT_EQ(world.snapshot(), moved);
   world.restore(whole);
   refused([&] { set_motor(world, 1, 2, {}); }, "joint number 1 has no effect number 2");
   refused([&] { set_motor(world, 1, 0, {}); }, "joint number 1 has no effect number 0");
-  refused([&] { set_motor(world, 0, lock, {}); }, "effect number 1 of joint number 0 is no motor");
-  refused([&] { set_limit(world, 0, lock, {.lower = 0, .upper = 1}); }, "is no limit with two ends");
+  refused([&] { set_motor(world, 0, lock, {}); }, "effect number 1 of joint number 0 is not a motor");
+  refused([&] { set_limit(world, 0, lock, {.lower = 0, .upper = 1}); }, "is not a limit with two ends");
   refused([&] { set_motor(world, 1, motor, {.speed = NAN}); }, "a motor's speed must be finite");
   refused([&] { set_limit(world, 0, lock, {.lower = 2, .upper = 1}); }, "must not lie above");
 }

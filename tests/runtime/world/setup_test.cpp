@@ -1,5 +1,4 @@
-// Setting a World up: what is refused and how it is said, what is accepted but does nothing,
-// inconsistent starts.
+// Sets Worlds up: refusals and their messages, definitions without influence, inconsistent starts.
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
@@ -41,9 +40,10 @@ TEST(Setup, MistakesInJointsAreNamed) {
 
 TEST(Setup, MistakesInBodiesAreNamed) {
   World<double> world;
-  EXPECT_EQ(message_of([&] { world.add_body({.mass = 0, .inertia = 1}); }), "a body needs a mass > 0, or to be static");
+  EXPECT_EQ(message_of([&] { world.add_body({.mass = 0, .inertia = 1}); }),
+            "a body that is not static needs a mass > 0");
   EXPECT_EQ(message_of([&] { world.add_body({.mass = -1, .inertia = 1}); }),
-            "a body needs a mass > 0, or to be static");
+            "a body that is not static needs a mass > 0");
   EXPECT_EQ(message_of([&] { world.add_body({.x = NAN, .mass = 1}); }), "every number of a body must be finite");
   EXPECT_EQ(message_of([&] { world.add_body({.vx = 1, .is_static = true}); }), "a static body has no velocity");
   EXPECT_EQ(world.body_count(), 0);
@@ -109,7 +109,7 @@ TEST(Setup, InconsistentStartIsReportedAndProjected) {
   }
 }
 
-TEST(Setup, ProjectionOfWhatCannotBeIsRefused) {
+TEST(Setup, ProjectionOfContradictingJointsFails) {
   World<double> world;
   const int bob = world.add_body({.x = 1, .mass = 1});
   const int post = world.add_body({.x = 5, .is_static = true});

@@ -1,5 +1,4 @@
-// Islands at rest fall asleep, and whatever touches one wakes it. (That a sleeping one costs
-// nothing: cost_test.cpp.)
+// Islands at rest fall asleep, and every change of an island wakes it. (cost_test.cpp tests that sleep costs nothing.)
 #include "tests/runtime/support.hpp"
 
 namespace cdot::test {
@@ -21,7 +20,7 @@ struct TwoPendulums {
   int resting, swinging;
 };
 
-TEST(Sleep, OnlyWhatRestsFallsAsleep) {
+TEST(Sleep, OnlyIslandsAtRestFallAsleep) {
   for (Solver solver : {Solver::direct, Solver::iterative}) {
     TwoPendulums two(solver);
     run(two.world, 0.4, 0.01);
@@ -55,7 +54,7 @@ TEST(Sleep, EveryTouchWakes) {
     if (touch == 2) two.world.set_force(two.resting, {3, 0, 0});
     if (touch == 3) two.world.set_pose(two.resting, {q.x + 0.1, q.y, q.angle});
     if (touch == 4) two.world.set_pose(two.world.ground(), {0.1, 0, 0});
-    if (touch == 5)  // tied to something that moves
+    if (touch == 5)  // a spring to a moving body
       two.world.add_spring({.body_a = two.resting, .body_b = two.swinging, .stiffness = 20});
     two.world.step(0.01);
     EXPECT_FALSE(two.world.asleep(two.resting)) << touch;

@@ -1,5 +1,5 @@
-// A run that goes on from a snapshot has the same bits as one that was never interrupted, in another World, after
-// another history, by every solver, integrator, drift correction, space and precision, with breaking and sleeping.
+// A run that continues from a snapshot has the same bits as one without a break: in another World, after another
+// history, with every solver, integrator, drift correction, space and precision, with breaking and sleep.
 #include <fmt/format.h>
 
 #include <cdot/snapshot.hpp>
@@ -13,7 +13,7 @@ extern long allocations;  // counting_new.cpp
 
 namespace {
 
-// Rows of every kind, a joint that breaks early, one that does later, a chain that falls asleep.
+// Rows of every kind, a joint that breaks early, one that breaks later, a chain that falls asleep.
 template <class T>
 void build_all_kinds(World<T>& world) {
   const auto rods = add_chain(world, 6, -0.4);
@@ -27,7 +27,7 @@ void build_all_kinds(World<T>& world) {
   set_breaking_load(world, 1, 60);
   set_breaking_load(world, 4, 25);
   add_chain(world, 2, -pi / 2);
-  // A four-bar whose last joint is there twice: redundant rows.
+  // A four-bar with its last joint twice: redundant rows.
   const int crank = world.add_body(rod(0, 0, 1.2)), coupler = world.add_body(rod(std::cos(1.2), std::sin(1.2), 0.3));
   revolute(world, world.ground(), crank, 0, 0, -0.5, 0);
   revolute(world, crank, coupler, 0.5, 0, -0.5, 0);
@@ -42,7 +42,7 @@ void build_all_kinds(World<T>& world) {
   world.add_body(damped);
 }
 
-// Inertias that turn, an angle that goes round and round, a gear that counts turns, a joint that breaks.
+// Inertias that turn, an angle beyond whole turns, a gear that counts turns, a joint that breaks.
 template <class T>
 void build_all_kinds(SpatialWorld<T>& world) {
   add_free_mechanism(world);
@@ -86,7 +86,7 @@ struct Seen {
   bool broke = false, slept = false, dependent = false;
 };
 
-// A run with snapshots on the way: each is restored into a World that has done something else, or nothing.
+// A run with snapshots: each is restored into a World with another history, or with none.
 template <class S>
 void check_runs(const Settings& settings, const std::string& name, Seen& seen) {
   const auto made = [&] {
@@ -147,7 +147,7 @@ TEST(Snapshot, ARunGoesOnWithTheSameBitsInFloats) { check_all_methods<Planar<flo
 TEST(Snapshot, ARunGoesOnWithTheSameBitsInSpace) { check_all_methods<Spatial<double>>(); }
 TEST(Snapshot, ARunGoesOnWithTheSameBitsInSpaceInFloats) { check_all_methods<Spatial<float>>(); }
 
-// --- what is refused, and what it costs ---
+// --- refusals and allocations ---
 
 template <class F>
 std::string error_of(F f) {
@@ -189,13 +189,13 @@ TEST(Snapshot, AStateOfAnotherWorldIsRefused) {
   other = direct;
   other.gravity_y = -1.6;
   expect_refused(world, chain_of(3, 1, other).snapshot(), "its joints, their parameters, effects, springs or gravity");
-  expect_refused(world, Snapshot{}, "an empty snapshot");
+  expect_refused(world, Snapshot{}, "the snapshot is empty");
   World<float> floats(direct);
   add_chain(floats, 3, 0.3);
   expect_refused(world, floats.snapshot(), "planar float");
 }
 
-// A joint that broke before another body came is no more in the order of rows that were prepared then.
+// A joint that broke before a body was added is not in the order of rows prepared afterwards.
 TEST(Snapshot, AJointThatBrokeLongAgoStaysBroken) {
   const auto made = [](bool late) {
     World<double> world(settings(Solver::direct, Drift::projection, -9.81));
@@ -214,7 +214,7 @@ TEST(Snapshot, AJointThatBrokeLongAgoStaysBroken) {
   EXPECT_TRUE(other.broken(2));
 }
 
-// One Model and many States: a World steps equal mechanisms by turns, each as if it had a World of its own.
+// One Model and many States: a World steps equal mechanisms in turn, each as in a World of its own.
 template <class S>
 void check_many_states(const Settings& settings, const std::string& name) {
   constexpr int count = 4, steps = 25;
@@ -277,13 +277,12 @@ TEST(Snapshot, TextComesBackToTheBitAndSaysWhereItIsWrong) {
   EXPECT_EQ(Snapshot::read(text), state);
   EXPECT_EQ(Snapshot::read(text).text(), text);
   const auto wrong = [&](std::string changed) { return error_of([&] { Snapshot::read(changed); }); };
-  EXPECT_EQ(wrong("time d 2"),
-            "line 1: it does not begin with \"cdot state 2\": this is no state, or not the whole of one");
-  EXPECT_NE(wrong(text.substr(0, text.size() / 2)).find("not the whole of one"), std::string::npos);
+  EXPECT_EQ(wrong("time d 2"), "line 1: it does not begin with \"cdot state 2\": this is not a complete state");
+  EXPECT_NE(wrong(text.substr(0, text.size() / 2)).find("not a complete state"), std::string::npos);
   EXPECT_NE(wrong(text.substr(0, text.rfind("end"))).find("the last line is missing"), std::string::npos);
   std::string other = text;
   other.replace(other.find("0x1."), 4, "0x1.0");
-  EXPECT_NE(wrong(other).find("what it says is not what was written"), std::string::npos) << wrong(other);
+  EXPECT_NE(wrong(other).find("its hash differs"), std::string::npos) << wrong(other);
   other = text;
   other.replace(other.find("0x1."), 4, "0x1,");
   EXPECT_NE(wrong(other).find("line 6: \"0x1,"), std::string::npos) << wrong(other);

@@ -1,5 +1,4 @@
-// Joints that are not the runtime's own, made known to it: what a file that `cdot_add_joints` writes
-// does before main().
+// Registers a program's own joints with the runtime. A file written by `cdot_add_joints` calls this before main().
 #pragma once
 
 #include <cdot/detail/describe_joint.hpp>

@@ -1,5 +1,4 @@
-// The loops of BlockOps, written once for every generated row block. The only place that calls
-// kernels in step().
+// The loops of BlockOps, one template for every generated row block. step() calls kernels only here.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +10,7 @@
 
 namespace cdot {
 
-// Joint owns the parameters; Block is the joint, one of its coordinates, or either with a body
-// immovable.
+// Joint defines the parameters. Block is the joint, a coordinate, or one of these with an immovable body.
 template <class S, class Joint, class Block, Kernels kernels = Kernels::balanced>
 struct BlockLoops {
   using T = typename S::Scalar;
@@ -33,18 +31,18 @@ struct BlockLoops {
   // Immovable variants inherit the joint's functions that do not touch J, and so share their loops.
   using Inherited = std::conditional_t<std::is_base_of_v<Joint, Block>, BlockLoops<S, Joint, Joint>, BlockLoops>;
 
-  // An empty struct (all entries of J known) has size 1 but holds nothing.
+  // An empty struct (all entries of J are known) has size 1 but no numbers.
   template <class Struct>
   static constexpr int numbers() {
     return std::is_empty_v<Struct> ? 0 : static_cast<int>(sizeof(Struct) / sizeof(T));
   }
 
-  // Generated structs hold numbers of type T and nothing else; here they lie in arrays of T.
+  // Generated structs consist of numbers of type T only; this reads them from arrays of T.
   template <class Struct, class Number>
   static auto& as(Number* numbers_of, int slot) {
     using Target = std::conditional_t<std::is_const_v<Number>, const Struct, Struct>;
     if constexpr (std::is_empty_v<Struct>) {
-      static Struct nothing;  // there is no array to point into
+      static Struct nothing;  // no array contains it
       return static_cast<Target&>(nothing);
     } else {
       return *reinterpret_cast<Target*>(numbers_of + slot * numbers<Struct>());
@@ -141,7 +139,7 @@ struct BlockLoops {
     }
   }
 
-  // lambda = K^-1 b by what factorize() left.
+  // lambda = K^-1 b with the factors from factorize().
   static void solve(const Batch<S>& batch, int slot, const T (&b)[rows], T (&lambda)[rows]) {
     T F[triangle];
     for (int k = 0; k < triangle; ++k) F[k] = batch.factor[slot * triangle + k];

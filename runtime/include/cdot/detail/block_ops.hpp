@@ -1,5 +1,5 @@
-// The table of functions by which the solvers know a row block, one constant for each: its loops; none where a joint
-// has coordinates only; and other ways to solve the same rows where these exist.
+// The table of functions that solvers call for a row block, one constant for each: its loops and, where they exist,
+// other ways to solve the same rows. A joint with coordinates only has no loops.
 #pragma once
 
 #include <cdot/detail/block_loops.hpp>
@@ -9,7 +9,7 @@ namespace cdot {
 template <class... Arguments>
 void do_nothing(Arguments...) {}
 
-// The rows of a joint that has coordinates only.
+// The table of a joint with coordinates only.
 template <class S, class Joint>
 constexpr BlockOps<S> ops_without_rows() {
   using Parameters = typename Joint::template Parameters<typename S::Scalar>;
@@ -31,7 +31,7 @@ constexpr BlockOps<S> ops_without_rows() {
   return ops;
 }
 
-// Only what solves differs.
+// Only the functions that solve differ.
 template <class S, class Joint, class Block, Kernels kernels>
 constexpr BlockOps<S> make_other_ops() {
   using Other = BlockLoops<S, Joint, Block, kernels>;
@@ -53,7 +53,7 @@ constexpr BlockOps<S> make_block_ops() {
     return ops_without_rows<S, Joint>();
   } else {
     BlockOps<S> ops = BlockLoops<S, Joint, Block>::ops();
-    constexpr int forms = is_extended<typename S::Scalar> ? 1 : Block::rows;  // there one form is enough
+    constexpr int forms = is_extended<typename S::Scalar> ? 1 : Block::rows;  // extended precision needs one form only
     if constexpr (forms == 2) ops.fast = &other_ops<S, Joint, Block, Kernels::fast>;
     if constexpr (forms > 1) ops.robust = &other_ops<S, Joint, Block, Kernels::robust>;
     return ops;

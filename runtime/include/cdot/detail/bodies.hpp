@@ -1,4 +1,4 @@
-// The bodies as arrays. Apart from the joints: an integrator or a force needs nothing else.
+// The bodies as arrays. Integrators and forces need only this header, no joints.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace cdot {
 
-// The same struct of numbers as K is formed of.
+// A copy of the struct in the number type of K.
 template <class Exact, class T, class Struct>
 Exact exact(const Struct& of) {
   using Real = ExactNumber<T>;
@@ -29,7 +29,7 @@ Exact exact(const Struct& of) {
 // S is a space: Planar<double>, Planar<float>. All arrays are by body.
 template <class S>
 struct BodiesModel {
-  std::vector<typename S::Pose> start;  // where the body was added: zero of its potential energy
+  std::vector<typename S::Pose> start;  // first pose of the body: zero of its potential energy
 };
 
 template <class S>
@@ -38,7 +38,7 @@ struct BodiesState {
   StateArray<typename S::Pose> pose;
   StateArray<Velocity> velocity;
   StateArray<typename S::InverseMass> inverse_mass;  // exactly 0 where immovable; tensors turn with their bodies
-  // The solvers divide by these: inverse_mass, unless geometric stiffness has added to the inertias.
+  // The solvers' M^-1: inverse_mass, unless geometric stiffness has added to the inertias.
   StateArray<typename S::InverseMass> effective_mass;
   StateArray<Velocity> force;          // constant, beside gravity
   StateArray<Velocity> acceleration;   // M^-1 force + gravity

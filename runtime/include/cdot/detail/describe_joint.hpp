@@ -1,4 +1,4 @@
-// From a generated struct to JointType: what a World and a reader of scenes know of a joint as data.
+// A generated struct -> JointType: the joint as data, for Worlds and for readers of scenes.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ std::vector<JointType> describe_joints(std::type_identity<std::tuple<Joints...>>
   return {describe_joint<Joints>()...};
 }
 
-// The joints that a program knows from its start: the whole catalogue, or those that it chose (cdot_use_joints).
+// The joints of a program: the whole catalogue, or its own choice (cdot_use_joints).
 std::vector<JointType> joints_of_program(Dimension dimension);
 
 }  // namespace cdot

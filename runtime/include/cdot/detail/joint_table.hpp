@@ -1,6 +1,5 @@
-// Every registered joint as row blocks: joint, coordinates, immovable variants, made from the
-// generated structs by one template. What the registry knows at compile time, a World looks up here
-// by number.
+// Every registered joint as row blocks: joint, coordinates and immovable variants. One template makes the table from
+// the generated structs. A World looks a joint up by number.
 #pragma once
 
 #include <algorithm>
@@ -14,22 +13,22 @@
 
 namespace cdot {
 
-// A row block for general bodies, and those in which one body is immovable: (index of that body, its loops).
-// Coordinates and extended precision have only the first: the others would be a fifth of the library, and an immovable
-// body's inverse mass is 0, so that the general block gives the same bits.
+// A row block for general bodies and its variants with one immovable body: (index of that body, loops). Coordinates and
+// extended precision have only the general block: their variants would be a fifth of the library. The general block
+// gives the same bits, because an immovable body's inverse mass is 0.
 template <class S>
 struct BlockVariants {
   const BlockOps<S>* general;
   std::vector<std::pair<int, const BlockOps<S>*>> immovable;
 
-  // The cheapest block for these bodies. With several immovable bodies one variant serves: the
-  // others' inverse masses are 0 in the data.
+  // The cheapest block for these bodies. With several immovable bodies the first variant is enough: the other inverse
+  // masses are 0.
   const BlockOps<S>* choose(const Bodies<S>& bodies, std::span<const int> body) const {
     for (const auto& [index, ops] : immovable)
       if (bodies.immovable(body[static_cast<size_t>(index)])) return ops;
     return general;
   }
-  // In whichever form its rows are solved.
+  // True for every form in which the rows are solved.
   bool has(const BlockOps<S>* ops) const {
     const auto is = [&](const BlockOps<S>* one) {
       return ops == one || (ops && (ops == one->fast || ops == one->robust));
@@ -43,8 +42,7 @@ template <class S>
 struct JointEntry {
   BlockVariants<S> rows;
   std::vector<BlockVariants<S>> coordinates;  // in the order of JointType::coordinates
-  // Writes the default of parameter `index`, computed from the poses, the parameters before it and
-  // the time.
+  // Writes the default of parameter `index`, computed from the poses, the earlier parameters and the time.
   void (*default_value)(int index, const typename S::Pose* q, typename S::Scalar* parameters, typename S::Scalar time);
 };
 
@@ -77,8 +75,8 @@ JointEntry<S> joint_entry() {
   return entry;
 }
 
-// In the order of joint_types(). One file per space and scalar defines it: of the library, for the whole catalogue, or
-// of a program that chose its joints (cdot_use_joints). cdot/detail/add_joints.hpp adds to it.
+// In the order of joint_types(). One file per space and scalar defines this function: in the library for the whole
+// catalogue, or in a program that chose its joints (cdot_use_joints). cdot/detail/add_joints.hpp appends entries.
 template <class S>
 std::vector<JointEntry<S>>& joint_entries();
 

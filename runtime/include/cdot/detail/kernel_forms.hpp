@@ -1,5 +1,5 @@
-// Other ways to the numbers that solve a row block's K lambda = rhs than the kernel's own factor and solve. They need a
-// kernel's contract only, so they are written here once and not generated for every joint.
+// Alternatives to the kernel's own factor and solve for K lambda = rhs. They need only the kernel contract, so they are
+// written once here and not generated for every joint.
 #pragma once
 
 #include <cdot/kernel.hpp>
@@ -8,8 +8,9 @@ namespace cdot {
 
 // K = L D L^T of J M^-1 J^T without K: each row of J is made conjugate to those before it,
 //   L_rs = j_r M^-1 j_s / D_s,   j_r -= L_rs j_s,   D_r = j_r M^-1 j_r,
-// so that no pivot is a difference of large numbers. Where K's pivots lose the square of a block's condition in digits
-// (a long arm on a body of little inertia), these lose the condition. F is laid out as the kernel's factor leaves it.
+// so no pivot is a difference of large numbers. The relative error of K's pivots grows with the square of the block's
+// condition, as for a long arm on a body of little inertia. The error of these pivots grows with the condition. F has
+// the layout of the kernel's factor.
 template <class Block, int columns, class Jacobian, class InverseMass, class T, int triangle>
 void factor_by_rows(const Jacobian& J, const InverseMass (&m)[Block::bodies], T (&F)[triangle]) {
   constexpr int rows = Block::rows;
@@ -33,13 +34,13 @@ void factor_by_rows(const Jacobian& J, const InverseMass (&m)[Block::bodies], T 
       }
     }
     const T left = product(D[r], W[r]);
-    // A row that depends on those before it leaves the squares of round-off.
+    // A row that depends on earlier rows leaves the squares of round-off.
     row[r] = select(left > round_off * round_off * before, T(1) / left, T(0));
   }
 }
 
-// K^-1 of two rows in the place of its factors: solving is two products side by side instead of one substitution after
-// the other. Where K is singular, the impulse is left to the row with the larger entry.
+// K^-1 of two rows in place of the factors: the solution needs two independent products instead of two dependent
+// substitutions. If K is singular, the row with the larger diagonal entry gets the whole impulse.
 template <class T>
 void invert(const T (&K)[3], T (&G)[3]) {
   const T inv_det = pivot(K[0] * K[2] - K[1] * K[1], K[0] * K[2]);

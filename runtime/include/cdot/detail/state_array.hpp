@@ -1,5 +1,5 @@
-// Numbers of a World's State. While a World is set up each array grows by itself; in one that is prepared all of them
-// lie in one block of bytes (runtime/state/block.hpp), so that a state is copied, kept and compared as a whole.
+// Numbers of a World's State. During setup each array has its own memory. Preparation moves all of them into one block
+// of bytes (runtime/state/block.hpp), which is copied, saved and compared as a whole.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace cdot {
 
-// An array. A copy has numbers of its own; assigning one of the same size writes into the block.
+// An array. A copy has its own memory; assignment of an array of the same size writes into the block.
 template <class T>
 class StateArray {
  public:
@@ -50,7 +50,7 @@ class StateArray {
     return at_[i];
   }
 
-  // While a World is set up: the numbers leave the block.
+  // Only during setup: the numbers leave the block.
   void push_back(const T& number) {
     leave_block();
     own_.push_back(number);
@@ -82,7 +82,7 @@ class StateArray {
     come_home();
   }
 
-  // The numbers move to `to`, in the block.
+  // Moves the numbers to `to`, in the block.
   void settle(void* to) {
     T* const there = static_cast<T*>(to);
     if (size_ > 0) std::memcpy(to, at_, size_ * sizeof(T));
@@ -108,7 +108,7 @@ class StateArray {
 template <class T>
 class StateNumber {
  public:
-  StateNumber(T number = {}) : own_(number) {}  // NOLINT: a number is one
+  StateNumber(T number = {}) : own_(number) {}  // NOLINT: converts implicitly
   StateNumber(const StateNumber& other) : own_(*other.at_) {}
   StateNumber(StateNumber&& other) noexcept : own_(*other.at_), at_(other.at_ == &other.own_ ? &own_ : other.at_) {}
   StateNumber& operator=(const StateNumber& other) { return *this = *other.at_; }

@@ -1,6 +1,6 @@
-// Angles beyond half a turn. In space a kernel knows an angle only within (-pi, pi]; here the whole
-// turns are counted, from one evaluation to the next, for
-//   - a coordinate in radians under an effect: its C goes on beyond pi;
+// Angles beyond half a turn. In space a kernel gives an angle within (-pi, pi]. These counters add the whole turns from
+// one evaluation to the next, for
+//   - a coordinate in radians under an effect: its C grows beyond pi;
 //   - a joint whose rows need it: the parameter `<coordinate>_turns` [rad] is kept such that the
 //     coordinate and it together never jump (a gear between two hinges).
 #pragma once
@@ -15,14 +15,14 @@
 
 namespace cdot {
 
-// What whole turns must be added to `angle` to come nearest to `last`.
+// The whole turns that bring `angle` nearest to `last`, in radians.
 template <class T>
 T whole_turns(T angle, T last) {
   constexpr T turn = T(6.283185307179586476925L);
   return turn * std::round((last - angle) / turn);
 }
 
-// The place of the parameter that counts the turns of a coordinate; -1: there is none.
+// The offset of the parameter that counts the turns of a coordinate; -1: none.
 template <class Joint>
 constexpr int turns_parameter(std::string_view coordinate) {
   for (const ParameterInfo& info : Joint::parameters) {
@@ -33,8 +33,8 @@ constexpr int turns_parameter(std::string_view coordinate) {
   return -1;
 }
 
-// Counters of one slot of a row block: those of the joint's parameters, in the order of its
-// coordinates, then that of the coordinate itself if the block is one in radians.
+// Counters of one slot of a row block: first those of the joint's parameters in the order of its coordinates, then, if
+// the block is a coordinate in radians, its own.
 template <class S, class Joint, class Block>
 struct TurnCounters {
   using T = typename S::Scalar;
@@ -55,7 +55,7 @@ struct TurnCounters {
   }
   static constexpr int count = of_parameters() + (is_angle() ? 1 : 0);
 
-  // Before the rows are evaluated.
+  // Called before the rows are evaluated.
   static void count_parameters(Poses& q, T* parameters, T time, T* counters) {
     each_parameter(
         [&]<class C>(std::type_identity<C>, T* counter) {
@@ -67,13 +67,12 @@ struct TurnCounters {
         },
         counters);
   }
-  // After it.
+  // Called after the rows are evaluated.
   static void count_angle(T& C, T* counters) {
     T& counter = counters[of_parameters()];
     counter = C += whole_turns(C, counter);
   }
-  // From what the scene says: the turns that a parameter starts with, and an angle within half a
-  // turn.
+  // Start values: the turns that the scene gives a parameter, and an angle within half a turn.
   static void start(Poses& q, const T* parameters, T time, T* counters) {
     each_parameter(
         [&]<class C>(std::type_identity<C>, T* counter) {

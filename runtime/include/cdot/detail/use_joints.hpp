@@ -1,12 +1,12 @@
-// A program's own choice of joints in place of the whole catalogue: for the file that cdot_use_joints writes. It
-// defines what the library's catalogue would define, so the linker leaves the catalogue out.
+// A program's own choice of joints in place of the whole catalogue, for the file that cdot_use_joints writes. That file
+// defines the catalogue's functions, so the linker omits the library's catalogue.
 #pragma once
 
 #include <cdot/detail/describe_joint.hpp>
 #include <cdot/detail/joint_table.hpp>
 #include <cdot/spaces.hpp>
 
-// `planar_joints` and `spatial_joints` are tuples of generated structs. Stands at global scope, once in a program.
+// `planar_joints` and `spatial_joints` are tuples of generated structs. Use at global scope, once in a program.
 #define CDOT_USE_JOINTS(planar_joints, spatial_joints)                                             \
   namespace cdot {                                                                                 \
   CDOT_USE_JOINTS_IN(Planar<double>, planar_joints)                                                \

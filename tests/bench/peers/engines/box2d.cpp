@@ -147,7 +147,7 @@ class Box2dRun final : public SteppedRun {
     dampers_.emplace_back(static_cast<b2RevoluteJoint*>(hinge), float(joint.spring->damping));
   }
 
-  // Of a slider: a distance joint that gives, from down its axis.
+  // The spring of a slider: a soft distance joint from a point far down its axis.
   void add_spring(const Joint& joint) {
     b2DistanceJointDef def;
     def.Initialize(body(joint.a), body(joint.b), vec(joint.anchor - joint.axis), vec(joint.anchor));
@@ -177,8 +177,8 @@ class Box2dRun final : public SteppedRun {
   b2Body* ground_ = nullptr;
   double last_;  // step
   std::vector<b2Body*> bodies_;
-  std::map<int, std::vector<b2Joint*>> joints_;  // by number; the first is that which holds
-  std::vector<b2Joint*>* made_ = nullptr;        // of the joint that is being added
+  std::map<int, std::vector<b2Joint*>> joints_;  // by number; the first is the constraint itself
+  std::vector<b2Joint*>* made_ = nullptr;        // of the joint in add()
   std::vector<std::pair<b2Body*, float>> torques_;
   std::vector<std::pair<b2RevoluteJoint*, float>> dampers_;
 };
@@ -195,7 +195,7 @@ std::vector<Series> series(const Problem& problem) {
   return all;
 }
 
-// The library calls itself 2.4.0 still.
+// The library still reports version 2.4.0.
 const Registration registration{
     {"Box2D", "2.4.1", "float", "#1f6feb",
      "no shapes; continuous collision off; sleeps where the case does; a damper of a hinge is a torque put on "

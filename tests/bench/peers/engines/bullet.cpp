@@ -11,13 +11,13 @@
 namespace cdot::peers {
 namespace {
 
-// What differs from a new world.
+// Changes from a new world's defaults.
 struct Way {
   std::string name, changed;
   int sweeps = 10;  // 0: Dantzig
   double erp = 0.2;
   bool gyroscope_in_world = false;
-  bool free_first = false;  // of the turns of a joint of six degrees
+  bool free_first = false;  // free rotation first, in six-degree joints
 };
 
 class BulletRun final : public SteppedRun {
@@ -82,7 +82,7 @@ class BulletRun final : public SteppedRun {
 
  private:
   struct Made {
-    std::vector<std::unique_ptr<btTypedConstraint>> constraints;  // the first is that which holds
+    std::vector<std::unique_ptr<btTypedConstraint>> constraints;  // the first is the constraint itself
     std::unique_ptr<btJointFeedback> felt = std::make_unique<btJointFeedback>();
   };
 
@@ -92,7 +92,7 @@ class BulletRun final : public SteppedRun {
 
   void add(const Body& body, const Way& way, bool sleeps) {
     const State& s = body.start;
-    const btVector3 inertia = body.turns ? bt(body.inertia) : btVector3(0, 0, 0);  // 0: it cannot turn
+    const btVector3 inertia = body.turns ? bt(body.inertia) : btVector3(0, 0, 0);  // 0: it cannot rotate
     btRigidBody::btRigidBodyConstructionInfo info(body.moves ? body.mass : 0, nullptr, &parts_.shape, inertia);
     info.m_startWorldTransform = btTransform(bt(s.q), bt(s.x));
     bodies_.push_back(std::make_unique<btRigidBody>(info));
@@ -106,7 +106,7 @@ class BulletRun final : public SteppedRun {
     world_.addRigidBody(&made);
   }
 
-  // The frame of a joint at the start, its x along the axis, in a body's own.
+  // The frame of a joint at the start, x along the axis, in a body's frame.
   static btTransform frame(const Problem& problem, const Joint& joint, int body, const Vec3& anchor) {
     const btVector3 x = norm(joint.axis) == 0 ? btVector3(1, 0, 0) : bt(joint.axis).normalized();
     btVector3 y, z;
@@ -133,7 +133,7 @@ class BulletRun final : public SteppedRun {
     b.applyTorque(-torque);
   }
 
-  // It counts from b to a.
+  // Bullet's angle is that from b to a.
   std::unique_ptr<btTypedConstraint> hinge(const Problem& problem, const Joint& joint, btRigidBody& a, btRigidBody& b) {
     auto made = std::make_unique<btHingeConstraint>(
         a, b, bt(local_point(problem, joint.a, joint.anchor)), bt(local_point(problem, joint.b, joint.anchor_b)),
@@ -147,7 +147,7 @@ class BulletRun final : public SteppedRun {
     return made;
   }
 
-  // Six degrees of freedom: turns about the axis are free, the rest of them held; slides are free.
+  // Six degrees of freedom: slides and the rotation about the axis are free, the other rotations locked.
   std::unique_ptr<btGeneric6DofSpring2Constraint> six(const Problem& problem, const Joint& joint) {
     auto made = std::make_unique<btGeneric6DofSpring2Constraint>(body(joint.a), body(joint.b),
                                                                  frame(problem, joint, joint.a, joint.anchor),
@@ -157,8 +157,7 @@ class BulletRun final : public SteppedRun {
     for (int k = 4; k < 6; ++k) made->setLimit(k, 0, 0);
     return made;
   }
-  // Turns about x of a, y and z of b, of which a universal joint leaves the last two: the second may then go all
-  // around.
+  // Rotations about x of a, y and z of b; a universal joint frees the last two, so the second may turn without bound.
   std::unique_ptr<btTypedConstraint> turning(const Problem& problem, const Joint& joint) {
     std::vector<Turn> turns = turns_of(joint, free_first_);
     if (joint.kind == JointKind::universal)
@@ -173,7 +172,7 @@ class BulletRun final : public SteppedRun {
       made->setLimit(3 + k, turn.held ? 0 : 1, turn.held ? 0 : -1);
       if (!turn.motor) continue;
       made->enableMotor(3 + k, true);
-      made->setTargetVelocity(3 + k, -turn.motor->speed);  // counts from b to a
+      made->setTargetVelocity(3 + k, -turn.motor->speed);  // positive from b to a
       made->setMaxMotorForce(3 + k, turn.motor->most);
     }
     return made;
@@ -231,7 +230,7 @@ class BulletRun final : public SteppedRun {
   bool free_first_;
   std::vector<std::unique_ptr<btRigidBody>> bodies_;
   std::map<int, Made> joints_;  // by number
-  Made* made_ = nullptr;        // of the joint that is being added
+  Made* made_ = nullptr;        // of the joint in add()
   std::vector<std::pair<btRigidBody*, btVector3>> torques_;
   std::vector<std::pair<btHingeConstraint*, Motor>> motors_;
   std::vector<std::pair<btHingeConstraint*, double>> dampers_;

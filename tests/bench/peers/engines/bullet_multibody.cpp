@@ -1,4 +1,4 @@
-// Bullet's multibodies: space, double precision, minimal coordinates; loops are closed by points fed back.
+// Bullet's multibodies: space, double precision, minimal coordinates; feedback on points closes loops.
 #include <BulletDynamics/Featherstone/btMultiBody.h>
 #include <BulletDynamics/Featherstone/btMultiBodyConstraintSolver.h>
 #include <BulletDynamics/Featherstone/btMultiBodyDynamicsWorld.h>
@@ -22,7 +22,7 @@ struct Way {
   std::string name, changed;
   bool rk4;
   double erp = 0.2;
-  bool free_first = false;  // of the turns of a joint of six degrees
+  bool free_first = false;  // free rotation first, in six-degree joints
 };
 
 class MultibodyRun final : public SteppedRun {
@@ -53,7 +53,7 @@ class MultibodyRun final : public SteppedRun {
     }
     for (const int loop : tree.loops) close(problem, tree, problem.joints[std::size_t(loop)]);
     for (const Branch& branch : tree.branches) drive(problem, branch);
-    // Without colliders constraints and sleep would do nothing, and say nothing.
+    // Without colliders Bullet silently ignores constraints and sleep.
     if (!constraints_.empty() || problem.sleep_after > 0) collide();
   }
   ~MultibodyRun() override {
@@ -89,7 +89,7 @@ class MultibodyRun final : public SteppedRun {
             from(R * w[std::size_t(at.link) + 1])};
   }
 
-  // As a force during the next step.
+  // Acts as a force during the next step.
   void strike(int body, const Vec3& impulse) override {
     places_[std::size_t(body)].multibody->wakeUp();
     for (const auto& collider : colliders_) collider->activate(true);
@@ -119,7 +119,7 @@ class MultibodyRun final : public SteppedRun {
     }
   }
 
-  // One for what hangs from the world, one for each body that nothing holds with what hangs from it.
+  // One multibody for the tree at the world, one for each free body and its tree.
   void make(const Problem& problem, const Tree& tree) {
     std::vector<int> links{0}, group(problem.bodies.size(), 0);
     for (const Branch& branch : tree.branches) {
@@ -148,7 +148,7 @@ class MultibodyRun final : public SteppedRun {
     for (const Branch& branch : tree.branches) set_velocity(problem, branch, places_[std::size_t(branch.body)]);
   }
 
-  // A joint that turns about several axes is as many hinges, between links without mass.
+  // A joint with several axes becomes a hinge for each, between massless links.
   static int links_of(const Problem& problem, const Branch& branch) {
     return std::max(1, int(problem.joints[std::size_t(branch.joint)].turns.size()));
   }

@@ -1,4 +1,4 @@
-// What a Bullet world needs around it, for both of its kinds of bodies. No shape ever touches another.
+// The parts of a Bullet world for both of its kinds of bodies. Shapes never collide.
 #pragma once
 
 #include <btBulletDynamicsCommon.h>

@@ -1,5 +1,5 @@
-// Cdot itself, in the plane where the problem is planar; and, as an engine of its own, planar problems in space,
-// since the others that know only space have no choice.
+// Cdot itself, in the plane for planar problems. A second engine solves planar problems in space, like the engines
+// without a planar mode.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -90,8 +90,7 @@ JointDefinition definition(const Planar<double>*, const Problem& problem, const 
   return d;
 }
 
-// Of a joint that turns about several axes: those of a six-degree joint are x, y and z, those of a universal one y and
-// z.
+// The frame of a joint with several axes: x, y and z of a six-degree joint, y and z of a universal joint.
 NamedValue frame(const Problem& problem, const Joint& joint) {
   const Vec3 &first = joint.turns[0].axis, &second = joint.turns[1].axis;
   const bool universal = joint.kind == JointKind::universal;
@@ -129,7 +128,7 @@ State state_of(const spatial::Place& q, const spatial::Velocity<double>& v) {
   return {{q.x, q.y, q.z}, {q.e0, q.e1, q.e2, q.e3}, {v.x, v.y, v.z}, {v.wx, v.wy, v.wz}};
 }
 
-// As a scene far away is counted from among its bodies.
+// The origin lies among the bodies, as for scenes far from 0.
 template <class S>
 void choose_origin(const Problem& problem, BasicWorld<S>& world) {
   constexpr double far_away = 1000;
@@ -181,7 +180,7 @@ BasicWorld<S> build(const Problem& problem, Settings settings) {
   return made;
 }
 
-// What step() says, aloud.
+// Throws if step() reports a problem.
 void check(const StepResult& result, const Problem& problem) {
   if (result) return;
   const std::string body = result.body >= 0 ? problem.bodies[std::size_t(result.body)].name : "";
@@ -237,7 +236,7 @@ class WorldRun : public Base {
 template <class S>
 using CdotRun = WorldRun<S, SteppedRun>;
 
-// Its steps are chosen by the error that each may have.
+// Adaptive steps by local_error.
 class Adaptive : public Run {
  public:
   void advance(double to) final {
@@ -256,7 +255,7 @@ Settings with(Settings settings, double local_error) {
   return settings;
 }
 
-// One row per way to use the runtime, with what differs from a scene that says nothing.
+// One row per way to use the runtime, with the changes from a scene's defaults.
 struct Way {
   const char* name;
   const char* changed;

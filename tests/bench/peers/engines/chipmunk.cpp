@@ -13,7 +13,7 @@ namespace {
 
 cpVect vec(const Vec3& a) { return cpv(a[0], a[1]); }
 
-// How much of a joint's error is left after a second.
+// The share of a joint's error that remains after a second.
 double left_after_a_second(double left_per_step, double h) { return std::pow(left_per_step, 1 / h); }
 
 class ChipmunkRun final : public SteppedRun {
@@ -75,7 +75,7 @@ class ChipmunkRun final : public SteppedRun {
   bool asleep(int body) const override { return cpBodyIsSleeping(bodies_[std::size_t(body)]); }
 
  private:
-  // It has one for all bodies.
+  // Chipmunk has one damping for all bodies.
   static double damping(const Problem& problem) {
     for (const Body& body : problem.bodies)
       if (body.damping != problem.bodies[0].damping) throw CannotSay("one damping for all bodies only");
@@ -135,7 +135,7 @@ class ChipmunkRun final : public SteppedRun {
     cpConstraintSetMaxForce(made_->back(), joint.motor->most);
   }
 
-  // Of a slider: from down its axis.
+  // The spring of a slider, from a point far down its axis.
   void add_spring(const Problem& problem, const Joint& joint) {
     cpBody *a = body(joint.a), *b = body(joint.b);
     const Spring& spring = *joint.spring;
@@ -147,7 +147,7 @@ class ChipmunkRun final : public SteppedRun {
                            spring.damping));
   }
 
-  // Of a groove that is long enough on both sides; of none along no axis.
+  // One end of a groove that is long enough on both sides; a point without an axis.
   static cpVect end(const Problem& problem, const Joint& joint, double side) {
     const double half = 10, length = norm(joint.axis);
     return vec(local_point(problem, joint.a, joint.anchor + (length > 0 ? side * half / length : 0) * joint.axis));
@@ -155,8 +155,8 @@ class ChipmunkRun final : public SteppedRun {
 
   cpSpace* space_;
   std::vector<cpBody*> bodies_;
-  std::map<int, std::vector<cpConstraint*>> joints_;  // by number; the first is that which holds
-  std::vector<cpConstraint*>* made_ = nullptr;        // of the joint that is being added
+  std::map<int, std::vector<cpConstraint*>> joints_;  // by number; the first is the constraint itself
+  std::vector<cpConstraint*>* made_ = nullptr;        // of the joint in add()
   std::vector<std::pair<cpBody*, double>> torques_;
   double left_after_a_second_ = -1;  // of a joint's error; below 0: the default
   double last_;                      // step

@@ -1,4 +1,4 @@
-// MuJoCo: space, double precision, minimal coordinates; loops are closed by soft equality constraints.
+// MuJoCo: space, double precision, minimal coordinates; soft equality constraints close loops.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -24,7 +24,7 @@ std::string text(const Spring& spring) {
   return fmt::format(" stiffness='{}' damping='{}'", spring.stiffness, spring.damping);
 }
 
-// Slides across in all directions, which give: before the hinge turns.
+// Soft slides in all directions, before the hinge.
 std::string soft_text(const Problem& problem, const Branch& branch, const Spring& soft) {
   std::string out;
   for (const Vec3& axis : {Vec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}})
@@ -33,7 +33,7 @@ std::string soft_text(const Problem& problem, const Branch& branch, const Spring
   return out;
 }
 
-// Hinges one after another.
+// A series of hinges.
 std::string turns_text(const Problem& problem, const Branch& branch, const std::vector<Turn>& turns) {
   std::string out;
   for (std::size_t k = 0; k < turns.size(); ++k)
@@ -70,7 +70,7 @@ double rope_at_start(const Joint& joint) {
   return norm(joint.anchor - joint.wheel) + joint.ratio * norm(joint.anchor_b - joint.wheel_b);
 }
 
-// What a body, or the world, has of ropes: their ends, and their wheels.
+// The ends and wheels of ropes on a body or in the world.
 std::string sites_text(const Problem& problem, int body) {
   std::string out;
   const auto add = [&](char side, std::size_t joint, const Vec3& at) {
@@ -103,7 +103,7 @@ std::string ropes_text(const Problem& problem) {
   return out;
 }
 
-// Hinges that are held.
+// Equality constraints of locked hinges.
 std::string holds_text(const Problem& problem, const Tree& tree, bool free_first) {
   std::string out;
   for (const Branch& branch : tree.branches) {
@@ -120,7 +120,7 @@ std::string motor_text(const std::string& joint, const Motor& motor) {
   if (std::isfinite(motor.most)) out += fmt::format(" forcelimited='true' forcerange='{} {}'", -motor.most, motor.most);
   return out + "/>";
 }
-// And their speeds.
+// Motors and their speeds.
 std::string motors_text(const Problem& problem, const Tree& tree, bool free_first, std::vector<double>& speeds) {
   std::string out;
   for (const Branch& branch : tree.branches) {
@@ -203,11 +203,11 @@ Model model_of(const Problem& problem, bool free_first) {
 struct Way {
   std::string name, changed;
   int integrator;
-  double solref = 0;  // steps in which the error of a loop, or of a hinge that is held, decays; 0: the default, 0.02 s
-  bool free_first = false;  // of the turns of a joint of six degrees
+  double solref = 0;        // steps in which the error of a loop or of a locked hinge decays; 0: the default, 0.02 s
+  bool free_first = false;  // free rotation first, in six-degree joints
 };
 
-// What holds, as firmly as that.
+// Sets the stiffness of constraints.
 void harden(double seconds, double* solref, double* solimp) {
   *solref = seconds;
   solimp[0] = solimp[1] = 0.9999;
@@ -264,7 +264,7 @@ class MujocoRun final : public SteppedRun {
     return {{x[0], x[1], x[2]}, {q[0], q[1], q[2], q[3]}, {v[3], v[4], v[5]}, {v[0], v[1], v[2]}};
   }
 
-  // As a force during the next step.
+  // Acts as a force during the next step.
   void strike(int body, const Vec3& impulse) override { struck_.emplace_back(body, impulse); }
 
   double force(int joint) const override {
@@ -276,7 +276,7 @@ class MujocoRun final : public SteppedRun {
   }
 
  private:
-  // A loop that starts open: the compiler takes its second point for where the first is.
+  // A loop that starts open: the compiler places its second point at the first.
   void open(const Problem& problem, const Joint& joint, int loop) {
     if (joint.kind == JointKind::orientation || only_closes(joint) || norm(joint.anchor_b - joint.anchor) == 0) return;
     const Vec3 at = local_point(problem, joint.b, joint.anchor_b);
@@ -297,11 +297,11 @@ class MujocoRun final : public SteppedRun {
     } else if (problem.joints[std::size_t(branch.joint)].kind == JointKind::spherical) {
       put(qvel, turned(conjugate(s.q), spin(problem, branch)));
     } else {
-      qvel[model_->body_dofnum[b] - 1] = rate(problem, branch);  // behind what makes it soft
+      qvel[model_->body_dofnum[b] - 1] = rate(problem, branch);  // after the coordinates of its softness
     }
   }
 
-  // What acts during the next step.
+  // Applies the forces of the next step.
   void push(double h) {
     std::vector<Push> all;
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
@@ -319,7 +319,7 @@ class MujocoRun final : public SteppedRun {
     }
   }
 
-  // A motor is a servo, whose gain would bring the joint to its speed within a step.
+  // A motor is a velocity servo; its gain reaches the speed within a step.
   void tune_motors(double h) {
     for (int k = 0; k < model_->nu; ++k) {
       const int dof = model_->jnt_dofadr[model_->actuator_trnid[2 * k]];

@@ -16,13 +16,13 @@ namespace {
 
 static_assert(sizeof(dReal) == sizeof(double));
 
-// What differs from a new dWorld.
+// Changes from a new dWorld's defaults.
 struct Way {
   std::string name, changed;
   int sweeps = 0;  // 0: Step
   double erp = 0.2, cfm = 1e-10;
   bool finite_rotation = false;
-  bool free_first = false;  // of the turns of a joint of six degrees
+  bool free_first = false;  // free rotation first, in six-degree joints
 };
 
 [[noreturn]] void give_up(int, const char* format, va_list values) {
@@ -75,7 +75,7 @@ class OdeRun final : public SteppedRun {
     joints_.erase(joint);
     return true;
   }
-  // A joint is told where it is, once for both bodies: one that starts open is made with the second where it would fit.
+  // ODE places a joint once for both bodies. For a joint that starts open the second body is first moved to fit.
   bool add(const Problem&, const Joint& joint) override {
     const bool meets = joint.kind != JointKind::orientation && joint.kind != JointKind::distance;
     const Vec3 gap = meets ? joint.anchor_b - joint.anchor : Vec3{};
@@ -93,7 +93,7 @@ class OdeRun final : public SteppedRun {
 
  private:
   struct Made {
-    std::vector<dJointID> ids;  // the first is that which holds
+    std::vector<dJointID> ids;  // the first is the constraint itself
     std::unique_ptr<dJointFeedback> felt = std::make_unique<dJointFeedback>();
   };
 
@@ -129,7 +129,7 @@ class OdeRun final : public SteppedRun {
 
   dBodyID body(int index) const { return index == peers::world ? nullptr : bodies_[std::size_t(index)]; }
 
-  // Its angle counts from b to a, but from the world to b where the world is a.
+  // ODE's angle is that from b to a, or from the world to b if a is the world.
   static void drive(dJointID hinge, const Joint& joint) {
     const bool forth = joint.a == peers::world;
     if (joint.motor) {
@@ -142,7 +142,7 @@ class OdeRun final : public SteppedRun {
     }
   }
 
-  // An angular motor that wants to stand, and gives like a damper.
+  // An angular motor of speed 0 with the softness of a damper.
   dJointID damper(const Joint& joint) {
     if (joint.spring->stiffness != 0) throw CannotSay("no spring of a hinge");
     const dJointID made = dJointCreateAMotor(world_, nullptr);
@@ -154,7 +154,7 @@ class OdeRun final : public SteppedRun {
     return made;
   }
 
-  // As its manual has it: what is stopped at both sides gives like a spring.
+  // By ODE's manual equal stops with ERP and CFM act as a spring.
   double erp(const Spring& spring) const { return h_ * spring.stiffness / (h_ * spring.stiffness + spring.damping); }
   double cfm(const Spring& spring) const { return 1 / (h_ * spring.stiffness + spring.damping); }
 
@@ -188,7 +188,7 @@ class OdeRun final : public SteppedRun {
     return made;
   }
 
-  // A body that is not the world comes first, and angles count from the second to it.
+  // The first body must not be the world; angles are those from the second body to the first.
   bool forth(const Joint& joint) const { return joint.a == peers::world; }
   void attach(dJointID made, const Joint& joint) {
     dJointAttach(made, body(forth(joint) ? joint.b : joint.a), body(forth(joint) ? joint.a : joint.b));
@@ -211,7 +211,7 @@ class OdeRun final : public SteppedRun {
     return made;
   }
 
-  // An angular motor that holds them, beside a ball.
+  // An angular motor for the rotations, beside a ball joint.
   dJointID turns(const Joint& joint) {
     std::vector<Turn> all = turns_of(joint, free_first_);
     if (forth(joint)) std::reverse(all.begin(), all.end());
@@ -240,7 +240,7 @@ class OdeRun final : public SteppedRun {
     return made;
   }
 
-  // An angular motor whose three angles are stopped where they are.
+  // An angular motor with stops at its three present angles.
   dJointID orientation(const Joint& joint) {
     const dJointID made = dJointCreateAMotor(world_, nullptr);
     dJointAttach(made, body(joint.a), body(joint.b));
@@ -258,7 +258,7 @@ class OdeRun final : public SteppedRun {
     dBodySetPosition(b, x[0] + by[0], x[1] + by[1], x[2] + by[2]);
   }
 
-  // A soft hinge is a soft ball: hinges themselves do not give.
+  // A soft hinge becomes a soft ball joint: ODE's hinges have no softness.
   dJointID connect(const Joint& joint) {
     if (joint.soft && joint.kind != JointKind::revolute) throw CannotSay("no soft joint but a ball");
     if (joint.kind == JointKind::spherical || joint.kind == JointKind::six_dof || joint.soft) return ball(joint);

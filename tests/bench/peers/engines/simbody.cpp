@@ -1,5 +1,5 @@
-// Simbody: space, double precision, minimal coordinates, integrators that control their error; loops are closed by
-// constraints that are projected.
+// Simbody: space, double precision, minimal coordinates, integrators that control their error; projected constraints
+// close loops.
 #include <Simbody.h>
 #include <cmath>
 #include <fmt/format.h>
@@ -18,13 +18,13 @@ SimTK::Rotation rotation(const Quaternion& q) { return SimTK::Rotation(SimTK::Qu
 
 constexpr double stop_stiffness = 1e6, stop_dissipation = 100;  // [N m/rad], [s/rad]
 
-// Of its own choice, in one that it is asked for; fewer where that would take hours.
+// The limit of internal steps per requested step; lower if that would take hours.
 int most_steps(const Problem& problem) { return problem.bodies.size() > 50 ? 100 : 1000; }
 
 struct Way {
   std::string name, changed;
   enum Kind { merson, feldberg, rk3, cpodes, euler } kind;
-  bool free_first = false;  // of the turns of a joint of six degrees
+  bool free_first = false;  // free rotation first, in six-degree joints
 };
 
 class SimbodyRun final : public Run {
@@ -80,7 +80,7 @@ class SimbodyRun final : public Run {
             vec(b.getBodyAngularVelocity(s))};
   }
 
-  // Velocities jump by the mass matrix: M^-1 J^T impulse.
+  // An impulse changes velocities by M^-1 J^T impulse.
   void strike(int body, const Vec3& impulse) override {
     SimTK::State& s = integrator_->updAdvancedState();
     system_.realize(s, SimTK::Stage::Velocity);
@@ -107,7 +107,7 @@ class SimbodyRun final : public Run {
     return body == peers::world ? static_cast<SimTK::MobilizedBody&>(matter_.Ground()) : bodies_[std::size_t(body)];
   }
 
-  // The frame of a joint, placed in the world at the start, in a body's own frame.
+  // The frame of a joint in the world at the start, expressed in a body's frame.
   static SimTK::Transform frame(const Problem& problem, int body, const SimTK::Rotation& axes, const Vec3& anchor) {
     const Quaternion q = body == peers::world ? Quaternion{1, 0, 0, 0} : problem.bodies[std::size_t(body)].start.q;
     return {SimTK::Rotation(~rotation(q) * axes), vec(local_point(problem, body, anchor))};
@@ -172,7 +172,7 @@ class SimbodyRun final : public Run {
     motors_.back().setDisabledByDefault(true);
   }
 
-  // What acts in the joint of a branch, whose coordinates are zero at the start.
+  // Adds the forces in a branch's joint; its coordinates are 0 at the start.
   void add_forces(const Problem& problem, const Branch& branch) {
     const SimTK::MobilizedBody& made = bodies_[std::size_t(branch.body)];
     const Body& body = problem.bodies[std::size_t(branch.body)];
@@ -185,7 +185,7 @@ class SimbodyRun final : public Run {
       SimTK::Force::MobilityLinearDamper(forces_, made, coordinate, spring.damping);
     };
     if (joint.spring) add_spring(0, *joint.spring);
-    if (joint.soft) add_spring(1, *joint.soft);  // behind the angle
+    if (joint.soft) add_spring(1, *joint.soft);  // after the angle
     if (joint.soft) add_spring(2, *joint.soft);
     if (joint.stops) {
       const Stops stops = stops_from_start(problem, branch);
@@ -196,7 +196,7 @@ class SimbodyRun final : public Run {
       add_motor(bodies_[std::size_t(branch.body)], 0, sense(problem, branch) * joint.motor->speed, *joint.motor);
   }
 
-  // One right angle, between a direction of one body and one of the other, across the hinge that holds the rest.
+  // A right angle between directions of two bodies across a hinge.
   void keep_angle(const Problem& problem, const Tree& tree, const Joint& joint) {
     const Branch& hinge = hinge_between(problem, tree, joint.a, joint.b);
     const SimTK::UnitVec3 axis(vec(problem.joints[std::size_t(hinge.joint)].axis)), across = axis.perp();
@@ -211,7 +211,7 @@ class SimbodyRun final : public Run {
                            vec(local_point(problem, joint.b, joint.anchor_b)), joint.length);
   }
 
-  // The tree keeps the plane, so that a pin which closes a loop is two rows.
+  // The tree keeps the plane, so a pin that closes a loop needs two rows.
   void close(const Problem& problem, const Tree& tree, const Joint& joint) {
     if (joint.kind == JointKind::orientation) return keep_angle(problem, tree, joint);
     if (joint.kind == JointKind::prismatic) throw CannotSay("the adapter closes no loop by a slider");
@@ -225,7 +225,7 @@ class SimbodyRun final : public Run {
                                       vec(local_point(problem, joint.b, joint.anchor_b)));
     }
   }
-  // A ball, and for a hinge two right angles between the axis of one body and two across it of the other.
+  // A ball; for a hinge also two right angles between one body's axis and two directions of the other.
   void close_in_space(const Problem& problem, const Joint& joint) {
     SimTK::Constraint::Ball(mobile(joint.a), vec(local_point(problem, joint.a, joint.anchor)), mobile(joint.b),
                             vec(local_point(problem, joint.b, joint.anchor_b)));
@@ -254,7 +254,7 @@ class SimbodyRun final : public Run {
     }
   }
 
-  // What is added to a mechanism that moves takes velocities away by the least impulse.
+  // Projects the velocities by the least impulse after a constraint was added.
   void make_compatible(SimTK::State& state) {
     system_.realize(state, SimTK::Stage::Velocity);
     if (state.getNUErr() == 0 || state.getUErr().norm() < 1e-9) return;
@@ -265,7 +265,7 @@ class SimbodyRun final : public Run {
     state.updU() += jump;
   }
 
-  // With the first step, before which the start is as it was told.
+  // Starts motors at the first step, so the given start is unchanged.
   void start_motors() {
     if (motors_.empty()) return;
     SimTK::State state = integrator_->getState();
@@ -289,7 +289,7 @@ class SimbodyRun final : public Run {
   SimTK::GeneralForceSubsystem forces_;
   SimTK::Force::UniformGravity gravity_;
   std::vector<SimTK::MobilizedBody> bodies_;
-  std::vector<SimTK::Constraint::ConstantSpeed> motors_;  // that do not run yet
+  std::vector<SimTK::Constraint::ConstantSpeed> motors_;  // not yet started
   std::map<int, int> held_by_;                            // bodies, by the numbers of the joints that they hang from
   bool free_first_;
   int most_steps_;

@@ -1,4 +1,4 @@
-// A force of Simbody's that damps the motion of one body against the world; it has none of its own.
+// A custom Simbody force that damps one body's motion relative to the world; Simbody has none.
 #pragma once
 
 #include <Simbody.h>

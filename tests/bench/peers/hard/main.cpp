@@ -1,4 +1,4 @@
-// cdot-peers-hard: what Cdot and today's engines make of the hard cases, in one table.
+// cdot-peers-hard: results of Cdot and of today's engines on the hard cases, in one table.
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fstream>
@@ -12,9 +12,9 @@ namespace {
 using namespace cdot::peers;
 namespace hard = cdot::hard;
 
-constexpr int finer_parts = 100;  // of a step, where no setting holds a case
+constexpr int finer_parts = 100;  // of a step, if every setting fails
 constexpr std::size_t too_many_to_refine = 50, too_many_bodies = 150;
-constexpr double longest_of_all = 60;  // CPU seconds of an engine and a case, after which no setting is begun
+constexpr double longest_of_all = 60;  // CPU seconds of an engine and a case after which no further setting starts
 
 double cpu_seconds() {
   rusage used{};

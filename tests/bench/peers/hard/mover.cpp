@@ -18,9 +18,9 @@
 namespace cdot::peers {
 namespace {
 
-constexpr double beyond_measure = 1e4;                      // sizes of the scene that a body has gone
-constexpr std::array accuracies{1e-3, 1e-6};                // of methods that choose their steps
-constexpr double start_off = 1e-9, float_start_off = 1e-6;  // of the largest place or speed
+constexpr double beyond_measure = 1e4;                      // largest distance of a body, in sizes of the scene
+constexpr std::array accuracies{1e-3, 1e-6};                // accuracies of adaptive methods
+constexpr double start_off = 1e-9, float_start_off = 1e-6;  // share of the largest position or speed
 
 template <std::size_t size>
 void put(char (&to)[size], const std::string& text) {
@@ -35,7 +35,7 @@ double size_of(const Problem& problem) {
   return size > 0 ? size : 1;
 }
 
-// In float the reference counts from where it has to; only what the engine is told can be held against it.
+// In float only the rounded start of the engine counts, not the reference's start.
 void check_start(const Problem& problem, const Run& run, bool single) {
   double scale = 1;
   for (const Body& body : problem.bodies)
@@ -52,13 +52,13 @@ void put(World<double>& world, int body, const State& s, double by) {
 }
 void put(SpatialWorld<double>& world, int body, const State& s, double) {
   world.set_velocity(body, {s.v[0], s.v[1], s.v[2], s.w[0], s.w[1], s.w[2]});
-  // Of the two quaternions of an orientation, that on the side of the last.
+  // Chooses the sign of the quaternion nearest to the last one.
   const auto last = world.pose(body);
   const double side = last.e0 * s.q[0] + last.e1 * s.q[1] + last.e2 * s.q[2] + last.e3 * s.q[3] < 0 ? -1 : 1;
   world.set_pose(body, {s.x[0], s.x[1], s.x[2], side * s.q[0], side * s.q[1], side * s.q[2], side * s.q[3]});
 }
 
-// With times for those that choose steps by them.
+// Adds times, which some engines need to choose steps.
 template <class S>
 Problem posed(const Scene& scene, const BasicWorld<S>& world) {
   Problem problem = problem_of(scene, world);
@@ -67,7 +67,7 @@ Problem posed(const Scene& scene, const BasicWorld<S>& world) {
   return problem;
 }
 
-// Of one trial. The run starts with the first step, whose length some engines have to know.
+// Moves one trial. The run starts with the first step, because some engines need its length.
 template <class S>
 class Stand final : public hard::Mover {
  public:
@@ -124,7 +124,7 @@ class Stand final : public hard::Mover {
 
   void begin(double step) { run_ = setting_.series.start(setting_.knob > 0 ? setting_.knob : step); }
 
-  // What was done to the World since the last step is done to the run.
+  // Applies the World's changes since the last step to the run.
   void follow(double step) {
     if (joints_changed()) {
       problems_.push_back(posed(*scene_, *world_));
@@ -148,7 +148,7 @@ class Stand final : public hard::Mover {
     return false;
   }
 
-  // False if the run has no words for it.
+  // False if the run does not support the change.
   bool tell_joints(const Problem& before, const Problem& now) {
     for (const Joint& joint : before.joints)
       if (world_->broken(joint.number) && !run_->remove(joint.number)) return false;
@@ -162,7 +162,7 @@ class Stand final : public hard::Mover {
     return true;
   }
 
-  // As all are that need this, in the coordinates of a tree.
+  // Starts a new run from the present state, in the coordinates of a tree.
   void start_anew(double step) {
     close_tree(problems_.back());
     for (const Setting& setting : settings(*asked_.engine, problem()))
@@ -191,14 +191,14 @@ class Stand final : public hard::Mover {
   Asked asked_;
   Told* told_;
   const Scene* scene_;
-  std::deque<Problem> problems_;  // as it changes; runs and series refer to them
+  std::deque<Problem> problems_;  // all versions of the problem, because runs and series refer to them
   BasicWorld<S>* world_;
   int parts_;
   double reach_;
   Setting setting_;
   std::unique_ptr<Run> run_;
-  std::vector<Velocity> velocities_;             // of its bodies, as they were put
-  std::vector<std::vector<double>> parameters_;  // of the World's joints, as they were told
+  std::vector<Velocity> velocities_;             // of its bodies, as last set
+  std::vector<std::vector<double>> parameters_;  // of the World's joints, as last passed on
 };
 
 template <class S>

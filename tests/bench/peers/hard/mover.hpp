@@ -1,4 +1,4 @@
-// Another engine moves the bodies of a hard case: the case is run, and judged by its own criterion, as it is for Cdot.
+// Another engine moves the bodies of a hard case, which is run and judged by its criterion as for Cdot.
 #pragma once
 
 #include "tests/bench/peers/peer.hpp"
@@ -6,7 +6,7 @@
 
 namespace cdot::peers {
 
-// One way to ask one engine: the how-manyeth of its settings, each step cut into `finer` equal parts.
+// One way to run one engine: the index of its setting, with each step in `finer` equal parts.
 struct Asked {
   const Engine* engine;
   int setting = 0;
@@ -16,14 +16,14 @@ struct Asked {
 
 // Plain memory, which a parent process can share.
 struct Told {
-  char setting[128], changed[384];  // what the engine calls it, and every default that it changes
-  double time;                      // how far the bodies were moved [s]
+  char setting[128], changed[384];  // its name, and every changed default
+  double time;                      // time reached [s]
 };
 
-// Thrown where an engine has no setting of that number.
+// Thrown if an engine has no setting of that number.
 struct NoSuchSetting {};
 
-// Thrown where a body went beyond all measure, or nowhere: it is no number.
+// Thrown if a body is too far away or not finite.
 struct Exploded {
   double time;
 };
@@ -32,15 +32,15 @@ struct Setting {
   Series series;
   double knob = 0;  // 0: the step
 };
-// The engine's defaults first. Empty if the problem is not of its kind.
+// The engine's settings, defaults first; empty if the engine cannot pose the problem.
 std::vector<Setting> settings(const Engine& engine, const Problem& problem);
 
 void say(Told& told, const Setting& setting);
 
-// What a case asks, as it starts; throws CannotSay.
+// The problem at the start of a case; throws CannotSay.
 Problem problem_of(const hard::Case& hard_case);
 
-// What has been told stays up to date while trials run.
+// Updates `told` while trials run.
 void let_move(const Asked& asked, Told& told);
 
 }  // namespace cdot::peers

@@ -22,7 +22,7 @@ constexpr rlim_t most_memory = rlim_t{4} << 30;  // of a run [bytes]
 constexpr std::array<const char*, 7> kinds{"survives", "wrong",    "explodes",  "gives up",
                                            "aborts",   "too slow", "cannot say"};
 
-// What joints carry is judged of chains at rest only.
+// Loads of joints are judged only for chains at rest.
 bool of_motion(const hard::Finding& found) {
   if (std::isnan(found.value)) return false;
   for (const char* word : {"tension", "wall's force", "wall's moment", "their force"})
@@ -68,7 +68,7 @@ void run(Outcome& outcome, const hard::Case& hard_case, const Asked& asked, Told
   }
 }
 
-// What a child shares with its parent, up to date even if it dies.
+// Memory that a child shares with its parent and that survives a crash.
 struct Shared {
   Told told;
   bool no_such = false;
@@ -81,7 +81,7 @@ Shared& shared() {
   return *static_cast<Shared*>(memory);
 }
 
-// What engines print is theirs; the last lines of it may tell why one died.
+// Redirects the engine's output; its last lines may give the reason of a crash.
 int redirected() {
   char name[] = "/tmp/cdot-peers-hard-XXXXXX";
   const int file = mkstemp(name);

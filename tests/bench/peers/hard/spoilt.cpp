@@ -11,7 +11,7 @@ namespace {
 
 constexpr double beyond_measure = 1e4;  // [m]
 
-// Two bodies that do not move, and a hinge between them; the rod hangs from the first.
+// Two static bodies with a hinge between them; the rod hangs from the first.
 void add_idle(Problem& problem) {
   const int wall = int(problem.bodies.size());
   for (int k = 0; k < 2; ++k) {
@@ -60,7 +60,7 @@ constexpr std::array questions{
     Spoilt{"both_immovable", "mass 0", 2, "moved [m]", 1e-6, take_mass, nullptr},
     Spoilt{"zero_length_distance", "length 0", 5, "gap [m]", 1e-4, take_length, nullptr}};
 
-// One run of a problem, in the setting that is asked.
+// One run of a problem in one setting.
 struct Going {
   Going(Problem the_problem, const Asked& asked, double h) : problem(std::move(the_problem)) {
     const std::vector<Setting> all = settings(*asked.engine, problem);
@@ -76,7 +76,7 @@ struct Going {
   std::unique_ptr<Run> run;
 };
 
-// The farthest that a body is from where it should be.
+// The largest distance of a body from its correct position.
 double off(const Going& is, const Going* should) {
   double worst = 0;
   for (std::size_t k = 0; k < is.problem.bodies.size(); ++k) {
@@ -95,7 +95,7 @@ const Spoilt* spoilt(const hard::Case& hard_case) {
   return at == questions.end() ? nullptr : at;
 }
 
-// The scene's own problem is sound; its start is not moved onto joints that will be others.
+// The scene's own problem is valid; its start is not projected, because the joints will change.
 Problem problem_of(const Spoilt& question, const hard::Case& hard_case) {
   hard::Case sound{hard_case.fault, hard_case.scene, {}, [](hard::Trial& trial) {
                      trial.scene.project = false;

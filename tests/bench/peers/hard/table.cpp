@@ -10,35 +10,33 @@ namespace {
 
 constexpr const char* head = R"(# Hard cases beside today's engines
 
-What Cdot and today's engines make of the [hard cases](../../hard_cases/README.md). One criterion per case, the code
-of that folder, judges all of them; it looks at poses and velocities, which every engine is asked for after every
-step, and computes gaps, angles and energies of them itself. What joints carry is judged of chains at rest only. Bodies,
-joints, start and step (1/60 s unless the case says otherwise) are the same for all; nobody has contact, nor damping or
-sleep where the case has none. Engines of the plane are asked in the plane, those
-of space in space; where a case has only a planar scene, it is posed in space to them. What is done to a mechanism
-while it runs, an impulse, a joint that comes, goes or moves, is done to the engine's own run; Bullet's multibodies,
-MuJoCo and Simbody, whose trees are made once, are made anew from where they are when joints change. A joint that
-breaks is taken out by what the engine says it carries.
+Results of Cdot and of today's engines on the [hard cases](../../hard_cases/README.md). One criterion per case, the code
+of that folder, judges all of them. It reads poses and velocities after every step and computes gaps, angles and
+energies. Loads of joints are judged only for chains at rest. Bodies, joints, start and step (1/60 s unless the case
+states otherwise) are the same for all; there is no contact, and no damping or sleep unless the case has them. Planar
+engines get the planar scene, spatial engines the spatial one or, if the case has only a planar scene, that scene in
+space. Changes during a run (an impulse, a joint that is added, removed or moved) also change the engine's run. Bullet's
+multibodies, MuJoCo and Simbody build their trees once, so they restart from the present state when joints change. A
+joint breaks by the load that the engine reports.
 
-Every engine is asked with its defaults and with every series of settings that paid in [results](results/README.md),
-at the same step. **holds**: with its defaults. *holds, tuned*: with another setting, named below. A number: of its
-best setting, the one that is worst against its bound, and that bound. *explodes*: a body is no number, or 10 000
-sizes of the scene away, at that time. *too slow*: it had come that far when its CPU time was spent. —: it cannot pose
-the case, for the reason below. What no setting holds was also run at a hundredth of the step, which tells what the
-step costs from what is wrong there, except mechanisms of more than 50 bodies. A run gets 30 s of CPU time, and after
-60 s for one case no further setting of an engine is begun. Simbody, which is slow here, is asked until one of its
-settings holds, and so is everybody with more than 150 bodies.
+Every engine runs with its defaults and with every useful series of settings from [results](results/README.md), at the
+same step. **holds**: with its defaults. *holds, tuned*: with another setting, named below. A number: the number of the
+best setting with the largest ratio to its bound, and that bound. *explodes*: a body is not finite, or 10 000 sizes of
+the scene away, at that time. *too slow*: the time reached at the end of the CPU time. —: the engine cannot pose the
+case, for the reason below. A case that no setting holds was also run at a hundredth of the step, except mechanisms of
+more than 50 bodies; this separates errors of the step from other errors. A run gets 30 s of CPU time, and after 60 s
+for one case no further setting of an engine starts. Simbody, which is slow here, stops at the first setting that holds,
+and so does every engine with more than 150 bodies.
 
-Five rows have no proper answer: a slider along no axis, a motor of a hinge whose axes point against each other, a
-joint between two bodies that do not move, a body of mass 0, a distance of 0. There an engine may refuse the question,
-with an error before anything has moved: **refuses**. A hinge between two immovable bodies may do nothing, a body of
-mass 0 stand still, and points 0 apart stay together; the first two are no more than *accepted*.
+Five rows are invalid problems: a slider without an axis, a motor of a hinge with antiparallel axes, a joint between two
+static bodies, a body of mass 0, a distance of 0. An engine may refuse them with an error before the first step:
+**refuses**. A hinge between two static bodies may do nothing, a body of mass 0 stand still, and points at distance 0
+stay together; the first two only count as *accepted*.
 
-**To read it fairly.** The bounds are those that Cdot is tested by; many are far below what an engine made for games
-aims at: a gap of a millimetre is none to a player. Engines in minimal coordinates (Bullet's multibodies, MuJoCo,
-Simbody) cannot open the joints of their trees at all, Cdot's default method, like others of first order, is off by a
-share of the step, and its other methods may take many steps of their own in one, as Simbody's do. Box2D computes in
-float, and is held to the bounds for floats.
+**Fairness.** The bounds are those of Cdot's tests. Many are far below the goals of game engines: a player does not see a
+gap of a millimetre. Engines in minimal coordinates (Bullet's multibodies, MuJoCo, Simbody) cannot open the joints of
+their trees at all. Cdot's default method, like others of first order, has an error proportional to the step; its other
+methods may take many internal steps in one, as Simbody's do. Box2D computes in float and has the bounds for floats.
 
     cdot-peers-hard -o tests/bench/peers   # this page, and hard_cases.json with all settings; half an hour of CPU time
     cdot-peers-hard --only ball_and_chain --engine ODE
@@ -63,12 +61,12 @@ bool is_planar(const hard::Case& hard_case) {
   return hard::Trial(hard_case.fault + "/" + hard_case.scene, {}).scene.dimension == Dimension::planar;
 }
 
-// Before it moved anything; of some questions, that holds the case.
+// True if the engine refused before the first step, which solves some cases.
 bool refused(const Outcome& o) {
   return (o.kind == Outcome::gives_up || o.kind == Outcome::survives) && o.time == 0 && !o.message.empty();
 }
 
-// In the table, of the best setting.
+// The text in the table, for the best setting.
 std::string brief(const Cell& cell) {
   const std::size_t best = cell.best();
   const Outcome& o = cell.settings[best];
@@ -81,7 +79,7 @@ std::string brief(const Cell& cell) {
   return fmt::format("{} at {:.2g} s", name_of(o.kind), o.time);
 }
 
-// Below the table.
+// The text below the table.
 std::string account(const Outcome& o) {
   if (refused(o)) return (o.kind == Outcome::survives ? "holds, refuses: " : "refuses: ") + o.message;
   if (o.kind == Outcome::survives || o.kind == Outcome::wrong) {
@@ -102,7 +100,7 @@ std::string account(const Outcome& o) {
   return fmt::format("{} at {:.3g} s: {}", name_of(o.kind), o.time, o.message);
 }
 
-// What was looked into, where an engine fails by far.
+// Explanations of large failures.
 struct Remark {
   const char *row, *column, *text;
 };
@@ -152,7 +150,7 @@ std::string details(const Row& row, const nlohmann::json& cells) {
   return text + remarks_on(row);
 }
 
-// How many cases a column holds: with its defaults, with any setting, of those that it can say.
+// The number of cases that a column holds: with defaults, with any setting, of all supported cases.
 std::string tally(const nlohmann::json& found) {
   std::string text = "| of those it can say: holds with its defaults, with any setting |";
   for (const Column& column : columns()) {
@@ -200,7 +198,7 @@ std::vector<Row> rows() {
 Question question(const Row& row, const Column& column) {
   const hard::Case *planar = nullptr, *spatial = nullptr;
   for (const hard::Case& hard_case : row.cases) (is_planar(hard_case) ? planar : spatial) = &hard_case;
-  // Turns are counted, which poses in space do not tell.
+  // These cases count turns, which spatial poses do not contain.
   if (row.name == "closed_loops" || row.name == "angle_past_half_a_turn") spatial = nullptr;
   if (row.name.starts_with("long_chains_and_trees, tree")) spatial = nullptr;  // of universal joints, unlike the planar
   if (column.planar) return {planar, engine_of(column.engine)};

@@ -1,4 +1,4 @@
-// All that was found, as JSON, and the page made of it.
+// All results as JSON -> the page.
 #pragma once
 
 #include <string>
@@ -8,35 +8,35 @@
 
 namespace cdot::peers {
 
-// A way to be asked: engines of the plane get a case's planar scene, those of space the other; Cdot both.
+// A column: planar engines get a case's planar scene, spatial engines the spatial one, Cdot both.
 struct Column {
   const char* title;
   const char* engine;
-  const char* lifted;  // asked in its place where the case has a planar scene only
+  const char* lifted;  // engine for cases with a planar scene only
   bool planar;
-  bool slow = false;  // asked until a setting holds
+  bool slow = false;  // stops at the first setting that holds
 };
 const std::vector<Column>& columns();
 
-// Cases that are one question, in the plane and in space.
+// The planar and the spatial case of one question.
 struct Row {
-  std::string name;  // of the fault, and what tells it from its like
+  std::string name;  // the fault and the variant
   std::vector<hard::Case> cases;
 };
 std::vector<Row> rows();
 
-// The case of a row that a column is asked, and by which engine; null: none that it knows.
+// The case and the engine of a row and a column; null: not supported.
 struct Question {
   const hard::Case* hard_case = nullptr;
   const Engine* engine = nullptr;
 };
 Question question(const Row& row, const Column& column);
 
-// What a column made of a row: all settings, the default first, and the best of them with a finer step.
+// The results of a column in a row: all settings, the default first, and the best one with a finer step.
 struct Cell {
   std::vector<Outcome> settings;
   Outcome finer;
-  std::size_t best() const;  // the defaults, if they do
+  std::size_t best() const;  // the defaults, if they hold the case
 };
 nlohmann::json json_of(const Cell& cell);
 Cell cell_of(const nlohmann::json& json);

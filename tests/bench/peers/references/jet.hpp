@@ -1,5 +1,4 @@
-// A number with its first and second derivative: mechanisms are written once, as positions, and nothing is derived by
-// hand.
+// A number with its first and second derivative: a mechanism is defined by positions, without derivatives by hand.
 #pragma once
 
 #include <array>
@@ -20,7 +19,7 @@ inline Jet operator*(const Jet& a, const Jet& b) {
   return {a.value * b.value, a.first * b.value + a.value * b.first,
           a.second * b.value + 2 * a.first * b.first + a.value * b.second};
 }
-// f(a), by the derivatives of f there.
+// f(a) from f and its derivatives at a.
 inline Jet chain(const Jet& a, long double f, long double df, long double ddf) {
   return {f, df * a.first, df * a.second + ddf * a.first * a.first};
 }
@@ -45,7 +44,7 @@ inline Jet atan(const Jet& a) {
   const long double d = 1 / (1 + a.value * a.value);
   return chain(a, std::atan(a.value), d, -2 * a.value * d * d);
 }
-// The angle of (x, y), by the half angle: smooth but for y = 0, x < 0.
+// The angle of (x, y) by the half angle: smooth except at y = 0, x < 0.
 inline Jet atan2(const Jet& y, const Jet& x) { return 2 * atan(y / (sqrt(x * x + y * y) + x)); }
 
 using Jet3 = std::array<Jet, 3>;

@@ -14,7 +14,7 @@ namespace {
 using namespace cdot::peers;
 
 constexpr long double tolerance = 1e-17L;
-constexpr double agreement = 1e-11;  // [m], [rad]: what the routes must agree to
+constexpr double agreement = 1e-11;  // [m], [rad]: largest difference of the routes
 
 struct Difference {
   double place = 0, orientation = 0, rates = 0;
@@ -59,7 +59,7 @@ std::string json(const Problem& problem, const Trajectory& samples, const Differ
   return text + "\n  ]\n}\n";
 }
 
-// Whether the routes agree, and with the file if that is to be checked.
+// True if the routes agree and, with `check`, the file agrees too.
 bool handle(const ProblemRow& row, bool check) {
   const Problem problem = pose(row);
   const Trajectory one = maximal(problem, tolerance), other = minimal(problem, tolerance);

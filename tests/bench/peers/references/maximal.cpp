@@ -1,5 +1,5 @@
-// Any problem in maximal coordinates: 13 numbers per body (place, quaternion, velocity, spin). Constraints are written
-// once, as positions; their rates come from jets along the motion. Redundant rows take the multipliers of least norm.
+// Any problem in maximal coordinates: 13 numbers per body (place, quaternion, velocity, spin). Constraints are defined
+// by positions; jets along the motion give their rates. Redundant rows get the multipliers of least norm.
 #include <Eigen/Dense>
 #include <array>
 
@@ -21,7 +21,7 @@ Real33 skew(const Real3& w) {
   return W;
 }
 
-// A body's path to second order in time while nothing accelerates it.
+// A body's path to second order in time without acceleration.
 struct Path {
   Jet3 x;
   std::array<Jet3, 3> R;  // columns
@@ -53,7 +53,7 @@ Path rest() {
   return path(still, still.v, still.w);
 }
 
-// A direction or an arm that turns with a body.
+// A direction or an arm fixed in a body.
 Jet3 turned_with(const Path& p, const Vec3& u) {
   Jet3 sum;
   for (std::size_t j = 0; j < 3; ++j)
@@ -68,7 +68,7 @@ std::array<Vec3, 2> across(const Vec3& u) {
   return {first, cross((1 / norm(u)) * u, first)};
 }
 
-// What a joint keeps, in the frames of its bodies.
+// The constants of a joint in its bodies' frames.
 struct Held {
   Joint joint;
   Vec3 pa, pb, axis_a;

@@ -1,4 +1,4 @@
-// Each kind of problem in as few coordinates as it has freedom: chains by the spins of their links (Kane), loops of one
+// Each kind of problem in minimal coordinates: chains by the spins of their links (Kane), loops of one degree of
 // freedom by the crank's angle (Lagrange), the free body by its constant angular momentum.
 #include <Eigen/Dense>
 #include <stdexcept>
@@ -37,7 +37,7 @@ Trajectory integrate(const Problem& problem, Vector y, const Slope& slope, Real 
 }
 
 // --- a chain on ball joints, link k hanging from link k - 1 and the first from the world ---
-// Pins would do the same in the plane: what moves in the plane stays there.
+// In the plane ball joints equal pins: a planar motion stays planar.
 
 class Chain {
  public:
@@ -107,7 +107,7 @@ class Chain {
   }
   static Turn turn(const Vector& y, int k) { return turn_in(y, 7 * k).normalized(); }
   static Real3 spin(const Vector& y, int k) { return y.segment<3>(7 * k + 4); }
-  // The part of link j in the way from the hook to the centre of link k.
+  // The part of link j in the vector from the hook to the centre of link k.
   Real3 reach(const Vector& y, int k, int j) const {
     const Real3 s = j == k ? Real3(-in_[std::size_t(j)]) : Real3(out_[std::size_t(j)] - in_[std::size_t(j)]);
     return turn(y, j) * s;
@@ -118,7 +118,7 @@ class Chain {
   std::vector<Real3> in_, out_;  // the joints of each link in its frame
 };
 
-// --- one freedom: every body's place and angle as functions of how far the crank has turned ---
+// --- one degree of freedom: every body's position and angle as functions of the crank's angle ---
 
 struct Placed {
   Jet x, y, turned;  // turned: since the start
@@ -132,7 +132,7 @@ Point operator-(const Point& a, const Point& b) { return {a.x - b.x, a.y - b.y};
 Point operator*(const Jet& s, const Point& a) { return {s * a.x, s * a.y}; }
 Jet dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y; }
 Jet cross(const Point& a, const Point& b) { return a.x * b.y - a.y * b.x; }
-using peers::operator*;  // of quaternions, which the one of points hides
+using peers::operator*;  // for quaternions; the operator of points hides it
 Point perp(const Point& a) { return {0 - a.y, a.x}; }
 Point point(const Vec3& a) { return {Jet(a[0]), Jet(a[1])}; }
 Point turned(const Jet& angle, const Point& a) { return cos(angle) * a + sin(angle) * perp(a); }
@@ -197,7 +197,7 @@ class Mechanism {
   }
 
  private:
-  // The far end of the rod: on the guide through B at the start, as far from A as then.
+  // The far end of the rod: on the guide through B, at the rod's length from A.
   Point on_guide(const Point& A) const {
     const Point u = point(problem_.joints[3].axis), d = A - B_;
     const Jet along = dot(d, u), off = cross(u, d);
@@ -205,7 +205,7 @@ class Mechanism {
     const bool ahead = dot(B_ - A_, u).value > 0;
     return B_ + (ahead ? along + reach : along - reach) * u;
   }
-  // The far end of the coupler: as far from A and from the rocker's pin C as at the start, on the same side.
+  // The far end of the coupler: at the initial distances from A and from the rocker's pin C, on the same side.
   Point on_circle(const Point& A) const {
     const Point C = point(problem_.joints[3].anchor), d = C - A;
     const Jet D = dot(d, d), L = dot(B_ - A_, B_ - A_), r = dot(B_ - C, B_ - C);
@@ -218,7 +218,7 @@ class Mechanism {
   Point O_, A_, B_;
 };
 
-// --- the free body: I w = L, and L stays ---
+// --- the free body: I w = L with constant L ---
 
 Trajectory free_body(const Problem& problem, Real tolerance) {
   const Body& body = problem.bodies.at(0);

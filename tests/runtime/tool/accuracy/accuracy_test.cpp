@@ -1,5 +1,5 @@
-// What accuracy costs in time, its parts: the frontier by hand-made numbers, errors by a closed form, sweeps that are
-// interrupted. What is said about it is in accuracy_command_test.cpp.
+// Parts of `cdot-run accuracy`: the frontier of given numbers, errors against a closed form, interrupted sweeps.
+// command_test.cpp tests the output.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -21,14 +21,14 @@ TEST(Frontier, OfPointsByHand) {
       {1e-1, 5}, {1e-2, 10}, {2e-2, 20}, {1e-4, 40}, {1e-2, 10}, {1e-4, 41}, {1, 4}, {1, 6},
   };
   EXPECT_EQ(frontier_of(points, 0), (std::vector<std::size_t>{6, 0, 1, 3}));
-  // Below 1e-3 nothing is told apart: the point of 1e-4 is still better than that of 1e-2.
+  // Errors below 1e-3 count as equal: the point of 1e-4 still beats that of 1e-2.
   EXPECT_EQ(frontier_of(points, 1e-3), (std::vector<std::size_t>{6, 0, 1, 3}));
   EXPECT_EQ(frontier_of(points, 1e-2), (std::vector<std::size_t>{6, 0, 1}));
   EXPECT_EQ(frontier_of({}, 0), std::vector<std::size_t>{});
 }
 
-// A point is on the frontier exactly if no other is better in one and not worse in the other.
-TEST(Frontier, IsWhatNoPointBeats) {
+// A point is on the frontier if and only if no other point is better in one quantity and not worse in the other.
+TEST(Frontier, HasThePointsThatNoOtherBeats) {
   std::mt19937 random(1);
   std::uniform_int_distribution<int> digit(0, 20);
   for (int trial = 0; trial < 200; ++trial) {
@@ -77,7 +77,7 @@ TEST(Distances, AreOfPlacesAndTurns) {
   const Frame a = frame_of_one({1, 2, 0.5, 0, 0, 0}, 0), b = frame_of_one({1.3, 2.4, 0.2, 0, 0, 0}, 0);
   EXPECT_NEAR(apart(a, b, Dimension::planar).position, 0.5, 1e-15);
   EXPECT_NEAR(apart(a, b, Dimension::planar).angle, 0.3, 1e-15);
-  // q and -q are the same orientation; the turn between a turn of 1 and one of 1.25 about z is 0.25.
+  // q and -q are the same orientation; rotations by 1 and 1.25 about z differ by 0.25.
   const auto about_z = [](double angle, double sign) {
     BodyState body{};
     body.z = angle;
@@ -101,10 +101,10 @@ TEST(Distances, ErrorsAreTheLargestOfAllSamples) {
   const Errors errors = errors_of(trajectory, reference, Scene());
   EXPECT_EQ(errors, (Errors{0.1, 0.3, 7, 8, 1}));
   EXPECT_EQ(errors.trajectory(), 0.3);
-  // Between the samples it was further off.
+  // The energy was further off between the samples.
   trajectory.least_energy = 3;
   EXPECT_EQ(errors_of(trajectory, reference, Scene()).energy, 2);
-  // Where the reference's own energy comes and goes, nobody knows what it is there.
+  // If the reference does not conserve energy, the energy between the samples is unknown.
   reference.frames[0].energy = 4;
   EXPECT_EQ(errors_of(trajectory, reference, Scene()).energy, 0.5);
   reference.frames[0].energy = 5;
@@ -113,7 +113,7 @@ TEST(Distances, ErrorsAreTheLargestOfAllSamples) {
   EXPECT_EQ(errors_of(trajectory, reference, damped).energy, 1);
 }
 
-// Euler's C and energy swing: what is seen at 16 samples is less than what is there.
+// Euler's C and energy oscillate: the largest values at 16 samples are below the true ones.
 TEST(Distances, AreSeenAfterEveryStep) {
   const Scene scene = pendulum_scene();
   const std::vector<double> times = equal_times(2, sample_count), fine = equal_times(2, 64 * sample_count);
@@ -199,8 +199,8 @@ TEST(Sweep, CoversEveryWayAndLevel) {
   }
 }
 
-// Runs that are said to have taken a second each: what they and their rounds of timing cost is counted, and what the
-// next level would.
+// Runs with a reported time of 1 s each: the budget counts the runs, their rounds of timing and the estimate for the
+// next level.
 TEST(Sweep, EndsWhereItsBudgetDoes) {
   SweepOptions options = small_sweep();
   options.rounds = 1;
@@ -213,8 +213,8 @@ TEST(Sweep, EndsWhereItsBudgetDoes) {
     EXPECT_TRUE(sweep(pendulum_scene(), options, state, {}));
     return state.points.size();
   };
-  // Spent: 3 runs of 1 s, 0.5 s for looking, and 1 s for timing. Level 1 would take 2 s, be looked at for 1 s and
-  // timed.
+  // Spent: 3 runs of 1 s, 0.5 s for measuring errors, and 1 s for timing. Level 1 would take 2 s, 1 s for errors, and
+  // its timing.
   EXPECT_EQ(levels_within(12.4), 3u);
   EXPECT_GT(levels_within(12.6), 3u);
 }
@@ -226,7 +226,7 @@ std::vector<std::pair<std::string, Errors>> results_of(const SweepState& state, 
   return results;
 }
 
-// Stopped after every few findings, written, read and gone on with: the same as in one go, but for the clock.
+// A sweep that is stopped, written, read and resumed every few results equals one in a single run, except for times.
 TEST(Sweep, InterruptedAndResumedIsTheSame) {
   const Scene scene = pendulum_scene();
   const SweepOptions options = small_sweep();

@@ -1,4 +1,4 @@
-// What `cdot-run accuracy` says, writes and refuses.
+// The output, files and refusals of `cdot-run accuracy`.
 #include "runtime/tool/accuracy/command.hpp"
 
 #include <cmath>
@@ -15,7 +15,7 @@
 namespace cdot::test {
 namespace {
 
-// Two points of euler, one of it in float, one failure.
+// Two points of euler, one of euler in float, one failure.
 AccuracyReport report_by_hand() {
   SweepOptions options;
   options.ways = {{Integrator::euler, Solver::direct, Drift::projection},
@@ -122,10 +122,10 @@ TEST(WorkPrecision, PlacesPointsByDecades) {
   const std::string svg = work_precision_svg(diagram);
   EXPECT_TRUE(has(svg, ">a &lt; b<")) << svg;
   EXPECT_TRUE(has(svg, ">one &amp; only<") && has(svg, "<title>the &lt; first</title>"));
-  // From 10 to 1000 us and from 1e-1 to 1e-3, corner to corner; the frontier is its line.
+  // From 10 to 1000 us and from 1e-1 to 1e-3, corner to corner; the line is the frontier.
   EXPECT_TRUE(has(svg, "<path class=\"frontier\" d=\"M84.0 542.0L644.0 72.0\"/>"));
   EXPECT_TRUE(has(svg, "<path class=\"curve\" d=\"M84.0 542.0L644.0 72.0\" stroke=\"#123456\"/>"));
-  // In the middle by error: beaten, but the end of its own series' line.
+  // In the middle by error: not on the frontier, but the end of its series' line.
   EXPECT_TRUE(has(svg, "translate(364.0 72.0)\" stroke=\"#654321\" fill=\"var(--paper)\""));
   EXPECT_FALSE(has(svg, "resolution of the reference"));
   diagram.resolution = 1e-2;
@@ -133,7 +133,7 @@ TEST(WorkPrecision, PlacesPointsByDecades) {
   EXPECT_TRUE(has(work_precision_svg(diagram), "<path class=\"frontier\" d=\"M84.0 542.0"));
 }
 
-// Names as high as their lines end, and none over another.
+// Names are at the ends of their lines and do not overlap.
 TEST(WorkPrecision, NamesDoNotOverlap) {
   Diagram diagram;
   for (int k = 0; k < 22; ++k)
@@ -204,7 +204,7 @@ std::vector<double> last_row(const std::string& path) {
   return numbers;
 }
 
-// What the advice names, float among it, a scene can ask for, and is then as exact as it says.
+// A scene can use every method that the advice names, also in float, and reaches the stated error.
 TEST(AccuracyCommand, ItsAdviceCanBeTaken) {
   const TemporaryFolder folder;
   const std::string prefix = folder / "p", exact = folder / "exact.csv", path = folder / "advised.csv";
@@ -243,7 +243,7 @@ TEST(AccuracyCommand, ItsAdviceCanBeTaken) {
   }
 }
 
-TEST(AccuracyCommand, MistakesAreTwoAndSaySo) {
+TEST(AccuracyCommand, MistakesExitWithTwoAndAMessage) {
   const TemporaryFolder folder;
   const std::string prefix = folder / "p", pendulum = scene_path("simple_pendulum");
   const auto refused = [&](const std::string& arguments) {
@@ -274,7 +274,7 @@ TEST(AccuracyCommand, MistakesAreTwoAndSaySo) {
   EXPECT_NE(refused("--budget 0").find("--budget"), std::string::npos);
 }
 
-// Ctrl-C, in the middle: what is there is kept, and the next command ends what this one began.
+// Ctrl-C in the middle saves the measurements, and the next command completes the sweep.
 TEST(AccuracyCommand, IsInterruptedAndResumed) {
   const TemporaryFolder folder;
   const std::string prefix = folder / "p";

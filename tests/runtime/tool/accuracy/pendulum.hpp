@@ -1,4 +1,4 @@
-// The pendulum of 1 m, let go at rest at 90 degrees: its motion in closed form, as a reference of 2 s.
+// The pendulum of 1 m, released at 90 degrees: its motion in closed form, as a reference of 2 s.
 #pragma once
 
 #include <cmath>
@@ -35,7 +35,7 @@ inline ReferenceRun closed_form() {
     Frame& frame = reference.frames.emplace_back();
     frame.time = time;
     frame.bodies.push_back(bob_at(time));
-    frame.energy = 0;  // let go at rest, where the potential is 0
+    frame.energy = 0;  // released where the potential is 0
   }
   return reference;
 }

@@ -1,5 +1,5 @@
-// The reference that `cdot-run accuracy` makes itself: how well its methods agree with each other and with closed
-// forms, and what it says where they do not.
+// The reference of `cdot-run accuracy`: its methods agree with each other and with closed forms, and a report names a
+// disagreement.
 #include "runtime/tool/accuracy/reference.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@
 namespace cdot::test {
 namespace {
 
-// What is made without the closed form agrees with it, as well as it claims.
+// The reference agrees with the closed form within its own error estimate.
 TEST(AccuracyReference, IsAsGoodAsItSays) {
   const Scene scene = pendulum_scene();
   const ReferenceRun made = make_reference_run(scene), exact = closed_form();
@@ -52,17 +52,17 @@ TEST(AccuracyReference, IsAsGoodAsItSaysInSpace) {
   EXPECT_LE(made.disagreement(), wanted_agreement);
 }
 
-// Some compilers have nothing finer than doubles.
+// With some compilers long double equals double.
 constexpr bool finer = std::numeric_limits<long double>::digits > std::numeric_limits<double>::digits;
 const std::string in_extended = ", in extended precision";
 
-// A turn in the plane as one in space.
+// A planar frame as a spatial one.
 Frame in_space(Frame frame) {
   for (BodyState& b : frame.bodies) b.e0 = std::cos(b.angle / 2), b.e3 = std::sin(b.angle / 2);
   return frame;
 }
 
-// Against references by other code, for motions that magnify round-off and one that does not.
+// Compares with references of other code, for motions that magnify round-off and for one that does not.
 TEST(AccuracyReference, AgreesWithOtherCode) {
   if (!finer) GTEST_SKIP() << "long double is double here";
   for (const auto& [problem, name, duration] : {std::tuple{"torque_free_body", "spatial/torque_free_body", 20.0},
@@ -92,8 +92,7 @@ TEST(AccuracyReference, AgreesWithOtherCode) {
   }
 }
 
-// Two methods without a formula in common, on problems of all kinds; in extended precision where doubles are too
-// coarse.
+// Two methods without a common formula, on problems of all kinds; in extended precision if doubles are too coarse.
 class Agreement : public testing::TestWithParam<const char*> {};
 
 TEST_P(Agreement, IsAsWanted) {
@@ -121,7 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Of, Agreement,
                                          "spatial/gyroscope"),
                          plain);
 
-// It counts what it does, not the time that it takes.
+// The result depends on counts of work, not on times, so it repeats.
 TEST(AccuracyReference, IsTheSameAgain) {
   Scene scene = scene_named("double_pendulum");
   scene.duration = 0.5;
@@ -133,7 +132,7 @@ TEST(AccuracyReference, IsTheSameAgain) {
   EXPECT_EQ(distances(once.frames, again.frames, scene.dimension), std::vector<double>(sample_count, 0));
 }
 
-// A double pendulum that turns over: chaos, for which extended precision is too coarse as well.
+// A double pendulum that turns over is chaotic: extended precision is too coarse as well.
 TEST(AccuracyReference, SaysThatRoundOffForbidsMore) {
   if (!finer) GTEST_SKIP() << "long double is double here";
   Scene scene = scene_named("double_pendulum");
@@ -172,8 +171,8 @@ TEST(AccuracyReference, SaysThatItMayBeFiner) {
   EXPECT_EQ(made.verdict, "the methods need finer steps: raise --budget");
 }
 
-// A four-bar that lies flat could go on in two ways there, and of its hinges in space some are redundant. dop853 goes
-// astray a little; the others do not.
+// A four-bar has two possible motions from its flat pose, and hinges in space make some rows redundant. dop853 deviates
+// a little; the other methods do not.
 TEST(AccuracyReference, BelievesTheTwoThatAgreeBest) {
   Scene scene = scene_named("spatial/four_bar");
   scene.duration = 2;
@@ -183,7 +182,7 @@ TEST(AccuracyReference, BelievesTheTwoThatAgreeBest) {
   EXPECT_LE(made.disagreement(), finer ? wanted_agreement : 1e-11);
 }
 
-TEST(AccuracyReference, KnowsWhatIsToBlame) {
+TEST(AccuracyReference, NamesTheCauseOfADisagreement) {
   EXPECT_EQ(verdict_on(2e-12, {10, 1e-13}, true), "round-off sets this limit");
   EXPECT_EQ(verdict_on(1e-11, {10, 1e-13}, true), "the methods need finer steps: raise --budget");
   EXPECT_TRUE(verdict_on(1e-11, {10, 1e-13}, false).starts_with("finer steps do not help"));
@@ -215,7 +214,7 @@ TEST(ComposedRattle, IsOfOrderTen) {
   EXPECT_EQ(seen, 2);
 }
 
-TEST(ComposedRattle, NeedsAMotionThatGoesBack) {
+TEST(ComposedRattle, NeedsAReversibleMotion) {
   for (const char* name : {"simple_pendulum", "four_bar", "slider_crank", "spatial/gyroscope", "spatial/three_bodies"})
     EXPECT_TRUE(reversible(scene_named(name))) << name;
   const auto changed = [](auto change) {
@@ -239,8 +238,8 @@ TEST(ComposedRattle, NeedsAMotionThatGoesBack) {
   EXPECT_FALSE(changed([](Scene& scene) { scene.springs.push_back({0, 1, 0, 0, 0, 0, 0, 0, 1, 1, 0.1}); }));
 }
 
-// A rod that a weak motor drives against a limit: its acceleration jumps where it gets there, and where it gets away.
-TEST(AccuracyReference, GetsPastKinks) {
+// A weak motor drives a rod against a limit: the acceleration jumps when the rod reaches the limit and when it leaves.
+TEST(AccuracyReference, SolvesMotionsWithKinks) {
   const Scene scene = read_scene(
       "duration = 2\n[[body]]\nname = \"rod\"\nmass = 1\nshape = { rod = 1 }\nposition = [0.5, 0]\n[[joint]]\ntype = "
       "\"revolute\"\nbodies = [\"world\", \"rod\"]\nat = [0, 0]\nangle.limit = { lower = \"-80 deg\" }\n"

@@ -1,4 +1,4 @@
-// cdot-run as a person or a script meets it: help, exit status, files, JSON.
+// cdot-run from the command line: help, exit status, files, JSON.
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -66,7 +66,7 @@ TEST(Command, JacobianSaysWhereItWent) {
   EXPECT_NE(result.err.find("use diagnose --matrix"), std::string::npos) << result.err;
 }
 
-TEST(Command, BadUsageAndBadScenesAreTwo) {
+TEST(Command, BadUsageAndBadScenesExitWithTwo) {
   EXPECT_EQ(cdot_run("").status, 2);
   EXPECT_EQ(cdot_run("simulate").status, 2);
   EXPECT_EQ(cdot_run("simulate no_such_file.toml").status, 2);
@@ -83,7 +83,7 @@ TEST(Command, BadUsageAndBadScenesAreTwo) {
   EXPECT_NE(result.err.find("did you mean `revolute`?"), std::string::npos);
 }
 
-TEST(Command, AnUnstableRunIsOneAndSaysWhy) {
+TEST(Command, AnUnstableRunExitsWithOneAndTheReason) {
   const CommandResult result =
       cdot_run("simulate " + scene("compound_pendulum") + " --drift none --step 0.05 --tolerance 1e-6");
   EXPECT_EQ(result.status, 1);
@@ -111,7 +111,7 @@ TEST(Command, TrajectoryHasAColumnPerBodyAndQuantity) {
   const std::string path = folder / "four_bar.csv";
   EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.01 -o '{}'", scene("four_bar"), path)).status, 0);
   const auto rows = csv(path);
-  ASSERT_EQ(rows.size(), 12u);  // the head, the start, ten steps
+  ASSERT_EQ(rows.size(), 12u);  // header, start, ten steps
   ASSERT_EQ(rows[0].size(), 19u);
   EXPECT_EQ(rows[0][0], "time");
   const std::vector<std::string> first(rows[0].begin() + 1, rows[0].begin() + 7);
@@ -123,8 +123,7 @@ TEST(Command, TrajectoryHasAColumnPerBodyAndQuantity) {
   EXPECT_EQ(folder.contents(), std::vector<std::string>{"four_bar.csv"});
 }
 
-// Rows at asked times agree with the run's own steps where they meet, and lie on its path in
-// between.
+// Rows at requested times equal the run's steps at common times and lie on its path between them.
 TEST(Command, RowTimesDoNotChangeTheRun) {
   const TemporaryFolder folder;
   const std::string steps = folder / "steps.csv", every = folder / "every.csv", times = folder / "times.csv";
@@ -160,7 +159,7 @@ TEST(Command, NoHalfWrittenFiles) {
   const TemporaryFolder folder;
   const std::string missing = folder / "no_such_folder/run.csv";
   EXPECT_EQ(cdot_run(fmt::format("simulate {} --until 0.1 -o '{}'", scene("four_bar"), missing)).status, 2);
-  // Interrupted in the middle of a long run: the old file stays, no part of a new one does.
+  // An interrupted run keeps the old file and leaves no part of a new one.
   const std::string path = folder / "run.csv";
   std::ofstream(path) << "old\n";
   const CommandResult result = run_command(
@@ -170,7 +169,7 @@ TEST(Command, NoHalfWrittenFiles) {
   EXPECT_EQ(folder.contents(), std::vector<std::string>{"run.csv"});
 }
 
-// Numbers of all rows but the head.
+// Numbers of all rows except the header.
 std::vector<double> numbers_of(const std::filesystem::path& path) {
   std::vector<double> numbers;
   const auto rows = csv(path);
@@ -186,7 +185,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst;
 }
 
-// In float every number is one of float's, and the motion that of double, but for float's round-off.
+// In float every number is a float, and the motion equals that in double up to float's round-off.
 TEST(Command, PrecisionIsFloatIfAsked) {
   const TemporaryFolder folder;
   for (const char* name : {"double_pendulum", "spatial/double_pendulum"}) {

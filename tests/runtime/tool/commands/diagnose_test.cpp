@@ -1,5 +1,4 @@
-// cdot-run diagnose, and the warnings of cdot-run simulate: what is said of methods that are wrong for a scene, and
-// that nothing is said of those that are right.
+// cdot-run diagnose and the warnings of cdot-run simulate: unsuitable methods get a warning, suitable ones do not.
 #include <fmt/format.h>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -16,7 +15,7 @@ std::string hard(const std::string& name) {
 
 bool says(const std::string& text, const std::string& words) { return text.find(words) != std::string::npos; }
 
-// Every scene of the catalogue, by the method that it asks for.
+// Every scene of the catalogue with its own method.
 TEST(DiagnoseCommand, HasNothingAgainstTheCatalogue) {
   int scenes = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(scenes_dir())) {
@@ -32,7 +31,7 @@ struct Wrong {
   const char *scene, *method, *words, *fix;
 };
 
-// Method, and what must be said of it; the fix that is offered then is one of which nothing is said.
+// Methods with their expected warning; the proposed fix must get no warning.
 constexpr Wrong wrong[] = {
     {"ball_and_chain/planar", "--integrator euler", "the tension of the joints makes \"link",
      "integrator = \"implicit\""},
@@ -44,7 +43,7 @@ constexpr Wrong wrong[] = {
     {"stiff_and_soft/planar", "--integrator rattle", "a spring makes \"box", "substeps = "},
 };
 
-TEST(DiagnoseCommand, SaysWhichMethodIsWrongAndWhatIsRight) {
+TEST(DiagnoseCommand, NamesAWrongMethodAndABetterOne) {
   for (const Wrong& one : wrong) {
     const CommandResult simulated = cdot_run(fmt::format("simulate {} {} --until 1", hard(one.scene), one.method));
     EXPECT_TRUE(says(simulated.out, "  warning         ")) << one.scene << " " << one.method << "\n" << simulated.out;
@@ -53,7 +52,7 @@ TEST(DiagnoseCommand, SaysWhichMethodIsWrongAndWhatIsRight) {
   }
 }
 
-// omega^2 = 1e6 / 1: 1000 rad/s. The run fails, and says why before it does.
+// omega^2 = 1e6 / 1: 1000 rad/s. The run fails after a warning with the cause.
 TEST(DiagnoseCommand, SaysThatASpringIsTooStiffForTheStep) {
   const TemporaryFolder folder;
   const auto file = folder / "spring.toml";

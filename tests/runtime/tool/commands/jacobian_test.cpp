@@ -1,4 +1,4 @@
-// cdot-run diagnose --matrix: the system's D against what is known of it by other routes.
+// cdot-run diagnose --matrix: compares the system's D with results by other routes.
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ TEST(Jacobian, SizeRankAndFreedomOfTheMechanisms) {
   }
 }
 
-// Flat, the four-bar loses a row: two motions could go on from there.
+// In the flat pose the four-bar loses a rank: two motions are possible from there.
 TEST(Jacobian, TheFlatFourBarLosesARank) {
   const SystemMatrix system = system_matrix(read_scene(R"(
 [[body]]
@@ -68,7 +68,7 @@ at = [1, 0]
   EXPECT_EQ(system.degrees_of_freedom, 2);
 }
 
-// D v is what the World calls the error of the velocities, row by row; K is D M^-1 D^T.
+// D v equals the World's velocity errors row by row; K is D M^-1 D^T.
 TEST(Jacobian, IsThatOfTheWorld) {
   const Scene scene = scene_named("slider_crank");
   World<double> world = build_world<double>(scene);
@@ -140,13 +140,13 @@ TEST(Jacobian, TheCommandPrintsAndDraws) {
   EXPECT_EQ(json["degrees_of_freedom"], 1);
 }
 
-// In space, turned out of the axes: round-off must neither fill the table nor glue its columns.
+// In space, in a tilted plane: round-off must neither fill the table nor join its columns.
 TEST(Jacobian, TheTableHasTheNumbersOfTheJson) {
   const std::string four_bar = (scenes_dir() / "spatial/four_bar.toml").string();
   const CommandResult table = cdot_run("diagnose --matrix '" + four_bar + "'");
   const auto D = nlohmann::json::parse(cdot_run("diagnose --matrix '" + four_bar + "' --json").out)["D"];
   std::istringstream lines(table.out.substr(table.out.find("\nD, columns of ")));
-  std::map<std::string, std::vector<double>> rows;  // without the blocks that are empty
+  std::map<std::string, std::vector<double>> rows;  // without empty blocks
   for (std::string line; std::getline(lines, line);) {
     std::istringstream cells(line);
     std::string name;

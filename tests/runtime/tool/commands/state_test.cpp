@@ -1,4 +1,4 @@
-// cdot-run simulate --save-state and --from-state: a run in two parts writes the rows of one in a single part.
+// cdot-run simulate --save-state and --from-state: a run in two parts writes the rows of a run in one part.
 
 #include <fmt/format.h>
 #include <fstream>
@@ -12,7 +12,7 @@ namespace {
 std::string quoted(const std::filesystem::path& path) { return fmt::format("'{}'", path.string()); }
 std::string scene(const std::string& name) { return quoted(scenes_dir() / (name + ".toml")); }
 
-// What a file has from the row of this time on.
+// The rows of a file from this time on.
 std::string rows_from(const std::filesystem::path& csv, double time) {
   std::ifstream file(csv);
   std::string rows, line;
@@ -32,7 +32,7 @@ TEST(State, ARunInTwoPartsWritesTheSameRows) {
       const auto whole = folder / "whole.csv", rest = folder / "rest.csv", state = folder / "at.state";
       const std::string run = "simulate " + scene(name) + method + " --until 0.6 --tolerance 1";
       const CommandResult first = cdot_run(run + " -o " + quoted(whole) + " --at 0.25 --save-state " + quoted(state));
-      if (first.status == 2) continue;  // the scene has a method that this does not go with
+      if (first.status == 2) continue;  // the scene's other settings exclude this method
       ASSERT_EQ(first.status, 0) << run << first.err;
       const CommandResult second = cdot_run(run + " -o " + quoted(rest) + " --from-state " + quoted(state));
       ASSERT_EQ(second.status, 0) << run << second.err;

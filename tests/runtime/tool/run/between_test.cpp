@@ -1,5 +1,5 @@
-// States between the ends of the steps that a method chooses: as exact as the ends, on the constraints, and free of
-// consequences for the steps that follow.
+// States between the ends of adaptive steps: as accurate as the ends, on the constraints, and without influence on
+// later steps.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -28,8 +28,8 @@ struct Pendulum {
 
 class Between : public testing::TestWithParam<Integrator> {};
 
-// Asked 16 times as often, the method takes about as many steps, and its states at the common times are as near to the
-// truth: what a run with a thousandth of the local error gives.
+// With 16 times more requested states the method takes about as many steps. Its states at common times are as close to
+// a run with a thousandth of the local error.
 TEST_P(Between, AskingOftenCostsNoSteps) {
   const double local_error = 1e-7;
   Pendulum seldom(adaptive(GetParam(), local_error)), often(adaptive(GetParam(), local_error)),
@@ -60,7 +60,7 @@ TEST_P(Between, AskingOftenCostsNoSteps) {
   EXPECT_LT(worst_force, 1e4 * local_error);
 }
 
-// The energy holds between the ends as it does there.
+// The energy is conserved between the ends as well as at the ends.
 TEST_P(Between, TheEnergyHolds) {
   for (const double local_error : {1e-5, 1e-8, 1e-11}) {
     Pendulum p(adaptive(GetParam(), local_error));
@@ -76,7 +76,7 @@ TEST_P(Between, TheEnergyHolds) {
   }
 }
 
-// What is changed between the ends of a step acts from that time on.
+// A change between the ends of a step acts from its time on.
 TEST_P(Between, AChangeActsWhenItIsMade) {
   World<double> world(adaptive(GetParam(), 1e-9));
   const int ball = world.add_body({.vx = 1, .mass = 2});
@@ -90,8 +90,8 @@ TEST_P(Between, AChangeActsWhenItIsMade) {
   EXPECT_NEAR(world.pose(ball).y, -9.81 * 0.2 * (0.1 + 0.1), 1e-12);
 }
 
-// Where a joint may break, a step ends where the load is looked at.
-TEST_P(Between, NothingIsPassedWhereLoadsAreLookedAt) {
+// If a joint may break, a step ends at each check of the load.
+TEST_P(Between, StepsEndAtChecksOfLoads) {
   Pendulum p(adaptive(GetParam(), 1e-6));
   set_breaking_load(p.world, p.pivot, 1e9);
   for (int k = 0; k < 100; ++k) p.world.step(1e-3);
@@ -117,7 +117,7 @@ TEST_P(Between, ATumblingBodyKeepsItsMomentum) {
   fmt::print("  energy off by {:.1e} of it, {} steps for 500 states\n", worst, world.step_counts().taken);
   EXPECT_LT(worst, 10 * local_error);
   EXPECT_LT(world.step_counts().taken, 450);
-  EXPECT_LT(longest_way, 0.1);  // it goes evenly, from state to state
+  EXPECT_LT(longest_way, 0.1);  // no jumps from state to state
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Between, testing::Values(Integrator::rk4, Integrator::dop853),

@@ -1,5 +1,5 @@
-// Every problem with a known solution, at four steps that halve: the error halves too (the method
-// is of first order), and the finest run is as near to the reference as its step allows.
+// Every problem with a known solution at four steps, each half the last: the error halves too (first order), and the
+// finest run is as close to the reference as its step allows.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,10 +15,9 @@ namespace {
 // Between successive steps h and h/2 the errors have the ratio 2^slope.
 constexpr double least_slope = 0.9, most_slope = 1.1;
 
-// Symplectic Euler starts half a kick late, so position, angle and rates are all off by an error of
-// first order, unless a problem happens to start without acceleration (the four-bar: its positions
-// are then of second order, its rates are not) or moves with a constant one (the pulleys: their
-// rates are exact). Hence the order of the largest of the four.
+// Symplectic Euler starts half a kick late, so positions, angles and rates have errors of first order. Exceptions: a
+// start without acceleration (the four-bar has positions of second order) and a constant acceleration (the pulleys have
+// exact rates). The test therefore takes the largest of the four errors.
 struct Problem {
   const char* scene;
   double until;  // [s]
@@ -69,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(Problems, Convergence,
                                                           Problem{"pulley_ratio2", 1, 0.01, 3e-3}),
                                           testing::Values(Integrator::euler)),
                          name_of_case);
-// The linearly implicit step takes energy out of what tension turns, in proportion to the step: over ten swings that
-// hides its order, so it is asked for less time, in finer steps.
+// The linearly implicit step damps rotations under tension in proportion to the step. Over ten swings that hides its
+// order, so these runs are shorter with finer steps.
 INSTANTIATE_TEST_SUITE_P(LessTime, Convergence,
                          testing::Combine(testing::Values(Problem{"simple_pendulum", 2, 0.0002, 4e-3},
                                                           Problem{"compound_pendulum", 2, 0.0002, 5e-3},
@@ -82,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(LessTime, Convergence,
                                           testing::Values(Integrator::implicit)),
                          name_of_case);
 
-// What must stand still has no order: at every step it stays where it is, to round-off.
+// Scenes at rest have no order: at every step they stay at rest to round-off.
 class Standing : public testing::TestWithParam<const char*> {};
 
 TEST_P(Standing, StaysAtEveryStep) {

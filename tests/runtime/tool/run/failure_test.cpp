@@ -1,4 +1,4 @@
-// cdot-run simulate when a step fails: where, what, the likely fix, exit status 1; what was written ends before it.
+// cdot-run simulate after a failed step: place, cause, likely fix, exit status 1; the written rows end before the step.
 #include <fmt/format.h>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 namespace cdot::test::failure_test {
 namespace {
 
-// A rope of stiffness without bound goes taut in the fall.
+// A rope of almost infinite stiffness becomes taut in the fall.
 constexpr const char* fall = R"(
 duration = 1
 step = 0.01
@@ -45,16 +45,17 @@ struct Failing {
   }
 };
 
-TEST(FailedStep, IsToldWithPlaceReasonAndFix) {
+TEST(FailedStep, IsReportedWithPlaceReasonAndFix) {
   Failing scene;
   const auto csv = scene.folder / "rows.csv", state = scene.folder / "before.state";
   const CommandResult result =
       cdot_run(scene.run("", fmt::format("-o '{}' --save-state '{}'", csv.string(), state.string())));
   EXPECT_EQ(result.status, 1) << result.err;
   EXPECT_NE(result.out.find("FAILED          the step of 0.01 s at t = "), std::string::npos) << result.out;
-  EXPECT_NE(result.out.find("failed in island 0: a pose or velocity came out not finite; body \"stone\" moved fastest. "
-                            "Likely fix: a shorter step"),
-            std::string::npos)
+  EXPECT_NE(
+      result.out.find("failed in island 0: a pose or velocity became infinite or NaN; body \"stone\" moved fastest. "
+                      "Likely fix: a shorter step"),
+      std::string::npos)
       << result.out;
   std::ifstream rows(csv);
   std::string line, last;
@@ -68,7 +69,7 @@ TEST(FailedStep, IsToldWithPlaceReasonAndFix) {
   EXPECT_EQ(json["failed_step"]["problem"], "not_finite");
 }
 
-// A hard case with more keys at its head.
+// A hard case with additional keys at the top.
 CommandResult run_hard_case(const char* scene, const std::string& keys, const char* options) {
   const TemporaryFolder folder;
   std::ifstream original(source_dir() / "tests/hard_cases" / scene);
@@ -77,8 +78,8 @@ CommandResult run_hard_case(const char* scene, const std::string& keys, const ch
   return cdot_run(fmt::format("simulate '{}' {}", file.string(), options));
 }
 
-// A ball of 4 t on a light chain, by steps far too long for its tension: the run ends at 1.8 s, or goes on in parts.
-TEST(FailedStep, IsTakenAgainInPartsWhereTheSceneAllows) {
+// A ball of 4 t on a light chain with steps far too long for its tension: the run ends at 1.8 s, or continues in parts.
+TEST(FailedStep, IsRepeatedInPartsIfTheSceneAllows) {
   const auto run = [](const std::string& keys) {
     return run_hard_case("ball_and_chain/planar.toml", keys, "--integrator euler --until 1.9 --tolerance 1 --json");
   };
@@ -94,8 +95,8 @@ TEST(FailedStep, IsTakenAgainInPartsWhereTheSceneAllows) {
   EXPECT_FALSE(json.contains("failed_step"));
 }
 
-// Links that start a metre apart: no number of parts is enough for ten sweeps, but the direct solver puts them
-// together; then the run goes on by sweeps.
+// Links that start a metre apart: ten sweeps fail for every number of parts, but the direct solver closes the gaps. The
+// run then continues with sweeps.
 TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
   const auto run = [](const std::string& keys, const char* options) {
     return run_hard_case("stretched_chain/planar.toml", "solver = \"iterative\"\n" + keys, options);
@@ -110,8 +111,8 @@ TEST(FailedStep, IsTakenByTheDirectSolverWhereSweepsFail) {
       << retried.out;
 }
 
-// What has been tried is not advised.
-TEST(FailedStep, AdvisesWhatWasNotTried) {
+// The fix does not name a method that was already tried.
+TEST(FailedStep, AdvisesOnlyUntriedMethods) {
   Failing scene;
   const CommandResult stopped = cdot_run(scene.run("", "")),
                       retried = cdot_run(scene.run("on_failure = \"retry\"\n", ""));

@@ -1,4 +1,4 @@
-// A load at the end of a light chain: what is far stiffer across than a step of 1/60 s follows.
+// A load at the end of a light chain: its transverse oscillations are far too fast for a step of 1/60 s.
 #pragma once
 
 #include <numbers>

@@ -1,5 +1,5 @@
-// Every integrator on every problem with a known solution: the error falls with the step as the method's order says,
-// rotations in space included, until it meets the reference's own.
+// Every integrator on every problem with a known solution: the error falls with the method's order, also for rotations
+// in space, down to the reference's own error.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace {
 struct Problem {
   const char* scene;
   double until;  // [s]
-  // The coarsest of methods of second, fourth and eighth order [s]; 0: no step shows the order.
+  // The coarsest steps for methods of second, fourth and eighth order [s]; 0: no step shows the order.
   double coarse2 = 0, coarse4 = 0, coarse8 = 0;
 
   double coarsest(int order) const { return order == 2 ? coarse2 : order == 4 ? coarse4 : coarse8; }
@@ -31,17 +31,17 @@ struct Case {
 
 double least_slope(int order) { return order == 2 ? 1.9 : 0.875 * order; }
 
-// Slopes are taken between errors this small, where they follow the order.
+// Slopes are taken between errors below this, where they follow the order.
 constexpr double small_enough = 1e-2;
 
-// Of a scene's file, and of the reference that belongs to it.
+// The name of a scene's file and of its reference.
 std::string name_of(const Problem& problem) { return std::filesystem::path(problem.scene).filename().string(); }
 
 std::string name_of_case(const testing::TestParamInfo<Case>& info) {
   return fmt::format("{}_{}", name_of(info.param.problem), name_of(integrators, info.param.integrator));
 }
 
-// Those of second order and more.
+// Integrators of second and higher order.
 std::vector<Integrator> higher_orders() {
   std::vector<Integrator> found;
   for (const IntegratorRow& row : integrator_rows)
@@ -69,8 +69,7 @@ void PrintTo(const Problem& problem, std::ostream* out) { *out << problem.scene;
 
 class Orders : public testing::TestWithParam<Case> {};
 
-// The slope that counts is that of the finest two steps whose errors stand well above round-off and the reference's
-// own.
+// Takes the slope of the two finest steps whose errors are well above round-off and the reference's error.
 TEST_P(Orders, AreThoseOfTheMethod) {
   const auto& [problem, integrator, coarsest, least_slope] = GetParam();
   Scene scene = scene_named(problem.scene);
@@ -90,7 +89,7 @@ TEST_P(Orders, AreThoseOfTheMethod) {
 
 INSTANTIATE_TEST_SUITE_P(Problems, Orders, testing::ValuesIn(all_cases()), name_of_case);
 
-// Up to where its rank drops the four-bar moves so smoothly that a step of a tenth of its run is exact to round-off.
+// Until its rank drops the four-bar moves so smoothly that steps of a tenth of the run are exact to round-off.
 TEST(Orders, OfTheEighthOrderTheFourBarSeesOnlyRoundOff) {
   Scene scene = scene_named("four_bar");
   scene.settings.integrator = Integrator::dop853;
@@ -99,8 +98,7 @@ TEST(Orders, OfTheEighthOrderTheFourBarSeesOnlyRoundOff) {
   EXPECT_LT(distance_to(reference, scene).largest(), 10 * reference.accuracy);
 }
 
-// What accelerates evenly goes along a parabola, which methods of second order and more follow to round-off at any
-// step.
+// Constant acceleration gives a parabola, which methods of second and higher order follow to round-off at every step.
 TEST(Orders, FromTheSecondOnThePulleysSeeOnlyRoundOff) {
   for (const char* name : {"pulley_ratio1", "pulley_ratio2"})
     for (const Integrator integrator : higher_orders()) {
@@ -113,7 +111,7 @@ TEST(Orders, FromTheSecondOnThePulleysSeeOnlyRoundOff) {
     }
 }
 
-// `accuracy` of a scene: asked for, chosen, and reached, as the problem's own reference sees it.
+// `accuracy` in a scene: the chosen method reaches it, compared with the problem's own reference.
 class Asked : public testing::TestWithParam<std::tuple<Problem, double>> {};
 
 TEST_P(Asked, IsReached) {
@@ -137,9 +135,9 @@ INSTANTIATE_TEST_SUITE_P(
       return fmt::format("{}_{:.0f}", name_of(std::get<0>(info.param)), -std::log10(std::get<1>(info.param)));
     });
 
-// A million steps of RATTLE: the energy swings with the mechanism, by what the step allows, but the mean of the last
-// tenth is that of the first. The parallelogram lies flat twice a turn, 3000 times: there J loses a row, and the
-// directions in which its joints push turn about within one step.
+// A million steps of RATTLE: the energy oscillates with the mechanism, but the mean of the last tenth equals that of
+// the first. The parallelogram lies flat twice a turn, 3000 times in total. There J loses a rank, and the joints'
+// directions reverse within one step.
 class LongRun : public testing::TestWithParam<const char*> {};
 
 TEST_P(LongRun, TheEnergyOfRattleDoesNotDrift) {
@@ -169,8 +167,8 @@ TEST_P(LongRun, TheEnergyOfRattleDoesNotDrift) {
 INSTANTIATE_TEST_SUITE_P(OfAMillionSteps, LongRun, testing::Values("crank_rocker", "four_bar"),
                          [](const auto& info) { return std::string(info.param); });
 
-// A chain of ten links of 1 kg with a load of a thousand or a million times that at its end, kicked aside: the linearly
-// implicit step, which keeps it quiet at 1/60 s (tests/hard_cases/heavy_load), converges at first order.
+// A chain of ten links of 1 kg with a load of 1e3 or 1e6 kg at its end, after a transverse kick. The linearly implicit
+// step, which is stable at 1/60 s (tests/hard_cases/heavy_load), converges at first order.
 void converges(bool beads) {
   for (const double load : {1e3, 1e6}) {
     double x[4];
@@ -188,8 +186,8 @@ void converges(bool beads) {
 TEST(HeavyLoad, OnALightChainConverges) { converges(false); }
 TEST(HeavyLoad, OnBeadsConverges) { converges(true); }
 
-// A rope of 1 m between a body and the ground above it, slack at first: it goes taut at a known time, and takes all of
-// the fall away. Fixed steps and chosen ones find that time.
+// A rope of 1 m between a body and the ground above it, slack at first. The rope becomes taut at a known time and stops
+// the fall. Fixed and adaptive steps find that time.
 TEST(Events, ARopeGoesTautInTime) {
   for (const Integrator integrator : {Integrator::rk4, Integrator::dop853}) {
     World<double> world({.integrator = integrator, .gravity_y = -9.81});
@@ -205,8 +203,8 @@ TEST(Events, ARopeGoesTautInTime) {
   }
 }
 
-// A block on a slide, pushed by a motor of bounded force: it speeds up evenly, and from the moment that it has the
-// motor's speed keeps it. Where it then is has a closed form.
+// A motor of bounded force pushes a block on a slide: constant acceleration up to the motor's speed, then constant
+// speed. The position has a closed form.
 TEST(Events, AMotorReachesItsSpeed) {
   for (const Integrator integrator : {Integrator::rk4, Integrator::dop853}) {
     World<double> world({.integrator = integrator});

@@ -1,5 +1,5 @@
-// Where a Runge-Kutta step has nothing to do with the motion, the linearly implicit step takes its place, and that is
-// counted: nothing explodes, nothing hangs.
+// The linearly implicit step replaces Runge-Kutta steps with meaningless errors, and a count reports it: no run
+// explodes or hangs.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ TEST_P(RescueOfALoad, DoesNotExplode) {
   EXPECT_EQ(counts.rescued > 0, local_error == 0);
 }
 
-// A weight is pulled up to the wheel of its pulley, and through: there the rope has no direction, and then jams.
+// A weight is pulled up to and through the wheel of its pulley: there the rope has no direction and then jams.
 TEST_P(Rescue, ARopeJamsInItsPulley) {
   const auto& [integrator, local_error] = GetParam();
   World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
@@ -57,8 +57,8 @@ TEST_P(Rescue, ARopeJamsInItsPulley) {
   EXPECT_LT(counts.taken, 100'000);
 }
 
-// A motor of any force turns a rod that a bar to the ground does not let turn: no step is short enough for both. Each
-// is left to Euler's after a few attempts, not taken in the thousands that are too short to be told from rest.
+// A motor of unlimited force turns a rod that a bar to the ground blocks: no step is short enough for both. Each step
+// falls back to Euler's method after a few attempts, not after thousands of tiny steps.
 TEST_P(Rescue, AMotorTurnsAgainstABar) {
   const auto& [integrator, local_error] = GetParam();
   World<double> world({.integrator = integrator, .local_error = local_error, .gravity_y = -9.81});
@@ -77,8 +77,8 @@ TEST_P(Rescue, AMotorTurnsAgainstABar) {
   EXPECT_LT(gap, 1e-10);
 }
 
-// A double pendulum in floats, asked for an error far below their last bit: that of the last bit is what it gets, in
-// steps of a method of high order, and not by steps in which nothing but round-off is left.
+// A double pendulum in floats with a requested error far below the last bit. The error is then that of the last bit, by
+// steps of a high-order method and not by steps of pure round-off.
 TEST(RescueOfFloats, NoErrorIsBelowTheLastBit) {
   for (const Integrator integrator : methods) {
     World<float> world({.integrator = integrator, .local_error = 1e-12, .gravity_y = -9.81});
@@ -99,8 +99,8 @@ TEST(RescueOfFloats, NoErrorIsBelowTheLastBit) {
   }
 }
 
-// A bead of 1 g on two bars between the ground and a load of 1 kg that flies away: they come taut within less time than
-// a fixed step. One that would end beyond their reach, off its joints, is none, and the counts say so.
+// A bead of 1 g on two bars between the ground and a load of 1 kg that flies away: they become taut in less time than a
+// fixed step. A step that ends out of the joints' reach is rejected, and the counts report it.
 TEST_P(Rescue, ALightBeadIsDrawnTaut) {
   const auto& [integrator, local_error] = GetParam();
   for (const auto& [x, h] : {std::pair{0.9, 0.027}, {0.97, 0.083}}) {
@@ -120,8 +120,8 @@ TEST_P(Rescue, ALightBeadIsDrawnTaut) {
   }
 }
 
-// Ten links in space, for which a step of 1/24 s is now and then too long for rk4: it takes those in parts, and what it
-// ends at is still its own answer, beside that of another method in fine steps. Left to Euler's, it is 0.29 m away.
+// Ten links in space, for which 1/24 s is sometimes too long for rk4. The step is then taken in parts, and the result
+// agrees with fine steps of another method. Euler's method would end 0.29 m away.
 TEST(RescueOfASpatialChain, TakesPartsOfTheStepFirst) {
   Scene scene = scene_named("spatial/chain_10");
   const auto end_of = [&](Integrator integrator, int steps, StepCounts& counts) {

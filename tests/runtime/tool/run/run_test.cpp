@@ -1,5 +1,4 @@
-// Runs seen from inside: what is judged, what is warned of, what is projected, how frames are
-// picked.
+// Runs from inside: verdicts, warnings, projection, selection of frames.
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -37,8 +36,8 @@ TEST(Run, InconsistentStartIsReportedPerJointAndRow) {
             "  fix: correct the pose or velocity, or set project = true\n");
 }
 
-// A chain that starts off its joints is no page of paragraphs for each link.
-TEST(Run, OfManyInconsistentJointsTheFirstAreTold) {
+// A chain with an inconsistent start gets one short warning, not one per link.
+TEST(Run, OfManyInconsistentJointsTheFirstAreReported) {
   const std::string links =
       with(with(pendulum, "[[body]]", "[[body]]\nrepeat = 40"), "[[joint]]", "[[joint]]\nrepeat = 40");
   const Scene scene = scene_of(
@@ -65,8 +64,8 @@ TEST(Run, ProjectionMakesTheStartConsistent) {
   EXPECT_LT(result.worst_error, 1e-9);
   EXPECT_LT(rows.front().worst.value, 1e-9);
   const BodyState& rod = rows.front().bodies[0];
-  EXPECT_NEAR(std::hypot(rod.x, rod.y), 0.5, 1e-9);       // on its pin,
-  EXPECT_NEAR(rod.x * rod.vx + rod.y * rod.vy, 0, 1e-9);  // moving about it,
+  EXPECT_NEAR(std::hypot(rod.x, rod.y), 0.5, 1e-9);       // on its pin
+  EXPECT_NEAR(rod.x * rod.vx + rod.y * rod.vy, 0, 1e-9);  // rotating about the pin
   EXPECT_NEAR(rod.vx, -rod.w * rod.y, 1e-9);
   EXPECT_NEAR(rod.vy, rod.w * rod.x, 1e-9);
 }
@@ -95,7 +94,7 @@ TEST(Run, JointErrorBeyondToleranceIsAFailure) {
   EXPECT_EQ(failure(scene, result), "");
 }
 
-// A spring far too stiff for an explicit force: the run ends before the state stops being a number, and says so.
+// A spring far too stiff for an explicit force: the run ends before the state becomes infinite or NaN, and reports it.
 TEST(Run, NotFiniteEndsTheRun) {
   Scene scene = scene_of(
       "gravity = [0, 0]\nstep = 1\nduration = 5000\n[[body]]\nname = \"ball\"\nmass = 1\nshape = { "
@@ -108,7 +107,7 @@ TEST(Run, NotFiniteEndsTheRun) {
   EXPECT_EQ(result.failed_step->problem, StepProblem::not_finite);
   EXPECT_TRUE(result.finite);
   EXPECT_LT(result.time, 5000);
-  EXPECT_NE(failure(scene, result).find("not finite"), std::string::npos);
+  EXPECT_NE(failure(scene, result).find("infinite or NaN"), std::string::npos);
 }
 
 TEST(Run, StaticJointIsNoted) {

@@ -1,5 +1,5 @@
-// Mechanisms in space: the same motion as in the plane, a gyroscope, the lesson's three bodies, and
-// loops with more hinges than they need.
+// Mechanisms in space: the same motion as in the plane, a gyroscope, the lesson's three bodies, and loops with
+// redundant hinges.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ double far(const spatial::Vector<double>& a, double x, double y, double z) {
   return norm(a - spatial::Vector<double>{x, y, z});
 }
 
-// A planar state, tilted, against one in space.
+// The difference of a planar state, tilted, and a spatial one.
 double difference(const BodyState& planar, const BodyState& in_space) {
   const auto turned = [](double x, double y, double z) { return to_world(tilt(), spatial::Vector<double>{x, y, z}); };
   const auto upright =
@@ -31,8 +31,8 @@ double difference(const BodyState& planar, const BodyState& in_space) {
                    far(turned(0, 0, planar.w), in_space.wx, in_space.wy, in_space.wz), far(x_axis, q.xx, q.yx, q.zx)});
 }
 
-// Spatial hinges in a tilted plane move as planar ones, to round-off of the method: the same error
-// at every step, and with it the same order of convergence.
+// Spatial hinges in a tilted plane move like planar ones: the same error at every step and the same order of
+// convergence.
 TEST(TiltedPlane, MovesAsThePlanarMechanism) {
   struct Case {
     const char* scene;
@@ -54,7 +54,7 @@ TEST(TiltedPlane, MovesAsThePlanarMechanism) {
   }
 }
 
-// With its wheel's axis level and just the rate m g l / L, a top goes round without nodding.
+// With a level axis and the rate m g l / L a top precesses without nutation.
 TEST(Gyroscope, PrecessesAtItsRate) {
   double before = 0;
   for (double step : {4e-4, 2e-4, 1e-4}) {

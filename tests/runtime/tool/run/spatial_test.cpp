@@ -1,5 +1,4 @@
-// Scenes in space: against the elliptic functions, against the same mechanisms in the plane, and
-// how they are written.
+// Scenes in space: compared with elliptic functions and with the same mechanisms in the plane; their files.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -10,7 +9,7 @@
 namespace cdot::test::spatial_test {
 namespace {
 
-// Against the elliptic functions: second order, since nothing but the turning tensor acts.
+// Compared with elliptic functions: second order, because only the turning tensor acts.
 TEST(TorqueFreeBody, FollowsTheEllipticFunctions) {
   const Reference reference = read_reference("torque_free_body", 20);
   double before = 0, now = 0;
@@ -41,7 +40,7 @@ TEST(SpatialScene, ColumnsOfTheTrajectory) {
   EXPECT_EQ(csv_row(scene, frame), "0.5,0,0,0,1,0,0,0,0,0,0,0,0,0\n");
 }
 
-// Between two steps the orientation is that of the motion, to fourth order.
+// Between two steps the orientation follows the motion to fourth order.
 TEST(SpatialScene, FramesBetweenSteps) {
   Scene scene = scene_named("spatial/torque_free_body");
   const Frame fine = run_of(scene, 0.5, 0.25)[1];

@@ -1,4 +1,4 @@
-// What a scene file says is what the scene holds: units, frames, defaults, copies.
+// A scene file -> the Scene: units, frames, defaults, copies.
 #include <cmath>
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -42,8 +42,8 @@ TEST(Format, EveryExampleOfTheReadmeIsAScene) {
   EXPECT_EQ(examples, 3);
 }
 
-// Each key of the README's tables is known to the reader, and the other way round: the reader lists
-// its keys when asked for one that it does not know.
+// The keys in the README's tables and in the reader are the same: the reader lists its keys in the error about an
+// unknown key.
 TEST(Format, TheReadmeNamesEveryKey) {
   const std::string readme = read_text(scenes_dir() / "README.md");
   const std::string text = "zzzzzzzz = 1\n" + body("inertia = 1\nzzzzzzzz = 1");
@@ -101,8 +101,7 @@ TEST(Format, DefaultsAreThoseOfTheReadme) {
   EXPECT_FALSE(scene.project);
 }
 
-// One point said in three ways. The body stands at (2, 1), turned by 90 degrees: its x axis points
-// up.
+// One point, given in three ways. The body is at (2, 1), rotated by 90 degrees: its x axis points up.
 TEST(Format, PointsInTheBodyAndInTheWorld) {
   const std::string head = body("inertia = 1\nposition = [2, 1]\nangle = \"90 deg\"") +
                            "[[joint]]\ntype = \"revolute\"\nbodies = [\"world\", \"rod\"]\n";

@@ -1,5 +1,5 @@
-// Every mistake in broken/ is reported word for word as stands below it (tests/cases/cases.hpp; CDOT_UPDATE=1 writes
-// the reports), and no damaged file brings the reader down.
+// Every case in broken/ gives exactly the report below it (tests/cases/cases.hpp; CDOT_UPDATE=1 writes the reports). No
+// damaged file crashes the reader.
 #include <gtest/gtest.h>
 #include <random>
 
@@ -47,7 +47,7 @@ TEST(Mistakes, OfManyCopiesAreNotRepeatedWithoutEnd) {
   EXPECT_NE(report.find("copies.toml: 949 more"), std::string::npos) << report.substr(report.size() - 200);
 }
 
-// A reader of files from anywhere: whatever the bytes, it ends with a scene or with mistakes.
+// For every sequence of bytes the reader returns a scene or errors.
 TEST(Mistakes, DamagedFilesAreReadOrRefused) {
   std::mt19937 random(1);
   const auto below = [&](std::size_t n) { return std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };

@@ -8,13 +8,13 @@
 namespace cdot::test {
 namespace {
 
-// Under the virtual clock a browser short of time draws no frame at all: frames come from the clock's own timers here,
-// so that the page plays as far on a loaded machine as on an idle one.
+// With a virtual clock a slow browser draws no frame at all. Frames therefore come from the clock's timers, so the page
+// plays equally far on a loaded and on an idle machine.
 constexpr std::string_view frames_by_the_clock = R"(<script>
   window.requestAnimationFrame = draw => setTimeout(() => draw(performance.now()), 16);
 </script>)";
 
-// A person at the controls.
+// Simulates a user of the controls.
 constexpr std::string_view person = R"(<pre id="seen"></pre><script>
     const seen = {{}};
     window.addEventListener('error', e => {{ seen.error = e.message; }});
@@ -34,7 +34,7 @@ std::vector<Frame> film_of(const Scene& scene) {
 }
 
 std::vector<std::string> foreign_to(std::string page) {
-  const std::string name = "http://www.w3.org/2000/svg";  // not a place to fetch from
+  const std::string name = "http://www.w3.org/2000/svg";  // a name, not an address to fetch
   for (std::size_t at; (at = page.find(name)) != std::string::npos;) page.erase(at, name.size());
   std::vector<std::string> found;
   for (const char* foreign : {"http:", "https:", "src=", "@import", "url(", "fetch(", "{{"})

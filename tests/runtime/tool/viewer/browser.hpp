@@ -1,4 +1,4 @@
-// Pages of scenes in a real browser. Apart because two files look at pages, one in the plane, one in space.
+// Pages of scenes in a real browser, for the tests of planar and of spatial pages.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -8,10 +8,10 @@
 
 namespace cdot::test {
 
-// The frames that a page of the scene shows.
+// The frames in a page of the scene.
 std::vector<Frame> film_of(const Scene& scene);
 
-// What in a page is not its own: addresses of elsewhere, places in its template that nobody filled.
+// Foreign parts of a page: outside addresses, and placeholders of the template.
 std::vector<std::string> foreign_to(std::string page);
 
 class PageTest : public testing::Test {
@@ -19,7 +19,7 @@ class PageTest : public testing::Test {
   void SetUp() override;
   // The page's document after its script ran for three seconds of its own time.
   std::string rendered(const std::string& page, const std::string& fragment) const;
-  // What a script of the test's, half way through that time, has put into the object `seen`.
+  // The object `seen`, filled by the test's script half-way through that time.
   nlohmann::json seen_by(std::string page, const std::string& script, const std::string& fragment = "") const;
   // A picture of the page, as the file's bytes.
   std::string screenshot(const std::string& page, const std::string& fragment) const;

@@ -1,5 +1,5 @@
-// The page of a scene in space, in a real browser: bodies where the film has them, an orbiting
-// camera, the same controls as in the plane.
+// The page of a scene in space, in a real browser: bodies at the film's poses, an orbiting camera, the same controls as
+// in the plane.
 #include "runtime/tool/viewer/space.hpp"
 
 #include <algorithm>
@@ -49,7 +49,7 @@ TEST_F(SpacePage, BodiesAreWhereTheFilmHasThem) {
   EXPECT_NEAR(seen["point"][0], b.x + p.x, 1e-3);
   EXPECT_NEAR(seen["point"][1], b.y + p.y, 1e-3);
   EXPECT_NEAR(seen["point"][2], b.z + p.z, 1e-3);
-  EXPECT_GE(seen["faces"], 1);  // of a box, those that show
+  EXPECT_GE(seen["faces"], 1);  // visible faces of a box
   EXPECT_LE(seen["faces"], 3);
 }
 
@@ -82,8 +82,8 @@ TEST_F(SpacePage, PlaysScrubsAndOrbits) {
   EXPECT_EQ(seen["plots"], 2);
 }
 
-// Two routes to one picture: the page's script and the still's C++.
-TEST_F(SpacePage, ShowsAtItsEndWhatTheStillShows) {
+// Two implementations of one picture: the page's script and the still's C++.
+TEST_F(SpacePage, EndsWithThePictureOfTheStill) {
   const auto seen = seen_by(html_page(scene_, film_), R"(
       seen.paths = [...document.querySelectorAll('#space path')].map(p => p.getAttribute('d'))
                        .filter(d => d);)",
@@ -112,7 +112,7 @@ TEST(SpacePictures, EverySceneInSpaceCanBeDrawn) {
     Scene scene = read_scene(file.string());
     scene.duration = 20 * scene.step;
     const std::string page = html_page(scene, film_of(scene));
-    EXPECT_EQ(page.find("null"), std::string::npos) << file;  // what JSON makes of a NaN
+    EXPECT_EQ(page.find("null"), std::string::npos) << file;  // JSON for NaN
     EXPECT_EQ(svg_still(scene, film_of(scene)).find("nan"), std::string::npos) << file;
   }
 }

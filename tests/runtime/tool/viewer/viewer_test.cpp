@@ -1,5 +1,5 @@
-// The page runs in a real browser: its script draws, plays, scrubs and answers keys, without asking
-// the network for anything. The still is well-formed and shows what the scene holds.
+// The page runs in a real browser: its script draws, plays, scrubs and answers keys, without asking the network for
+// anything. The still is well-formed and shows the scene.
 #include "runtime/tool/viewer/viewer.hpp"
 
 #include <cmath>
@@ -128,7 +128,7 @@ TEST(Pictures, StillIsWellFormed) {
   EXPECT_EQ(result.out, "21\n");  // three rods at seven times
 }
 
-// Marks ride on bodies: a point of the picture and the same point of the world.
+// Marks move with bodies: a point of the picture equals the point of the world.
 TEST(Pictures, PlacesAgreeWithTheWorld) {
   const View view{-1, 2, 100, 500, 500};
   const Place place = place_of(view, {0.5, 1, std::numbers::pi / 6, 0, 0, 0});
