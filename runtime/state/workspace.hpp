@@ -13,7 +13,8 @@ namespace cdot {
 template <class S>
 struct FlowWorkspace {
   using T = typename S::Scalar;
-  // Euler's methods and RATTLE: poses and velocities at the start of the step, by body.
+  // Euler's methods and RATTLE, by body: poses at the start of the step; velocities there, or before RATTLE's second
+  // kick.
   std::vector<typename S::Pose> pose;
   std::vector<typename S::Velocity> velocity;
   Broyden<ExactNumber<T>> search;  // RATTLE: search for the impulses of its first half
