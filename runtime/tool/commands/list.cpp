@@ -13,25 +13,10 @@ namespace {
 
 using text::Json;
 
-const char* kind_name(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::point: return "point";
-    case ParameterKind::vector: return "vector";
-    case ParameterKind::unit: return "unit";
-    case ParameterKind::frame: return "frame";
-    case ParameterKind::scalar: return "scalar";
-  }
-  return "";
-}
+constexpr const char* parameter_kinds[] = {"point", "vector", "unit", "frame", "scalar"};  // by ParameterKind
+constexpr const char* row_kinds[] = {"equality", "inequality", "velocity"};                // by RowKind
 
-const char* kind_name(RowKind kind) {
-  switch (kind) {
-    case RowKind::equality: return "equality";
-    case RowKind::inequality: return "inequality";
-    case RowKind::velocity: return "velocity";
-  }
-  return "";
-}
+const char* kind_of(const ParameterInfo& parameter) { return parameter_kinds[static_cast<int>(parameter.kind)]; }
 
 std::string body_name(const ParameterInfo& parameter) {
   if (parameter.kind == ParameterKind::scalar) return "";
@@ -47,7 +32,7 @@ std::string list_text(Dimension dimension) {
                         type.row_kinds.size(), type.row_kinds.size() == 1 ? "" : "s");
     for (const ParameterInfo& parameter : type.parameters) {
       const std::string body = body_name(parameter);
-      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_name(parameter.kind), parameter.unit,
+      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_of(parameter), parameter.unit,
                           body.empty() ? "" : " on " + body, parameter.has_default ? ", optional" : "");
     }
     for (const CoordinateInfo& coordinate : type.coordinates) {
@@ -61,11 +46,11 @@ std::string list_text(Dimension dimension) {
 void add_to(Json& list, Dimension dimension) {
   for (const JointType& type : joint_types(dimension)) {
     Json joint = {{"type", type.name}, {"dimension", dimension == Dimension::planar ? 2 : 3}, {"bodies", type.bodies}};
-    for (const RowKind kind : type.row_kinds) joint["rows"].push_back(kind_name(kind));
+    for (const RowKind kind : type.row_kinds) joint["rows"].push_back(row_kinds[static_cast<int>(kind)]);
     joint["parameters"] = Json::array();
     for (const ParameterInfo& parameter : type.parameters) {
       joint["parameters"].push_back({{"name", parameter.name},
-                                     {"kind", kind_name(parameter.kind)},
+                                     {"kind", kind_of(parameter)},
                                      {"body", body_name(parameter)},
                                      {"unit", parameter.unit},
                                      {"has_default", parameter.has_default}});

@@ -2,6 +2,7 @@
 // least balances, and the JSON says the truth when another program evaluates it.
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <sys/wait.h>
