@@ -1,5 +1,4 @@
 // `cdot`: from the position constraint of a joint to its Jacobian, effective mass, proof and kernel.
-#include <CLI/CLI.hpp>
 #include <exception>
 #include <fmt/format.h>
 
@@ -8,10 +7,7 @@
 using namespace cdot::derive;
 
 // clang-format off
-const struct {
-  const char *name, *summary;
-  Run (*with_options)(CLI::App&);
-} commands[] = {
+constexpr cdot::command_line::Command commands[] = {
     {"derive",  "Prove every spec and write its kernel, the registry, the ledger of operation counts and the record of "
                 "proofs", derive_command},
     {"explain", "Explain the derivation of a spec, step by step: C, Cdot, J, K, gamma, and its assumptions", explain_command},
@@ -21,29 +17,22 @@ const struct {
 };
 // clang-format on
 
+constexpr cdot::command_line::Program program = {
+    "cdot",
+    "Write a joint's position constraint C(q) = 0; get its Jacobian J, its effective mass K = J M^-1 J^T,\n"
+    "the proof, and a C++ kernel.\n\n"
+    "  cdot check   specs/planar/line.joint    errors and risks of a spec\n"
+    "  cdot explain specs/planar/line.joint    the derivation, step by step\n"
+    "  cdot diff    line                       published derivations against the generated one\n"
+    "  cdot derive                             all specs to generated/, proved\n\n"
+    "The language is described in specs/README.md.",
+    "Exit status: 0 all well; 1 the answer is no (differs, not current); 2 bad usage or input."};
+
 int main(int argc, char** argv) {
-  CLI::App app{
-      "Write a joint's position constraint C(q) = 0; get its Jacobian J, its effective mass K = J M^-1 J^T,\n"
-      "the proof, and a C++ kernel.\n\n"
-      "  cdot check   specs/planar/line.joint    errors and risks of a spec\n"
-      "  cdot explain specs/planar/line.joint    the derivation, step by step\n"
-      "  cdot diff    line                       published derivations against the generated one\n"
-      "  cdot derive                             all specs to generated/, proved\n\n"
-      "The language is described in specs/README.md."};
-  app.require_subcommand(1);
-  app.footer("Exit status: 0 all well; 1 the answer is no (differs, not current); 2 bad usage or input.");
-  Run selected;
-  for (const auto& [name, summary, with_options] : commands) {
-    CLI::App* command = app.add_subcommand(name, summary);
-    command->callback([&selected, run = with_options(*command)] { selected = run; });
-  }
   try {
-    app.parse(argc, argv);
-    return selected();
-  } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : 2;
+    return run(program, commands, argc, argv);
   } catch (const std::exception& e) {
     fmt::print(stderr, "cdot: {}\n", e.what());
-    return 2;
+    return cdot::command_line::wrong_usage;
   }
 }

@@ -1,20 +1,18 @@
 // `cdot check`: errors and risks of specs, for people or as JSON.
 #include "derive/check/check.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <memory>
-#include <nlohmann/json.hpp>
 
 #include "derive/commands/commands.hpp"
 #include "derive/language/operators.hpp"
 #include "derive/language/specs_folder.hpp"
 #include "derive/pipeline/process_pool.hpp"
+#include "runtime/text/json.hpp"
 
 namespace cdot::derive {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using text::Json;
 
 struct Options {
   std::vector<std::string> specs;
@@ -87,42 +85,41 @@ int run(const Options& options) {
   const SpecsFolder folder(options.specs_folder);
   std::vector<std::filesystem::path> paths;
   for (const std::string& spec : options.specs) paths.push_back(folder.find(spec));
-  Json all = Json::array();
+  std::vector<std::string> all;
   int exit_status = 0;
   const auto check_one = [&](std::size_t i) {
     const ReadResult read = folder.read(paths[i]);
     const CheckReport report = check(read);
-    const std::string text = options.json
-                                 ? as_json(*read.file, report).dump(-1, ' ', false, Json::error_handler_t::replace)
-                                 : as_text(*read.file, report);
+    const std::string text = options.json ? as_json(*read.file, report).dump(2) : as_text(*read.file, report);
     return std::pair{!report.readable ? 2 : report.clean() ? 0 : 1, text};
   };
   const auto take = [&](const std::pair<int, std::string>& answer) {
     exit_status = std::max(exit_status, answer.first);
-    if (options.json) all.push_back(Json::parse(answer.second));
+    if (options.json) all.push_back(answer.second);
     else fmt::print("{}", answer.second);
   };
   const int failed = in_processes({paths.begin(), paths.end()}, {}, options.processes, check_one, take);
-  if (options.json) fmt::print("{}\n", all.dump(2));
+  if (options.json) fmt::print("{}\n", text::array_of_printed(all));
   return failed > 0 ? 2 : exit_status;
 }
 
-}  // namespace
-
-Run check_command(CLI::App& command) {
-  auto options = std::make_shared<Options>();
-  command.add_option("SPEC", options->specs, "Specs, by path or by name")->required();
-  command.add_flag("--json", options->json,
-                   "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
-                   "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
-  add_shared_options(command, options->specs_folder, options->processes);
-  command.footer(
+void add_options(Line& line, Options& options) {
+  line.add("SPEC", &options.specs, "Specs, by path or by name").required();
+  line.add("--json", &options.json,
+           "An array with, per spec: spec, status (clean, problems, unreadable), findings\n"
+           "(level, kind, at, also, message, fix) and proofs (coordinate, laws)");
+  add_specs(line, options.specs_folder);
+  add_jobs(line, options.processes);
+  line.footer(
       "An error forbids a kernel. A warning is a likely mistake. A note says where the joint is singular or\n"
       "undefined, and what the kernel computes there.\n"
       "Exit status: 0 nothing but notes; 1 problems; 2 a spec cannot be read.\n\n"
       "Operators\n" +
       operators_help());
-  return [options] { return run(*options); };
 }
+
+}  // namespace
+
+Run check_command(Line& line) { return with_options<Options>(line, add_options, run); }
 
 }  // namespace cdot::derive

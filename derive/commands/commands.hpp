@@ -2,23 +2,22 @@
 // function that runs it. The exit status is 0 all well, 1 the answer is no, 2 bad usage or input.
 #pragma once
 
-#include <functional>
 #include <string>
 
-namespace CLI {
-class App;
-}
+#include "runtime/command_line/command_line.hpp"
 
 namespace cdot::derive {
 
-using Run = std::function<int()>;
+using command_line::Line;
+using command_line::Run;
+using command_line::with_options;
 
-Run derive_command(CLI::App& command);
-Run explain_command(CLI::App& command);
-Run diff_command(CLI::App& command);
-Run check_command(CLI::App& command);
+Run derive_command(Line& line);
+Run explain_command(Line& line);
+Run diff_command(Line& line);
+Run check_command(Line& line);
 
-// Adds --specs and -j, for commands on several specs.
-void add_shared_options(CLI::App& command, std::string& specs_folder, int& processes);
+void add_specs(Line& line, std::string& folder);  // --specs
+void add_jobs(Line& line, int& processes);        // -j, for commands on several specs
 
 }  // namespace cdot::derive

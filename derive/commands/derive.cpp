@@ -1,5 +1,4 @@
 // `cdot derive`: specs to generated/, proved first, written whole or not at all; `--check` only compares.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
 #include <fstream>
@@ -196,30 +195,33 @@ int run(const Options& options) {
   return 0;
 }
 
-}  // namespace
-
-Run derive_command(CLI::App& command) {
-  auto options = std::make_shared<Options>();
-  command.add_option("SPEC", options->specs,
-                     "Specs, by path or by name (default: all in the specs folder). DIR will hold only these specs:\n"
-                     "give another DIR for a part of all specs");
-  command.add_option("-o,--output", options->output, "Folder to write to")->type_name("DIR")->capture_default_str();
-  command.add_flag("--check", options->check,
-                   "Write nothing; exit 1 unless DIR has exactly the files that would be written");
-  command.add_flag("--fresh", options->fresh, "Ignore the record of proofs and prove everything again");
-  add_shared_options(command, options->specs_folder, options->processes);
-  command.footer(
+void add_options(Line& line, Options& options) {
+  line.add("SPEC", &options.specs,
+           "Specs, by path or by name (default: all in the specs folder). DIR will hold only these specs:\n"
+           "give another DIR for a part of all specs");
+  line.add("-o,--output", &options.output, "Folder to write to").shown_as("DIR").shows_default();
+  line.add("--check", &options.check, "Write nothing; exit 1 unless DIR has exactly the files that would be written");
+  line.add("--fresh", &options.fresh, "Ignore the record of proofs and prove everything again");
+  add_specs(line, options.specs_folder);
+  add_jobs(line, options.processes);
+  line.footer(
       "DIR/proofs.csv records all proofs by content: a spec is proved again only if its derivation changed.\n"
       "Exit status: 0 written, or current; 1 not current; 2 bad usage or input.");
-  return [options] { return run(*options); };
 }
 
-void add_shared_options(CLI::App& command, std::string& specs_folder, int& processes) {
-  command.add_option("--specs", specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
-  command.add_option("-j,--jobs", processes, "Number of specs at once, each in its own process")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+}  // namespace
+
+Run derive_command(Line& line) { return with_options<Options>(line, add_options, run); }
+
+void add_specs(Line& line, std::string& folder) {
+  line.add("--specs", &folder, "Folder of specs").shown_as("DIR").shows_default();
+}
+
+void add_jobs(Line& line, int& processes) {
+  line.add("-j,--jobs", &processes, "Number of specs at once, each in its own process")
+      .shown_as("N")
+      .positive()
+      .shows_default();
 }
 
 }  // namespace cdot::derive

@@ -1,7 +1,6 @@
 // `cdot diff`: published derivations against the generated ones.
 #include "derive/diff/diff.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fmt/format.h>
 #include <iostream>
@@ -133,21 +132,22 @@ int run(const Options& options) {
   return failed > 0 || total.unreadable ? 2 : total.counts[2] > 0 ? 1 : 0;
 }
 
+void add_options(Line& line, Options& options) {
+  line.add("SPEC", &options.what,
+           "Specs by name or path (with a .hand file beside them), .hand files, or ids of entries (LIN-4).\n"
+           "Default: all");
+  line.add("--all", &options.all, "Also show entries that agree (named specs always show them)");
+  line.add("--json", &options.json,
+           "An array with, per entry: id, joint, title, source, verdict (agrees, agrees-if, differs, listed),\n"
+           "condition (of agrees-if; the reason of listed), remarks, and items: what, row, column, kind,\n"
+           "generated, hand, difference, sentence, confirmed (the numbers that show it)");
+  add_specs(line, options.specs_folder);
+  add_jobs(line, options.processes);
+  line.footer("Exit status: 0 no entry differs; 1 some entry differs; 2 bad usage or input.");
+}
+
 }  // namespace
 
-Run diff_command(CLI::App& command) {
-  auto options = std::make_shared<Options>();
-  command.add_option("SPEC", options->what,
-                     "Specs by name or path (with a .hand file beside them), .hand files, or ids of entries (LIN-4).\n"
-                     "Default: all");
-  command.add_flag("--all", options->all, "Also show entries that agree (named specs always show them)");
-  command.add_flag("--json", options->json,
-                   "An array with, per entry: id, joint, title, source, verdict (agrees, agrees-if, differs, listed),\n"
-                   "condition (of agrees-if; the reason of listed), remarks, and items: what, row, column, kind,\n"
-                   "generated, hand, difference, sentence, confirmed (the numbers that show it)");
-  add_shared_options(command, options->specs_folder, options->processes);
-  command.footer("Exit status: 0 no entry differs; 1 some entry differs; 2 bad usage or input.");
-  return [options] { return run(*options); };
-}
+Run diff_command(Line& line) { return with_options<Options>(line, add_options, run); }
 
 }  // namespace cdot::derive

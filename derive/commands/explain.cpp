@@ -1,11 +1,9 @@
 // `cdot explain`: the derivation of one spec, for a person as text, HTML or LaTeX, for a program as JSON.
 #include "derive/explain/explain.hpp"
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fstream>
 #include <iostream>
-#include <memory>
 
 #include "derive/commands/commands.hpp"
 #include "derive/derivation/derivation.hpp"
@@ -39,7 +37,7 @@ constexpr const char* json_schema =
     "Python read them. A spec's name that Python reserves gets an underscore at its end.";
 
 std::string explanation(const Derivation& derivation, const Options& options) {
-  if (options.json) return explanation_json(derivation).dump(2) + "\n";
+  if (options.json) return explanation_json(derivation);
   const Explanation steps = explain(derivation, form_named(options.form));
   if (options.format == "html") return explanation_html(steps);
   if (options.format == "latex") return explanation_latex(steps);
@@ -67,29 +65,26 @@ int run(const Options& options) {
   return 2;
 }
 
+void add_options(Line& line, Options& options) {
+  line.add("SPEC", &options.spec, "A spec, by path or by name").required();
+  line.add("--format", &options.format, "text; html: a page of its own; latex: an article")
+      .one_of({"text", "html", "latex"})
+      .shows_default();
+  line.add("--form", &options.form,
+           "Form of velocity, in space. global: w in world axes; local: w' in the bodies' axes;\n"
+           "euler: the rates of the Euler parameters. J has the same form")
+      .one_of({"global", "local", "euler"})
+      .shows_default();
+  line.add("--json", &options.json, "Every entry as an expression for other programs (see below)")
+      .excludes("--format")
+      .excludes("--form");
+  line.add("-o,--output", &options.output, "File to write instead of the terminal").shown_as("FILE");
+  add_specs(line, options.specs_folder);
+  line.footer(json_schema);
+}
+
 }  // namespace
 
-Run explain_command(CLI::App& command) {
-  auto options = std::make_shared<Options>();
-  command.add_option("SPEC", options->spec, "A spec, by path or by name")->required();
-  CLI::Option* format =
-      command.add_option("--format", options->format, "text; html: a page of its own; latex: an article")
-          ->check(CLI::IsMember({"text", "html", "latex"}))
-          ->capture_default_str();
-  CLI::Option* form =
-      command
-          .add_option("--form", options->form,
-                      "Form of velocity, in space. global: w in world axes; local: w' in the bodies' axes;\n"
-                      "euler: the rates of the Euler parameters. J has the same form")
-          ->check(CLI::IsMember({"global", "local", "euler"}))
-          ->capture_default_str();
-  command.add_flag("--json", options->json, "Every entry as an expression for other programs (see below)")
-      ->excludes(format)
-      ->excludes(form);
-  command.add_option("-o,--output", options->output, "File to write instead of the terminal")->type_name("FILE");
-  command.add_option("--specs", options->specs_folder, "Folder of specs")->type_name("DIR")->capture_default_str();
-  command.footer(json_schema);
-  return [options] { return run(*options); };
-}
+Run explain_command(Line& line) { return with_options<Options>(line, add_options, run); }
 
 }  // namespace cdot::derive

@@ -2,7 +2,6 @@
 // that leads from each to the next. One source of steps, one writer for each format.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -63,6 +62,6 @@ std::vector<std::vector<Chain>> summarise(const Derivation& derivation);
 std::string chain_text(const Chain& chain, std::size_t page_width);
 
 // C, Cdot, dC/dt, J, K and gamma as plain infix expressions for other programs; explain/json.cpp gives the schema.
-nlohmann::ordered_json explanation_json(const Derivation& derivation);
+std::string explanation_json(const Derivation& derivation);
 
 }  // namespace cdot::derive

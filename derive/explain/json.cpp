@@ -11,7 +11,7 @@
 namespace cdot::derive {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using text::Json;
 
 class Infix {
  public:
@@ -149,7 +149,7 @@ void add_block(Json& out, Infix& infix, const Block& block) {
 
 }  // namespace
 
-nlohmann::ordered_json explanation_json(const Derivation& derivation) {
+std::string explanation_json(const Derivation& derivation) {
   const Joint& joint = derivation.joint;
   Infix infix(joint);
   Json rows, coordinates = Json::array();
@@ -178,7 +178,7 @@ nlohmann::ordered_json explanation_json(const Derivation& derivation) {
   all["guards"] = infix.guards();
   all.update(rows);
   all["coordinates"] = std::move(coordinates);
-  return all;
+  return all.dump(2) + "\n";
 }
 
 }  // namespace cdot::derive

@@ -114,7 +114,8 @@ Rates::Written Rates::times(Expr factor, const Written& rate) const {
   }
   if (term.e->kind == Kind::product) return monomial(term.coef, term.e->args, term.e->exponents, rate);
   std::vector<SignedFormula> terms = terms_of(notation_.of(factor));
-  std::ranges::stable_partition(terms, [](const SignedFormula& t) { return t.formula.shape == Shape::number; });
+  std::stable_partition(terms.begin(), terms.end(),
+                        [](const SignedFormula& t) { return t.formula.shape == Shape::number; });
   return Written{sum(std::move(terms))} * rate;
 }
 

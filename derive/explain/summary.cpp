@@ -23,7 +23,7 @@ bool has_skew(const Formula& f) {
   return f.shape == Shape::skew || std::any_of(f.args.begin(), f.args.end(), has_skew);
 }
 
-std::string columns(const Joint& joint) {
+std::string columns_text(const Joint& joint) {
   std::string words = "columns ";
   for (const std::string& b : joint.bodies) {
     words += (b == joint.bodies[0] ? "v_" : " | v_") + b + " | w_" + b;
@@ -51,7 +51,8 @@ std::vector<Chain> summarise(const Lecture& lecture, const Part& part) {
   const int width = static_cast<int>(2 * lecture.joint.bodies.size());
   const bool single = part.statements.size() == 1;
   const Formula all = matrix(width, std::move(J));
-  summary.push_back(equation(single ? label("J", part.statements[0]) : leaf({}, "J"), all, columns(lecture.joint)));
+  summary.push_back(
+      equation(single ? label("J", part.statements[0]) : leaf({}, "J"), all, columns_text(lecture.joint)));
   if (has_skew(all)) summary.push_back(meaning_of_S(lecture.joint.dimension));
   summarise_mass(lecture, part, summary);
   return summary;

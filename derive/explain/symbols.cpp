@@ -48,9 +48,7 @@ std::string ExplainedSymbols::reserve(const std::string& wish) {
 void ExplainedSymbols::add(const std::string& leaf, const std::string& wish, const Doc& doc) {
   const std::string name = reserve(wish);
   names_.emplace(leaf, name);
-  const auto or_null = [](const std::string& s) {
-    return s.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(s);
-  };
+  const auto or_null = [](const std::string& s) { return s.empty() ? text::Json() : text::Json(s); };
   docs_[name] = {{"kind", doc.kind},
                  {"meaning", doc.meaning},
                  {"unit", doc.unit},
@@ -131,7 +129,7 @@ void ExplainedSymbols::add_parameter(const Joint& joint, const Parameter& p) {
     return add(leaf, leaf, {"parameter", meaning, unit, "", "", "", false});
   }
   const bool frame = p.kind == ParameterKind::frame;
-  nlohmann::ordered_json triad = nlohmann::ordered_json::array();
+  std::vector<std::vector<std::string>> triad;
   for (const Expr axis : p.axes.empty() ? std::vector{p.symbol} : p.axes) {
     const std::string letter(1, letters_[triad.size()]);
     const std::string what = frame ? "the " + letter + meaning : meaning;

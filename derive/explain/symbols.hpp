@@ -2,12 +2,12 @@
 #pragma once
 
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "derive/language/joint.hpp"
+#include "runtime/text/json.hpp"
 
 namespace cdot::derive {
 
@@ -17,9 +17,9 @@ class ExplainedSymbols {
 
   std::string name(Expr symbol);                 // of a scalar leaf; arms are renamed: ra_x is r_pa_x
   std::string reserve(const std::string& wish);  // a name that nothing else has, near the wish
-  nlohmann::ordered_json json() const { return docs_; }
+  text::Json json() const { return docs_; }
   // Triads among the parameters: name, and three axes of three components each.
-  nlohmann::ordered_json frames() const { return frames_; }
+  text::Json frames() const { return frames_; }
 
  private:
   struct Doc {
@@ -41,8 +41,8 @@ class ExplainedSymbols {
   std::string letters_;                       // of components: "xy" or "xyz"
   std::map<std::string, std::string> names_;  // of leaves
   std::set<std::string> taken_;
-  nlohmann::ordered_json docs_ = nlohmann::ordered_json::object();
-  nlohmann::ordered_json frames_ = nlohmann::ordered_json::array();
+  text::Json docs_ = text::Json::object();
+  text::Json frames_ = text::Json::array();
 };
 
 }  // namespace cdot::derive

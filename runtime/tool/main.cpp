@@ -1,5 +1,4 @@
 // cdot-run: the commands, each a file in tool/commands/.
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "runtime/tool/commands/command.hpp"
@@ -8,7 +7,7 @@
 namespace {
 
 // clang-format off
-constexpr cdot::Command commands[] = {
+constexpr cdot::command_line::Command commands[] = {
     {"simulate", "Run a scene; report errors, energy and CPU time", cdot::simulate_command},
     {"diagnose", "Run a scene; report rank, redundant and conflicting rows, condition and stiffness of its equations, "
                  "and warn where the method does not suit them", cdot::diagnose_command},
@@ -18,7 +17,9 @@ constexpr cdot::Command commands[] = {
 };
 // clang-format on
 
-constexpr const char* footer = R"(
+constexpr cdot::command_line::Program program = {
+    "cdot-run",
+    "Runs mechanisms of bodies and joints. The kernels of joints are derived from their position constraints.", R"(
 Examples
   cdot-run simulate specs/scenes/four_bar.toml
   cdot-run simulate specs/scenes/four_bar.toml --html four_bar.html       # a page that plays the run
@@ -36,27 +37,13 @@ Exit status
   1  the run failed: the state was not finite, or |C| of a joint exceeded the tolerance
   2  wrong usage, or mistakes in the scene: each is shown with its line and a likely fix
 
-specs/scenes/README.md describes the format of scenes.)";
+specs/scenes/README.md describes the format of scenes.)"};
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app(
-      "Runs mechanisms of bodies and joints. The kernels of joints are derived from their position constraints.");
-  app.name("cdot-run");
-  app.require_subcommand(1);
-  app.footer(footer);
-  std::vector<std::pair<const CLI::App*, cdot::Run>> runs;
-  for (const cdot::Command& command : commands) {
-    CLI::App* const line = app.add_subcommand(command.name, command.summary)->footer(footer);
-    runs.emplace_back(line, command.add_options(*line));
-  }
   try {
-    app.parse(argc, argv);
-    for (const auto& [line, run] : runs)
-      if (line->parsed()) return run();
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? cdot::well : cdot::bad_input;
+    return run(program, commands, argc, argv);
   } catch (const cdot::SceneError& error) {
     fmt::print(stderr, "{}{} mistake{}\n", error.what(), error.mistakes, error.mistakes == 1 ? "" : "s");
   } catch (const std::exception& error) {

@@ -1,6 +1,6 @@
 // The architecture as a table: a room includes only itself and rooms above it in its list. The test checks every
-// #include in derive/ and runtime/. These two share one room and otherwise do not include each other; neither includes
-// the tests.
+// #include in derive/ and runtime/. These two share a few rooms and otherwise do not include each other; neither
+// includes the tests.
 #include <algorithm>
 #include <filesystem>
 #include <fmt/format.h>
@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <map>
 #include <regex>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,10 +19,11 @@ namespace fs = std::filesystem;
 const fs::path source_dir = CDOT_SOURCE_DIR;
 
 // clang-format off
-const std::string shared_room = "runtime/text";  // derive/ may include it; it includes no other room
+const std::set<std::string> shared_rooms = {"runtime/text", "runtime/command_line"};  // derive/ may include them
 
 const std::vector<std::string> rooms = {
-    shared_room,           // messages: a line with carets, the nearest word
+    "runtime/text",          // a line with carets, the nearest word, JSON
+    "runtime/command_line",  // arguments to the options of a command
 
     // The generator: text in, kernels and derivations out.
     "derive/expression",   // interned expressions over vectors
@@ -122,7 +124,7 @@ TEST(Layers, NoRoomIncludesARoomBelowIt) {
   ASSERT_GT(all.size(), 500u);
   for (const Include& i : all) {
     EXPECT_TRUE(fs::exists(source_dir / i.of_file)) << i.file << " includes " << i.of_file;
-    EXPECT_TRUE(i.of_room == shared_room || half_of(i.room) == half_of(i.of_room))
+    EXPECT_TRUE(shared_rooms.contains(i.of_room) || half_of(i.room) == half_of(i.of_room))
         << i.file << " includes " << i.of_file << ": derive/ and runtime/ do not know each other";
     EXPECT_LE(rank(i.of_room), rank(i.room))
         << i.file << " includes " << i.of_file << ", which comes later in the table";

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double settled = 3e-13;  // [m, rad]: a change that is round-off of doubles
 constexpr double small = 1e-6;     // [m, rad]: below it, stagnation means round-off
-constexpr int patience = 3;        // finer knobs without a smaller change that make stagnation
+constexpr int most_idle = 3;       // finer knobs without a smaller change that make stagnation
 
 // The trajectory of one knob.
 Trajectory made(const Scene& scene, const Way& way, const Knob& knob, const std::vector<double>& times,
@@ -54,7 +54,7 @@ Refined refined(Integrator integrator, bool extended, const Scene& scene, const 
       const double change = largest(changes), best = refined.change();
       idle = change < best || best > small ? 0 : idle + 1;
       if (change < best) refined.best = now, refined.knob = knob_at(way, level), refined.changes = std::move(changes);
-      refined.at_its_floor = idle == patience || change <= settled;
+      refined.at_its_floor = idle == most_idle || change <= settled;
     }
     before = whole ? std::move(now) : Trajectory{};
   }

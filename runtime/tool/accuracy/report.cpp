@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cdot/methods.hpp>
 
+#include "runtime/text/json.hpp"
 #include "runtime/tool/accuracy/command.hpp"
 #include "runtime/tool/accuracy/work_precision.hpp"
 
@@ -58,7 +58,7 @@ std::string advice_text(const AccuracyReport& report) {
   return text;
 }
 
-using Json = nlohmann::ordered_json;
+using text::Json;
 
 // The numbers of a point, a row each: columns of the CSV file and keys of the JSON.
 // clang-format off
@@ -100,10 +100,10 @@ Json json_of(const AccuracyReport& report, const Point& point) {
 
 // Only the name of a way has commas.
 std::string csv_cell(const Json& value) {
-  if (value.is_number_float()) return fmt::format("{},", value.get<double>());
-  const std::string text = value.dump();
-  const bool plain = value.is_string() && text.find(',') == std::string::npos;
-  return (plain ? value.get<std::string>() : text) + ",";
+  if (const auto* number = std::get_if<double>(&value.value)) return fmt::format("{},", *number);
+  const auto* text = std::get_if<std::string>(&value.value);
+  const bool plain = text && text->find(',') == std::string::npos;
+  return (plain ? *text : value.dump()) + ",";
 }
 
 std::string csv_row(const AccuracyReport& report, const Point& point, bool best) {
@@ -167,8 +167,8 @@ std::string accuracy_json(const AccuracyReport& report) {
   for (const Point& point : report.answers) points.push_back(json_of(report, point));
   for (const Point& point : report.failures) failures.push_back(json_of(report, point));
   for (const Advice& a : report.advice) {
-    advice.push_back({{"error", std::pow(10.0, a.decade)}, {"point", a.point}});
-    if (a.factor) advice.back()["ten_times_more_accuracy_costs"] = *a.factor;
+    Json& one = advice.push_back({{"error", std::pow(10.0, a.decade)}, {"point", a.point}});
+    if (a.factor) one["ten_times_more_accuracy_costs"] = *a.factor;
   }
   const Json json = {
       {"scene", report.scene.file},

@@ -12,25 +12,22 @@ struct Options {
   AccuracyOptions accuracy;
 };
 
-void add_options(CLI::App& line, Options& options) {
+void add_options(Line& line, Options& options) {
   AccuracyOptions& accuracy = options.accuracy;
   add_scene(line, options.scene);
   add_until(line, options.scene);
-  line.add_option("--budget", accuracy.sweep.budget, "CPU time to spend [s]; more allows finer steps")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  line.add_option("--rounds", accuracy.sweep.rounds, "timings per run, interleaved")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
-  line.add_option("--levels", accuracy.sweep.levels, "largest number of steps or local errors per way")
-      ->check(CLI::PositiveNumber);
-  line.add_option("--only", accuracy.only, "only ways with this in their name: direct, rk4, float");
-  line.add_option("--reference", accuracy.reference,
-                  "a reference trajectory from `simulate -o`; without it, two methods compute one");
-  line.add_option("-o,--output", accuracy.output,
-                  "write PREFIX.csv, PREFIX.json and PREFIX.svg; default: the scene's name with .accuracy");
-  line.add_flag("--resume", accuracy.resume, "continue an interrupted run of this command");
-  line.add_flag("--json", accuracy.json, "print JSON");
+  line.add("--budget", &accuracy.sweep.budget, "CPU time to spend [s]; more allows finer steps")
+      .positive()
+      .shows_default();
+  line.add("--rounds", &accuracy.sweep.rounds, "timings per run, interleaved").positive().shows_default();
+  line.add("--levels", &accuracy.sweep.levels, "largest number of steps or local errors per way").positive();
+  line.add("--only", &accuracy.only, "only ways with this in their name: direct, rk4, float");
+  line.add("--reference", &accuracy.reference,
+           "a reference trajectory from `simulate -o`; without it, two methods compute one");
+  line.add("-o,--output", &accuracy.output,
+           "write PREFIX.csv, PREFIX.json and PREFIX.svg; default: the scene's name with .accuracy");
+  line.add("--resume", &accuracy.resume, "continue an interrupted run of this command");
+  line.add("--json", &accuracy.json, "print JSON");
   add_progress(line, options.scene);
 }
 
@@ -45,6 +42,6 @@ int run(const Options& options) {
 
 }  // namespace
 
-Run accuracy_command(CLI::App& line) { return with_options<Options>(line, add_options, run); }
+Run accuracy_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
 
 }  // namespace cdot

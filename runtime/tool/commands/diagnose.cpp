@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cdot/methods.hpp>
 
+#include "runtime/text/json.hpp"
 #include "runtime/tool/commands/matrix.hpp"
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/run/output.hpp"
@@ -13,6 +13,8 @@
 
 namespace cdot {
 namespace {
+
+using text::Json;
 
 constexpr std::size_t most_islands = 12, most_rows_listed = 12;
 constexpr int poses_diagnosed = 64;
@@ -72,27 +74,27 @@ std::string island_text(const Scene& scene, const WorstOfIsland& worst, int numb
   return text;
 }
 
-nlohmann::ordered_json row_json(const Scene& scene, const Diagnosis::Row& row) {
+Json row_json(const Scene& scene, const Diagnosis::Row& row) {
   if (row.joint < 0) return nullptr;
   return {{"joint", scene.joints[static_cast<std::size_t>(row.joint)].name}, {"row", row.row}};
 }
 
-nlohmann::ordered_json redundant_json(const Scene& scene, const Diagnosis::Redundant& redundant) {
-  nlohmann::ordered_json json = row_json(scene, redundant.row);
-  json["joints"] = nlohmann::ordered_json::array();
+Json redundant_json(const Scene& scene, const Diagnosis::Redundant& redundant) {
+  Json json = row_json(scene, redundant.row);
+  json["joints"] = Json::array();
   for (int joint : redundant.joints) json["joints"].push_back(scene.joints[static_cast<std::size_t>(joint)].name);
   json["missed"] = redundant.missed;
   json["conflicting"] = redundant.conflicting;
   return json;
 }
 
-nlohmann::ordered_json island_json(const Scene& scene, const WorstOfIsland& worst) {
+Json island_json(const Scene& scene, const WorstOfIsland& worst) {
   const Diagnosis::Island& island = worst.island;
-  const auto named = [&](int body) -> nlohmann::ordered_json {
+  const auto named = [&](int body) -> Json {
     if (body < 0) return nullptr;
     return scene.bodies[static_cast<std::size_t>(body)].name;
   };
-  nlohmann::ordered_json redundant = nlohmann::ordered_json::array();
+  Json redundant = Json::array();
   for (const auto& row : island.redundant) redundant.push_back(redundant_json(scene, row));
   return {{"bodies", island.bodies.size()},
           {"rows", island.rows},
@@ -137,13 +139,9 @@ std::string diagnosis_text(const Scene& scene, const RunResult& result) {
 }
 
 std::string diagnosis_json(const Scene& scene, const RunResult& result) {
-  nlohmann::ordered_json json = {{"scene", scene.file},
-                                 {"title", scene.title},
-                                 {"method", method_text(scene)},
-                                 {"poses", result.diagnoses},
-                                 {"start", result.start},
-                                 {"time", result.time},
-                                 {"islands", nlohmann::ordered_json::array()}};
+  Json json = {{"scene", scene.file},       {"title", scene.title},  {"method", method_text(scene)},
+               {"poses", result.diagnoses}, {"start", result.start}, {"time", result.time},
+               {"islands", Json::array()}};
   for (const WorstOfIsland& one : result.diagnosis) json["islands"].push_back(island_json(scene, one));
   json["concerns"] = concerns_json(concerns_about(scene, result.diagnosis, false));
   json["failure"] = failure(scene, result);
@@ -157,21 +155,19 @@ struct Options {
   std::string svg;
 };
 
-void add_options(CLI::App& line, Options& options) {
+void add_options(Line& line, Options& options) {
   add_scene(line, options.scene);
-  CLI::Option* const until = add_until(line, options.scene);
+  add_until(line, options.scene);
   add_method(line, options.scene);
-  CLI::Option* const at =
-      line.add_option("--at", options.time, "diagnose only at this time [s]; without it, throughout the run")
-          ->check(CLI::NonNegativeNumber)
-          ->excludes(until);
-  CLI::Option* const matrix =
-      line.add_flag("--matrix", options.matrix, "show D of the whole system, D v = 0, at the start, without a run")
-          ->excludes(until)
-          ->excludes(at);
-  line.add_option("--svg", options.svg, "write a picture: the sparsity of K, and which joints share a body")
-      ->needs(matrix);
-  line.add_flag("--json", options.json, "print JSON, with all islands; with --matrix all numbers of D and K");
+  line.add("--at", &options.time, "diagnose only at this time [s]; without it, throughout the run")
+      .not_negative()
+      .excludes("--until");
+  line.add("--matrix", &options.matrix, "show D of the whole system, D v = 0, at the start, without a run")
+      .excludes("--until")
+      .excludes("--at");
+  line.add("--svg", &options.svg, "write a picture: the sparsity of K, and which joints share a body")
+      .needs("--matrix");
+  line.add("--json", &options.json, "print JSON, with all islands; with --matrix all numbers of D and K");
   add_progress(line, options.scene);
 }
 
@@ -204,10 +200,10 @@ int run(const Options& options) {
 
 }  // namespace
 
-Run diagnose_command(CLI::App& line) { return with_options<Options>(line, add_options, run); }
+Run diagnose_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
 
-Run moved_to_diagnose(CLI::App& line) {
-  line.group("")->allow_extras()->set_help_flag();
+Run moved_to_diagnose(Line& line) {
+  line.retire();
   return []() -> int { throw Error("`jacobian` has moved: use diagnose --matrix"); };
 }
 

@@ -1,35 +1,22 @@
 // `cdot-run list`: the joints with their parameters and coordinates, or the keys of a scene.
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cdot/effects.hpp>
 #include <cdot/joints.hpp>
 
+#include "runtime/text/json.hpp"
 #include "runtime/tool/commands/options.hpp"
 #include "runtime/tool/scene/keys.hpp"
 
 namespace cdot {
 namespace {
 
-const char* kind_name(ParameterKind kind) {
-  switch (kind) {
-    case ParameterKind::point: return "point";
-    case ParameterKind::vector: return "vector";
-    case ParameterKind::unit: return "unit";
-    case ParameterKind::frame: return "frame";
-    case ParameterKind::scalar: return "scalar";
-  }
-  return "";
-}
+using text::Json;
 
-const char* kind_name(RowKind kind) {
-  switch (kind) {
-    case RowKind::equality: return "equality";
-    case RowKind::inequality: return "inequality";
-    case RowKind::velocity: return "velocity";
-  }
-  return "";
-}
+constexpr const char* parameter_kinds[] = {"point", "vector", "unit", "frame", "scalar"};  // by ParameterKind
+constexpr const char* row_kinds[] = {"equality", "inequality", "velocity"};                // by RowKind
+
+const char* kind_of(const ParameterInfo& parameter) { return parameter_kinds[static_cast<int>(parameter.kind)]; }
 
 std::string body_name(const ParameterInfo& parameter) {
   if (parameter.kind == ParameterKind::scalar) return "";
@@ -45,7 +32,7 @@ std::string list_text(Dimension dimension) {
                         type.row_kinds.size(), type.row_kinds.size() == 1 ? "" : "s");
     for (const ParameterInfo& parameter : type.parameters) {
       const std::string body = body_name(parameter);
-      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_name(parameter.kind), parameter.unit,
+      text += fmt::format("    {:<12} {} [{}]{}{}\n", parameter.name, kind_of(parameter), parameter.unit,
                           body.empty() ? "" : " on " + body, parameter.has_default ? ", optional" : "");
     }
     for (const CoordinateInfo& coordinate : type.coordinates) {
@@ -56,20 +43,19 @@ std::string list_text(Dimension dimension) {
   return text;
 }
 
-void add_to(nlohmann::ordered_json& list, Dimension dimension) {
+void add_to(Json& list, Dimension dimension) {
   for (const JointType& type : joint_types(dimension)) {
-    nlohmann::ordered_json joint = {
-        {"type", type.name}, {"dimension", dimension == Dimension::planar ? 2 : 3}, {"bodies", type.bodies}};
-    for (const RowKind kind : type.row_kinds) joint["rows"].push_back(kind_name(kind));
-    joint["parameters"] = nlohmann::ordered_json::array();
+    Json joint = {{"type", type.name}, {"dimension", dimension == Dimension::planar ? 2 : 3}, {"bodies", type.bodies}};
+    for (const RowKind kind : type.row_kinds) joint["rows"].push_back(row_kinds[static_cast<int>(kind)]);
+    joint["parameters"] = Json::array();
     for (const ParameterInfo& parameter : type.parameters) {
       joint["parameters"].push_back({{"name", parameter.name},
-                                     {"kind", kind_name(parameter.kind)},
+                                     {"kind", kind_of(parameter)},
                                      {"body", body_name(parameter)},
                                      {"unit", parameter.unit},
                                      {"has_default", parameter.has_default}});
     }
-    joint["coordinates"] = nlohmann::ordered_json::array();
+    joint["coordinates"] = Json::array();
     for (const CoordinateInfo& coordinate : type.coordinates) {
       joint["coordinates"].push_back({{"name", coordinate.name}, {"unit", coordinate.unit}});
     }
@@ -83,7 +69,7 @@ std::string list_text() {
 }
 
 std::string list_json() {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  Json list = Json::array();
   add_to(list, Dimension::planar);
   add_to(list, Dimension::spatial);
   return list.dump(2) + "\n";
@@ -106,9 +92,9 @@ struct Options {
   bool json = false, keys = false;
 };
 
-void add_options(CLI::App& line, Options& options) {
-  CLI::Option* const json = line.add_flag("--json", options.json, "print JSON");
-  line.add_flag("--keys", options.keys, "list the keys of a scene file instead")->excludes(json);
+void add_options(Line& line, Options& options) {
+  line.add("--json", &options.json, "print JSON");
+  line.add("--keys", &options.keys, "list the keys of a scene file instead").excludes("--json");
 }
 
 int run(const Options& options) {
@@ -118,6 +104,6 @@ int run(const Options& options) {
 
 }  // namespace
 
-Run list_command(CLI::App& line) { return with_options<Options>(line, add_options, run); }
+Run list_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
 
 }  // namespace cdot

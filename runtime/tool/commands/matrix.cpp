@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "runtime/text/json.hpp"
 #include "runtime/tool/viewer/picture.hpp"
 
 namespace cdot {
@@ -118,12 +118,12 @@ std::string matrix_text(const Scene& scene, const SystemMatrix& system) {
 }
 
 std::string matrix_json(const Scene& scene, const SystemMatrix& system) {
-  using Json = nlohmann::ordered_json;
+  using text::Json;
   Json json = {{"rows", system.rows},
                {"columns", system.columns},
                {"rank", system.rank},
                {"degrees_of_freedom", system.degrees_of_freedom}};
-  json["bodies"] = json["joints"] = json["D"] = json["K"] = json["conflicts"] = Json::array();
+  for (const char* list : {"conflicts", "K", "D", "joints", "bodies"}) json[list] = Json::array();
   for (int k = 0; k < static_cast<int>(system.bodies.size()); ++k)
     json["bodies"].push_back({{"name", body_name(scene, system, k)}, {"first_column", system.freedom * k}});
   const ConflictGraph graph = conflicts(system);

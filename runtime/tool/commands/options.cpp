@@ -11,27 +11,27 @@
 
 namespace cdot {
 
-void add_scene(CLI::App& line, SceneOptions& options) {
-  line.add_option("SCENE", options.file, "the scene: a TOML file")->required();
+void add_scene(Line& line, SceneOptions& options) {
+  line.add("SCENE", &options.file, "the scene: a TOML file").required();
 }
 
 namespace {
 
 template <auto... path>
-CLI::Option* add_number(CLI::App& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
+void add_number(Line& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
   using Number = std::remove_cvref_t<decltype((std::declval<Scene>().*....*path))>;
-  const auto change = [&options](const Number& x) {
+  const std::function change = [&options](Number x) {
     options.changes.push_back([x](Scene& scene) { (scene.*....*path) = x; });
   };
-  return line.add_option_function<Number>(flag, change, meaning)->check(CLI::PositiveNumber);
+  line.add(flag, change, meaning).positive();
 }
 
 template <const auto& table, auto... path>
-CLI::Option* add_choice(CLI::App& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
-  const auto change = [&options](const std::string& name) {
+void add_choice(Line& line, SceneOptions& options, const std::string& flag, const std::string& meaning) {
+  const std::function change = [&options](const std::string& name) {
     options.changes.push_back([name](Scene& scene) { (scene.*....*path) = method_called(table, name); });
   };
-  return line.add_option_function<std::string>(flag, change, meaning)->check(CLI::IsMember(names_of(table)));
+  line.add(flag, change, meaning).one_of(names_of(table));
 }
 
 constexpr auto settings = &Scene::settings;
@@ -40,7 +40,7 @@ constexpr auto settings = &Scene::settings;
 // clang-format off
 constexpr struct {
   const char* key;
-  CLI::Option* (*add)(CLI::App&, SceneOptions&, const std::string& flag, const std::string& meaning);
+  void (*add)(Line&, SceneOptions&, const std::string& flag, const std::string& meaning);
 } method_keys[] = {
     {"step",        add_number<&Scene::step>},
     {"solver",      add_choice<solvers, settings, &Settings::solver>},
@@ -56,11 +56,11 @@ constexpr struct {
 
 }  // namespace
 
-CLI::Option* add_until(CLI::App& line, SceneOptions& options) {
-  return add_number<&Scene::duration>(line, options, "--until", "end at this time [s] instead of the scene's duration");
+void add_until(Line& line, SceneOptions& options) {
+  add_number<&Scene::duration>(line, options, "--until", "end at this time [s] instead of the scene's duration");
 }
 
-void add_method(CLI::App& line, SceneOptions& options) {
+void add_method(Line& line, SceneOptions& options) {
   const KeyTable top = keys_of_the_top();
   for (const auto& [key, add] : method_keys) {
     const auto row = std::ranges::find(top.rows, key, &KeyTable::Row::name);
@@ -70,8 +70,8 @@ void add_method(CLI::App& line, SceneOptions& options) {
   }
 }
 
-void add_progress(CLI::App& line, SceneOptions& options) {
-  line.add_flag("--progress", options.progress, "show progress even if stderr is not a terminal");
+void add_progress(Line& line, SceneOptions& options) {
+  line.add("--progress", &options.progress, "show progress even if stderr is not a terminal");
 }
 
 Scene scene_of(const SceneOptions& options) {

@@ -21,38 +21,34 @@ struct Options {
   std::optional<double> state_time;
 };
 
-void add_options(CLI::App& line, Options& options) {
+void add_options(Line& line, Options& options) {
   add_scene(line, options.scene);
   add_until(line, options.scene);
   add_method(line, options.scene);
-  line.add_option("--accuracy", options.accuracy, "choose a method that reaches this trajectory error [m, rad]")
-      ->check(CLI::PositiveNumber)
-      ->excludes("--integrator")
-      ->excludes("--local-error")
-      ->excludes("--solver")
-      ->excludes("--kernels")
-      ->excludes("--precision");
-  line.add_option("--tolerance", options.tolerance, "joint error above which the run has failed [m, rad]")
-      ->check(CLI::PositiveNumber);
-  line.add_flag("--project", options.project, "project an inconsistent start onto C = 0");
-  line.add_option("-o,--output", options.csv,
-                  "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name; in space x, y, "
-                  "z, e0..e3, vx, vy, vz, wx, wy, wz");
-  auto* every = line.add_option("--every", options.every, "interval of CSV rows [s]; without it, one per step")
-                    ->check(CLI::PositiveNumber);
-  line.add_option("--times", options.times, "CSV rows at these times: 0,0.5,2")
-      ->delimiter(',')
-      ->check(CLI::NonNegativeNumber)
-      ->excludes(every);
-  line.add_option("--html", options.html, "write a self-contained page that plays the mechanism");
-  line.add_option("--svg", options.svg, "write a picture of the mechanism at several times, with its traces");
-  auto* save = line.add_option("--save-state", options.save_state, "write the final state to a file for --from-state");
-  line.add_option("--at", options.state_time, "save the state at this time [s] instead")
-      ->check(CLI::NonNegativeNumber)
-      ->needs(save);
-  line.add_option("--from-state", options.from_state,
-                  "continue from a saved state of this scene, with the same bits as an uninterrupted run");
-  line.add_flag("--json", options.json, "print the summary as JSON");
+  line.add("--accuracy", &options.accuracy, "choose a method that reaches this trajectory error [m, rad]")
+      .positive()
+      .excludes("--integrator")
+      .excludes("--local-error")
+      .excludes("--solver")
+      .excludes("--kernels")
+      .excludes("--precision");
+  line.add("--tolerance", &options.tolerance, "joint error above which the run has failed [m, rad]").positive();
+  line.add("--project", &options.project, "project an inconsistent start onto C = 0");
+  line.add("-o,--output", &options.csv,
+           "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name; in space x, y, "
+           "z, e0..e3, vx, vy, vz, wx, wy, wz");
+  line.add("--every", &options.every, "interval of CSV rows [s]; without it, one per step").positive();
+  line.add("--times", &options.times, "CSV rows at these times: 0,0.5,2")
+      .separated_by_commas()
+      .not_negative()
+      .excludes("--every");
+  line.add("--html", &options.html, "write a self-contained page that plays the mechanism");
+  line.add("--svg", &options.svg, "write a picture of the mechanism at several times, with its traces");
+  line.add("--save-state", &options.save_state, "write the final state to a file for --from-state");
+  line.add("--at", &options.state_time, "save the state at this time [s] instead").not_negative().needs("--save-state");
+  line.add("--from-state", &options.from_state,
+           "continue from a saved state of this scene, with the same bits as an uninterrupted run");
+  line.add("--json", &options.json, "print the summary as JSON");
   add_progress(line, options.scene);
 }
 
@@ -98,6 +94,6 @@ int run(const Options& options) {
 
 }  // namespace
 
-Run simulate_command(CLI::App& line) { return with_options<Options>(line, add_options, run); }
+Run simulate_command(Line& line) { return command_line::with_options<Options>(line, add_options, run); }
 
 }  // namespace cdot

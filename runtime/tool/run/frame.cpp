@@ -46,7 +46,7 @@ void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState&
 }
 
 // Relative to a step: closer times count as equal.
-constexpr double same_time = 1e-6;
+constexpr double time_tolerance = 1e-6;
 
 }  // namespace
 
@@ -109,7 +109,7 @@ Sampler::Sampler(std::vector<double> ascending_times, Take take)
     : times_(std::move(ascending_times)), take_(std::move(take)) {}
 
 void Sampler::step(const Frame& before, const Frame& after) {
-  const double slack = same_time * (after.time - before.time);
+  const double slack = time_tolerance * (after.time - before.time);
   for (; next_ < times_.size() && times_[next_] <= after.time + slack; ++next_) {
     const double time = times_[next_];
     const bool at_end = std::abs(time - after.time) <= slack;

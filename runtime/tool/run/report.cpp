@@ -1,9 +1,9 @@
 // The result of a run -> a summary for people and for programs.
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <cdot/methods.hpp>
 
+#include "runtime/text/json.hpp"
 #include "runtime/tool/run/simulate.hpp"
 
 namespace cdot {
@@ -17,7 +17,7 @@ std::string failed_step_text(const Scene& scene, const StepResult& step) {
                      likely_fix(step.problem, scene.on_failure));
 }
 
-nlohmann::ordered_json failed_step_json(const Scene& scene, const StepResult& step) {
+text::Json failed_step_json(const Scene& scene, const StepResult& step) {
   return {{"problem", name_of(step.problem)},
           {"time", step.time},
           {"length", step.length},
@@ -62,7 +62,7 @@ std::string choice_text(const Scene& scene, const Choice& choice) {
       choice.reached ? "" : ": NOT reached");
 }
 
-nlohmann::ordered_json choice_json(const Scene& scene, const Choice& choice) {
+text::Json choice_json(const Scene& scene, const Choice& choice) {
   return {{"asked", scene.accuracy},           {"integrator", name_of(integrators, choice.integrator)},
           {"local_error", choice.local_error}, {"achieved", choice.achieved},
           {"reached", choice.reached},         {"evaluations", choice.evaluations}};
@@ -108,7 +108,7 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
 
 std::string summary_json(const Scene& scene, const RunResult& result) {
   const std::string why = failure(scene, result);
-  nlohmann::ordered_json json = {
+  text::Json json = {
       {"scene", scene.file},
       {"title", scene.title},
       {"ok", why.empty()},

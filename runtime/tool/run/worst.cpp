@@ -2,7 +2,8 @@
 #include "runtime/tool/run/worst.hpp"
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+
+#include "runtime/text/json.hpp"
 
 namespace cdot {
 namespace {
@@ -60,8 +61,8 @@ std::vector<Concern> concerns_about(const Scene& scene, const std::vector<WorstO
   return all;
 }
 
-nlohmann::ordered_json concerns_json(const std::vector<Concern>& concerns) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+text::Json concerns_json(const std::vector<Concern>& concerns) {
+  text::Json json = text::Json::array();
   for (const Concern& one : concerns)
     json.push_back({{"level", one.warning ? "warning" : "note"}, {"what", one.what}, {"fix", one.fix}});
   return json;

@@ -1,10 +1,10 @@
 // The worst diagnosis of each island over a run, and its meaning for the scene's method.
 #pragma once
 
-#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "runtime/diagnose/concerns.hpp"
+#include "runtime/text/json.hpp"
 #include "runtime/tool/scene/scene.hpp"
 
 namespace cdot {
@@ -21,7 +21,7 @@ void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>
 // With the names of the scene, each once. `warnings_only`: without notes.
 std::vector<Concern> concerns_about(const Scene& scene, const std::vector<WorstOfIsland>& worst, bool warnings_only);
 
-nlohmann::ordered_json concerns_json(const std::vector<Concern>& concerns);
+text::Json concerns_json(const std::vector<Concern>& concerns);
 
 // The name of a body or a joint; empty if there is none.
 template <class List>

@@ -38,7 +38,7 @@ std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::si
   return list;
 }
 
-constexpr int most_reported = 5;  // joints that the start violates; the others are counted
+constexpr int most_violated = 5;  // joints that the start violates; the others are counted
 
 // If all bodies are this many times further away than they are apart, the origin moves among them.
 constexpr double far_away = 1000;
@@ -101,15 +101,15 @@ std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world,
   for (int joint = 0; joint < world.joint_count(); ++joint) {
     const SceneJoint& source = scene.joints[static_cast<std::size_t>(joint)];
     const std::string list = rows_text(rows, joint, world.joint_type(joint).row_kinds.size());
-    if (list.empty() || ++violated > most_reported) continue;
+    if (list.empty() || ++violated > most_violated) continue;
     report += scene.source->paragraph(
         "warning", source.where,
         fmt::format("the start violates {} \"{}\": {}", source.definition.type, source.name, list),
         "correct the pose or velocity, or set project = true");
   }
-  if (violated > most_reported)
-    report += fmt::format("warning: the start violates {} more joint{}\n", violated - most_reported,
-                          violated == most_reported + 1 ? "" : "s");
+  if (violated > most_violated)
+    report += fmt::format("warning: the start violates {} more joint{}\n", violated - most_violated,
+                          violated == most_violated + 1 ? "" : "s");
   return report;
 }
 

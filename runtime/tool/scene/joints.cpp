@@ -218,7 +218,7 @@ constexpr Key<JointReading> named[] = {
     {"type", "a spec of specs/planar/ or specs/spatial/", "required", read_type},
 };
 // The meaning of these depends on the type.
-constexpr Key<JointReading> keys[] = {
+constexpr Key<JointReading> joint_keys[] = {
     {"bodies", "the spec's a, b, … in this order; \"world\" never moves", "required", read_bodies_of_joint},
     {"at", "place in the world at the start of all points without a key of their own [m]", "", read_parameters},
     {"soft", "{ frequency, damping_ratio } or { stiffness, damping }: the joint is a spring", "exact", read_soft},
@@ -244,7 +244,7 @@ void read_joints(Entry& top, const BodyNames& names, Scene& scene) {
     read.joint.where = entry.header();
     read_keys(entry, named, scene.dimension, read);
     if (!read.type) continue;
-    read_keys(entry, keys, scene.dimension, read);
+    read_keys(entry, joint_keys, scene.dimension, read);
     read_effects(entry, *read.type, read.joint.effects);
     refuse_other_coordinates(entry, *read.type, scene.dimension);
     entry.close();
@@ -263,7 +263,7 @@ void read_springs(Entry& top, const BodyNames& names, Scene& scene) {
 }
 
 KeyTable keys_of_a_joint() {
-  return table_of("[[joint]], beside the parameters and coordinates of its type", named, keys);
+  return table_of("[[joint]], beside the parameters and coordinates of its type", named, joint_keys);
 }
 
 KeyTable keys_of_a_spring() { return table_of("[[spring]]", spring_keys); }

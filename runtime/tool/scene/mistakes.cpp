@@ -10,7 +10,7 @@
 namespace cdot {
 namespace {
 
-constexpr int most_reported = 50;
+constexpr int most_shown = 50;
 
 // Of a long line the report shows a window that starts a little before the mistake.
 constexpr text::Look look{100,
@@ -92,10 +92,10 @@ std::string Mistakes::report() const {
   std::string text;
   int reported = 0;
   for (const Mistake& mistake : ordered()) {
-    if (reported++ == most_reported) break;
+    if (reported++ == most_shown) break;
     text += paragraph("error", mistake.where, mistake.cause, mistake.fix);
   }
-  if (count() > most_reported) text += fmt::format("{}: {} more\n", file_, count() - most_reported);
+  if (count() > most_shown) text += fmt::format("{}: {} more\n", file_, count() - most_shown);
   return text;
 }
 

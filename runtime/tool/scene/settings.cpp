@@ -40,7 +40,7 @@ void read_step(Entry& top, const char* key, Scene& scene) {
 constexpr auto settings = &Scene::settings;
 
 // clang-format off
-constexpr Key<Scene> keys[] = {
+constexpr Key<Scene> top_keys[] = {
     {"title", "shown in pages and summaries", "", read_title},
     {"dimension", "2, or 3: in space", "2", read_dimension},
     {"gravity", "[m/s^2]", "[0, -9.81], in space [0, 0, -9.81]", read_gravity},
@@ -86,7 +86,7 @@ void check_accuracy(Entry& top) {
 }  // namespace
 
 void read_settings(Entry& top, Scene& scene) {
-  read_keys(top, keys, scene.dimension, scene);
+  read_keys(top, top_keys, scene.dimension, scene);
   check_method(top, scene.settings);
   check_accuracy(top);
 }
@@ -96,6 +96,6 @@ std::string listed(const std::vector<std::string>& choices) {
   return fmt::format("{} or {}", fmt::join(most, ", "), choices.back());
 }
 
-KeyTable keys_of_the_top() { return table_of("The top of the file", keys); }
+KeyTable keys_of_the_top() { return table_of("The top of the file", top_keys); }
 
 }  // namespace cdot

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "runtime/text/json.hpp"
 #include "runtime/tool/viewer/assets.hpp"
 #include "runtime/tool/viewer/marks.hpp"
 #include "runtime/tool/viewer/space.hpp"
@@ -12,7 +12,7 @@
 namespace cdot {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using text::Json;
 
 constexpr int most_frames = 3000;
 constexpr double most_poses = 200000;  // frames times bodies that a page carries
@@ -24,7 +24,7 @@ Json anchor_json(const Anchor& anchor) {
   return {anchor.body, rounded(anchor.local[0], 100), rounded(anchor.local[1], 100)};
 }
 
-Json place_json(const Place& place) {
+std::vector<double> numbers_of(const Place& place) {
   return {rounded(place.x, 100), rounded(place.y, 100), rounded(place.degrees, 100)};
 }
 
@@ -62,8 +62,8 @@ double playing_speed(double duration) {
 // The poses of movable bodies frame by frame, and the curves of the plots.
 template <class NumbersOf>
 void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf numbers_of, Json& run) {
-  Json moving = Json::array(), times = Json::array(), poses = Json::array(), energy = Json::array(),
-       error = Json::array();
+  std::vector<std::size_t> moving;
+  std::vector<double> times, poses, energy, error;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     if (!scene.bodies[k].is_static) moving.push_back(k);
   }
@@ -71,9 +71,8 @@ void add_frames(const Scene& scene, const std::vector<Frame>& film, NumbersOf nu
     times.push_back(frame.time);
     energy.push_back(frame.energy);
     error.push_back(frame.worst.value);
-    for (const Json& body : moving) {
-      for (const Json& number : numbers_of(frame.bodies[body.get<std::size_t>()])) poses.push_back(number);
-    }
+    for (const std::size_t body : moving)
+      for (const double number : numbers_of(frame.bodies[body])) poses.push_back(number);
   }
   run.update({{"moving", moving}, {"times", times}, {"poses", poses}, {"energy", energy}, {"error", error}});
 }
@@ -88,14 +87,14 @@ Json film_json(const std::vector<Frame>& film) {
 Json planar_run(const Scene& scene, const Drawing& drawing, const std::vector<Frame>& film) {
   Json run = film_json(film);
   run["view"] = {drawing.view.left, drawing.view.top, drawing.view.scale};
-  run["start"] = run["links"] = run["traces"] = Json::array();
-  for (const Place& place : places_of(drawing.view, film.front())) run["start"].push_back(place_json(place));
+  for (const char* list : {"traces", "links", "start"}) run[list] = Json::array();
+  for (const Place& place : places_of(drawing.view, film.front())) run["start"].push_back(numbers_of(place));
   for (const Link& link : drawing.links) run["links"].push_back({anchor_json(link.from), anchor_json(link.to)});
   for (const Trace& trace : drawing.traces) {
     run["traces"].push_back({{"point", anchor_json(trace.point)}, {"colour", trace.colour}});
   }
   add_frames(
-      scene, film, [&](const BodyState& body) { return place_json(place_of(drawing.view, body)); }, run);
+      scene, film, [&](const BodyState& body) { return numbers_of(place_of(drawing.view, body)); }, run);
   return run;
 }
 
@@ -125,8 +124,8 @@ Json spatial_run(const Scene& scene, const SpaceDrawing& drawing, const std::vec
   run["space"] = space_json(drawing);
   const double steps = 1e4 / drawing.radius;
   const auto numbers_of = [&](const BodyState& b) {
-    return Json{rounded(b.x, steps), rounded(b.y, steps), rounded(b.z, steps), rounded(b.e0, 1e5),
-                rounded(b.e1, 1e5),  rounded(b.e2, 1e5),  rounded(b.e3, 1e5)};
+    return std::vector{rounded(b.x, steps), rounded(b.y, steps), rounded(b.z, steps), rounded(b.e0, 1e5),
+                       rounded(b.e1, 1e5),  rounded(b.e2, 1e5),  rounded(b.e3, 1e5)};
   };
   run["start"] = Json::array();
   for (const BodyState& body : film.front().bodies) run["start"].push_back(numbers_of(body));

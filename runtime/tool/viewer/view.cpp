@@ -11,7 +11,7 @@ namespace {
 
 constexpr double picture_size = 1000, margin = 60;
 
-struct Box {
+struct Bounds {
   double left = 1e300, right = -1e300, bottom = 1e300, top = -1e300;
   void add(double x, double y, double radius) {
     left = std::min(left, x - radius), right = std::max(right, x + radius);
@@ -20,20 +20,20 @@ struct Box {
   double size() const { return std::max(right - left, top - bottom); }
 };
 
-Box box_of(const Scene& scene, const Frame& frame) {
-  Box box;
+Bounds bounds_of(const Scene& scene, const Frame& frame) {
+  Bounds bounds;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const Shape& shape = scene.bodies[k].shape;
     const double radius = shape.kind == Shape::rod   ? shape.length / 2
                           : shape.kind == Shape::box ? std::hypot(shape.length, shape.width) / 2
                                                      : shape.length / 2;
-    box.add(frame.bodies[k].x, frame.bodies[k].y, radius);
+    bounds.add(frame.bodies[k].x, frame.bodies[k].y, radius);
   }
-  return box;
+  return bounds;
 }
 
 // Adds the points of joints and springs that are fixed in the world.
-void add_world_points(const Scene& scene, Box& box) {
+void add_world_points(const Scene& scene, Bounds& bounds) {
   for (const SceneJoint& joint : scene.joints) {
     const JointType* type = find_joint_type(Dimension::planar, joint.definition.type);
     for (const NamedValue& value : joint.definition.parameters) {
@@ -41,36 +41,36 @@ void add_world_points(const Scene& scene, Box& box) {
         const bool in_world =
             info.body < 0 || joint.definition.bodies[static_cast<std::size_t>(info.body)] == world_body;
         if (info.name == value.name && info.kind == ParameterKind::point && in_world) {
-          box.add(value.numbers[0], value.numbers[1], 0);
+          bounds.add(value.numbers[0], value.numbers[1], 0);
         }
       }
     }
   }
   for (const SpringDefinition& spring : scene.springs) {
-    if (spring.body_a == world_body) box.add(spring.ax, spring.ay, 0);
-    if (spring.body_b == world_body) box.add(spring.bx, spring.by, 0);
+    if (spring.body_a == world_body) bounds.add(spring.ax, spring.ay, 0);
+    if (spring.body_b == world_body) bounds.add(spring.bx, spring.by, 0);
   }
 }
 
 }  // namespace
 
-// The box of all frames, limited to ten times the size of the start on each side.
+// The bounds of all frames, limited to ten times the size of the start on each side.
 View view_of(const Scene& scene, const std::vector<Frame>& film) {
-  Box start = box_of(scene, film.front());
+  Bounds start = bounds_of(scene, film.front());
   add_world_points(scene, start);
   const double reach = 10 * std::max(start.size(), 1e-9);
-  Box box = start;
+  Bounds bounds = start;
   for (const Frame& frame : film) {
-    const Box now = box_of(scene, frame);
-    box.add(std::max(now.left, start.left - reach), std::max(now.bottom, start.bottom - reach), 0);
-    box.add(std::min(now.right, start.right + reach), std::min(now.top, start.top + reach), 0);
+    const Bounds now = bounds_of(scene, frame);
+    bounds.add(std::max(now.left, start.left - reach), std::max(now.bottom, start.bottom - reach), 0);
+    bounds.add(std::min(now.right, start.right + reach), std::min(now.top, start.top + reach), 0);
   }
   View view;
-  view.scale = picture_size / std::max(box.size(), 1e-9);
-  view.left = box.left - margin / view.scale;
-  view.top = box.top + margin / view.scale;
-  view.width = (box.right - box.left) * view.scale + 2 * margin;
-  view.height = (box.top - box.bottom) * view.scale + 2 * margin;
+  view.scale = picture_size / std::max(bounds.size(), 1e-9);
+  view.left = bounds.left - margin / view.scale;
+  view.top = bounds.top + margin / view.scale;
+  view.width = (bounds.right - bounds.left) * view.scale + 2 * margin;
+  view.height = (bounds.top - bounds.bottom) * view.scale + 2 * margin;
   return view;
 }
 

@@ -2,6 +2,7 @@
 // program confirms the JSON.
 #include <cstdlib>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <regex>
 #include <sstream>
 #include <sys/wait.h>
@@ -122,7 +123,7 @@ TEST(ExplainLatex, TheBalanceCheckCanFail) {
 TEST(ExplainJson, IsTrueForTheCatalogueWhenSympyEvaluatesIt) {
   const fs::path files = folder("json");
   for (const std::string& name : spec_names()) {
-    write(files / (flat(name) + ".json"), explanation_json(read_spec(name)).dump(1));
+    write(files / (flat(name) + ".json"), explanation_json(read_spec(name)));
   }
   const Ran ran = check_json(files);
   EXPECT_EQ(ran.status, 0) << ran.output;
@@ -133,7 +134,7 @@ TEST(ExplainJson, IsTrueForTheCatalogueWhenSympyEvaluatesIt) {
 TEST(ExplainJson, IsTrueForUnusualJointsWhenSympyEvaluatesIt) {
   const fs::path files = folder("unusual_json");
   for (const auto& [name, text] : unusual_specs()) {
-    write(files / (name + ".json"), explanation_json(read_text(name, text)).dump(1));
+    write(files / (name + ".json"), explanation_json(read_text(name, text)));
   }
   const Ran ran = check_json(files);
   EXPECT_EQ(ran.status, 0) << ran.output;
@@ -147,7 +148,7 @@ TEST(ExplainJson, TheCheckFindsAWrongEntry) {
   for (const std::string key : {"J", "K", "gamma", "Cdot"}) {
     fs::remove_all(files);
     fs::create_directories(files);
-    nlohmann::ordered_json json = explanation_json(read_spec("line"));
+    nlohmann::ordered_json json = nlohmann::ordered_json::parse(explanation_json(read_spec("line")));
     nlohmann::ordered_json& entry = json[key][0].is_array() ? json[key][0][0] : json[key][0];
     entry = "-(" + entry.get<std::string>() + ")";
     write(files / "line.json", json.dump(1));
