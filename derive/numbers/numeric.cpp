@@ -27,6 +27,8 @@ Triple<double> turned(const EulerParameters<double>& e, const Triple<double>& u)
   return sum;
 }
 
+}  // namespace
+
 class Doubles final : public Arithmetic<double> {
  public:
   explicit Doubles(const Sample& sample) : sample_(&sample) {}
@@ -112,8 +114,6 @@ bool is_body_axis(const Joint& joint, const Node& leaf) {
   return leaf.role == Role::body_vector &&
          leaf.symbol.starts_with("axis_" + joint.bodies[static_cast<std::size_t>(leaf.body)]);
 }
-
-}  // namespace
 
 struct Numbers::Parts {
   explicit Parts(Values values) : own{{}, std::move(values), {}, {}, {}}, doubles(own), evaluation(doubles) {}
