@@ -25,7 +25,7 @@ int for_each_method(const Settings& base, F f) {
           s.drift = drift;
           s.integrator = integrator;
           s.local_error = local_error;
-          if (wrong_with_methods(s)) continue;
+          if (mistake_in_methods(s)) continue;
           f(s, fmt::format("{} {} {} {}", solver_name, drift_name, name, local_error));
           ++methods;
         }

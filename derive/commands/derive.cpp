@@ -46,6 +46,8 @@ std::vector<LedgerRow> without_repetition(const std::vector<LedgerRow>& all) {
   return rows;
 }
 
+bool is_shown(const ProofRow& row) { return !row.shown.empty(); }
+
 // Most expensive specs first, so that none runs alone at the end: those without a kernel, then by its size.
 std::vector<std::size_t> most_expensive_first(const std::vector<fs::path>& paths, const fs::path& output) {
   std::vector<std::pair<std::uintmax_t, std::size_t>> sized;
@@ -68,9 +70,11 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
   std::vector<LedgerRow> hand_costs;
   std::vector<ProofRow> proofs;
   std::size_t on_record = 0;
+  std::ptrdiff_t shown = 0;  // row blocks; the record lists their laws, which would fill a page
   const auto take = [&](const Outcome& outcome) {
     fmt::print(stderr, "{}", outcome.complaints);
-    fmt::print("{}", outcome.said);
+    if (outcome.on_record && options.specs.empty()) shown += std::ranges::count_if(outcome.proofs, &is_shown);
+    else fmt::print("{}", outcome.said);
     if (!outcome.proved) return;
     on_record += outcome.on_record ? 1 : 0;
     joints.push_back(outcome.joint);
@@ -83,6 +87,10 @@ std::optional<Files> derive_all(const std::vector<fs::path>& paths, const SpecsF
   if (on_record > 0) {
     fmt::print(stderr, "{} of {} specs are proved by the record {} (--fresh: prove all again)\n", on_record,
                paths.size(), record_file.string());
+  }
+  if (shown > 0) {
+    fmt::print("row blocks with laws that are too expensive to prove, shown at {} random points, listed in {}: {}\n",
+               exact_points, record_file.string(), shown);
   }
   if (joints.size() < paths.size()) return std::nullopt;
   Files files = collect(joints, without_repetition(hand_costs));

@@ -14,7 +14,7 @@ namespace {
 constexpr int newton_rounds = 20;
 // The share of the error that a Newton round may leave. At this rate newton_rounds reach round-off: 0.2^19 = 5e-14. At
 // acceleration level a step that needs a new J is too long; error control must shorten it.
-constexpr double enough = 0.2, enough_in_continuous_time = 0.5;
+constexpr double enough = 0.2, enough_at_acceleration_level = 0.5;
 
 template <class S>
 bool is_held(const Batch<S>& batch, int i) {
@@ -111,14 +111,14 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   // Known forces do not act in a projection.
   system.give([](const Batch<S>&, int) { return 0.0; });
   // Without laws and at acceleration level the last solve left the right factor.
-  const bool other_rows = system.lawful() && !island.continuous;
+  const bool other_rows = system.lawful() && !island.acceleration_level;
   for (int round = 0;; ++round) {
     const T worst = find_errors(world, island, time);
     island.residual = worst;
     if (!(worst > converged<T> * island.scale) || round == newton_rounds) return;
     // Adds rows that passed their bound since the selection. Selected rows stay.
     const bool more = round > 0 && other_rows && system.choose_more(has_error<S>);
-    const bool slow = !more && worst > T(island.continuous ? enough_in_continuous_time : enough) * before;
+    const bool slow = !more && worst > T(island.acceleration_level ? enough_at_acceleration_level : enough) * before;
     if (slow && renewed && worst > T(0.5) * before) return;
     if (slow || (fresh && round == 0)) {
       evaluate_anew(world, island, time);
@@ -158,7 +158,7 @@ void exert_correction(const WorldData<S>& world, const Island<S>& island, System
   using T = typename S::Scalar;
   system.store([&](Batch<S>& batch, int i, auto lambda) {
     batch.impulse[i] = T(lambda);
-    if (!island.continuous) batch.correction[i] += T(lambda);
+    if (!island.acceleration_level) batch.correction[i] += T(lambda);
   });
   exert(world, island, system, &BatchWorkspace<S>::impulse, to);
 }

@@ -107,7 +107,7 @@ void sweep_lawful_poses(WorldData<S>& world, const Island<S>& island, const Segm
                         typename S::Scalar time) {
   Batch<S>& batch = *segment.batch;
   if (!batch.law->error) return;
-  if (!island.continuous) return correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
+  if (!island.acceleration_level) return correct_bounded(batch, segment.begin, segment.end, world.bodies, time);
   for (int slot = segment.begin; slot < segment.end; ++slot) {
     const auto mode = batch.mode.begin() + slot * batch.ops->rows;
     if (std::find(mode, mode + batch.ops->rows, Mode::held) != mode + batch.ops->rows)
@@ -161,12 +161,12 @@ template <class S>
 void sweep_projection(WorldData<S>& world, Island<S>& island) {
   renew(world, island);
   auto* const v = world.bodies.velocity.data();
-  if (island.continuous) bound_for_projection(island);
+  if (island.acceleration_level) bound_for_projection(island);
   for (int sweep = 0; sweep < world.settings.iterations; ++sweep) {
     for (const Segment<S>& segment : island.segments) {
       Batch<S>& batch = *segment.batch;
       if (!batch.law) batch.ops->iterate(batch, segment.begin, segment.end, world.bodies, v, batch.correction.data());
-      else if (island.continuous) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
+      else if (island.acceleration_level) iterate_bounded(batch, segment.begin, segment.end, world.bodies, v);
     }
   }
 }

@@ -19,9 +19,9 @@ template <class S>
 void error_of_law(const Island<S>& island, const Batch<S>& batch, int slot, typename S::Scalar* error) {
   using T = typename S::Scalar;
   const int rows = batch.ops->rows;
-  if (!island.continuous && batch.law->error) return batch.law->error(batch, slot, error);
+  if (!island.acceleration_level && batch.law->error) return batch.law->error(batch, slot, error);
   std::fill_n(error, rows, T(0));
-  if (!island.continuous || !batch.law->guard) return;
+  if (!island.acceleration_level || !batch.law->guard) return;
   Guard<T> guards[most_rows];
   batch.law->guard(batch, slot, guards);
   for (int r = 0; r < rows; ++r)
@@ -89,7 +89,7 @@ typename S::Scalar find_errors(WorldData<S>& world, Island<S>& island, typename 
 template <class S>
 void evaluate_anew(WorldData<S>& world, Island<S>& island, typename S::Scalar time) {
   if constexpr (S::has_gyroscopes) {
-    if (island.continuous) set_inertias(world, island);
+    if (island.acceleration_level) set_inertias(world, island);
     else turn_inertias(world, island);
   }
   island.evaluated_at = time;
@@ -153,9 +153,9 @@ bool correction_is_small(const WorldData<S>& world, const Island<S>& island, dou
 template <class S>
 void project_velocities(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
-  if (island.continuous) add_wanted_rates(island, T(-1));
+  if (island.acceleration_level) add_wanted_rates(island, T(-1));
   island.solver->projection(world, island);
-  if (island.continuous) add_wanted_rates(island, T(1));
+  if (island.acceleration_level) add_wanted_rates(island, T(1));
 }
 
 template <class S>

@@ -3,7 +3,7 @@
 
 namespace cdot {
 
-const char* wrong_with(const Inertia& I) {
+const char* mistake_in(const Inertia& I) {
   if (I.xx == 0 && I.yy == 0 && I.zz == 0 && I.xy == 0 && I.xz == 0 && I.yz == 0) return nullptr;
   const double minor = I.xx * I.yy - I.xy * I.xy;
   const double determinant = minor * I.zz - I.xx * I.yz * I.yz - I.yy * I.xz * I.xz + 2 * I.xy * I.xz * I.yz;

@@ -59,7 +59,7 @@ struct IslandState {
   StateNumber<T> evaluated_at = T(0);                            // [s]
   StateNumber<bool> evaluated = false;                           // C and J belong to the present poses
   StateNumber<bool> factored = false;                            // the system's factor is that of this J, all rows free
-  StateNumber<bool> continuous = false;  // acceleration level: modes decide about rows under a law
+  StateNumber<bool> acceleration_level = false;                  // modes decide about rows under a law
   StateNumber<bool> asleep = false;
   StateNumber<double> rested = 0.0;     // [s]
   StateNumber<int> redundant_rows = 0;  // of the last factorisation

@@ -180,9 +180,9 @@ template <class S>
 void begin(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar h) {
   if (island.flow.known) return;
   drop_modes(island);
-  island.continuous = false;
+  island.acceleration_level = false;
   project_start(world, island);
-  island.continuous = true;
+  island.acceleration_level = true;
   evaluate_anew(world, island, time);
   choose_modes(world, island, time, h);
   island.flow.known = true;
@@ -208,7 +208,7 @@ void fall_back_to_euler(WorldData<S>& world, Island<S>& island, typename S::Scal
   accelerate(world, island, time);
   scale_forces(island, h);
   drop_modes(island);
-  island.continuous = island.evaluated = island.factored = false;
+  island.acceleration_level = island.evaluated = island.factored = false;
   island.flow.forget();
   island.flow.slivers = 0;
   if (island.rescue.built()) island.rescue.follow(island.system);
@@ -218,7 +218,7 @@ void fall_back_to_euler(WorldData<S>& world, Island<S>& island, typename S::Scal
   for (int i : island.bodies) world.bodies.effective_mass[i] = world.bodies.inverse_mass[i];
   scale_forces(island, 1 / h);
   island.evaluated = island.factored = false;
-  island.continuous = true;
+  island.acceleration_level = true;
 }
 
 template <class S>

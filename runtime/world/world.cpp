@@ -26,7 +26,7 @@ void check(const Settings& s) {
   require(std::isfinite(s.gravity_x) && std::isfinite(s.gravity_y) && std::isfinite(s.gravity_z),
           "gravity must be finite");
   require(s.local_error >= 0 && std::isfinite(s.local_error), "local_error must be finite and >= 0");
-  if (const char* wrong = wrong_with_methods(s)) throw Error(wrong);
+  if (const char* wrong = mistake_in_methods(s)) throw Error(wrong);
   require(s.sleep_after >= 0 && s.sleep_speed >= 0, "sleep settings must be >= 0");
 }
 
@@ -55,7 +55,7 @@ void check(const SpatialBodyDefinition& d) {
                           d.force_x, d.force_y, d.force_z, d.torque_x, d.torque_y, d.torque_z,
                           d.linear_damping, d.angular_damping});
   // clang-format on
-  if (const char* wrong = wrong_with(d.inertia)) throw Error(wrong);
+  if (const char* wrong = mistake_in(d.inertia)) throw Error(wrong);
   require(d.e0 * d.e0 + d.e1 * d.e1 + d.e2 * d.e2 + d.e3 * d.e3 > 1e-100,
           "an orientation must not be the zero quaternion");
 }

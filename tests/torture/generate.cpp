@@ -85,7 +85,7 @@ void Growth::choose_method() {
   if (random_.chance(0.2) && works_on_accelerations(s.integrator))
     s.local_error = random_.log_between(1e-8, 1e-4) * scales_.length;
   if (random_.chance(0.2)) scene.on_failure = OnFailure::retry;
-  if (wrong_with_methods(s)) s.drift = Drift::projection;
+  if (mistake_in_methods(s)) s.drift = Drift::projection;
   scene.step = random_.log_between(0.002, 0.1) / scales_.rate;
   scene.duration = wish_.steps * scene.step;
   if (random_.chance(anchored_ ? 0.8 : 0.2)) {

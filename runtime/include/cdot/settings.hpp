@@ -57,7 +57,7 @@ struct Settings {
 };
 
 // Why these methods exclude each other; nullptr if they do not.
-constexpr const char* wrong_with_methods(const Settings& s) {
+constexpr const char* mistake_in_methods(const Settings& s) {
   const bool accelerations = works_on_accelerations(s.integrator);
   if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4 and dop853 only";
   if (row_of(s.integrator).projects && s.drift != Drift::projection)
@@ -89,7 +89,7 @@ struct Inertia {
 };
 
 // Why no rigid body can have this tensor; nullptr if one can or if the tensor is 0.
-const char* wrong_with(const Inertia& inertia);
+const char* mistake_in(const Inertia& inertia);
 
 struct SpatialBodyDefinition {
   double x = 0, y = 0, z = 0;                       // centre of mass [m]

@@ -206,7 +206,7 @@ void find_inertia(Entry& body, Reading& to) {
   if (!body.has("mass")) body.error(body.header(), body.what() + " has no `mass`", "mass = 1.0, or static = true");
   if (body.has("inertia")) {
     if (!to.inertia || numbers.fixed_rotation) return;
-    const char* wrong = to.in_space() ? wrong_with(*to.inertia) : nullptr;
+    const char* wrong = to.in_space() ? mistake_in(*to.inertia) : nullptr;
     if (wrong) body.error(body.where("inertia"), wrong);
     if (to.inertia->xx == 0)
       body.error(body.where("inertia"), "`inertia` is 0, but the body is free to turn",

@@ -66,7 +66,7 @@ constexpr Key<Scene> top_keys[] = {
 // clang-format on
 
 void check_method(Entry& top, const Settings& chosen) {
-  if (const char* wrong = wrong_with_methods(chosen))
+  if (const char* wrong = mistake_in_methods(chosen))
     top.error(top.where(top.has("drift") ? "drift" : "local_error"), wrong);
   if (chosen.baumgarte > 1)
     top.error(top.where("baumgarte"), "`baumgarte` is the share of the error removed per step: at most 1");

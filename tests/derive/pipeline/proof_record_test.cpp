@@ -65,6 +65,15 @@ TEST_F(Recorded, WhatIsShownIsSaidAgain) {
   EXPECT_NE(cdot("derive p1 -o one").said.find("1 of 1 specs"), std::string::npos);
 }
 
+// For all specs that would be a page: the record lists them.
+TEST_F(Recorded, ShownLawsOfAllSpecsAreCounted) {
+  take("spatial/p1.joint");
+  cdot("derive");
+  const std::string said = cdot("derive").said;
+  EXPECT_EQ(said.find("p1: shown"), std::string::npos) << said;
+  EXPECT_NE(said.find("shown at 8 random points, listed in generated/proofs.csv: 1\n"), std::string::npos) << said;
+}
+
 TEST_F(Recorded, WordsOfASpecDoNotMatter) {
   write("specs/planar/angle.joint", read("specs/planar/angle.joint") + "# more\n");
   write("specs/planar/angle.hand", read("specs/planar/angle.hand") + "# more\n");
