@@ -16,7 +16,7 @@ constexpr double order_of(Integrator integrator) { return row_of(integrator).ord
 template <class F>
 int for_each_method(const Settings& base, F f) {
   int methods = 0;
-  for (const auto& [solver_name, solver] : solvers)
+  for (const auto& [solver_name, solver, sweeps] : solvers)
     for (const auto& [drift_name, drift] : drifts)
       for (const auto& [name, integrator] : integrators)
         for (const double local_error : {0.0, 1e-5}) {

@@ -2,6 +2,8 @@
 // integrators.
 #pragma once
 
+#include <array>
+
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
@@ -38,9 +40,12 @@ const RowSolver<S>& direct_solver();
 template <class S>
 const RowSolver<S>& iterative_solver();
 
+// In the order of `solvers`.
 template <class S>
 const RowSolver<S>& solver_of(Solver solver) {
-  return sweeps(solver) ? iterative_solver<S>() : direct_solver<S>();
+  constexpr std::array all{&direct_solver<S>, &iterative_solver<S>};
+  static_assert(all.size() == solvers.size());
+  return all[static_cast<std::size_t>(solver)]();
 }
 
 }  // namespace cdot

@@ -1,5 +1,5 @@
-// The names in scenes, commands and reports: one table each for solvers, drift corrections, integrators, forms of
-// kernels, precisions and reactions to a failed step.
+// The names in scenes, commands and reports: one table each for drift corrections, integrators, forms of kernels,
+// precisions and reactions to a failed step. Solvers have theirs in settings.hpp.
 #pragma once
 
 #include <array>
@@ -19,10 +19,6 @@ struct Named {
   Method method;
 };
 
-inline constexpr std::array<Named<Solver>, 2> solvers{{
-    {"direct", Solver::direct},
-    {"iterative", Solver::iterative},
-}};
 inline constexpr std::array<Named<Drift>, 3> drifts{{
     {"projection", Drift::projection},
     {"baumgarte", Drift::baumgarte},

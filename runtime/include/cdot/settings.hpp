@@ -2,9 +2,12 @@
 // stands apart from cdot/world.hpp: a reader of scenes fills the data without a World.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <cdot/integrators.hpp>
@@ -16,13 +19,20 @@ struct Error : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-enum class Solver {
-  iterative,  // sequential impulses: coarse, cheap, for large scenes
-  direct      // sparse LDL^T of each island's K: exact to round-off, for mechanisms
+enum class Solver { direct, iterative };
+
+struct SolverRow {
+  std::string_view name;
+  Solver method;
+  bool sweeps;  // Settings::iterations applies
 };
 
-// True if Settings::iterations applies.
-constexpr bool sweeps(Solver solver) { return solver == Solver::iterative; }
+// In the order of the enumerators. runtime/solve/solver.hpp has their functions.
+inline constexpr std::array<SolverRow, 2> solvers{{
+    {"direct", Solver::direct, false},       // sparse LDL^T of each island's K: exact to round-off, for mechanisms
+    {"iterative", Solver::iterative, true},  // sequential impulses: coarse, cheap, for large scenes
+}};
+constexpr bool sweeps(Solver solver) { return solvers[static_cast<std::size_t>(solver)].sweeps; }
 
 enum class Drift {
   none,       // velocities only; C grows with time

@@ -71,7 +71,7 @@ TEST(Diagnose, StiffestMotionOfAHangingThread) {
 // A rod that hangs by its end: omega^2 = 3 g / 2 l, in the plane and in space, with both solvers. Upside down omega^2
 // is negative: the rod falls.
 TEST(Diagnose, StiffestMotionOfAPendulum) {
-  for (const auto& [name, solver] : solvers) {
+  for (const auto& [name, solver, sweeps] : solvers) {
     World<double> world(settings(solver, Drift::projection, -9.81));
     add_chain(world, 1, -pi / 2);
     EXPECT_NEAR(diagnose(world, h).islands.at(0).stiffest.square, 1.5 * 9.81, 1e-3) << name;
