@@ -1,6 +1,9 @@
 #include "runtime/command_line/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cmath>
+#include <cstdlib>
+#include <fmt/format.h>
 
 namespace cdot::command_line {
 namespace {
@@ -21,11 +24,26 @@ struct Add {
   }
 };
 
+// CLI11's own ranges accept nan, and print the largest double in full.
+CLI::Validator finite_number(const std::string& kind, const char* words, bool (*in_range)(double)) {
+  const auto problem = [=](const std::string& text) {
+    char* end = nullptr;
+    const double number = std::strtod(text.c_str(), &end);
+    const bool whole = !text.empty() && *end == '\0';
+    return whole && std::isfinite(number) && in_range(number) ? "" : fmt::format("`{}` is not {}", text, words);
+  };
+  return {problem, kind};
+}
+
 }  // namespace
 
 Option& Option::required() { return option_->required(), *this; }
-Option& Option::positive() { return option_->check(CLI::PositiveNumber), *this; }
-Option& Option::not_negative() { return option_->check(CLI::NonNegativeNumber), *this; }
+Option& Option::positive() {
+  return option_->check(finite_number("POSITIVE", "a positive number", [](double x) { return x > 0; })), *this;
+}
+Option& Option::not_negative() {
+  return option_->check(finite_number("NONNEGATIVE", "a number from 0 on", [](double x) { return x >= 0; })), *this;
+}
 Option& Option::one_of(const std::vector<std::string>& texts) { return option_->check(CLI::IsMember(texts)), *this; }
 Option& Option::separated_by_commas() { return option_->delimiter(','), *this; }
 Option& Option::excludes(const std::string& earlier) { return option_->excludes(earlier), *this; }

@@ -37,6 +37,23 @@ TEST(Command, HelpTeaches) {
   }
 }
 
+TEST(Command, NumbersMustBeFiniteAndInRange) {
+  struct Case {
+    const char *option, *text, *fault;
+  };
+  for (const Case& c :
+       {Case{"--step", "nan", "is not a positive number"}, Case{"--step", "inf", "is not a positive number"},
+        Case{"--step", "-1", "is not a positive number"}, Case{"--until", "nan", "is not a positive number"},
+        Case{"--accuracy", "nan", "is not a positive number"}, Case{"--tolerance", "nan", "is not a positive number"},
+        Case{"--every", "nan", "is not a positive number"}, Case{"--every", "1s", "is not a positive number"},
+        Case{"--substeps", "nan", "is not a positive number"}, Case{"--times", "1,nan", "is not a number from 0 on"}}) {
+    const CommandResult result = cdot_run(fmt::format("simulate {} {} {}", scene("simple_pendulum"), c.option, c.text));
+    const std::string last = c.option == std::string("--times") ? "nan" : c.text;
+    EXPECT_EQ(result.status, 2) << c.option;
+    EXPECT_NE(result.err.find(fmt::format("{}: `{}` {}\n", c.option, last, c.fault)), std::string::npos) << result.err;
+  }
+}
+
 TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
   const CommandResult text = cdot_run("list");
   EXPECT_EQ(text.status, 0);
