@@ -7,6 +7,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "runtime/tool/scene/depth.hpp"
+
 namespace cdot {
 namespace {
 
@@ -153,7 +155,10 @@ Scene read_scene(std::string_view text, const std::string& name) {
   Scene scene;
   scene.file = name;
   try {
-    read_all(toml::parse(text, name), *mistakes, scene);
+    if (const std::optional<Span> deep = find_deep_key(text))
+      mistakes->add(*deep, fmt::format("a key has more than {} parts", most_parts_of_key),
+                    "`cdot-run list --keys` shows all keys of a scene");
+    else read_all(toml::parse(text, name), *mistakes, scene);
   } catch (const toml::parse_error& error) {
     mistakes->add(span_of(error.source()), syntax_error(error.description()));
   }

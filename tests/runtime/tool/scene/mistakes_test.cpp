@@ -30,6 +30,22 @@ TEST(Mistakes, AreReportedWordForWord) {
     EXPECT_EQ(report_on(broken.input, broken.name), broken.messages) << broken.name;
 }
 
+// toml++ recurses once for each part of a key: 40,000 of them ended in a crash.
+TEST(Mistakes, KeysOfAnyDepthAreRefused) {
+  std::string key = "a";
+  for (int k = 1; k < 40000; ++k) key += ".a";
+  for (const std::string& text : {key + " = 1\n", "[" + key + "]\nx = 1\n", "[[" + key + "]]\n",
+                                  "b = {" + key + " = 1}\n", R"('x'."y # \" z".)" + key + " = 1\n"}) {
+    const std::string report = report_on(text, "deep.toml");
+    EXPECT_NE(report.find("a key has more than 16 parts"), std::string::npos) << report.substr(0, 200);
+  }
+  const std::string dots(100, '.');
+  for (const std::string& text : {"# " + dots + "\n", "title = \"" + dots + "\"\n", "title = '''\n" + dots + "'''\n",
+                                  R"(title = """\" )" + dots + "\"\"\"\n", std::string("a.b.c.d = 1\n")}) {
+    EXPECT_EQ(report_on(text, "dots.toml").find("parts"), std::string::npos) << text;
+  }
+}
+
 TEST(Mistakes, AreCountedAndAllShown) {
   const BrokenInput many = case_named(mistakes(), "many_at_once.toml");
   try {
