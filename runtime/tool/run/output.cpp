@@ -3,23 +3,40 @@
 
 #include <cerrno>
 #include <cstring>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
 #include <sstream>
 #include <unistd.h>
+#include <utility>
 
 namespace cdot {
 
-OutputFile::OutputFile(const std::string& path) : path_(path), temporary_(fmt::format("{}.{}.part", path, ::getpid())) {
-  file_ = std::fopen(temporary_.c_str(), "wb");
+namespace {
+
+namespace fs = std::filesystem;
+
+// The regular file that is to take the place of `path`: a link's target. Empty for a device, a pipe or a link to one,
+// whose place nothing may take.
+std::string replaceable(const std::string& path) {
+  std::error_code none;
+  const bool link = fs::is_symlink(path, none), exists = fs::exists(path, none);
+  if (link ? !fs::is_regular_file(path, none) : exists && !fs::is_regular_file(path, none)) return {};
+  return link ? fs::canonical(path).string() : path;
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::string& path) : path_(path), final_(replaceable(path)) {
+  if (!final_.empty()) temporary_ = fmt::format("{}.{}.part", final_, ::getpid());
+  file_ = std::fopen(final_.empty() ? path.c_str() : temporary_.c_str(), "wb");
   if (!file_) fail("cannot be written");
 }
 
 OutputFile::~OutputFile() {
-  if (!file_) return;
-  std::fclose(file_);
-  std::remove(temporary_.c_str());
+  if (file_) std::fclose(file_);
+  if (!temporary_.empty()) std::remove(temporary_.c_str());
 }
 
 void OutputFile::write(std::string_view text) {
@@ -27,10 +44,12 @@ void OutputFile::write(std::string_view text) {
 }
 
 void OutputFile::commit() {
-  if (std::fflush(file_) != 0) fail("cannot be written");
-  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot take its name");
-  std::fclose(file_);
-  file_ = nullptr;
+  // Some disks say only now that they are full.
+  const bool flushed = std::fflush(file_) == 0;
+  if (std::fclose(std::exchange(file_, nullptr)) != 0 || !flushed) fail("cannot be written");
+  if (temporary_.empty()) return;
+  if (std::rename(temporary_.c_str(), final_.c_str()) != 0) fail("cannot take its name");
+  temporary_.clear();
 }
 
 void OutputFile::fail(const char* what) const {

@@ -12,7 +12,8 @@
 
 namespace cdot {
 
-// Writes a temporary file and renames it when it is complete. Throws cdot::Error if the disk refuses.
+// Writes a temporary file and renames it when it is complete; writes to a device or a pipe directly. Throws cdot::Error
+// if the disk refuses.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);
@@ -25,7 +26,7 @@ class OutputFile {
 
  private:
   [[noreturn]] void fail(const char* what) const;
-  std::string path_, temporary_;
+  std::string path_, final_, temporary_;  // as asked for; the file to be; the file until then. Else empty
   std::FILE* file_ = nullptr;
 };
 

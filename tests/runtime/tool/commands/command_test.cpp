@@ -1,11 +1,14 @@
 // cdot-run from the command line: help, exit status, files, JSON.
 #include <algorithm>
 #include <cmath>
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "runtime/tool/run/output.hpp"
 #include "tests/cases/cases.hpp"
@@ -52,6 +55,36 @@ TEST(Command, NumbersMustBeFiniteAndInRange) {
     EXPECT_EQ(result.status, 2) << c.option;
     EXPECT_NE(result.err.find(fmt::format("{}: `{}` {}\n", c.option, last, c.fault)), std::string::npos) << result.err;
   }
+}
+
+// Only a regular file is replaced; a link keeps its name and its target gets the file.
+TEST(Command, OutputsNeverReplaceDevicesPipesOrLinks) {
+  namespace fs = std::filesystem;
+  TemporaryFolder folder;
+  const fs::path full = folder / "full", link = folder / "link", pipe = folder / "pipe";
+  const auto simulate = [](const fs::path& to) {
+    return fmt::format("simulate {} --until 0.01 -o '{}'", scene("simple_pendulum"), to.string());
+  };
+  fs::create_symlink("/dev/full", full);
+  const CommandResult refused = cdot_run(simulate(full));
+  EXPECT_NE(refused.status, 0);
+  EXPECT_NE(refused.err.find("full: cannot be written: No space left on device"), std::string::npos) << refused.err;
+  EXPECT_TRUE(fs::is_symlink(full));
+
+  std::ofstream(folder / "target") << "old";
+  fs::create_symlink(folder / "target", link);
+  EXPECT_EQ(cdot_run(simulate(link)).status, 0);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(csv(folder / "target").size(), 12u);  // a head and 11 rows
+
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDWR | O_NONBLOCK);  // keeps what is written until it is read
+  EXPECT_EQ(cdot_run(simulate(pipe)).status, 0);
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  std::string text(1 << 16, ' ');
+  const ssize_t read = ::read(reader, text.data(), text.size());
+  EXPECT_EQ(std::count(text.begin(), text.begin() + std::max<ssize_t>(read, 0), '\n'), 12);
+  ::close(reader);
 }
 
 TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
