@@ -1,8 +1,11 @@
 #include "runtime/command_line/command_line.hpp"
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fmt/format.h>
 
 namespace cdot::command_line {
@@ -74,7 +77,10 @@ int run(const Program& program, std::span<const Command> commands, int argc, con
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : wrong_usage;
   }
-  return selected();
+  const int status = selected();
+  if (std::fflush(stdout) == 0 && !std::ferror(stdout)) return status;
+  fmt::print(stderr, "{}: standard output cannot be written: {}\n", program.name, std::strerror(errno));
+  return wrong_usage;
 }
 
 }  // namespace cdot::command_line

@@ -87,6 +87,15 @@ TEST(Command, OutputsNeverReplaceDevicesPipesOrLinks) {
   ::close(reader);
 }
 
+TEST(Command, AFullDiskBehindStandardOutputIsNoSuccess) {
+  for (const char* arguments : {"list", "simulate {}"}) {
+    const std::string command = fmt::format(fmt::runtime(arguments), scene("simple_pendulum"));
+    const CommandResult result = run_command(fmt::format("({} {} >/dev/full)", CDOT_RUN, command));
+    EXPECT_EQ(result.status, 2) << command;
+    EXPECT_NE(result.err.find("No space left on device"), std::string::npos) << result.err;
+  }
+}
+
 TEST(Command, ListShowsJointsWithParametersAndCoordinates) {
   const CommandResult text = cdot_run("list");
   EXPECT_EQ(text.status, 0);
