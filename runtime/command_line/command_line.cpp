@@ -51,6 +51,7 @@ Option& Option::one_of(const std::vector<std::string>& texts) { return option_->
 Option& Option::separated_by_commas() { return option_->delimiter(','), *this; }
 Option& Option::excludes(const std::string& earlier) { return option_->excludes(earlier), *this; }
 Option& Option::needs(const std::string& earlier) { return option_->needs(earlier), *this; }
+Option& Option::repeatable() { return option_->take_last(), *this; }
 Option& Option::shown_as(const std::string& kind) { return option_->type_name(kind), *this; }
 Option& Option::shows_default() { return option_->capture_default_str(), *this; }
 

@@ -33,6 +33,7 @@ class Option {
   Option& separated_by_commas();
   Option& excludes(const std::string& earlier);  // the name of an option that the line has already
   Option& needs(const std::string& earlier);
+  Option& repeatable();                       // the last one counts
   Option& shown_as(const std::string& kind);  // the kind of its value, in the help: FILE
   Option& shows_default();
 

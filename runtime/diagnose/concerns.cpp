@@ -43,8 +43,26 @@ void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Co
                        listed(redundant.joints, names), redundant.row.row, names.joint(redundant.row.joint),
                        std::abs(redundant.missed)),
            "correct the anchors or the lengths of one of them, or remove it"});
-  const int harmless = static_cast<int>(
-      std::count_if(island.redundant.begin(), island.redundant.end(), [](const auto& r) { return !r.conflicting; }));
+  for (const Diagnosis::NearlyRedundant& nearly : island.nearly_redundant)
+    if (island.mobility == 0)
+      concerns.push_back(
+          {true,
+           fmt::format("the structure is rigid but for {:.1g} m or rad per m: row {} of {} is nearly redundant, and "
+                       "without it {} would move; it cannot follow",
+                       nearly.per_way, nearly.row.row, names.joint(nearly.row.joint), names.body(nearly.body)),
+           "if it should move, make axes parallel, lengths equal or anchors fit exactly, or remove that joint's row"});
+  for (const Diagnosis::Redundant& redundant : island.redundant)
+    if (redundant.undecided != 0)
+      concerns.push_back(
+          {true,
+           fmt::format(
+               "branches of the motion cross in this pose, and the velocities follow none of them: row {} of {} "
+               "is redundant here only, and no acceleration keeps it, by {:.3g} m/s^2 or rad/s^2",
+               redundant.row.row, names.joint(redundant.row.joint), std::abs(redundant.undecided)),
+           "give the velocities of one branch, or start beside this pose"});
+  const int harmless =
+      static_cast<int>(std::count_if(island.redundant.begin(), island.redundant.end(),
+                                     [](const auto& r) { return !r.conflicting && r.undecided == 0; }));
   if (harmless > 0)
     concerns.push_back(
         {false,
@@ -55,7 +73,7 @@ void on_rows(const Diagnosis::Island& island, const Names& names, std::vector<Co
 
 void on_stiffness(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
                   std::vector<Concern>& concerns) {
-  if (settings.local_error > 0 || !(island.stiffest.square > 0)) return;
+  if (settings.local_error > 0 || takes_midpoint(settings) || !(island.stiffest.square > 0)) return;
   const double omega = std::sqrt(island.stiffest.square), radians = h * omega;
   const double stable = row_of(settings.integrator).stable_radians;  // half of this is already inaccurate
   if (!(radians > stable / 2)) return;
@@ -90,7 +108,7 @@ void on_spin(const Diagnosis::Island& island, const Settings& settings, double h
 // The linearly implicit step adds tension as inertia. Where h omega is small anyway, this only slows down rotations.
 void on_damping(const Diagnosis::Island& island, const Settings& settings, double h, const Names& names,
                 std::vector<Concern>& concerns) {
-  if (!row_of(settings.integrator).stiffens) return;
+  if (!row_of(settings.integrator).stiffens || takes_midpoint(settings)) return;
   const double radians = h * std::sqrt(std::max(0.0, island.stiffest.square)), turn = h * island.fastest_spin;
   if (radians > needs_no_help || turn < slow_turn) return;
   concerns.push_back(

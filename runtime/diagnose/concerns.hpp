@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <compare>
 #include <functional>
 #include <string>
 #include <vector>
@@ -13,7 +14,7 @@ namespace cdot {
 struct Concern {
   bool warning = false;  // else a note
   std::string what, fix;
-  bool operator==(const Concern&) const = default;
+  auto operator<=>(const Concern&) const = default;
 };
 
 struct Names {

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <cdot/spaces.hpp>
 
@@ -25,10 +26,11 @@ template <class S>
 class Motion {
  public:
   using T = typename S::Scalar;
-  using Velocities = std::vector<typename S::Velocity>;
+  using Velocities = std::vector<typename S::Velocity>;  // in the order of the island's bodies
 
   Motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations)
-      : world_(world), island_(island), equations_(equations), pose_(world.bodies.pose) {
+      : world_(world), island_(island), equations_(equations) {
+    for (int i : island.bodies) pose_.push_back(world.bodies.pose[i]);
     // Euler's methods solve for the forces of springs on coordinates. For others they are known forces.
     if (!row_of(world.settings.integrator).forces_springs) return;
     for (const Segment<S>& segment : island.segments)
@@ -38,10 +40,9 @@ class Motion {
   // The present forces of the joints: J dv/dt = gamma.
   void find_forces(T h) {
     free_accelerations(world_, island_);
-    Velocities rate = world_.bodies.velocity_rate;
     for (const Segment<S>& segment : equations_.segments()) {
       Batch<S>& batch = *segment.batch;
-      batch.ops->velocity(batch, segment.begin, segment.end, rate.data(), batch.rate.data());
+      batch.ops->velocity(batch, segment.begin, segment.end, world_.bodies.velocity_rate.data(), batch.rate.data());
       batch.ops->gamma(batch, segment.begin, segment.end, world_.bodies, T(world_.time), batch.bias.data());
     }
     std::vector<double> b(equations_.size());
@@ -65,30 +66,33 @@ class Motion {
     const T e = T(1e-3) * island_.size / std::max(T(largest(w)), T(1e-30));
     const Velocities ahead = rates(w, e, tension, springs), behind = rates(w, -e, tension, springs);
     Velocities change(w.size());
-    for (int i : island_.bodies) change[i] = S::sum(S::sum({}, behind[i], T(0.5) / e), ahead[i], T(-0.5) / e);
-    world_.bodies.pose = pose_;
+    for (size_t k = 0; k < w.size(); ++k) change[k] = S::sum(S::sum({}, behind[k], T(0.5) / e), ahead[k], T(-0.5) / e);
+    for (size_t k = 0; k < w.size(); ++k) world_.bodies.pose[island_.bodies[k]] = pose_[k];
     equations_.evaluate();
     return within_joints(change);
   }
 
   // change - M^-1 J^T K^-1 J change
   Velocities within_joints(Velocities change) {
+    auto& all = world_.bodies.increment;
+    for (size_t k = 0; k < change.size(); ++k) all[island_.bodies[k]] = change[k];
     for (const Segment<S>& segment : equations_.segments()) {
       Batch<S>& batch = *segment.batch;
-      batch.ops->velocity(batch, segment.begin, segment.end, change.data(), batch.rate.data());
+      batch.ops->velocity(batch, segment.begin, segment.end, all.data(), batch.rate.data());
     }
-    find_corrections(change);
+    find_corrections(all.data());
     for (const Segment<S>& segment : equations_.segments())
       segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, world_.bodies,
-                                segment.batch->correction.data(), change.data());
-    if (solves_as_step_) island_.system.pull(world_.bodies, change.data());
+                                segment.batch->correction.data(), all.data());
+    if (solves_as_step_) island_.system.pull(world_.bodies, all.data());
+    for (size_t k = 0; k < change.size(); ++k) change[k] = std::exchange(all[island_.bodies[k]], {});
     return change;
   }
 
   // Rotations count with the size of the mechanism as arm.
   double product(const Velocities& v, const Velocities& w) const {
     double sum = 0;
-    for (int i : island_.bodies) sum += product(v[i], w[i]);
+    for (size_t k = 0; k < v.size(); ++k) sum += product(v[k], w[k]);
     return sum;
   }
   double product(const typename S::Velocity& v, const typename S::Velocity& w) const {
@@ -103,15 +107,15 @@ class Motion {
  private:
   double largest(const Velocities& w) const {
     double square = 0;
-    for (int i : island_.bodies) square = std::max(square, product(w[i], w[i]));
+    for (const auto& one : w) square = std::max(square, product(one, one));
     return std::sqrt(square);
   }
 
-  // -K^-1 J change, J change being the rates.
-  void find_corrections(const Velocities& change) {
+  // -K^-1 J change, J change being the rates. `change` is by body of the World.
+  void find_corrections(const typename S::Velocity* change) {
     if (solves_as_step_) {
       island_.system.load([](const Batch<S>& batch, int i) { return -double(batch.rate[i]); });
-      island_.system.load_tensions(change.data());
+      island_.system.load_tensions(change);
       island_.system.solve();
       island_.system.store([](Batch<S>& batch, int i, double lambda) { batch.correction[i] = T(lambda); });
       return;
@@ -124,7 +128,7 @@ class Motion {
 
   Velocities rates(const Velocities& w, T e, bool tension, bool springs) {
     Bodies<S>& all = world_.bodies;
-    for (int i : island_.bodies) all.pose[i] = S::moved(pose_[i], S::sum({}, w[i], e));
+    for (size_t k = 0; k < w.size(); ++k) all.pose[island_.bodies[k]] = S::moved(pose_[k], S::sum({}, w[k], e));
     if (springs) {
       push_free_bodies(world_, island_);
       for (const Segment<S>& segment : coordinate_springs_) push_by(segment);
@@ -137,7 +141,9 @@ class Motion {
         segment.batch->ops->apply(*segment.batch, segment.begin, segment.end, all, segment.batch->lambda.data(),
                                   all.velocity_rate.data());
     }
-    return all.velocity_rate;
+    Velocities found;
+    for (int i : island_.bodies) found.push_back(all.velocity_rate[i]);
+    return found;
   }
 
   void push_by(const Segment<S>& segment) {
@@ -152,18 +158,18 @@ class Motion {
   Island<S>& island_;
   Equations<S>& equations_;
   std::vector<Segment<S>> coordinate_springs_;
-  const std::vector<typename S::Pose> pose_;
-  bool solves_as_step_ = false;  // by the system of the linearly implicit step
+  std::vector<typename S::Pose> pose_;  // in the order of the island's bodies
+  bool solves_as_step_ = false;         // by the system of the linearly implicit step
 };
 
 template <class S>
-std::vector<typename S::Velocity> any_motion(const WorldData<S>& world, const Island<S>& island) {
-  std::vector<typename S::Velocity> w(world.bodies.pose.size());
+std::vector<typename S::Velocity> any_motion(const Island<S>& island) {
+  std::vector<typename S::Velocity> w;
   Arbitrary arbitrary;
-  for (int i : island.bodies) {
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
     typename S::Scalar numbers[S::freedom];
     for (auto& number : numbers) number = typename S::Scalar(arbitrary() - 0.5);
-    w[i] = S::read_velocity(numbers);
+    w.push_back(S::read_velocity(numbers));
   }
   return w;
 }
@@ -177,12 +183,12 @@ Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equa
   Motion<S> motion(world, island, equations);
   motion.find_forces(h);
   Diagnosis::Stiffest found;
-  auto w = motion.within_joints(any_motion(world, island));
+  auto w = motion.within_joints(any_motion(island));
   double before = 0;
   for (int round = 0; round < most_rounds; ++round) {
     const double length = std::sqrt(motion.product(w, w));
     if (!(length > 0) || !std::isfinite(length)) return found;
-    for (int i : island.bodies) w[i] = S::sum({}, w[i], T(1 / length));
+    for (auto& one : w) one = S::sum({}, one, T(1 / length));
     auto next = motion.stiffened(w, true, true);
     found.square = motion.product(w, next);
     const double size = std::sqrt(motion.product(next, next));
@@ -194,8 +200,10 @@ Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equa
     if (round + 1 < most_rounds) w = std::move(next);
   }
   found.tension = motion.product(w, motion.stiffened(w, true, false));
-  for (int i : island.bodies)
-    if (found.body < 0 || motion.product(w[i], w[i]) > motion.product(w[found.body], w[found.body])) found.body = i;
+  size_t most = 0;
+  for (size_t k = 1; k < w.size(); ++k)
+    if (motion.product(w[k], w[k]) > motion.product(w[most], w[most])) most = k;
+  found.body = island.bodies[most];
   return found;
 }
 

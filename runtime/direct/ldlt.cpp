@@ -247,6 +247,22 @@ void BasicLdlt<Real>::solve(const Real* b, Real* x) {
 }
 
 template <class Real>
+int BasicLdlt<Real>::dominant(const Real* b) {
+  std::vector<Real>& x = given_;
+  std::copy_n(b, size(), x.begin());
+  const dense::Numbers<Real> all = numbers(nullptr);
+  for (const Column& column : columns_) column.forward(column, all, x.data());  // D^-1 L^-1 b
+  int found = -1;
+  Real most = 0;
+  for (int k = 0; k < size(); ++k) {
+    if (!(inverse_[k] > Real(0)) || !(x[k] * x[k] / inverse_[k] > most)) continue;
+    most = x[k] * x[k] / inverse_[k];
+    found = k;
+  }
+  return found;
+}
+
+template <class Real>
 void BasicLdlt<Real>::multiply(const Real* x, Real* y) const {
   std::fill_n(y, diagonal_.size(), 0.0);
   for (const Column& column : columns_) {

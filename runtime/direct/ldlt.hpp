@@ -112,6 +112,10 @@ class BasicLdlt {
   void forget();
   // After the removal of rows: rows that are redundant by design may have depended on the removed rows only.
   void doubt_lasting();
+  // Treats the row as redundant by design from the next factor() on.
+  void presume_redundant(int unknown) { dependent_[unknown] = dense::lasting_count; }
+  // The row with the largest part of b^T K^-1 b = sum (L^-1 b)_i^2 / D_i in the last factor(); -1: none.
+  int dominant(const Real* b);
   // True if the last factor() found the row redundant.
   bool dependent(int unknown) const { return inverse_[unknown] == 0 && !out_[unknown]; }
   // True if magnified round-off exceeds the threshold of the pivot, so the last factor() could not decide whether the

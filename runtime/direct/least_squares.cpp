@@ -73,15 +73,13 @@ bool System<S>::misses_rows(std::vector<Real>& missed) {
   return largest > slight(scale);
 }
 
+// y = (Z^T Z)^-1 rest by conjugate gradients. Uses up `rest`.
 template <class S>
-void System<S>::share_contradictions() {
-  if (softened_ != Softened::no) return;
-  auto& [missed, step, image, y] = shared_;
-  contradicted_ = dependent_ > 0 && misses_rows(missed);
-  if (!contradicted_) return;
+void System<S>::divide_by_null_space(std::vector<Real>& rest, std::vector<Real>& y) {
+  auto &step = shared_[1], &image = shared_[2];
   std::fill(y.begin(), y.end(), 0.0);
-  step = missed;
-  Real left = product(missed, missed);
+  step = rest;
+  Real left = product(rest, rest);
   const Real enough = solved * left;
   for (int round = 0; round < rows_ && left > enough; ++round) {
     expand(step, image);
@@ -89,23 +87,55 @@ void System<S>::share_contradictions() {
     const Real share = left / product(step, image);
     for (int r = 0; r < rows_; ++r) {
       y[r] += share * step[r];
-      missed[r] -= share * image[r];
+      rest[r] -= share * image[r];
     }
     const Real before = left;
-    left = product(missed, missed);
-    for (int r = 0; r < rows_; ++r) step[r] = missed[r] + left / before * step[r];
+    left = product(rest, rest);
+    for (int r = 0; r < rows_; ++r) step[r] = rest[r] + left / before * step[r];
   }
-  expand(y, unmet_);
-  for (int r = 0; r < rows_; ++r) image[r] = kept(r) ? unmet_[r] : Real(0);
-  ldlt_.solve(image.data(), image.data());
+}
+
+template <class S>
+void System<S>::share_contradictions() {
+  if (softened_ != Softened::no) return;
+  auto &missed = shared_[0], &image = shared_[2], &y = shared_[3];
+  contradicted_ = dependent_ > 0 && misses_rows(missed);
+  if (contradicted_) {
+    divide_by_null_space(missed, y);
+    expand(y, unmet_);
+    for (int r = 0; r < rows_; ++r) image[r] = kept(r) ? unmet_[r] : Real(0);
+    ldlt_.solve(image.data(), image.data());
+    for (int r = 0; r < rows_; ++r)
+      if (kept(r)) lambda[r] -= image[r];
+  }
+}
+
+// lambda - Z y with Z^T Z y = Z^T lambda: the same motion by the least sum of squares. Rows with bounds share only if
+// `bounds` are known, and if no share lies beyond them.
+template <class S>
+void System<S>::share_redundant_loads(Bounds bounds) {
+  if (!shares_loads_ || dependent_ == 0 || softened_ != Softened::no) return;
+  if (bounds == Bounds::unknown) {
+    bool under_laws = false;
+    each_row([&](int row, const Batch<S>& batch, int) { under_laws |= batch.law && !out_[row]; });
+    if (under_laws) return;
+  }
+  auto &rest = shared_[0], &image = shared_[2], &y = shared_[3];
+  for (int r = 0; r < rows_; ++r) rest[r] = out_[r] ? Real(0) : lambda[r];
+  contract(rest);
+  divide_by_null_space(rest, y);
+  expand(y, image);
+  for (int r = 0; bounds == Bounds::known && r < rows_; ++r)
+    if (!out_[r] && !(lambda[r] - image[r] >= lower[r] && lambda[r] - image[r] <= upper[r])) return;
   for (int r = 0; r < rows_; ++r)
-    if (kept(r)) lambda[r] -= image[r];
+    if (!out_[r]) lambda[r] -= image[r];
 }
 
 #define CDOT_INSTANTIATE(S)                                 \
   template System<S>::Real System<S>::slight(Real);         \
   template bool System<S>::misses_rows(std::vector<Real>&); \
-  template void System<S>::share_contradictions();
+  template void System<S>::share_contradictions();          \
+  template void System<S>::share_redundant_loads(Bounds);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -33,6 +33,7 @@ template <class S>
 void System<S>::solve() {
   solve_rows();
   share_contradictions();
+  share_redundant_loads(Bounds::unknown);
 }
 
 template <class S>
@@ -144,6 +145,7 @@ int System<S>::solve_bounded() {
   int dependent = find_active_set();
   if (dependent > 0 && part_contradicting_rows()) dependent = find_active_set();
   share_contradictions();
+  share_redundant_loads(Bounds::known);
   std::copy(fixed.begin(), fixed.end(), active_set_.begin());
   for (int r = 0; r < rows_; ++r) lambda[r] = std::clamp(lambda[r], lower[r], upper[r]);
   return dependent;

@@ -40,6 +40,8 @@ class System {
 
   // True if there are rows with softness or bounds.
   bool lawful() const { return lawful_; }
+  // From now on solve() shares forces among redundant rows: among equal motions the least sum of squares.
+  void share_loads() { shares_loads_ = true; }
 
   // b of every row from value(batch, i), i numbering the batch's rows.
   template <class F>
@@ -103,6 +105,9 @@ class System {
   Real unmet(int row) const { return contradicted_ ? unmet_[static_cast<size_t>(row)] : Real(0); }
   // K_rr = J M^-1 J^T of the row alone.
   Real diagonal(int row) const { return ldlt_.diagonal(row); }
+  // Treats the nearly redundant row that moves the bodies most in the last solve() as redundant, until it becomes
+  // clearly independent, and factors again. False if no nearly redundant row does that.
+  bool drop_dominant_row();
   // Results of the last factor(): the pivot of K_rr; whether the row is redundant; x = K^-1 x of the independent rows.
   Real pivot(int row) const { return ldlt_.pivot(row); }
   bool dependent(int row) const { return ldlt_.dependent(row); }
@@ -169,6 +174,9 @@ class System {
   static Real slight(Real scale);
   bool misses_rows(std::vector<Real>& missed);
   void share_contradictions();
+  enum class Bounds : char { unknown, known };
+  void share_redundant_loads(Bounds bounds);
+  void divide_by_null_space(std::vector<Real>& rest, std::vector<Real>& y);
   bool drops_rows_by_round_off();
   void soften(Softened how);
   Real find_rest(const std::vector<Real>& wanted, std::vector<Real>& rest);
@@ -178,7 +186,7 @@ class System {
   void contract(std::vector<Real>& w);
   void expand(const std::vector<Real>& y, std::vector<Real>& to);
 
-  bool built_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
+  bool built_ = false, shares_loads_ = false, lawful_ = false, taut_ = false, any_out_ = false, contradicted_ = false;
   Softened softened_ = Softened::no;
   int rows_ = 0, dependent_ = 0;
   BasicLdlt<Real> ldlt_;

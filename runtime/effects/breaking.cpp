@@ -4,8 +4,10 @@
 
 #include <cdot/effects.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/state/add_rows.hpp"
 #include "runtime/state/state_list.hpp"
+#include "runtime/world/islands.hpp"
 #include "runtime/world/rollback.hpp"
 
 namespace cdot {
@@ -25,6 +27,7 @@ struct SwapSlots {
 template <class S>
 void break_joint(WorldData<S>& world, int joint) {
   JointRecord& record = world.joints[joint];
+  world.accounts.taken += potential_of(world, record, world.one_slot);
   record.broken = true;
   Island<S>& island = world.islands[world.island_of[movable_body(world, record)]];
   for (const Place& place : record.places) {
@@ -58,12 +61,22 @@ double force_of(const WorldData<S>& world, const JointRecord& record, double h) 
   return std::sqrt(square) / h;
 }
 
+// Where several joints of an island carry too much, only the most overloaded one breaks: without it the others may
+// carry less, as two pins that work against each other. The next substep shows whether they still carry too much.
 template <class S>
 void break_overloaded(WorldData<S>& world, typename S::Scalar h) {
+  auto& overloads = world.overloads;
+  overloads.clear();
   for (const auto& [joint, load] : world.breaking_loads) {
     const JointRecord& record = world.joints[joint];
-    if (!record.broken && force_of(world, record, double(h)) > load) break_joint(world, joint);
+    const int island = world.island_of[movable_body(world, record)];
+    if (record.broken || world.islands[island].asleep) continue;
+    const double share = force_of(world, record, double(h)) / load;
+    if (share > 1) overloads.push_back({island, -share, joint});
   }
+  std::sort(overloads.begin(), overloads.end());
+  for (std::size_t k = 0; k < overloads.size(); ++k)
+    if (k == 0 || overloads[k].island != overloads[k - 1].island) break_joint(world, overloads[k].joint);
 }
 
 }  // namespace
@@ -76,7 +89,9 @@ void set_breaking_load(BasicWorld<S>& world, int joint, double load) {
   if (data.joints[joint].places.empty()) return;
   if (data.breaking_loads.empty()) data.after_substep.push_back(break_overloaded<S>);
   data.breaking_loads.emplace_back(joint, load);
-  if (data.prepared) settle_state(data);  // the flag of the joint joins its island's ranges
+  if (!data.prepared) return;
+  settle_state(data);  // the flag of the joint joins its island's ranges
+  watch_breaking_loads(data);
 }
 
 #define CDOT_INSTANTIATE(S) template void set_breaking_load(BasicWorld<S>&, int, double);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/world/islands.hpp"
 
 namespace cdot {
@@ -20,6 +21,7 @@ void set_constants(BasicWorld<S>& world, int joint, int effect, const NamedLaw<S
   Batch<S>& batch = *data.batches[record.places[place].batch];
   if (batch.law != &named.law)
     throw Error(fmt::format("effect number {} of joint number {} is not a {}", effect, joint, named.name));
+  if (named.law.energy) note_change(data);
   const auto count = static_cast<size_t>(named.law.constants);
   for (size_t k = 0; k < count; ++k)
     batch.constants[slot_of(data, record.places[place]) * count + k] = typename S::Scalar(constants[k]);

@@ -10,6 +10,7 @@
 
 #include <cdot/effects.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/state/add_rows.hpp"
 #include "runtime/state/world_data.hpp"
 
@@ -36,6 +37,7 @@ template <class S, class Effect>
 int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, const Effect& effect) {
   const auto constants = constants_of(at_pose(world, joint, coordinate, effect));
   const Law<S>& law = law_of<S>(effect).law;
+  note_change(world.data());
   return add_coordinate_row(world.data(), joint, coordinate, &law,
                             std::span(constants).first(static_cast<size_t>(law.constants)));
 }

@@ -33,7 +33,13 @@ void force_of_spring(const Batch<S>& batch, int slot, const typename S::Scalar* 
 }
 
 template <class S>
-constexpr Law<S> spring_law{4, false, fill_spring<S>, nullptr, energy_spring<S>, force_of_spring<S>, nullptr};
+void numbers_of_spring(const Batch<S>& batch, int slot, SpringNumbers<typename S::Scalar>* numbers) {
+  *numbers = spring_numbers(batch.factor[slot], batch.constants.data() + 4 * slot);
+}
+
+template <class S>
+constexpr Law<S> spring_law{
+    4, false, fill_spring<S>, nullptr, energy_spring<S>, force_of_spring<S>, nullptr, numbers_of_spring<S>};
 
 }  // namespace
 

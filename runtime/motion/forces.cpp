@@ -1,30 +1,9 @@
-// Forces on bodies other than the joints': gravity, constant forces, springs between points, drag.
+// Forces on bodies other than the joints': gravity, constant forces, drag.
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
 
 namespace cdot {
-namespace {
-
-// to += h M^-1 f of the spring.
-template <class S>
-void pull(const Bodies<S>& all, const typename S::PointSpring& spring, typename S::Scalar h,
-          StateArray<typename S::Velocity>& to) {
-  using T = typename S::Scalar;
-  const auto a = static_cast<size_t>(spring.body_a), b = static_cast<size_t>(spring.body_b);
-  const auto stretch = S::stretch(spring, all.pose[a], all.pose[b]);
-  const T impulse = h * S::tension(spring, stretch, all.velocity[a], all.velocity[b]);
-  // Skips immovable bodies: in a diverging stage f may be infinite, and 0 times infinity is NaN.
-  const auto push = [&](size_t body, const auto& on_body) {
-    if (!all.immovable(static_cast<int>(body)))
-      to[body] = S::sum(to[body], S::weighted(all.effective_mass[body], on_body), T(1));
-  };
-  push(a, S::pull_on_a(stretch, impulse));
-  push(b, S::pull_on_b(stretch, impulse));
-}
-
-}  // namespace
-
 template <class S>
 void push_free_bodies(WorldData<S>& world, Island<S>& island) {
   using T = typename S::Scalar;
@@ -34,7 +13,6 @@ void push_free_bodies(WorldData<S>& world, Island<S>& island) {
     const auto slowing = S::damped(all.velocity[drag.body], drag.linear, drag.angular);
     all.velocity_rate[drag.body] = S::sum(all.velocity_rate[drag.body], slowing, T(-1));
   }
-  for (const auto& spring : island.springs) pull(all, spring, T(1), all.velocity_rate);
 }
 
 template <class S>
@@ -57,7 +35,6 @@ void apply_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   for (const Drag<S>& drag : island.drags)
     all.velocity[drag.body] =
         S::damped(all.velocity[drag.body], T(1) / (T(1) + h * drag.linear), T(1) / (T(1) + h * drag.angular));
-  for (const auto& spring : island.springs) pull(all, spring, h, all.velocity);
   // Tension adds to the effective inertia, so torques act through effective_mass.
   for (int i : island.bodies) {
     const auto& rate = all.acceleration[i];

@@ -5,7 +5,7 @@
 
 namespace cdot {
 
-// velocity += h M^-1 f: constant forces, gravity, springs between points, drag.
+// velocity += h M^-1 f: constant forces, gravity, drag.
 template <class S>
 void apply_forces(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 

@@ -74,6 +74,18 @@ void force_of_soft(const Batch<S>& batch, int slot, const typename S::Scalar* ra
   }
 }
 
+// A slack rope is no spring.
+template <class S>
+void numbers_of_soft(const Batch<S>& batch, int slot, SpringNumbers<typename S::Scalar>* numbers) {
+  using T = typename S::Scalar;
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    const T K = batch.factor[slot * batch.triangle() + r * (r + 1) / 2 + r];
+    const bool slack = batch.kinds[r] == RowKind::inequality && batch.C[slot * batch.ops->rows + r] > T(0);
+    numbers[r] = slack ? SpringNumbers<T>{T(0), T(0)}
+                       : spring_numbers(K, batch.constants.data() + slot * spring_constants_count);
+  }
+}
+
 template <class S>
 double energy_soft(const Batch<S>& batch, int slot) {
   double energy = 0;
@@ -98,8 +110,8 @@ const Law<S>& unilateral_law() {
 
 template <class S>
 const Law<S>& soft_law() {
-  static constexpr Law<S> law{spring_constants_count, false,  fill_soft<S>, nullptr, energy_soft<S>,
-                              force_of_soft<S>,       nullptr};
+  static constexpr Law<S> law{spring_constants_count, false,   fill_soft<S>,      nullptr, energy_soft<S>,
+                              force_of_soft<S>,       nullptr, numbers_of_soft<S>};
   return law;
 }
 

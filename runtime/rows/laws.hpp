@@ -33,10 +33,6 @@ inline void spring_constants(const Softness& softness, double* constants) {
 
 // Stiffness k and damping d of a spring on one row. By frequency f: k = (2 pi f)^2 / K, d = 2 zeta 2 pi f / K.
 template <class T>
-struct SpringNumbers {
-  T k, d;
-};
-template <class T>
 SpringNumbers<T> spring_numbers(T K, const T* constants) {
   if (constants[0] == T(0)) return {constants[1], constants[2]};
   const T w = T(6.283185307179586476925L) * constants[1], mass = inverse(K);

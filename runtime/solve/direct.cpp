@@ -5,6 +5,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/longest_move.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solver.hpp"
 
@@ -99,6 +100,29 @@ void move_by_newton(WorldData<S>& world, Island<S>& island, System<S>& system) {
   }
 }
 
+// The error that contradicting joints share in the last solve.
+template <class S>
+double largest_unmet(const System<S>& system) {
+  double largest = 0;
+  for (int r = 0; r < system.rows(); ++r) largest = std::max(largest, std::abs(double(system.unmet(r))));
+  return largest;
+}
+
+// A start may miss joints that nearly contradict each other. Where a round would move bodies too far, the rows that ask
+// for it count as redundant.
+template <class S>
+void drop_rows_that_move_far(WorldData<S>& world, Island<S>& island, System<S>& system, typename S::Scalar error) {
+  auto& moves = world.bodies.increment;
+  for (bool far = true; far;) {
+    load_errors(system, typename S::Scalar(-1));
+    system.solve();
+    system.store([](Batch<S>& batch, int i, auto lambda) { batch.impulse[i] = typename S::Scalar(lambda); });
+    exert(world, island, system, &BatchWorkspace<S>::impulse, moves.data());
+    far = too_far(island, longest_move<S>(island, moves), double(error)) && system.drop_dominant_row();
+    for (int i : island.bodies) moves[i] = {};
+  }
+}
+
 // `fresh`: J and K are not yet those of the step. A round that leaves more than `enough` of the error renews them. If
 // new ones do not halve the error, the rounds end: the joints contradict each other, C is at round-off, or the step was
 // too long.
@@ -108,6 +132,9 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   System<S>& system = island.at_work();
   T before = std::numeric_limits<T>::infinity();
   bool renewed = false;
+  island.misfit = 0;
+  // Near a loss of rank the error is magnified, so nothing but round-off may stay.
+  const T tolerance = island.flow.projects_stages ? std::numeric_limits<T>::epsilon() : converged<T>;
   // Known forces do not act in a projection.
   system.give([](const Batch<S>&, int) { return 0.0; });
   // Without laws and at acceleration level the last solve left the right factor.
@@ -115,7 +142,7 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
   for (int round = 0;; ++round) {
     const T worst = find_errors(world, island, time);
     island.residual = worst;
-    if (!(worst > converged<T> * island.scale) || round == newton_rounds) return;
+    if (!(worst > tolerance * island.scale) || round == newton_rounds) return;
     // Adds rows that passed their bound since the selection. Selected rows stay.
     const bool more = round > 0 && other_rows && system.choose_more(has_error<S>);
     const bool slow = !more && worst > T(island.acceleration_level ? enough_at_acceleration_level : enough) * before;
@@ -127,8 +154,10 @@ void solve_positions(WorldData<S>& world, Island<S>& island, typename S::Scalar 
     }
     if (round == 0 && (fresh || other_rows)) factor_rows_with_errors(system);
     else if (more || slow) system.factor();
+    if (fresh && !island.acceleration_level) drop_rows_that_move_far(world, island, system, worst);
     before = worst;
     move_by_newton(world, island, system);
+    island.misfit = largest_unmet(system);
   }
 }
 

@@ -10,22 +10,27 @@
 namespace cdot {
 
 template <class S>
-void stiffen_bodies(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+void stiffen_masses(WorldData<S>& world, Island<S>& island, typename S::Scalar share) {
   using T = typename S::Scalar;
-  const T share = last_step > 0 ? h * (h / T(last_step)) : h;
   Bodies<S>& all = world.bodies;
   for (int i : island.bodies) all.stiffness[i] = {};
   for (const Segment<S>& segment : island.segments)
     segment.batch->ops->add_stiffness(*segment.batch, segment.begin, segment.end, all, T(world.time),
                                       all.stiffness.data());
   tighten_tensions(world, island, share);
+  for (int i : island.bodies) all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.stiffness[i], share);
+  island.factored = false;
+}
+
+template <class S>
+void stiffen_bodies(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  stiffen_masses(world, island, last_step > 0 ? h * (h / T(last_step)) : h);
   // (M + h G) v' = M v + h f + J^T lambda with G = -d(J^T lambda)/dq: implicit Euler for the change of the joints'
   // forces. v starts as (M + h G)^-1 M v.
-  for (int i : island.bodies) {
-    all.effective_mass[i] = S::stiffened(all.inverse_mass[i], all.stiffness[i], share);
+  for (int i : island.bodies)
     all.velocity[i] = S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], all.velocity[i]));
-  }
-  island.factored = false;
 }
 
 template <class S>
@@ -63,6 +68,7 @@ void evaluate_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h)
 }
 
 #define CDOT_INSTANTIATE(S)                                                   \
+  template void stiffen_masses(WorldData<S>&, Island<S>&, S::Scalar);         \
   template void stiffen_bodies(WorldData<S>&, Island<S>&, S::Scalar, double); \
   template void factorize_rows(WorldData<S>&, Island<S>&);                    \
   template void evaluate_rows(WorldData<S>&, Island<S>&, S::Scalar);

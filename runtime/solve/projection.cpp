@@ -9,10 +9,14 @@
 #include <cdot/spaces.hpp>
 
 #include "runtime/motion/motion.hpp"
+#include "runtime/solve/longest_move.hpp"
 #include "runtime/solve/solver.hpp"
 
 namespace cdot {
 namespace {
+
+// The largest error that contradicting joints may share, in units of the island's size.
+constexpr double most_shared = 0.05;
 
 // The error of a row under a law. At acceleration level only held rows must be at their end.
 template <class S>
@@ -43,9 +47,10 @@ void add_wanted_rates(const Island<S>& island, typename S::Scalar share) {
   }
 }
 
-// An estimate of the largest round-off in C from the size of the poses.
+}  // namespace
+
 template <class S>
-typename S::Scalar round_off(const WorldData<S>& world, const Island<S>& island) {
+typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& island) {
   using T = typename S::Scalar;
   T farthest = 0, numbers[S::pose_numbers];
   for (int i : island.bodies) {
@@ -54,8 +59,6 @@ typename S::Scalar round_off(const WorldData<S>& world, const Island<S>& island)
   }
   return T(64) * std::numeric_limits<T>::epsilon() * farthest;
 }
-
-}  // namespace
 
 template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island) {
@@ -126,16 +129,15 @@ bool left_the_joints(const WorldData<S>& world, const Island<S>& island, typenam
   using T = typename S::Scalar;
   const bool meant_to_close = world.settings.drift == Drift::projection && island.solver->exact;
   if (!meant_to_close || island.segments.empty() || island.residual <= T(2) * at_start) return false;
-  const T foreign_error = foreign<T> * std::max(island.size, island.scale);
-  return !(island.residual <= T(2) * std::max(foreign_error, round_off(world, island)));
+  const T length = std::max(island.size, island.scale);
+  // A Newton that diverges leaves a large share as well.
+  const T shared = island.misfit <= most_shared * double(length) ? T(island.misfit) : T(0);
+  return !(island.residual <= T(2) * std::max({foreign<T> * length, round_off_of(world, island), shared}));
 }
 
 template <class S>
 void fail_if_open(const WorldData<S>& world, Island<S>& island, typename S::Scalar at_start) {
-  if (!left_the_joints(world, island, at_start)) return;
-  typename System<S>::Real shared = 0;
-  for (int r = 0; r < island.at_work().rows(); ++r) shared = std::max(shared, std::abs(island.at_work().unmet(r)));
-  if (!(island.residual <= 2 * shared)) island.trouble = StepProblem::joints_apart;
+  if (left_the_joints(world, island, at_start)) island.trouble = StepProblem::joints_apart;
 }
 
 template <class S>
@@ -148,6 +150,14 @@ bool correction_is_small(const WorldData<S>& world, const Island<S>& island, dou
     way += S::dot(S::force(m, all.velocity[i]), all.velocity[i]);
   }
   return 4 * moved <= h * h * way;
+}
+
+template <class S>
+void fail_if_moved_far(const WorldData<S>& world, Island<S>& island, double error, double h) {
+  const LongestMove move = longest_move<S>(island, world.bodies.displacement);
+  if (!too_far(island, move, error) || correction_is_small(world, island, h)) return;
+  island.trouble = StepProblem::moved_far;
+  island.misfit = error, island.moved = move.way, island.moved_body = move.body;
 }
 
 template <class S>
@@ -164,7 +174,9 @@ void project_start(WorldData<S>& world, Island<S>& island) {
   if (world.settings.drift != Drift::projection || island.segments.empty()) return;
   if (!(island.residual > foreign<T> * island.scale)) return;
   clear_correction(world, island);
+  const T error = find_errors(world, island, T(world.time));
   island.solver->positions(world, island, T(world.time), true);
+  if (island.solver->exact) fail_if_moved_far(world, island, double(error), 0);
   island.evaluated = island.factored = false;
 }
 
@@ -181,6 +193,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   const T foreign_error = island.residual, error = find_errors(world, island, time);
   const bool from_motion = foreign_error <= T(0.1) * error;
   island.solver->positions(world, island, time, false);
+  if (island.solver->exact) fail_if_moved_far(world, island, double(std::max(error, foreign_error)), double(h));
   // Any other displacement would add energy to the velocities.
   const bool keep = from_motion && correction_is_small(world, island, double(h));
   const bool was_apart = foreign_error > foreign<T> && std::isfinite(foreign_error);
@@ -194,6 +207,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
 }
 
 #define CDOT_INSTANTIATE(S)                                                         \
+  template S::Scalar round_off_of(const WorldData<S>&, const Island<S>&);           \
   template void clear_correction(WorldData<S>&, Island<S>&);                        \
   template S::Scalar find_errors(WorldData<S>&, Island<S>&, S::Scalar);             \
   template void fill_lambda(const Island<S>&, S::Scalar);                           \
@@ -202,6 +216,7 @@ void project_step(WorldData<S>& world, Island<S>& island, typename S::Scalar h) 
   template void evaluate_anew(WorldData<S>&, Island<S>&, S::Scalar);                \
   template bool left_the_joints(const WorldData<S>&, const Island<S>&, S::Scalar);  \
   template void fail_if_open(const WorldData<S>&, Island<S>&, S::Scalar);           \
+  template void fail_if_moved_far(const WorldData<S>&, Island<S>&, double, double); \
   template bool correction_is_small(const WorldData<S>&, const Island<S>&, double); \
   template void project_velocities(WorldData<S>&, Island<S>&);                      \
   template void project_start(WorldData<S>&, Island<S>&);                           \

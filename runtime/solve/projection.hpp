@@ -15,6 +15,10 @@ inline constexpr T converged = T(by_precision<T>(1e-6, 1e-13));
 template <class T>
 inline constexpr T foreign = T(by_precision<T>(1e-4, 1e-8));
 
+// An estimate of the largest round-off in C from the size of the poses.
+template <class S>
+typename S::Scalar round_off_of(const WorldData<S>& world, const Island<S>& island);
+
 // Sets displacements and their impulses to 0.
 template <class S>
 void clear_correction(WorldData<S>& world, Island<S>& island);
@@ -37,13 +41,17 @@ template <class S>
 void evaluate_anew(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
 // True if the direct solver failed to project the poses onto C = 0 although the start of the step satisfied C = 0 up to
-// `at_start`. The step was too long for Newton, or its end is out of the joints' reach. Sweeps always leave an error
-// and never count as failed.
+// `at_start`, and the remaining error is not the one that contradicting joints share. The step was too long for Newton,
+// or its end is out of the joints' reach. Sweeps always leave an error and never count as failed.
 template <class S>
 bool left_the_joints(const WorldData<S>& world, const Island<S>& island, typename S::Scalar at_start);
-// Marks such a step as failed, unless the remaining error is the one that contradicting joints share.
+// Marks such a step as failed.
 template <class S>
 void fail_if_open(const WorldData<S>& world, Island<S>& island, typename S::Scalar at_start);
+
+// Marks a step as failed if the displacement is far beyond `error` and beyond the motion of the step.
+template <class S>
+void fail_if_moved_far(const WorldData<S>& world, Island<S>& island, double error, double h);
 
 // True if 2 |displacement| <= |h v| in the metric of the masses. A larger correction comes from a singular pose or from
 // a step that is far too long.

@@ -26,8 +26,13 @@ void ask_for_gamma(WorldData<S>& world, Island<S>& island, typename S::Scalar ti
 template <class S>
 void accelerate(WorldData<S>& world, Island<S>& island, typename S::Scalar time);
 
-// Adds the stiffness from tension to the inertias and to the rows of the direct solver. The present impulses are those
-// of a step of `last_step` [s]; 0: of h.
+// Adds `share` times the stiffness of the present impulses to the effective masses and to the rows of the direct
+// solver.
+template <class S>
+void stiffen_masses(WorldData<S>& world, Island<S>& island, typename S::Scalar share);
+
+// The same for a linearly implicit step of h, whose velocities then are (M + h G)^-1 M v. The present impulses are
+// those of a step of `last_step` [s]; 0: of h.
 template <class S>
 void stiffen_bodies(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step);
 

@@ -83,18 +83,17 @@ class Stiffness {
   double largest_ = 0;
 };
 
-// Generic poses, at which no direction is singular.
+// Moves the island's bodies to generic poses, at which no direction is singular.
 template <class S>
-Bodies<S> elsewhere(const Bodies<S>& all, typename S::Scalar size) {
+void move_elsewhere(const Island<S>& island, Bodies<S>& at) {
   using T = typename S::Scalar;
+  const T size = island.size;
   Arbitrary arbitrary;
-  Bodies<S> other;
-  for (const auto& q : all.pose) {
+  for (int body : island.bodies) {
     T numbers[S::freedom];
     for (int k = 0; k < S::freedom; ++k) numbers[k] = T(4 * arbitrary() - 2) * (k < S::lengths ? size : T(1));
-    other.pose.push_back(S::moved(q, S::read_velocity(numbers)));
+    at.pose[body] = S::moved(at.pose[body], S::read_velocity(numbers));
   }
-  return other;
 }
 
 // The number of tension rows of a slot that couples displacements and, apart from these, own rotations only. Other
@@ -124,10 +123,10 @@ void leave_to_row(typename S::Stiffness& own, const double* w, double pivot) {
 }  // namespace
 
 template <class S>
-std::vector<int> tension_rows(const WorldData<S>& world, const Island<S>& island) {
+std::vector<int> tension_rows(const WorldData<S>& world, const Island<S>& island, Bodies<S>& at) {
   const IntegratorRow& method = row_of(world.settings.integrator);
   if (!method.stiffens && method.level != Level::acceleration) return {};
-  const Bodies<S> at = elsewhere(world.bodies, island.size);
+  move_elsewhere(island, at);
   std::vector<int> rows;
   for (const Segment<S>& segment : island.segments)
     for (int slot = segment.begin; segment.batch->ops->rows > 0 && slot < segment.end; ++slot)
@@ -161,8 +160,8 @@ void tighten_tensions(WorldData<S>& world, Island<S>& island, typename S::Scalar
   }
 }
 
-#define CDOT_INSTANTIATE(S)                                                      \
-  template std::vector<int> tension_rows(const WorldData<S>&, const Island<S>&); \
+#define CDOT_INSTANTIATE(S)                                                                  \
+  template std::vector<int> tension_rows(const WorldData<S>&, const Island<S>&, Bodies<S>&); \
   template void tighten_tensions(WorldData<S>&, Island<S>&, S::Scalar);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE

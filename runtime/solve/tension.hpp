@@ -13,9 +13,10 @@
 
 namespace cdot {
 
-// The number of such rows of every slot with rows, in the order of the segments; empty if all are 0.
+// The number of such rows of every slot with rows, in the order of the segments; empty if all are 0. `at` has the poses
+// of the World; those of the island's bodies are changed.
 template <class S>
-std::vector<int> tension_rows(const WorldData<S>& world, const Island<S>& island);
+std::vector<int> tension_rows(const WorldData<S>& world, const Island<S>& island, Bodies<S>& at);
 
 // W and D from the last step's impulses, scaled by h; subtracts their stiffness from Bodies::stiffness. Direct solver
 // only.

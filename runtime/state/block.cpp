@@ -109,26 +109,23 @@ class Ranges {
   bool in_steps_ = true, own_ = false, follows_ = false;
 };
 
-// Adds the flags of the island's breakable joints to its ranges. True if there are any.
+// The breakable joints of each island.
 template <class S>
-bool find_breakable(WorldData<S>& world, int index, Ranges& ranges) {
-  bool any = false;
-  ranges.item("joints.broken", -1, true);
-  for (const auto& [joint, load] : world.breaking_loads) {
-    JointRecord& record = world.joints[joint];
-    if (world.island_of[movable_body(world, record)] != index) continue;
-    any = true;
-    ranges(record.broken);
-  }
-  return any;
+std::vector<std::vector<int>> find_breakable(const WorldData<S>& world) {
+  std::vector<std::vector<int>> by_island(world.islands.size());
+  for (const auto& [joint, load] : world.breaking_loads)
+    by_island[world.island_of[movable_body(world, world.joints[joint])]].push_back(joint);
+  return by_island;
 }
 
 template <class S>
-std::vector<Block::Range> ranges_of(WorldData<S>& world, int index) {
+std::vector<Block::Range> ranges_of(WorldData<S>& world, int index, const std::vector<int>& breakable) {
   Ranges ranges(world.block);
   Island<S>& island = world.islands[index];
   const auto& bodies = island.bodies;
-  const bool breaks = find_breakable(world, index, ranges);
+  const bool breaks = !breakable.empty();
+  ranges.item("joints.broken", -1, true);
+  for (int joint : breakable) ranges(world.joints[joint].broken);
   for (std::size_t k = 0, next; k < bodies.size(); k = next) {  // runs of consecutive bodies
     for (next = k + 1; next < bodies.size() && bodies[next] == bodies[next - 1] + 1;) ++next;
     ranges.take(bodies[k], bodies[next - 1] + 1, world.bodies.pose.size());
@@ -163,8 +160,9 @@ void settle_state(WorldData<S>& world) {
   world.block.bytes.swap(bytes);
   world.before.assign(world.block.bytes.size(), std::byte{0});
   world.block.islands.clear();
+  const std::vector<std::vector<int>> breakable = find_breakable(world);
   for (std::size_t k = 0; k < world.islands.size(); ++k)
-    world.block.islands.push_back(ranges_of(world, static_cast<int>(k)));
+    world.block.islands.push_back(ranges_of(world, static_cast<int>(k), breakable[k]));
 }
 
 #define CDOT_INSTANTIATE(S) template void settle_state(WorldData<S>&);

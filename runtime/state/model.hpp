@@ -44,10 +44,13 @@ struct Drag {
 template <class S>
 struct IslandModel {
   std::vector<int> bodies;  // movable ones
-  std::vector<typename S::PointSpring> springs;
   std::vector<Drag<S>> drags;
   std::vector<int> gyroscopes;  // into Model::turning
   bool restless = false;        // depends on t: never sleeps
+  bool works = false;           // forces without a potential may act: dampers, motors, limits, joints in time
+  bool driven = false;          // exact rows depend on t
+  // Conserves linear momentum, and angular momentum: no immovable body, no drag, every row free of the world.
+  bool floats = false, spins_freely = false;
 };
 
 template <class S>
@@ -60,7 +63,6 @@ struct Model {
   OnFailure on_failure = OnFailure::stop;
   std::array<double, 3> origin{};  // [m] origin of the poses
   int ground = -1;
-  std::vector<typename S::PointSpring> springs;
   std::vector<Drag<S>> drags;
   std::vector<int> turning;                            // bodies whose inertia tensor turns with them
   std::vector<std::pair<int, double>> breaking_loads;  // by joint

@@ -8,6 +8,7 @@
 
 #include <cdot/detail/joint_table.hpp>
 
+#include "runtime/number/arbitrary.hpp"
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
@@ -57,13 +58,7 @@ class Probe {
   // much as the opposite step, so J does not predict the change of C.
   bool at_kink(int row) {
     if (!(std::abs(C(row)) <= 1e-9)) return false;
-    std::vector<T> lambda(static_cast<size_t>(ops_->rows), T(0));
-    lambda[row] = T(1);
-    auto& step = bodies_.displacement;
-    std::fill(step.begin(), step.end(), typename S::Velocity{});
-    ops_->apply(batch_, 0, 1, bodies_, lambda.data(), step.data());
-    ops_->velocity(batch_, 0, 1, step.data(), batch_.rate.data());
-    const T promised = batch_.rate[row];
+    const T promised = pull_row(row);
     if (!(promised > T(0))) return false;
     // A small joint may have a kink nearby, and a large one does not resolve small steps. A kink must show at every
     // scale.
@@ -95,6 +90,50 @@ class Probe {
     return -1;
   }
 
+  // True if a parameter that is 0 makes J jump, as a pitch by which a row divides.
+  bool jumps_at_zero(int parameter) {
+    T& number = batch_.parameters[parameter];
+    if (number != T(0)) return false;
+    const std::vector<T> J = batch_.jacobian;
+    number = T(by_precision<T>(1e-4, 1e-9));
+    ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
+    bool jumps = false;
+    for (size_t k = 0; k < J.size(); ++k)
+      jumps |= !(std::abs(batch_.jacobian[k] - J[k]) <= T(0.1) * (T(1) + std::abs(J[k])));
+    number = T(0);
+    ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
+    return jumps;
+  }
+
+  // False if Newton on this row alone, M^-1 J^T lambda with K lambda = -C, reaches C = 0 neither from here nor from
+  // generic poses. A distance of a negative length is such a row. Changes the probe's poses.
+  bool can_be_satisfied(int row, bool one_sided) {
+    constexpr int starts = 32, rounds = 40;
+    const T first = std::abs(C(row)), enough = std::max(T(1e-6) * first, T(64) * resolution()),
+            around = std::max(reach(), T(1e-3));
+    const auto here = bodies_.pose;
+    Arbitrary arbitrary;
+    bool movable = false;
+    for (int start = 0; start < starts; ++start) {
+      for (size_t k = 0; start > 0 && k < here.size(); ++k) {
+        T by[S::freedom];
+        for (int c = 0; c < S::freedom; ++c) by[c] = T(4 * arbitrary() - 2) * (c < S::lengths ? around : T(1));
+        bodies_.pose[k] = S::moved(here[k], S::read_velocity(by));
+      }
+      for (int round = 0; round < rounds; ++round) {
+        ops_->evaluate(batch_, 0, 1, bodies_, T(world_.time));
+        const T C = batch_.C[row];
+        if (std::abs(C) <= enough || (one_sided && C > T(0))) return true;
+        const T K = pull_row(row);
+        if (!(K > T(0)) || !std::isfinite(C)) break;
+        movable = true;
+        for (size_t k = 0; k < here.size(); ++k)
+          bodies_.pose[k] = S::moved(bodies_.pose[k], S::sum({}, bodies_.displacement[k], -C / K));
+      }
+    }
+    return !movable;
+  }
+
   // J and (M^-1 J^T)^T, [rows][freedom * bodies].
   void dense(ExactNumber<T>* J, ExactNumber<T>* weighted) const {
     std::vector<ExactNumber<T>> K(static_cast<size_t>(ops_->rows * ops_->rows));
@@ -110,6 +149,17 @@ class Probe {
   }
 
  private:
+  // displacement = M^-1 J^T of the row. Returns K of the row, the change of C that this predicts.
+  T pull_row(int row) {
+    std::vector<T> lambda(static_cast<size_t>(ops_->rows), T(0));
+    lambda[row] = T(1);
+    auto& step = bodies_.displacement;
+    std::fill(step.begin(), step.end(), typename S::Velocity{});
+    ops_->apply(batch_, 0, 1, bodies_, lambda.data(), step.data());
+    ops_->velocity(batch_, 0, 1, step.data(), batch_.rate.data());
+    return batch_.rate[row];
+  }
+
   // Takes the whole turns that the World has counted, if any; otherwise starts at none.
   void count_on(const JointRecord& joint, const BlockVariants<S>& variants) {
     batch_.counters.assign(static_cast<size_t>(ops_->counters), T(0));
@@ -203,12 +253,43 @@ void check_value(const WorldData<S>& world, const JointRecord& record, int coord
                             type.name, why_it_jumps));
 }
 
-// Throws Error if a row jumps here or has its kink at C = 0. Velocity rows have no C. A soft row is a spring and may
-// have a kink.
+// " (l = -1, ratio = 0)": the scalars among a joint's parameters.
+inline std::string scalars_of(const JointType& type, const std::vector<double>& numbers) {
+  std::string text;
+  for (const ParameterInfo& info : type.parameters)
+    if (info.kind == ParameterKind::scalar)
+      text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", info.name, numbers[info.offset]);
+  return text.empty() ? text : " (" + text + ")";
+}
+
+// Throws Error if a row has no value here, or if no pose satisfies it.
+template <class S>
+void check_values(Probe<S>& probe, const JointType& type, const JointRecord& record) {
+  for (const ParameterInfo& info : type.parameters)
+    if (info.kind == ParameterKind::scalar && probe.jumps_at_zero(info.offset))
+      throw Error(fmt::format("joint `{}` has no meaning at {} = 0, by which it divides. Likely fix: {} = 1", type.name,
+                              info.name, info.name));
+  for (int r = 0; r < probe.rows(); ++r) {
+    const double C = probe.C(r);
+    const bool one_sided = type.row_kinds[r] == RowKind::inequality;
+    if (type.row_kinds[r] == RowKind::velocity || std::abs(C) <= 1e-4 || (one_sided && C > 0)) continue;
+    if (!probe.can_be_satisfied(r, one_sided))
+      throw Error(
+          fmt::format("row {} of joint `{}` can hold at no pose: C is {:.3g} here. Likely fix: the sign of a "
+                      "length among its parameters{}",
+                      r + 1, type.name, C, scalars_of(type, record.parameters)));
+    probe.look_at(record);
+  }
+}
+
+// Throws Error if a row has no value here, jumps here, has its kink at C = 0, or holds nowhere. Velocity rows have no
+// C. A soft row is a spring and may have a kink.
 template <class S>
 void check_rows(const WorldData<S>& world, const JointRecord& record, bool soft) {
   const JointType& type = joint_types(S::dimension)[record.type];
   Probe<S> probe(world);
+  probe.look_at(record);
+  check_values(probe, type, record);
   probe.look_at(record);
   if (const int row = probe.jumping_row(); row >= 0)
     throw Error(fmt::format("row {} of joint `{}` has no value here: {}", row + 1, type.name, why_it_jumps));

@@ -11,7 +11,8 @@
 namespace cdot {
 
 struct JointState {
-  StateNumber<bool> broken = false;  // or removed
+  StateNumber<bool> broken = false;    // or removed
+  StateNumber<bool> left_out = false;  // broken before the last analysis of islands, which left it out
   StateArray<double> parameters;
 };
 
@@ -41,6 +42,9 @@ struct FlowState {
   StateArray<T> end_forces;            // of the joints, by row
   StateArray<T> rates;                 // of the numbers, [stage][...]
   StateArray<T> further_terms;         // of the interpolant, [term][...]
+  // Work since the start of that step, put in and taken [J]: two more numbers that the method integrates, after those
+  // of the bodies. Empty if nothing in the island does work.
+  StateArray<T> work;
 
   // Call after a change of the state from outside.
   void forget() {
@@ -63,6 +67,17 @@ struct IslandState {
   StateNumber<bool> asleep = false;
   StateNumber<double> rested = 0.0;     // [s]
   StateNumber<int> redundant_rows = 0;  // of the last factorisation
+  // Of an island that floats: momentum (3 numbers), angular momentum about its centre of mass (3), time [s] at which
+  // they were measured; negative: not yet.
+  StateArray<double> momentum;
+};
+
+// The accounts of a World's energy (<cdot/balance.hpp>) [J].
+struct Accounts {
+  StateNumber<bool> open = false;     // true since the first step
+  StateNumber<bool> changed = false;  // from outside, since the last step
+  StateNumber<double> start = 0.0, put_in = 0.0, taken = 0.0;
+  StateNumber<double> before_change = 0.0;  // the energy then
 };
 
 template <class S>
@@ -70,6 +85,7 @@ struct State {
   StateNumber<double> time = 0.0;
   StateNumber<double> last_step = 0.0;  // [s], the last substep; warm starting scales impulses by h / last_step
   StateNumber<StepCounts> counts;
+  Accounts accounts;
   StateArray<typename S::Gyroscope> gyroscopes;  // of Model::turning
 };
 

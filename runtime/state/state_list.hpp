@@ -59,13 +59,14 @@ struct StateList {
   // The iterative solver needs no system, but the projection of the start builds one.
   template <class S, class Visitor>
   static void each_of_island(Island<S>& island, int index, bool has_system, Visitor& visit) {
-    auto& [size, scale, residual, evaluated_at, evaluated, factored, acceleration_level, asleep, rested,
-           redundant_rows] = static_cast<IslandState<S>&>(island);
+    auto& [size, scale, residual, evaluated_at, evaluated, factored, acceleration_level, asleep, rested, redundant_rows,
+           momentum] = static_cast<IslandState<S>&>(island);
     visit.item("island.numbers", index, true), visit(size), visit(scale), visit(residual), visit(evaluated_at);
     visit.item("island.flags", index, true), visit(evaluated), visit(factored), visit(acceleration_level),
         visit(asleep);
     visit.item("island.rested", index, true), visit(rested);
     visit.item("island.redundant_rows", index, true), visit(redundant_rows);
+    visit.item("island.momentum", index, true), visit(momentum);
     each_of_flow(island.flow, index, visit);
     if (has_system) each_of_system(island.system, index, visit);
   }
@@ -73,15 +74,20 @@ struct StateList {
  private:
   template <class S, class Visitor>
   static void each_in_common(WorldData<S>& world, Visitor& visit) {
-    auto& [time, last_step, counts, gyroscopes] = static_cast<State<S>&>(world);
+    auto& [time, last_step, counts, accounts, gyroscopes] = static_cast<State<S>&>(world);
     visit.item("time", -1, true), visit(time), visit(last_step);  // must come first: Snapshot::time()
     visit.counts(counts);
+    auto& [open, changed, start, put_in, taken, before_change] = accounts;
+    visit.item("accounts", -1, true), visit(start), visit(put_in), visit(taken), visit(before_change);
+    visit.item("accounts.flags", -1, true), visit(open), visit(changed);
     visit.common_ends();
     visit.item("joints.broken", -1, true);
     for (JointRecord& record : world.joints) visit(record.broken);
+    visit.item("joints.left_out", -1, false);
+    for (JointRecord& record : world.joints) visit(record.left_out);
     visit.item("joints.parameters", -1, false);
     for (JointRecord& record : world.joints) {
-      auto& [broken, parameters] = static_cast<JointState&>(record);
+      auto& [broken, left_out, parameters] = static_cast<JointState&>(record);
       visit(parameters);
     }
   }
@@ -89,7 +95,7 @@ struct StateList {
   template <class S, class Visitor>
   static void each_of_flow(Flow<S>& flow, int index, Visitor& visit) {
     auto& [resolution, row_rates, margins, margins_chosen, next_step, longest, slivers, known, ahead, length, end_kept,
-           start, end, end_forces, rates, further_terms] = static_cast<FlowState<S>&>(flow);
+           start, end, end_forces, rates, further_terms, work] = static_cast<FlowState<S>&>(flow);
     visit.item("flow.resolution", index, true), visit(resolution);
     visit.item("flow.row_rates", index, true), visit(row_rates);
     visit.item("flow.margins", index, true), visit(margins), visit(margins_chosen);
@@ -101,6 +107,7 @@ struct StateList {
     visit.item("flow.end_forces", index, true), visit(end_forces);
     visit.item("flow.rates", index, true), visit(rates);
     visit.item("flow.further_terms", index, true), visit(further_terms);
+    visit.item("flow.work", index, true), visit(work);
   }
 
   template <class S, class Visitor>

@@ -9,6 +9,7 @@ const char* what_went_wrong(StepProblem problem) {
   switch (problem) {
     case StepProblem::not_finite: return "a pose or velocity became infinite or NaN";
     case StepProblem::joints_apart: return "Newton did not converge: the joints drifted apart in this step";
+    case StepProblem::moved_far: return "the joints nearly contradict each other";
     case StepProblem::bad_step:
     case StepProblem::none: break;
   }
@@ -23,6 +24,9 @@ std::string likely_fix(StepProblem problem, OnFailure tried) {
     case StepProblem::not_finite:
       return "a shorter step; the direct solver; integrator implicit where loads are heavy or springs stiff" + or_retry;
     case StepProblem::joints_apart: return "a shorter step: at most a tenth of a radian in each" + or_retry;
+    case StepProblem::moved_far:
+      return "correct the anchors, lengths or angles of the joints of this loop, or remove one; a shorter step" +
+             or_retry;
     case StepProblem::bad_step: return "a finite step above 0 s";
     case StepProblem::none: break;
   }
@@ -33,6 +37,7 @@ const char* name_of(StepProblem problem) {
   switch (problem) {
     case StepProblem::not_finite: return "not_finite";
     case StepProblem::joints_apart: return "joints_apart";
+    case StepProblem::moved_far: return "moved_far";
     case StepProblem::bad_step: return "bad_step";
     case StepProblem::none: break;
   }
@@ -47,8 +52,11 @@ std::string in_words(const StepResult& result, const std::string& body, const st
     return text + (result.direct ? " by the direct solver" : "");
   }
   text += fmt::format("failed in island {}: {}", result.island, what_went_wrong(result.problem));
+  if (result.problem == StepProblem::moved_far)
+    text += fmt::format(": to correct {:.3g} m or rad, the projection would move {} by {:.3g} m", result.misfit, body,
+                        result.moved);
   if (result.joint >= 0) text += fmt::format("; look at {}, row {}", joint, result.row + 1);
-  if (result.body >= 0) text += fmt::format("; {} moved fastest", body);
+  if (result.body >= 0 && result.problem != StepProblem::moved_far) text += fmt::format("; {} moved fastest", body);
   return text;
 }
 

@@ -2,6 +2,7 @@
 // velocities, corrects the drift.
 #include <cdot/spaces.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
@@ -36,13 +37,18 @@ void rehearse(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
 template <class S>
 void step_euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h, double last_step) {
   project_start(world, island);
+  begin_kick(world, island);
   if (island.stiffened) {
     if (last_step == 0) rehearse(world, island, h);
     stiffen_bodies(world, island, h, last_step);
   }
   move_velocities(world, island, h, last_step);
+  book_kick(world, island, Impulses::euler, h);
   integrate(world, island, h);
+  if (island.driven) begin_kick(world, island);
   project_step(world, island, h);
+  book_kick(world, island, Impulses::drift, h);
+  book_stiffness(world, island);
   island.at_work().slacken();  // tension rows act only within the step
 }
 

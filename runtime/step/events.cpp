@@ -6,6 +6,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
@@ -119,6 +120,17 @@ void solve(WorldData<S>& world, Island<S>& island, typename S::Velocity* v) {
   island.solver->velocities(world, island, v, typename S::Scalar(0));
 }
 
+// True if a row reaches a speed of its own by an impulse.
+template <class S>
+bool has_strong_motor(Island<S>& island) {
+  using T = typename S::Scalar;
+  bool any = false;
+  each_guarded_row(island, [&](Batch<S>&, int, const Guard<T>& guard, const Resolution<T>&) {
+    any |= guard.bilateral() && guard.rate != T(0);
+  });
+  return any;
+}
+
 // Inelastic impacts: rows that close at contact stop, J v >= 0 with impulses >= 0. They become `held`, because sweeps
 // leave a rate that is not exactly 0. Motors with a bounded force do not act during an impact.
 template <class S>
@@ -140,7 +152,9 @@ void stop_what_hits(WorldData<S>& world, Island<S>& island) {
         batch.upper[i] = guard.upper;
         batch.bias[i] -= guard.rate;
       });
+  const double before = kinetic_energy(world, island);
   solve(world, island, world.bodies.velocity.data());
+  world.accounts.taken += before - kinetic_energy(world, island);
   for (const Segment<S>& segment : island.segments)
     for (int i = segment.begin * segment.batch->ops->rows; i < segment.end * segment.batch->ops->rows; ++i)
       segment.batch->correction[i] += segment.batch->lambda[i];
@@ -245,7 +259,10 @@ void choose_modes(WorldData<S>& world, Island<S>& island, typename S::Scalar tim
       evaluate_anew(world, island, time);
     }
   }
+  const bool starts_motor = has_strong_motor(island);
+  const double before = starts_motor ? kinetic_energy(world, island) : 0;
   project_velocities(world, island);
+  if (starts_motor) world.accounts.put_in += kinetic_energy(world, island) - before;
   note_rates(world, island);
   accelerate(world, island, time);
   find_resolution(world, island, h);

@@ -4,6 +4,7 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/solve/solver.hpp"
 #include "runtime/step/runge_kutta.hpp"
 
 namespace cdot {
@@ -11,6 +12,8 @@ namespace cdot {
 // Defined in the file of the method's name.
 template <class S>
 void prepare_euler(Island<S>& island);
+template <class S>
+void step_midpoint(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 template <class S>
 void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
 template <class S>
@@ -21,6 +24,19 @@ namespace {
 template <class S>
 void euler(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   step_euler(world, island, h, world.last_step);
+}
+
+// The midpoint rule closes the joints by the direct solver. Sweeps and other drift corrections take linearly implicit
+// steps of Euler's.
+template <class S>
+void implicit(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  if (takes_midpoint(world.settings)) step_midpoint(world, island, h);
+  else step_euler(world, island, h, world.last_step);
+}
+template <class S>
+void prepare_implicit(Island<S>& island) {
+  prepare_rattle(island);
+  island.flow.now.assign(2 * static_cast<size_t>(island.system.rows()), typename S::Scalar(0));
 }
 
 template <class S, const auto& method>
@@ -36,7 +52,7 @@ void prepare(Island<S>& island) {
 template <class S, class Real = ExactNumber<typename S::Scalar>>
 constexpr std::array<Stepper<S>, integrator_rows.size()> steppers{{
     {Integrator::euler, euler<S>, prepare_euler<S>, false},
-    {Integrator::implicit, euler<S>, prepare_euler<S>, false},
+    {Integrator::implicit, implicit<S>, prepare_implicit<S>, true},
     {Integrator::rattle, step_rattle<S>, prepare_rattle<S>, true},
     {Integrator::rk4, runge_kutta<S, rk4<Real>>, prepare<S, rk4<Real>>, false},
     {Integrator::dop853, runge_kutta<S, dop853<Real>>, prepare<S, dop853<Real>>, false},

@@ -1,17 +1,20 @@
 // RATTLE: half a kick with impulses along J of the start, such that C = 0 after the drift. Then the drift. Then half a
 // kick with impulses along J of the end, such that J v = -dC/dt there. Second order and symmetric, so energy errors do
-// not accumulate. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Limits, motors and friction act at the end of the step,
-// at first order.
+// not accumulate. (H. C. Andersen, J. Comput. Phys. 52, 1983.) Dampers act at both ends of the step. Limits, motors and
+// friction act at the end, at first order.
 #include <algorithm>
 #include <cmath>
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/direct.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
+#include "runtime/step/dampers.hpp"
+#include "runtime/step/kick_drift.hpp"
 
 namespace cdot {
 namespace {
@@ -21,60 +24,17 @@ constexpr int most_in_vain = 4;  // rounds that do not reduce the error
 template <class T>
 constexpr T round_off = T(by_precision<T>(1e-7, 1e-15));
 
-// Velocity rows have no C for the first half of a step: it repeats their impulses from the second half of the last
-// step. A start from 0 would alternate between 0 and twice the impulse forever. The start is therefore half of their
-// impulse in h.
-template <class S>
-void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  for (const Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    for (int i = segment.begin * batch.ops->rows; batch.law && i < segment.end * batch.ops->rows; ++i)
-      batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
-  }
-  const T time = T(world.time);
-  accelerate(world, island, time);
-  for (const Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
-      batch.lambda[i] *= batch.law ? T(0) : h / 2;
-  }
-  evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
-}
-
-template <class S>
-bool has_velocity_rows(const Island<S>& island) {
-  return std::any_of(island.segments.begin(), island.segments.end(), [](const Segment<S>& segment) {
-    const auto& kinds = segment.batch->kinds;
-    return !segment.batch->law && std::find(kinds.begin(), kinds.end(), RowKind::velocity) != kinds.end();
-  });
-}
-
-// Prepares the start of the step. A state that is not the end of a step is projected, and its exact rows are factored.
-// Returns the factor that scales the present impulses to this step: h / last step.
-template <class S>
-typename S::Scalar begin(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  if (island.evaluated) return world.last_step > 0 ? h / T(world.last_step) : T(0);
-  project_start(world, island);
-  evaluate_anew(world, island, typename S::Scalar(world.time));
-  clear_correction(world, island);
-  project_velocities(world, island);
-  fill_lambda(island, T(0));
-  island.evaluated = true;
-  if (has_velocity_rows(island)) exert_at_start(world, island, h);
-  return T(1);
-}
-
-// velocity = flow.velocity + h dv/dt of all forces and of springs on coordinates, at the velocities of the bodies.
+// velocity = flow.velocity + h dv/dt of all forces and of springs, at the velocities of the bodies. Dampers act at the
+// ends of the step.
 template <class S>
 void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   push_free_bodies(world, island);
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
-    if (!batch.law || !batch.law->force) continue;
-    find_known_forces(world, batch, segment.begin, segment.end, batch.impulse.data());
+    if (!is_force(batch)) continue;
+    find_spring_impulses(batch, segment.begin, segment.end, T(1));
     batch.ops->apply(batch, segment.begin, segment.end, all, batch.impulse.data(), all.velocity_rate.data());
   }
   for (size_t k = 0; k < island.bodies.size(); ++k) {
@@ -83,31 +43,20 @@ void kick(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   }
 }
 
-// First guess: the joints' impulses at the end of the last step.
+// First guess: the joints' impulses at the end of the last step. Limits and ropes start from none: the drift finds the
+// impulses that hold them, but it cannot take back that of an impact, which would throw the bodies off again.
 template <class S>
 void guess_impulses(WorldData<S>& world, Island<S>& island, typename S::Scalar share) {
+  using T = typename S::Scalar;
   for (const Segment<S>& segment : island.segments) {
     Batch<S>& batch = *segment.batch;
     const int rows = batch.ops->rows;
+    const T repeated = batch.law && (batch.law->error || is_force(batch)) ? T(0) : share;
     for (int i = segment.begin * rows; i < segment.end * rows; ++i)
-      batch.correction[i] = batch.impulse[i] = share * batch.lambda[i];
+      batch.correction[i] = batch.impulse[i] = repeated * batch.lambda[i];
     batch.ops->apply(batch, segment.begin, segment.end, world.bodies, batch.impulse.data(),
                      world.bodies.velocity.data());
   }
-}
-
-// poses = start + h velocity; bodies with a turning inertia tensor rotate by their mean spin.
-template <class S>
-void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  Bodies<S>& all = world.bodies;
-  const std::vector<typename S::Pose>& start = island.flow.pose;
-  for (size_t k = 0; k < start.size(); ++k) all.pose[island.bodies[k]] = start[k];
-  if constexpr (S::has_gyroscopes)
-    for_each_gyroscope(world, island,
-                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
-  for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], S::sum({}, all.velocity[i], h));
-  if constexpr (S::has_gyroscopes)
-    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
 }
 
 // True if the half step reversed velocities: 2 |change| > |v| in the metric of the masses.
@@ -153,35 +102,6 @@ bool drift_onto_joints(WorldData<S>& world, Island<S>& island, typename S::Scala
   }
 }
 
-// Motors, limits and friction are solved with the exact rows. Springs have acted as forces.
-template <class S>
-void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  using T = typename S::Scalar;
-  for (const Segment<S>& segment : island.segments) {
-    Batch<S>& batch = *segment.batch;
-    if (!batch.law) continue;
-    const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
-    if (batch.law->force) {  // its fill() would add C to the bias, and the next kick reads the bias as dC/dt
-      for (int i = begin; i < end; ++i) batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
-      continue;
-    }
-    batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
-    for (int i = begin; i < end; ++i) {
-      batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
-      batch.upper[i] *= T(0.5);
-    }
-  }
-}
-
-// The velocities at the end: J v = -dC/dt, the impulses in lambda.
-template <class S>
-void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
-  factorize_rows(world, island);
-  bound_rows(world, island, h);
-  island.factored = false;
-  island.solver->velocities(world, island, world.bodies.velocity.data(), typename S::Scalar(1));
-}
-
 // Half a kick at the start, with the first guess of the joints' impulses.
 template <class S>
 void start_half(WorldData<S>& world, Island<S>& island, typename S::Scalar h, typename S::Scalar share) {
@@ -200,10 +120,41 @@ void drift_with_renewed_directions(WorldData<S>& world, Island<S>& island, typen
   using T = typename S::Scalar;
   drift(world, island, h);
   scale_corrections(island, h);
-  island.solver->positions(world, island, T(world.time) + h, false);
+  const T time = T(world.time) + h, error = find_errors(world, island, time);
+  island.solver->positions(world, island, time, false);
   fail_if_open(world, island, at_start);
+  if (island.solver->exact) fail_if_moved_far(world, island, double(std::max(error, at_start)), double(h));
   const bool keep = !island.solver->exact || correction_is_small(world, island, double(h));
   add_corrections(world, island, keep ? T(1) / h : T(0));
+}
+
+// Books the first half: at the poses of its start, to which J belongs.
+template <class S>
+void book_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  if (!island.works) return;
+  const auto swap_poses = [&] {
+    for (size_t k = 0; k < island.bodies.size(); ++k)
+      std::swap(world.bodies.pose[island.bodies[k]], island.flow.pose[k]);
+  };
+  swap_poses();
+  book_kick(world, island, Impulses::rattle_start, h);
+  swap_poses();
+}
+
+// Books the dampers as if they acted last: from the velocities without their impulse. That is the mirror image of the
+// start, where they act first.
+template <class S>
+void book_dampers_at_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  if (!island.works) return;
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies) all.displacement[i] = all.velocity[i];
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    if (!batch->law || !batch->law->spring) continue;
+    for (int i = begin * batch->ops->rows; i < end * batch->ops->rows; ++i) batch->rate[i] = -batch->lambda[i];
+    batch->ops->apply(*batch, begin, end, all, batch->rate.data(), all.displacement.data());
+  }
+  begin_kick(world, island, all.displacement.data());
+  book_kick(world, island, Impulses::dampers, h);
 }
 
 }  // namespace
@@ -213,17 +164,20 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
   using T = typename S::Scalar;
   Bodies<S>& all = world.bodies;
   Flow<S>& flow = island.flow;
-  const T share = begin(world, island, h), at_start = island.residual;
-  for (size_t k = 0; k < island.bodies.size(); ++k) {
-    flow.pose[k] = all.pose[island.bodies[k]];
-    flow.velocity[k] = all.velocity[island.bodies[k]];
-  }
+  const T share = begin_kick_drift(world, island, h), at_start = island.residual;
+  weigh_springs(world, island);
+  begin_kick(world, island);
+  push_dampers(world, island, h);
+  book_kick(world, island, Impulses::dampers, h);
+  note_start(world, island);
+  begin_kick(world, island);
   start_half(world, island, h, share);
   const bool by_sweeps = !island.solver->exact;
   if (by_sweeps || !drift_onto_joints(world, island, h)) {
     if (!by_sweeps) start_half(world, island, h, share);
     drift_with_renewed_directions(world, island, h, at_start);
   }
+  book_start(world, island, h / 2);
   evaluate_anew(world, island, T(world.time) + h);
   // Forces of the second kick are those at the end's velocity, to second order: 2 v_half - v_start.
   for (size_t k = 0; k < island.bodies.size(); ++k) {
@@ -232,8 +186,12 @@ void step_rattle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
     v = S::sum(S::sum({}, half, T(2)), start, T(-1));
     start = half;
   }
+  weigh_springs(world, island);
+  begin_kick(world, island);
   kick(world, island, h / 2);
   solve_end(world, island, h);
+  book_kick(world, island, Impulses::rattle_end, h / 2);
+  book_dampers_at_end(world, island, h / 2);
   island.evaluated = true;
 }
 

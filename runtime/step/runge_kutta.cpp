@@ -6,23 +6,33 @@
 
 #include <cdot/spaces.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/projection.hpp"
 #include "runtime/solve/solve.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/events.hpp"
+#include "runtime/step/rank_loss.hpp"
 
 namespace cdot {
 namespace {
 
 template <class S>
-void read_rates(const WorldData<S>& world, Island<S>& island, int stage) {
+typename S::Scalar* read_rates(const WorldData<S>& world, Island<S>& island, int stage) {
   typename S::Scalar* to = island.flow.rates.data() + static_cast<size_t>(stage) * island.flow.now.size();
   for (int i : island.bodies) {
     S::write_rate(world.bodies.pose[i], world.bodies.velocity[i], to);
     S::write(world.bodies.velocity_rate[i], to + S::pose_numbers);
     to += numbers_per_body<S>;
   }
+  return to;
+}
+
+// The same, and the power at the end of these rates.
+template <class S>
+void read_rates(WorldData<S>& world, Island<S>& island, int stage, typename S::Scalar time) {
+  auto* const power = read_rates(world, island, stage);
+  if (!island.flow.work.empty()) find_power(world, island, time, power);
 }
 
 // now = start + h sum_j weights_j rates_j
@@ -43,6 +53,7 @@ void combine(Flow<S>& flow, const ExactNumber<typename S::Scalar>* weights, int 
 template <class S, class F>
 double largest_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, int estimate, typename S::Scalar h, F unit) {
   const size_t n = flow.now.size();
+  const size_t of_bodies = n - flow.work.size();
   double weights[most_stages];
   const typename S::Scalar* rates[most_stages];
   int terms = 0;
@@ -53,7 +64,7 @@ double largest_error(const Flow<S>& flow, const RungeKuttaOf<S>& method, int est
   }
   if (terms == 0) return 0;
   double worst = 0;
-  for (size_t k = 0; k < n; ++k) {
+  for (size_t k = 0; k < of_bodies; ++k) {
     double sum = 0;
     for (int j = 0; j < terms; ++j) sum += weights[j] * double(rates[j][k]);
     const double error = std::abs(double(h) * sum) / unit(k);
@@ -79,15 +90,17 @@ void read_numbers(const WorldData<S>& world, const Island<S>& island, typename S
     S::write(world.bodies.velocity[i], to + S::pose_numbers);
     to += numbers_per_body<S>;
   }
+  std::copy(island.flow.work.begin(), island.flow.work.end(), to);
 }
 
 template <class S>
-void set_numbers(WorldData<S>& world, const Island<S>& island, const typename S::Scalar* from) {
+void set_numbers(WorldData<S>& world, Island<S>& island, const typename S::Scalar* from) {
   for (int i : island.bodies) {
     world.bodies.pose[i] = S::read(from);
     world.bodies.velocity[i] = S::read_velocity(from + S::pose_numbers);
     from += numbers_per_body<S>;
   }
+  std::copy_n(from, island.flow.work.size(), island.flow.work.begin());
 }
 
 template <class S>
@@ -96,10 +109,16 @@ void take_stage(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   using T = typename S::Scalar;
   combine(island.flow, method.a[stage], stage, h);
   set_numbers(world, island, island.flow.now.data());
-  evaluate_anew(world, island, time + T(method.c[stage]) * h);
-  island.factored = false;
-  accelerate(world, island, time + T(method.c[stage]) * h);
-  read_rates(world, island, stage);
+  const T at = time + T(method.c[stage]) * h;
+  if (island.flow.projects_stages) {
+    project(world, island, at, true);
+  } else {
+    evaluate_anew(world, island, at);
+    island.factored = false;
+    accelerate(world, island, at);
+  }
+  read_rates(world, island, stage, at);
+  if (stage < method.stages) note_pivots(island, stage);
 }
 
 template <class S>
@@ -129,7 +148,7 @@ template <class S>
 void project_end(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time) {
   project(world, island, time, false);
   measure_margins(island);
-  read_rates(world, island, method.stages);
+  read_rates(world, island, method.stages, time);
 }
 
 template <class S>
@@ -154,10 +173,18 @@ double share_of_size(const Island<S>& island, const RungeKuttaOf<S>& method, typ
   });
 }
 
+// f(counters, size) of every segment that counts whole turns. Stages that are taken back must leave no turn behind.
+template <class S, class F>
+void each_counters(const Island<S>& island, F f) {
+  for (const Segment<S>& segment : island.segments)
+    if (const int width = segment.batch->ops->counters; width > 0)
+      f(segment.batch->counters.data() + segment.begin * width, (segment.whole_end - segment.begin) * width);
+}
+
 template <class S>
 void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
   Flow<S>& flow = island.flow;
-  const size_t n = island.bodies.size() * numbers_per_body<S>;
+  const size_t n = island.bodies.size() * numbers_per_body<S> + flow.work.size();
   flow.start.assign(n, 0);
   flow.now.assign(n, 0);
   flow.rates.assign(n * static_cast<size_t>(method.stages + 1 + method.further_stages), 0);
@@ -167,29 +194,49 @@ void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method) {
   for (const Segment<S>& segment : island.segments)
     rows += static_cast<size_t>((segment.end - segment.begin) * segment.batch->ops->rows);
   flow.end_forces.assign(rows, 0);
+  size_t counters = 0;
+  each_counters(island, [&](const auto*, int size) { counters += static_cast<size_t>(size); });
+  flow.start_turns.assign(counters, 0);
   count_guarded_rows(island);
+  prepare_rank_loss(island, method);
 }
 
+// The last step has found the power at its end. J may be older, for example after a rollback.
 template <class S>
-void keep_start(const WorldData<S>& world, Island<S>& island) {
-  read_numbers(world, island, island.flow.start.data());
-  read_rates(world, island, 0);
-  island.flow.start_residual = island.residual;
+void keep_start(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                bool goes_on) {
+  Flow<S>& flow = island.flow;
+  book_work(world, island);
+  read_numbers(world, island, flow.start.data());
+  if (goes_on) {
+    const auto last = flow.rates.begin() + (method.stages + 1) * static_cast<std::ptrdiff_t>(flow.now.size());
+    std::copy(last - static_cast<std::ptrdiff_t>(flow.work.size()), last, read_rates(world, island, 0));
+  } else {
+    read_rates(world, island, 0, time);
+  }
+  flow.start_residual = island.residual;
+  auto* to = flow.start_turns.data();
+  each_counters(island, [&](const auto* counters, int size) { to = std::copy_n(counters, size, to); });
 }
 
 template <class S>
 void go_back(WorldData<S>& world, Island<S>& island) {
   set_numbers(world, island, island.flow.start.data());
   island.residual = island.flow.start_residual;
+  const auto* from = island.flow.start_turns.data();
+  each_counters(island, [&](auto* counters, int size) {
+    std::copy_n(from, size, counters);
+    from += size;
+  });
 }
 
 #define CDOT_INSTANTIATE(S)                                                                               \
   template void read_numbers(const WorldData<S>&, const Island<S>&, S::Scalar*);                          \
-  template void set_numbers(WorldData<S>&, const Island<S>&, const S::Scalar*);                           \
+  template void set_numbers(WorldData<S>&, Island<S>&, const S::Scalar*);                                 \
   template void take_stage(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, int, S::Scalar, S::Scalar); \
   template void project(WorldData<S>&, Island<S>&, S::Scalar, bool);                                      \
   template void prepare_runge_kutta(Island<S>&, const RungeKuttaOf<S>&);                                  \
-  template void keep_start(const WorldData<S>&, Island<S>&);                                              \
+  template void keep_start(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, bool);           \
   template void go_back(WorldData<S>&, Island<S>&);                                                       \
   template void take_stages(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);     \
   template void project_end(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar);                \

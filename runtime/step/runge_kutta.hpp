@@ -17,9 +17,11 @@ void step_runge_kutta(WorldData<S>& world, Island<S>& island, const RungeKuttaOf
 template <class S>
 void prepare_runge_kutta(Island<S>& island, const RungeKuttaOf<S>& method);
 
-// keep_start() stores the present state and its accelerations as the start of the next steps; go_back() restores them.
+// keep_start() stores the present state and its accelerations as the start of the next steps, and books the work so
+// far. `goes_on`: the state is the end of the last step. go_back() restores the start.
 template <class S>
-void keep_start(const WorldData<S>& world, Island<S>& island);
+void keep_start(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar time,
+                bool goes_on);
 template <class S>
 void go_back(WorldData<S>& world, Island<S>& island);
 
@@ -27,11 +29,11 @@ void go_back(WorldData<S>& world, Island<S>& island);
 template <class S>
 inline constexpr int numbers_per_body = S::pose_numbers + S::freedom;
 
-// Copy the bodies' poses and velocities, or dv/dt and the poses' rates, to and from arrays of a Flow.
+// Copy the bodies' poses and velocities and FlowState::work, or their rates, to and from arrays of a Flow.
 template <class S>
 void read_numbers(const WorldData<S>& world, const Island<S>& island, typename S::Scalar* to);
 template <class S>
-void set_numbers(WorldData<S>& world, const Island<S>& island, const typename S::Scalar* from);
+void set_numbers(WorldData<S>& world, Island<S>& island, const typename S::Scalar* from);
 
 // The k of a stage at start + h sum_j a_stage,j k_j.
 template <class S>

@@ -11,6 +11,7 @@
 #include "runtime/step/between.hpp"
 #include "runtime/step/events.hpp"
 #include "runtime/step/integrators.hpp"
+#include "runtime/step/rank_loss.hpp"
 #include "runtime/step/runge_kutta.hpp"
 
 namespace cdot {
@@ -28,6 +29,8 @@ constexpr int most_astray = 5;
 // In units of Island::size and [rad]: a step with a larger estimated error is meaningless, for example if tension makes
 // a chain too stiff for the step.
 constexpr double absurd = 0.3;
+// The same near a loss of rank, where motions are quick, as long as parts of the step can reach it.
+constexpr double careful = 1e-6;
 // The shortest part of a fixed step. If its error is too large, Euler's method finishes the step.
 constexpr double smallest_part = 1.0 / 16;
 template <class S>
@@ -126,23 +129,50 @@ double try_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& m
   return lost ? std::numeric_limits<double>::infinity() : error;
 }
 
+// True if the attempt at a step of h came near a loss of rank of K: goes back for one with projected stages, of a
+// length h that leads them away from it. `noise`: see Passage.
+template <class S>
+bool tries_with_care(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method, typename S::Scalar longest,
+                     typename S::Scalar& h, double& noise) {
+  using T = typename S::Scalar;
+  if (island.flow.projects_stages || world.settings.drift != Drift::projection) return false;
+  const Passage<T> passage = passage_of(world, island, method, h, longest);
+  if (!passage.near) return false;
+  island.flow.projects_stages = true;
+  ++world.counts->steered;
+  go_back(world, island);
+  if (passage.length > T(0)) h = passage.length;
+  noise = passage.noise;
+  return true;
+}
+
 // Takes `left` of a fixed step of `whole`, or its largest half, quarter, ... with an allowed error. The parts share the
 // allowed error `absurd` in proportion to their lengths. Returns the length, 0 if no part is short enough.
 // Flow::margins are those of the end.
 template <class S>
 typename S::Scalar take_fixed_step(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
-                                   typename S::Scalar time, typename S::Scalar left, typename S::Scalar whole) {
+                                   typename S::Scalar time, typename S::Scalar left, typename S::Scalar whole,
+                                   typename S::Scalar reach) {
   using T = typename S::Scalar;
-  T h = left;
-  do {
-    const double allowed = absurd * double(h / whole);
-    if (try_step(world, island, method, time, h, [&] { return share_of_size(island, method, h) / allowed; }) <= 1)
-      return h;
+  // Only a method with an interpolant may pass the end.
+  const T longest = method.further_stages > 0 ? reach : left;
+  double share = absurd;
+  for (T h = left;;) {
+    const double allowed = share * double(h / whole);
+    const double error =
+        try_step(world, island, method, time, h, [&] { return share_of_size(island, method, h) / allowed; });
+    double noise = 0;
+    if (tries_with_care(world, island, method, longest, h, noise)) {
+      share = careful;
+      continue;
+    }
+    if (error <= 1) return h;
     ++world.counts->rejected;
     go_back(world, island);
-    h /= 2;
-  } while (h >= T(smallest_part) * whole);
-  return T(0);
+    if (h >= T(2 * smallest_part) * whole) h /= 2;
+    else if (share == careful) share = absurd;
+    else return T(0);
+  }
 }
 
 // Takes a step as long as the error allows, at most `reach`. Returns like take_fixed_step().
@@ -154,16 +184,24 @@ typename S::Scalar take_adaptive_step(WorldData<S>& world, Island<S>& island, co
   const T proposed = flow.next_step;
   T h = length_of_step(proposed, left, reach);
   int astray = 0;
+  double noise = 0;
   for (int attempt = 0; attempt <= most_rejections && astray < most_astray; ++attempt) {
-    const double error = try_step(world, island, method, time, h,
-                                  [&] { return error_of_step(island, method, h, world.settings.local_error); });
+    const double error = try_step(world, island, method, time, h, [&] {
+      return error_of_step(island, method, h, std::max(world.settings.local_error, noise));
+    });
     // 0.9 of the longest allowed step; a NaN counts as the largest error.
     const double factor = std::clamp(0.9 * std::pow(error, -1.0 / method.order), 0.2, 5.0);
     flow.next_step = h * T(error <= 1e300 ? factor : 0.2);
+    if (tries_with_care(world, island, method, reach, h, noise)) {
+      --attempt;  // its length says nothing about the error
+      continue;
+    }
     if (error <= 1) {
       // A shortened step does not reduce the proposed length. After a rejected step the length does not grow.
       if (attempt == 0 && h < proposed) flow.next_step = std::max<T>(flow.next_step, proposed);
       if (attempt > 0) flow.next_step = std::min<T>(flow.next_step, h);
+      // An error allowed for its round-off tells nothing about the next step.
+      if (noise > world.settings.local_error && proposed > T(0)) flow.next_step = std::min<T>(flow.next_step, proposed);
       return h;
     }
     ++world.counts->rejected;
@@ -240,14 +278,15 @@ typename S::Scalar take_steps(WorldData<S>& world, Island<S>& island, const Rung
       fall_back_to_euler(world, island, time, left);
       return h;
     }
+    const bool goes_on = flow.known;
     begin(world, island, time, h);
-    keep_start(world, island);
+    keep_start(world, island, method, time, goes_on);
     flow.low.assign(flow.margins.begin(), flow.margins.end());
-    flow.end_kept = false;
+    flow.end_kept = flow.projects_stages = false;
     // A hook after the substep may change the World, so no step may pass the end.
     const T reach = world.after_substep.empty() ? furthest_reach * h : left;
     flow.length = world.settings.local_error > 0 ? take_adaptive_step(world, island, method, time, left, reach)
-                                                 : take_fixed_step(world, island, method, time, left, h);
+                                                 : take_fixed_step(world, island, method, time, left, h, reach);
     if (!(flow.length > T(0))) {
       fall_back_to_euler(world, island, time, left);
       return h;
@@ -274,6 +313,7 @@ void step_runge_kutta(WorldData<S>& world, Island<S>& island, const RungeKuttaOf
   Flow<S>& flow = island.flow;
   if (world.last_step > 0) scale_forces(island, T(1 / world.last_step));
   clear_correction(world, island);
+  flow.projects_stages = false;  // of the last call
   T end = flow.ahead;
   if (end > T(0) && end <= h) go_to_end(world, island, method, T(world.time) + end);
   end = take_steps(world, island, method, end, h);

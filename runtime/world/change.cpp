@@ -3,6 +3,7 @@
 
 #include <cdot/world.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/state/add_rows.hpp"
 #include "runtime/state/probe.hpp"
@@ -41,6 +42,7 @@ void BasicWorld<S>::remove_joint(int joint) {
   check_joint(*data_, joint);
   JointRecord& record = data_->joints[joint];
   if (record.broken) return;
+  note_change(*data_);
   record.broken = true;
   data_->prepared = false;  // its island may have split
 }
@@ -61,6 +63,7 @@ void BasicWorld<S>::set_parameters(int joint, const std::vector<NamedValue>& par
   check_rows(*data_, next, is_soft(*data_, record));
   check_effects(*data_, next);
 
+  note_change(*data_);
   record.parameters = next.parameters;
   hand_out(*data_, record, changed);
   const int body = movable_body(*data_, record);

@@ -9,6 +9,7 @@
 #include <cdot/joints.hpp>
 #include <cdot/spaces.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/solve/sweep_order.hpp"
 #include "runtime/solve/tension.hpp"
@@ -45,7 +46,6 @@ void unite_bodies(const WorldData<S>& world, Sets& sets) {
   };
   for (const JointRecord& joint : world.joints)
     if (!joint.broken) unite(joint.bodies);
-  for (const auto& spring : world.springs) unite({spring.body_a, spring.body_b});
 }
 
 template <class S>
@@ -147,19 +147,16 @@ void list_segments(WorldData<S>& world, const std::vector<int>& places) {
 
 template <class S>
 void give_out_forces(WorldData<S>& world) {
-  for (const auto& spring : world.springs) {
-    const int island = std::max(world.island_of[spring.body_a], world.island_of[spring.body_b]);
-    if (island >= 0) world.islands[island].springs.push_back(spring);
-  }
   for (const auto& drag : world.drags) world.islands[world.island_of[drag.body]].drags.push_back(drag);
   if constexpr (S::has_gyroscopes)
     for (size_t i = 0; i < world.turning.size(); ++i)
       world.islands[world.island_of[world.turning[i]]].gyroscopes.push_back(static_cast<int>(i));
 }
 
+// `at`: scratch for poses, those of the World until the island is built.
 template <class S>
-void build_systems(const WorldData<S>& world, Island<S>& island) {
-  const std::vector<int> tensions = tension_rows(world, island);
+void build_systems(const WorldData<S>& world, Island<S>& island, Bodies<S>& at) {
+  const std::vector<int> tensions = tension_rows(world, island, at);
   island.system.build(island.segments, world.bodies, island.stiffened ? tensions : std::vector<int>{});
   if (!island.stiffened && !tensions.empty()) island.rescue.build(island.segments, world.bodies, tensions);
 }
@@ -167,8 +164,19 @@ void build_systems(const WorldData<S>& world, Island<S>& island) {
 }  // namespace
 
 template <class S>
+void watch_breaking_loads(WorldData<S>& world) {
+  world.overloads.reserve(world.breaking_loads.size());
+  for (const auto& [joint, load] : world.breaking_loads) {
+    Island<S>& island = world.islands[world.island_of[movable_body(world, world.joints[joint])]];
+    for (System<S>* system : {&island.system, &island.rescue}) system->share_loads();
+  }
+}
+
+template <class S>
 void prepare_topology(WorldData<S>& world) {
   if (world.prepared) return;
+  for (JointRecord& joint : world.joints) joint.left_out = bool(joint.broken);
+  for (Island<S>& island : world.islands) book_work(world, island);
   number_islands(world);
   // The direct solver has its own order, so each type of joint is one run, in the order of add_joint().
   const std::vector<int> places =
@@ -176,21 +184,27 @@ void prepare_topology(WorldData<S>& world) {
   for (int i = 0; i < static_cast<int>(world.batches.size()); ++i) sort_slots(world, i, places);
   list_segments(world, places);
   give_out_forces(world);
+  for (Island<S>& island : world.islands) measure_size(world, island);
+  prepare_accounts(world);
   world.awake.clear();
+  Bodies<S> at;
+  at.pose = world.bodies.pose;
   for (int i = 0; i < static_cast<int>(world.islands.size()); ++i) {
     Island<S>& island = world.islands[i];
-    measure_size(world, island);
     island.solver = &solver_of<S>(world.settings.solver);
     island.stiffened = row_of(world.settings.integrator).stiffens;
-    if (world.needs_systems()) build_systems(world, island);
+    if (world.needs_systems()) build_systems(world, island, at);
     stepper_of<S>(world.settings.integrator).prepare(island);
     world.awake.push_back(i);
   }
+  watch_breaking_loads(world);
   settle_state(world);
   world.prepared = true;
 }
 
-#define CDOT_INSTANTIATE(S) template void prepare_topology(WorldData<S>&);
+#define CDOT_INSTANTIATE(S)                          \
+  template void watch_breaking_loads(WorldData<S>&); \
+  template void prepare_topology(WorldData<S>&);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

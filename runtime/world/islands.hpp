@@ -10,6 +10,10 @@ namespace cdot {
 template <class S>
 void prepare_topology(WorldData<S>& world);
 
+// Lets the solvers of islands with breaking loads share forces among redundant joints. Allocates.
+template <class S>
+void watch_breaking_loads(WorldData<S>& world);
+
 // Island::size and ::scale, from the present poses.
 template <class S>
 void measure_size(WorldData<S>& world, Island<S>& island);

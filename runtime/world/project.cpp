@@ -5,21 +5,41 @@
 
 #include <cdot/world.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/motion/motion.hpp"
 #include "runtime/solve/direct.hpp"
+#include "runtime/solve/longest_move.hpp"
 
 namespace cdot {
 namespace {
 
 constexpr int newton_rounds = 50;
 
+// Adds M^-1 J^T lambda with K lambda = b to `to`. If that moves bodies too far for the largest `error`, the rows that
+// ask for it count as redundant, and the result says so; `moves` is scratch.
 template <class S>
-void solve_and_exert(WorldData<S>& world, Island<S>& island, typename S::Velocity* to) {
+void solve_and_exert(WorldData<S>& world, Island<S>& island, double error, ProjectResult& result,
+                     typename S::Velocity* to) {
+  auto& moves = world.bodies.increment;
   island.system.assemble(world.bodies);
   island.system.factor();
-  island.system.solve();
-  island.system.store([](Batch<S>& batch, int i, auto lambda) { batch.impulse[i] = typename S::Scalar(lambda); });
-  exert(world, island, island.system, &BatchWorkspace<S>::impulse, to);
+  for (;;) {
+    island.system.solve();
+    island.system.store([](Batch<S>& batch, int i, auto lambda) { batch.impulse[i] = typename S::Scalar(lambda); });
+    for (int i : island.bodies) moves[i] = {};
+    exert(world, island, island.system, &BatchWorkspace<S>::impulse, moves.data());
+    const LongestMove move = longest_move<S>(island, moves);
+    if (!too_far(island, move, error)) break;
+    if (!result.refused) result.body = move.body, result.moved = move.way, result.misfit = error;
+    result.refused = true;
+    if (island.system.drop_dominant_row()) continue;
+    for (int i : island.bodies) moves[i] = {};  // nothing moves
+    break;
+  }
+  for (int i : island.bodies) {
+    to[i] = S::sum(to[i], moves[i], typename S::Scalar(1));
+    moves[i] = {};
+  }
 }
 
 template <class S>
@@ -44,16 +64,10 @@ void measure_errors(Island<S>& island) {
   }
 }
 
+// The scene's velocities stay while the poses move.
 template <class S>
-void move_poses(WorldData<S>& world, Island<S>& island) {
+void keep_velocities(WorldData<S>& world, Island<S>& island) {
   Bodies<S>& all = world.bodies;
-  for (int i : island.bodies) all.increment[i] = {};
-  solve_and_exert(world, island, all.increment.data());
-  for (int i : island.bodies) {
-    all.pose[i] = S::moved(all.pose[i], all.increment[i]);
-    all.increment[i] = {};
-  }
-  // Keeps the scene's velocities while the poses move.
   if constexpr (S::has_gyroscopes)
     for_each_gyroscope(world, island, [&](auto& gyroscope, int i) {
       S::set_inertia(gyroscope, all.pose[i], all.inverse_mass[i], all.velocity[i]);
@@ -62,25 +76,57 @@ void move_poses(WorldData<S>& world, Island<S>& island) {
 }
 
 template <class S>
-void project_poses(WorldData<S>& world, Island<S>& island) {
-  double before = std::numeric_limits<double>::infinity();
+LongestMove move_poses(WorldData<S>& world, Island<S>& island, double error, ProjectResult& result) {
+  Bodies<S>& all = world.bodies;
+  for (int i : island.bodies) all.displacement[i] = {};
+  solve_and_exert(world, island, error, result, all.displacement.data());
+  for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], all.displacement[i]);
+  keep_velocities(world, island);
+  return longest_move<S>(island, all.displacement);
+}
+
+// The largest error of the selected rows, as value(batch, i). Remembers its row while nothing is refused.
+template <class S, class F>
+double largest_error(Island<S>& island, ProjectResult& result, F value) {
+  double worst = 0;
+  island.system.each_row([&](int row, const Batch<S>& batch, int i) {
+    const double error = std::abs(double(value(batch, i)));
+    if (island.system.fixed[row] || !(error > worst)) return;
+    worst = error;
+    if (!result.refused) result.joint = batch.joint[i / batch.ops->rows], result.row = i % batch.ops->rows;
+  });
+  return worst;
+}
+
+// Many short ways must not add up to a long one either: that leaves the poses as they were.
+template <class S>
+void project_poses(WorldData<S>& world, Island<S>& island, ProjectResult& result) {
+  const std::vector<typename S::Pose> start(world.bodies.pose.begin(), world.bodies.pose.end());
+  LongestMove sum;
+  double before = std::numeric_limits<double>::infinity(), first = 0;
   for (int round = 0; round < newton_rounds; ++round) {
     evaluate(world, island);
     measure_errors(island);
-    double worst = 0;
     load_errors(island.system, typename S::Scalar(-1));
-    island.system.each_row(
-        [&](int, const Batch<S>& batch, int i) { worst = std::max(worst, std::abs(double(batch.error[i]))); });
-    // Round-off is reached when the error no longer shrinks.
-    if (worst == 0 || (worst < 1e-6 && worst >= before)) return;
-    before = worst;
     island.system.choose([](const Batch<S>& batch, int i) { return !batch.law || batch.error[i] != 0; });
-    move_poses(world, island);
+    const double worst = largest_error(island, result, [](const Batch<S>& batch, int i) { return batch.error[i]; });
+    // Round-off is reached when the error no longer shrinks. Contradicting joints keep an error.
+    if (worst == 0 || ((worst < 1e-6 || result.refused) && worst >= before)) return;
+    before = worst;
+    if (round == 0) first = worst;
+    const LongestMove move = move_poses(world, island, worst, result);
+    sum = {sum.way + move.way, move.body};
+    if (!too_far(island, sum, first)) continue;
+    if (!result.refused) result.body = sum.body, result.moved = sum.way, result.misfit = first;
+    result.refused = true;
+    for (int i : island.bodies) world.bodies.pose[i] = start[i];
+    keep_velocities(world, island);
+    return;
   }
 }
 
 template <class S>
-void project_velocities(WorldData<S>& world, Island<S>& island, double tolerance) {
+void project_velocities(WorldData<S>& world, Island<S>& island, double tolerance, ProjectResult& result) {
   Bodies<S>& all = world.bodies;
   evaluate(world, island);
   load_rates(island, island.system, all.velocity.data());
@@ -90,26 +136,31 @@ void project_velocities(WorldData<S>& world, Island<S>& island, double tolerance
     return batch.kinds[i % batch.ops->rows] != RowKind::inequality ||
            (batch.C[i] <= tolerance && batch.rate[i] + batch.bias[i] < 0);
   });
-  solve_and_exert(world, island, all.velocity.data());
+  const double worst =
+      largest_error(island, result, [](const Batch<S>& batch, int i) { return batch.rate[i] + batch.bias[i]; });
+  solve_and_exert(world, island, worst, result, all.velocity.data());
 }
 
 }  // namespace
 
 template <class S>
-bool BasicWorld<S>::project(double tolerance) {
+ProjectResult BasicWorld<S>::project(double tolerance) {
   prepare();
+  note_change(*data_);
+  ProjectResult result;
   for (auto& island : data_->islands) {
     if (island.segments.empty()) continue;
     if (!island.system.built()) island.system.build(island.segments, data_->bodies);
-    project_poses(*data_, island);
-    project_velocities(*data_, island, tolerance);
+    project_poses(*data_, island, result);
+    project_velocities(*data_, island, tolerance, result);
     island.evaluated = island.factored = false;
     island.flow.forget();
   }
-  return inconsistencies(tolerance).empty();
+  result.met = inconsistencies(tolerance).empty();
+  return result;
 }
 
-#define CDOT_INSTANTIATE(S) template bool BasicWorld<S>::project(double);
+#define CDOT_INSTANTIATE(S) template ProjectResult BasicWorld<S>::project(double);
 CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
 #undef CDOT_INSTANTIATE
 

@@ -4,7 +4,9 @@
 
 #include <cdot/world.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/rows/parameters.hpp"
+#include "runtime/solve/solver.hpp"
 #include "runtime/state/add_rows.hpp"
 #include "runtime/state/probe.hpp"
 
@@ -41,22 +43,6 @@ double position_violation(const Probe<S>& probe, int row, RowKind kind) {
 template <class T>
 std::vector<double> in_doubles(const std::vector<T>& numbers) {
   return {numbers.begin(), numbers.end()};
-}
-
-template <class S>
-double potential_of_rows(const WorldData<S>& world) {
-  double energy = 0;
-  for (const auto& batch : world.batches) {
-    if (!batch->law || !batch->law->energy) continue;
-    Batch<S> rows = *batch;  // a copy, because the next step may start from the World's own rows
-    for (int slot = 0; slot < rows.count(); ++slot) {
-      if (world.joints[rows.joint[slot]].broken) continue;
-      rows.ops->position(rows, slot, slot + 1, world.bodies, typename S::Scalar(world.time));
-      rows.ops->effective_mass(rows, slot, slot + 1, world.bodies);
-      energy += rows.law->energy(rows, slot);
-    }
-  }
-  return energy;
 }
 
 }  // namespace
@@ -217,19 +203,34 @@ std::vector<Inconsistency> BasicWorld<S>::inconsistencies(double tolerance) cons
 
 template <class S>
 double BasicWorld<S>::energy() const {
-  const Bodies<S>& all = data_->bodies;
-  double energy = potential_of_rows(*data_);
-  for (int i = 0; i < all.count(); ++i) {
-    const auto& m = all.inverse_mass[i];
-    energy += 0.5 * S::dot(S::force(m, all.velocity[i]), all.velocity[i]);
-    energy -= S::dot(S::force(m, all.acceleration[i]), S::difference(all.pose[i], all.start[i]));
+  Batch<S> one_slot;
+  const Energy now = energy_of(*data_, one_slot);
+  return now.kinetic + now.potential + now.of_torques;
+}
+
+template <class S>
+Balance BasicWorld<S>::balance() const {
+  const WorldData<S>& world = *data_;
+  const Accounts& accounts = world.accounts;
+  Batch<S> one_slot;
+  const Energy now = energy_of(world, one_slot);
+  const double energy = now.kinetic + now.potential;
+  Balance balance;
+  balance.time = world.time;
+  balance.kinetic = now.kinetic, balance.potential = now.potential, balance.start = energy;
+  balance.small = small_energy(world);
+  if (!accounts.open) return balance;
+  balance.put_in = accounts.put_in, balance.taken = accounts.taken;
+  balance.start = accounts.start;
+  if (accounts.changed) balance.put_in += energy - accounts.before_change;
+  for (const Island<S>& island : world.islands) {
+    if (!island.flow.work.empty()) {
+      balance.put_in += double(island.flow.work[0]);
+      balance.taken += double(island.flow.work[1]);
+    }
+    compare_momentum(world, island, balance);
   }
-  for (const auto& spring : data_->springs) {
-    const double stretch =
-        S::stretch(spring, all.pose[spring.body_a], all.pose[spring.body_b]).length - spring.rest_length;
-    energy += 0.5 * double(spring.stiffness) * stretch * stretch;
-  }
-  return energy;
+  return balance;
 }
 
 template <class S>
@@ -246,6 +247,22 @@ template <class S>
 int BasicWorld<S>::island_count() const {
   return static_cast<int>(data_->islands.size());
 }
+template <class S>
+WeakestRow BasicWorld<S>::weakest_row() const {
+  WeakestRow weakest;
+  for (auto& island : data_->islands) {
+    if (!island.solver || !island.solver->exact || !island.system.built()) continue;
+    System<S>& system = island.system;
+    system.each_row([&](int row, const Batch<S>& batch, int i) {
+      if (system.fixed[row] || system.broken[row] || system.dependent(row)) return;
+      const double share = double(system.pivot(row) / system.diagonal(row));
+      if (!(share < weakest.share)) return;
+      weakest = {share, batch.joint[i / batch.ops->rows], i % batch.ops->rows};
+    });
+  }
+  return weakest;
+}
+
 template <class S>
 int BasicWorld<S>::sleeping_islands() const {
   return island_count() - static_cast<int>(data_->awake.size());

@@ -12,19 +12,22 @@ namespace cdot {
 namespace {
 
 // For a few numbers a loop is cheaper than a call of memcpy.
-inline void copy(const std::byte* from, std::byte* to, Block::Range range) {
+inline void copy_range(const std::byte* from, std::byte* to, Block::Range range) {
   std::size_t at = range.begin;
   if (range.end - at > 48) return void(std::memcpy(to + at, from + at, range.end - at));
   for (; at + 8 <= range.end; at += 8) std::memcpy(to + at, from + at, 8);
   for (; at < range.end; ++at) to[at] = from[at];
 }
 
-// Copies all bytes that a step may change.
+// Copy all bytes that a step of one island, or of all awake ones, may change.
+template <class S>
+void copy_island(const WorldData<S>& world, int index, const std::vector<std::byte>& from, std::vector<std::byte>& to) {
+  for (const Block::Range& range : world.block.islands[index]) copy_range(from.data(), to.data(), range);
+}
 template <class S>
 void copy_awake(const WorldData<S>& world, const std::vector<std::byte>& from, std::vector<std::byte>& to) {
-  copy(from.data(), to.data(), world.block.common);
-  for (int index : world.awake)
-    for (const Block::Range& range : world.block.islands[index]) copy(from.data(), to.data(), range);
+  copy_range(from.data(), to.data(), world.block.common);
+  for (int index : world.awake) copy_island(world, index, from, to);
 }
 
 }  // namespace
@@ -73,6 +76,23 @@ void roll_back(WorldData<S>& world) {
 }
 
 template <class S>
+void save_island(WorldData<S>& world, int index) {
+  copy_range(world.block.bytes.data(), world.before.data(), world.block.common);
+  copy_island(world, index, world.block.bytes, world.before);
+}
+
+template <class S>
+void roll_back_island(WorldData<S>& world, int index) {
+  const auto restore = [&] {
+    copy_range(world.before.data(), world.block.bytes.data(), world.block.common);
+    copy_island(world, index, world.before, world.block.bytes);
+  };
+  restore();
+  compute_again(world, world.islands[index]);
+  restore();  // computing again changed the State
+}
+
+template <class S>
 void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes) {
   std::memcpy(world.block.bytes.data(), bytes.data(), bytes.size());
   world.awake.clear();
@@ -88,6 +108,8 @@ void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes) {
 #define CDOT_INSTANTIATE(S)                                                \
   template void save_state(WorldData<S>&);                                 \
   template void roll_back(WorldData<S>&);                                  \
+  template void save_island(WorldData<S>&, int);                           \
+  template void roll_back_island(WorldData<S>&, int);                      \
   template void adopt_state(WorldData<S>&, const std::vector<std::byte>&); \
   template void find_rows(WorldData<S>&, Island<S>&);                      \
   template void compute_again(WorldData<S>&, Island<S>&);

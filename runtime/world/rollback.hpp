@@ -11,6 +11,12 @@ void save_state(WorldData<S>& world);
 template <class S>
 void roll_back(WorldData<S>& world);
 
+// The same for one awake island.
+template <class S>
+void save_island(WorldData<S>& world, int index);
+template <class S>
+void roll_back_island(WorldData<S>& world, int index);
+
 // Replaces the State by these bytes, which have the layout of the World's block.
 template <class S>
 void adopt_state(WorldData<S>& world, const std::vector<std::byte>& bytes);

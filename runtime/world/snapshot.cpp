@@ -31,7 +31,6 @@ template <class S>
 std::uint64_t hash_of_joints(const WorldData<S>& world) {
   Hash hash;
   for (const JointRecord& joint : world.joints) hash.add(joint.added);
-  hash.add(world.springs);
   for (const Drag<S>& drag : world.drags) hash.add(drag.body), hash.add(drag.linear), hash.add(drag.angular);
   for (const auto& [joint, load] : world.breaking_loads) hash.add(joint), hash.add(load);
   hash.add(S::gravity(world.settings)), hash.add(world.origin);
@@ -103,12 +102,13 @@ struct SnapshotAccess {
     to.bytes_ = world.block.bytes;
   }
 
-  // Joints that broke before the preparation of the snapshot's World are not in its order of rows.
+  // Analyses the islands without the joints that the snapshot's World left out. Joints that broke later are in its
+  // order of rows.
   template <class S>
-  static void prepare_with_broken_joints(WorldData<S>& world, const Snapshot& from) {
+  static void prepare_as(WorldData<S>& world, const Snapshot& from) {
     const std::byte* at = from.bytes_.data();
     for (const Snapshot::Item& item : from.items_) {
-      if (item.name == "joints.broken")
+      if (item.name == "joints.left_out")
         for (size_t k = 0; k < world.joints.size() && k < item.count; ++k)
           world.joints[k].broken = at[k] != std::byte{0};
       at += Snapshot::aligned(item.count * Snapshot::size_of(item.type));
@@ -133,9 +133,9 @@ struct SnapshotAccess {
     if (load(world, from)) return;
     Snapshot before;
     save(world, before);
-    prepare_with_broken_joints(world, from);
+    prepare_as(world, from);
     if (load(world, from)) return;
-    prepare_with_broken_joints(world, before);
+    prepare_as(world, before);
     load(world, before);
     throw Error("this is a state of a World whose bodies and joints were added in another order");
   }

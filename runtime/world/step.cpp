@@ -5,6 +5,7 @@
 #include <cdot/spaces.hpp>
 #include <cdot/world.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/solve/solver.hpp"
 #include "runtime/step/integrators.hpp"
 #include "runtime/world/islands.hpp"
@@ -32,6 +33,7 @@ StepResult attempt(WorldData<S>& world, double h, int parts) {
   StepResult result;
   const auto& integrator = stepper_of<S>(world.settings.integrator);
   const double part = h / parts;
+  begin_accounts(world);
   const auto dt = typename S::Scalar(part);
   for (int k = 0; k < parts; ++k) {
     for (int index : world.awake) {
@@ -95,6 +97,10 @@ void blame_joint(WorldData<S>& world, Island<S>& island, StepResult& result) {
 template <class S>
 void blame(WorldData<S>& world, StepResult& result) {
   Island<S>& island = world.islands[result.island];
+  if (result.problem == StepProblem::moved_far) {
+    result.misfit = island.misfit, result.moved = island.moved, result.body = island.moved_body;
+    return blame_joint(world, island, result);
+  }
   for (int body : island.bodies)
     if (result.body < 0 || speed_of(world, body) > speed_of(world, result.body)) result.body = body;
   blame_joint(world, island, result);

@@ -6,6 +6,7 @@
 #include <cdot/detail/joint_table.hpp>
 #include <cdot/world.hpp>
 
+#include "runtime/balance/balance.hpp"
 #include "runtime/rows/laws.hpp"
 #include "runtime/rows/parameters.hpp"
 #include "runtime/state/add_rows.hpp"
@@ -111,8 +112,9 @@ void check_joint_bodies(const WorldData<S>& world, const JointType& type, const 
 // f(gyroscope) if the body's inertia tensor turns with it.
 template <class S, class F>
 void with_gyroscope(WorldData<S>& world, int body, F f) {
-  const auto found = std::find(world.turning.begin(), world.turning.end(), body);
-  if (found != world.turning.end()) f(world.gyroscopes[static_cast<size_t>(found - world.turning.begin())]);
+  const auto found = std::lower_bound(world.turning.begin(), world.turning.end(), body);
+  if (found != world.turning.end() && *found == body)
+    f(world.gyroscopes[static_cast<size_t>(found - world.turning.begin())]);
 }
 
 template <class S>
@@ -154,6 +156,7 @@ int BasicWorld<S>::add_body(const BodyDefinition& d) {
   check_in_precision<S>(d);
   Bodies<S>& all = data_->bodies;
   const int body = all.count();
+  note_change(*data_);
   const auto m = S::inverse_mass_of(d);
   all.pose.push_back(S::placed(moved_by(S::place_of(d), data_->origin, -1)));
   all.velocity.push_back(S::velocity_of(d));
@@ -205,6 +208,7 @@ int BasicWorld<S>::add_joint(const JointDefinition& definition) {
 
   check_rows(*data_, record, definition.soft.has_value());
   const int joint = joint_count();
+  note_change(*data_);
   data_->joints.push_back(record);
   const auto movable = [&](int body) { return !data_->bodies.immovable(body); };
   if (std::none_of(record.bodies.begin(), record.bodies.end(), movable)) {
@@ -223,24 +227,39 @@ template <class S>
 int BasicWorld<S>::add_spring(const SpringDefinition& d) {
   check_body(*data_, d.body_a);
   check_body(*data_, d.body_b);
+  constexpr const char* along = "distance";
   require(d.body_a != d.body_b, "a spring connects two different bodies");
   for (double number : {d.ax, d.ay, d.az, d.bx, d.by, d.bz, d.stiffness, d.rest_length, d.damping})
     require(std::isfinite(number), "every number of a spring must be finite");
   require(d.stiffness >= 0 && d.damping >= 0, "stiffness and damping must not be negative");
   require(d.rest_length >= 0, "a rest length must not be negative");
-  SpringDefinition spring = d;
-  const auto& from = data_->origin;
-  if (d.body_a == data_->ground) spring.ax -= from[0], spring.ay -= from[1], spring.az -= from[2];
-  if (d.body_b == data_->ground) spring.bx -= from[0], spring.by -= from[1], spring.bz -= from[2];
-  data_->springs.push_back(S::point_spring(spring));
-  data_->prepared = false;
-  return static_cast<int>(data_->springs.size()) - 1;
+  const auto joined = [&](const char* type, double stiffness, double damping) {
+    const auto point = [](double x, double y, double z) {
+      return S::dimension == Dimension::planar ? std::vector{x, y} : std::vector{x, y, z};
+    };
+    if (!find_joint_type(S::dimension, type))
+      throw Error(
+          fmt::format("a spring between points is a soft `{}`, which this program does not use: add that joint "
+                      "to cdot_use_joints",
+                      type));
+    JointDefinition joint{type, {d.body_a, d.body_b}, {}, {}};
+    joint.parameters = {{"pa", point(d.ax, d.ay, d.az)}, {"pb", point(d.bx, d.by, d.bz)}};
+    if (d.rest_length > 0) joint.parameters.push_back({"l", {d.rest_length}});
+    joint.soft = Softness{.by_frequency = false, .stiffness = stiffness, .damping = damping};
+    return add_joint(joint);
+  };
+  // At length 0 the direction of a spring is undefined, but not the force of one with rest length 0.
+  if (d.rest_length > 0 || d.stiffness == 0) return joined(along, d.stiffness, d.damping);
+  const int joint = joined(S::dimension == Dimension::planar ? "revolute" : "spherical", d.stiffness, 0);
+  if (d.damping > 0) joined(along, 0, d.damping);
+  return joint;
 }
 
 template <class S>
 void BasicWorld<S>::set_force(int body, const Wrench& force) {
   check_body(*data_, body);
   check_finite<S>(S::components(force), "every number of a force must be finite");
+  note_change(*data_);
   data_->bodies.force[body] = S::components(force);
   set_acceleration(*data_, body);
   wake_pushed(*data_, body);
@@ -252,6 +271,7 @@ void BasicWorld<S>::set_pose(int body, const Place& place) {
   Bodies<S>& all = data_->bodies;
   const auto pose = S::placed(body == data_->ground ? place : moved_by(place, data_->origin, -1));
   check_finite<S>(pose);
+  note_change(*data_);
   all.pose[body] = pose;
   if constexpr (S::has_gyroscopes)
     with_gyroscope(*data_, body, [&](auto& gyroscope) {
@@ -267,6 +287,7 @@ void BasicWorld<S>::set_velocity(int body, const typename S::Exact::Velocity& ve
   check_body(*data_, body);
   require(!is_static(body), "a static body has no velocity");
   check_finite<S>(S::rounded(velocity), "every number of a velocity must be finite");
+  note_change(*data_);
   data_->bodies.velocity[body] = S::rounded(velocity);
   wake(*data_, body);
 }
@@ -278,6 +299,7 @@ void BasicWorld<S>::apply_impulse(int body, const typename S::Exact::Velocity& i
   const auto change = S::weighted(all.inverse_mass[body], S::rounded(impulse));
   check_finite<S>(S::rounded(impulse), "every number of an impulse must be finite");
   check_finite<S>(S::sum(all.velocity[body], change, T(1)), "an impulse must leave the velocity finite");
+  note_change(*data_);
   all.velocity[body] = S::sum(all.velocity[body], change, T(1));
   wake(*data_, body);
 }

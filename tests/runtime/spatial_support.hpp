@@ -1,6 +1,9 @@
 // Helpers for tests of Worlds in space.
 #pragma once
 
+#include <array>
+#include <cmath>
+
 #include <cdot/rotation.hpp>
 
 #include "tests/runtime/support.hpp"
@@ -72,6 +75,28 @@ void add_free_mechanism(SpatialWorld<T>& world) {
   world.add_spring(spring);
   world.apply_impulse(bricks[0], {1, 2, -0.5, 0.5, 0.1, 0.2});
   world.apply_impulse(bricks[3], {-3, 1, 0.5, -0.2, 0.4, 0.1});
+}
+
+// A ring of four hinges between two uprights that turns as a parallelogram, the last axis tilted by `tilt`: rigid if
+// the tilt is taken literally. Returns the left, the top and the right bar.
+inline std::array<int, 3> add_tilted_ring(SpatialWorld<double>& world, double tilt) {
+  const auto bar = [&](double x, double z, double angle) {
+    return world.add_body({.x = x,
+                           .z = z,
+                           .e0 = std::cos(angle / 2),
+                           .e2 = -std::sin(angle / 2),
+                           .mass = 1,
+                           .inertia = {.xx = 0.01, .yy = 0.08, .zz = 0.08}});
+  };
+  const int left = bar(0, 0.5, pi / 2), top = bar(0.5, 1, 0), right = bar(1, 0.5, pi / 2);
+  const auto hinge = [&](int a, int b, std::vector<double> pa, std::vector<double> pb, double off) {
+    world.add_joint({"revolute", {a, b}, {{"pa", pa}, {"pb", pb}, {"fa", {std::sin(off), -std::cos(off), 0}}}, {}});
+  };
+  hinge(world.ground(), left, {0, 0, 0}, {-0.5, 0, 0}, 0);
+  hinge(world.ground(), right, {1, 0, 0}, {-0.5, 0, 0}, 0);
+  hinge(top, left, {-0.5, 0, 0}, {0.5, 0, 0}, 0);
+  hinge(top, right, {0.5, 0, 0}, {0.5, 0, 0}, tilt);
+  return {left, top, right};
 }
 
 }  // namespace cdot::test

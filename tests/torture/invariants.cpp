@@ -43,6 +43,12 @@ double heaviest_over_lightest(const Scene& scene) {
   return most > 0 ? most / least : 1;
 }
 
+// The share of the scene's step that step k takes: between 0.2 and 1, spread evenly by the golden ratio.
+double share_of_step(int k) {
+  const double turns = 0.6180339887498949 * k;
+  return 0.2 + 0.8 * (turns - std::floor(turns));
+}
+
 Verdict verdict(Outcome outcome, std::string what, std::string detail, double value = 0, double bound = 0,
                 int step = 0) {
   Verdict v;
@@ -80,6 +86,8 @@ class Trial {
   using T = typename S::Scalar;
   BasicWorld<S> started() const;
   StepResult step(BasicWorld<S>& world, int k) const;
+  double length_of_step(int k) const { return asked_->varying ? share_of_step(k) * scene_->step : scene_->step; }
+  void change(BasicWorld<S>& world, int k) const;
   Verdict watch(BasicWorld<S>& world);
   std::optional<Verdict> look(BasicWorld<S>& world, int k);
   // The reason why methods may fail on this mechanism now; nullptr if there is none.
@@ -117,9 +125,29 @@ BasicWorld<S> Trial<S>::started() const {
   return world;
 }
 
+// Every ninth step pushes a body, first at once, then for good; a third of the way takes the last joint away.
+template <class S>
+void Trial<S>::change(BasicWorld<S>& world, int k) const {
+  if (k == steps_ / 3 && !scene_->joints.empty()) world.remove_joint(static_cast<int>(scene_->joints.size()) - 1);
+  if (k % 9 != 4) return;
+  const int body = k % static_cast<int>(scene_->bodies.size());
+  if (world.is_static(body)) return;
+  const double impulse = 0.1 * sizes_.length / scene_->duration / double(world.inverse_mass(body).m);
+  if (k % 2 == 0) {
+    typename S::Exact::Velocity shove{};
+    shove.x = impulse, shove.y = -impulse;
+    world.apply_impulse(body, shove);
+  } else {
+    typename S::Wrench force{};
+    force.force_x = -impulse / scene_->duration, force.force_y = impulse / scene_->duration;
+    world.set_force(body, force);
+  }
+}
+
 template <class S>
 StepResult Trial<S>::step(BasicWorld<S>& world, int k) const {
-  const StepResult result = world.step(scene_->step);
+  if (asked_->changes) change(world, k);
+  const StepResult result = world.step(length_of_step(k));
   if (asked_->sabotage)
     asked_->sabotage(*scene_, k, [&](int body, double impulse) {
       typename S::Exact::Velocity shove{};
@@ -204,7 +232,7 @@ std::optional<Verdict> Trial<S>::look(BasicWorld<S>& world, int k) {
     return verdict(Outcome::broken, "finite", "a pose, a velocity or the energy is no number", 0, 0, k);
   const Gap gap = gap_now(world);
   const Motion now = motion_of(world);
-  accounts_->step(now, spring_rows(world), frame.energy, operations_, world.step_counts().taken);
+  accounts_->step(now, spring_rows(world), frame.energy, operations_, world.step_counts().taken, length_of_step(k));
   if (scene_->settings.drift == Drift::projection && scene_->settings.solver == Solver::direct &&
       !(gap.share <= held_tolerance<T>))
     return verdict(excuse(world) ? Outcome::limited : Outcome::broken, excuse(world) ? excuse(world) : "C",
@@ -285,6 +313,7 @@ Verdict Trial<S>::run() {
   if (!(gap.share <= start_tolerance<T>))
     return verdict(Outcome::refused, "the start is not on the joints", "", gap.share, start_tolerance<T>);
   laws_ = laws_of(*scene_);
+  if (asked_->changes) laws_.forget_what_is_kept();
   independence_ = independence(system_matrix(world), 8 * std::numeric_limits<T>::epsilon());
   middle_ = end_ = world.snapshot();
   Verdict seen = watch(world);

@@ -34,8 +34,10 @@ using Push = std::function<void(int body, double impulse)>;
 using Sabotage = std::function<void(const Scene& scene, int step, const Push& push)>;
 
 struct Asked {
-  bool bits = true;     // also repeats the run in two threads at once and from a snapshot
-  int refinements = 4;  // how often a step is divided by four after a violation
+  bool bits = true;      // also repeats the run in two threads at once and from a snapshot
+  bool varying = false;  // the steps' lengths vary between a fifth of the scene's step and all of it
+  bool changes = false;  // impulses, forces and the loss of a joint, while running
+  int refinements = 4;   // how often a step is divided by four after a violation
   Sabotage sabotage;
 };
 

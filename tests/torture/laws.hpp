@@ -13,6 +13,7 @@ struct Laws {
   bool energy_falls = false;                // no sources
   bool may_contradict = false;              // a motion is prescribed and may be blocked
   bool smooth = false;                      // no impact, friction or switch: a short enough step resolves the motion
+  void forget_what_is_kept() { linear = angular = {}, energy_kept = energy_falls = false; }
   bool momentum() const { return linear[0] || linear[1] || linear[2] || angular[0] || angular[1] || angular[2]; }
 };
 

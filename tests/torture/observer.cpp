@@ -75,11 +75,28 @@ Accounts::Accounts(const Motion& start, std::vector<SpringRow> springs, double e
       springs_(std::move(springs)),
       last_(start) {}
 
+// The torques that a first-order step leaves: it corrects the poses by d, x1 = x0 + h v1 + d, at their velocities, and
+// the impulses of the correction, d / h, act at the end of the step along the directions of its start. A body has moved
+// by h v and turned by h w since then: d x m v + h v x m dv + h w x dL.
+double torques_of_corrections(const Motion& before, const Motion& now, double h) {
+  double sum = 0;
+  for (std::size_t i = 0; i < now.bodies.size(); ++i) {
+    const BodyMotion &was = before.bodies[i], &is = now.bodies[i];
+    std::array<double, 3> d, dv, dL;
+    for (std::size_t k = 0; k < 3; ++k) {
+      d[k] = is.x[k] - was.x[k] - h * is.v[k];
+      dv[k] = is.v[k] - was.v[k], dL[k] = is.spin[k] - was.spin[k];
+    }
+    sum += is.mass * norm(is.v) * (norm(d) + h * norm(dv)) + h * norm(is.w) * norm(dL);
+  }
+  return sum;
+}
+
 // Per step: (|dv| (|dv| + |h F|) + missed_work) rho^(p-1), where rho is the change of acceleration in a step relative
 // to the largest so far. dv does not show joint forces against the turning of a tensor, so the larger dv, with or
 // without that turning, counts.
 void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations,
-                    long long taken) {
+                    long long taken, double h) {
   const VelocityChange d = change(last_, now);
   pushed_ = std::max(pushed_, constant_ + push_of(springs, substep_));
   const double size = std::sqrt(square(now, d));
@@ -107,6 +124,7 @@ void Accounts::step(const Motion& now, std::vector<SpringRow> springs, double en
                         (now.linear_size + now.spin_size + largest_change_ / step_ * now.root_mass);
   order_error_ += chosen;
   angular_order_ += chosen * (largest_speed_ > 0 ? now.angular_size / (largest_speed_ * largest_speed_) : 0);
+  if (order_ == 1) angular_order_ += torques_of_corrections(last_, now, h);
   for (const BodyMotion& body : now.bodies) farthest_ = std::max(farthest_, norm(body.x));
   // Positions are rounded too, and forces do work on the rounding errors.
   round_off_ += operations * epsilon_ * (largest_energy_ + pushed_ / step_ * now.root_mass * farthest_);

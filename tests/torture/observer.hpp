@@ -72,7 +72,7 @@ struct Gap {
 template <class S>
 Gap gap_of(const BasicWorld<S>& world, const Scene& scene, const RowSizes& sizes, double slack = 0) {
   Gap gap;
-  for (int j = 0; j < world.joint_count(); ++j) {
+  for (int j = 0; j < static_cast<int>(scene.joints.size()); ++j) {
     const auto& size = sizes.of_joint[static_cast<std::size_t>(j)];
     if (size.empty() || world.broken(j) || scene.joints[static_cast<std::size_t>(j)].definition.soft) continue;
     const std::vector<double> C = world.position_error(j);
@@ -93,8 +93,9 @@ class Accounts {
  public:
   Accounts(const Motion& start, std::vector<SpringRow> springs, double energy, const Scene& scene, double epsilon);
 
-  // `taken`: adaptive steps so far.
-  void step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations, long long taken);
+  // `taken`: adaptive steps so far; h: the length of the step.
+  void step(const Motion& now, std::vector<SpringRow> springs, double energy, double operations, long long taken,
+            double h);
 
   // For RATTLE plus the distance to the energy that its steps conserve, h^2 (v'V''v / 12 - F'M^-1 F / 24).
   double order_error() const {  // [J]

@@ -52,18 +52,6 @@ std::vector<SpringRow> spring_rows(BasicWorld<S>& world) {
   std::vector<SpringRow> springs;
   for (const auto& batch : state.batches)
     if (batch->law && batch->law->force) add_spring_rows(state, *batch, springs);
-  for (auto spring : state.springs) {
-    const auto a = static_cast<std::size_t>(spring.body_a), b = static_cast<std::size_t>(spring.body_b);
-    const auto stretch = S::stretch(spring, state.bodies.pose[a], state.bodies.pose[b]);
-    const auto on_a = S::pull_on_a(stretch, 1), on_b = S::pull_on_b(stretch, 1);
-    spring.damping = 0;
-    SpringRow row{-1, double(stretch.length), 0, -double(S::tension(spring, stretch, {}, {})), spring.stiffness, 0};
-    spring.stiffness = 0, spring.damping = 1;
-    row.rate = S::tension(spring, stretch, state.bodies.velocity[a], state.bodies.velocity[b]);
-    row.mass = S::dot(on_a, S::weighted(state.bodies.inverse_mass[a], on_a)) +
-               S::dot(on_b, S::weighted(state.bodies.inverse_mass[b], on_b));
-    springs.push_back(row);
-  }
   // Slots change places when a joint breaks.
   std::stable_sort(springs.begin(), springs.end(),
                    [](const SpringRow& a, const SpringRow& b) { return a.joint < b.joint; });

@@ -22,7 +22,13 @@ struct Options {
   Wish wish;
   std::string method, keep, scene;
   int dimension = 0;
-  bool no_bits = false, no_shrink = false, print = false;
+  bool no_bits = false, no_shrink = false, print = false, varying = false, changes = false;
+
+  Asked asked() const {
+    Asked asked;
+    asked.bits = !no_bits, asked.varying = varying, asked.changes = changes;
+    return asked;
+  }
 };
 
 // One or more of "direct", "rattle", "float", ...
@@ -55,7 +61,7 @@ void report(const Options& options, std::uint64_t seed, const Scene& scene, cons
   fmt::print("\nBROKEN {}\n  seed {:#x}, {}\n", told(verdict), seed, way_of(scene));
   std::fflush(stdout);  // shrinking may take a while
   if (options.no_shrink) return;
-  Asked asked;
+  Asked asked = options.asked();
   asked.bits = verdict.what.starts_with("bits");
   Shrunk small = shrink(scene, verdict, asked);
   small.scene.title = fmt::format("seed {:#x}: {}", seed, small.verdict.what);
@@ -77,9 +83,7 @@ void say(const Verdict& verdict) {
 
 int judge_file(const Options& options) {
   const Scene scene = read_scene(options.scene);
-  Asked asked;
-  asked.bits = !options.no_bits;
-  const Verdict verdict = judge(scene, asked);
+  const Verdict verdict = judge(scene, options.asked());
   say(verdict);
   return verdict.broken();
 }
@@ -88,8 +92,7 @@ int torture(const Options& options) {
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   Tally tally;
-  Asked asked;
-  asked.bits = !options.no_bits;
+  const Asked asked = options.asked();
   for (int k = 0; options.seconds > 0 ? passed() < options.seconds : k < options.count; ++k) {
     const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(k);
     const Mechanism mechanism = generate(seed, options.wish);
@@ -121,6 +124,8 @@ int main(int count, char** arguments) {
   app.add_option("--method", options.method, "solver, integrator, precision: any of them, as in \"direct float\"");
   app.add_option("--keep", options.keep, "a folder for the scenes in which something breaks");
   app.add_option("--scene", options.scene, "judge this scene and no other");
+  app.add_flag("--varying", options.varying, "the lengths of the steps vary");
+  app.add_flag("--changes", options.changes, "impulses, forces and the loss of a joint, while running");
   app.add_flag("--no-bits", options.no_bits, "without repetitions: three times as fast");
   app.add_flag("--no-shrink", options.no_shrink);
   app.add_flag("--print", options.print, "every scene");

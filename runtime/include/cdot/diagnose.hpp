@@ -18,6 +18,16 @@ struct Diagnosis {
     std::vector<int> joints;  // the row's joint and the joints of the other rows, ascending
     double missed = 0;        // [m, rad]: part of C that no small motion of the bodies removes
     bool conflicting = false;
+    // [m/s^2, rad/s^2] The row is redundant in this pose only, where branches of the motion cross, and the velocities
+    // follow none of them: no acceleration of the bodies keeps the row. This is what it misses.
+    double undecided = 0;
+  };
+  // A row that is nearly a combination of others: an error of it moves bodies by more than 200 times that error. In a
+  // structure without mobility such a row is all that locks it: the structure is rigid but for a small misfit.
+  struct NearlyRedundant {
+    Row row;
+    double per_way = 0;  // change of C by a way of 1 m (or an arc of 1 m) of `body`
+    int body = -1;       // that moves most
   };
   // The fastest small oscillation about the present motion that the joints allow. It counts the forces that a step
   // evaluates at its start: gravity, springs between points, and the joints' tensions, whose directions turn with the
@@ -36,6 +46,8 @@ struct Diagnosis {
     double smallest_pivot = 1;  // of L D L^T of that K, over its independent rows
     Row weakest;                // row of that pivot
     std::vector<Redundant> redundant;
+    std::vector<NearlyRedundant> nearly_redundant;
+    int mobility = 0;  // velocities that the rows leave free
     Stiffest stiffest;
     double lightest = 0, heaviest = 0;  // [kg]
     double fastest_spin = 0;            // [rad/s]

@@ -75,7 +75,8 @@ int add_effect(BasicWorld<S>& world, int joint, std::string_view coordinate, con
 template <class S, class Effect>
 void set_effect(BasicWorld<S>& world, int joint, int number, const Effect& effect);
 
-// The joint breaks after the first step in which the norm of its row forces exceeds the load [N, N m].
+// The joint breaks after the first step in which the norm of its row forces exceeds the load [N, N m]. The direct
+// solver shares a load among redundant joints; of several overloaded joints that are connected, one breaks per substep.
 template <class S>
 void set_breaking_load(BasicWorld<S>& world, int joint, double load);
 

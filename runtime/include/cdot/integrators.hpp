@@ -34,8 +34,9 @@ inline constexpr std::array integrator_rows{
     //                                          order, level,                stiffens, projects, springs, symmetric, stable
     // Symplectic Euler: cheap.
     IntegratorRow{Integrator::euler,    "euler",    1, Level::velocity,     false,    false,    false,   false,     2},
-    // Linearly implicit in the stiffness from tension: light chains under heavy loads stay stable.
-    IntegratorRow{Integrator::implicit, "implicit", 1, Level::velocity,     true,     false,    false,   false,     2},
+    // The implicit midpoint rule: light chains under heavy loads and stiff springs stay stable, energy and momentum are
+    // kept. With sweeps, or without the projection, linearly implicit Euler.
+    IntegratorRow{Integrator::implicit, "implicit", 2, Level::velocity,     true,     false,    false,   false,     2},
     // RATTLE keeps C and Cdot to round-off.
     IntegratorRow{Integrator::rattle,   "rattle",   2, Level::velocity,     false,    true,     true,    true,      2},
     // Runge-Kutta on accelerations; poses and velocities are projected after each step.

@@ -97,36 +97,6 @@ struct Planar {
     return v.x * v.x + v.y * v.y < speed * speed && std::fabs(v.w) < speed;
   }
 
-  // A spring with damping from a point of body a to a point of body b, given in their frames.
-  struct PointSpring {
-    int body_a, body_b;
-    T ax, ay, bx, by;
-    T stiffness, rest_length, damping;
-  };
-  static PointSpring point_spring(const SpringDefinition& d) {
-    return {d.body_a, d.body_b, T(d.ax), T(d.ay), T(d.bx), T(d.by), T(d.stiffness), T(d.rest_length), T(d.damping)};
-  }
-  // Length, direction from a to b, and the arms, for the spring's force and energy.
-  struct Stretch {
-    T length, x, y;  // direction of length 1; zero where the points coincide
-    T arm_a, arm_b;  // r x direction: the lever arms of the tension
-  };
-  static Stretch stretch(const PointSpring& spring, const Pose& a, const Pose& b) {
-    const T ra_x = a.c * spring.ax - a.s * spring.ay, ra_y = a.s * spring.ax + a.c * spring.ay;
-    const T rb_x = b.c * spring.bx - b.s * spring.by, rb_y = b.s * spring.bx + b.c * spring.by;
-    const T dx = (b.x - a.x) + (rb_x - ra_x), dy = (b.y - a.y) + (rb_y - ra_y);
-    const T length = std::sqrt(dx * dx + dy * dy), scale = inverse(length);
-    const T x = dx * scale, y = dy * scale;
-    return {length, x, y, ra_x * y - ra_y * x, rb_x * y - rb_y * x};
-  }
-  // The force on a along the direction; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
-  static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a, const Velocity& b) {
-    const T rate = s.x * (b.x - a.x) + s.y * (b.y - a.y) + s.arm_b * b.w - s.arm_a * a.w;
-    return spring.stiffness * (s.length - spring.rest_length) + spring.damping * rate;
-  }
-  static Velocity pull_on_a(const Stretch& s, T f) { return {f * s.x, f * s.y, f * s.arm_a}; }
-  static Velocity pull_on_b(const Stretch& s, T f) { return {-f * s.x, -f * s.y, -f * s.arm_b}; }
-
   // The part of a row block's d(J^T lambda)/dq that concerns one body's own rotation. The other parts stay out, which
   // conserves linear momentum.
   using Stiffness = T;

@@ -66,10 +66,17 @@ struct Settings {
   double sleep_speed = 1e-3;  // [m/s] and [rad/s] below which a body counts as resting
 };
 
+// True if `implicit` takes steps of the midpoint rule, which are stable at every length.
+constexpr bool takes_midpoint(const Settings& s) {
+  return row_of(s.integrator).stiffens && !sweeps(s.solver) && s.drift == Drift::projection;
+}
+
 // Why these methods exclude each other; nullptr if they do not.
 constexpr const char* mistake_in_methods(const Settings& s) {
   const bool accelerations = works_on_accelerations(s.integrator);
   if (s.local_error > 0 && !accelerations) return "local_error chooses the steps of rk4 and dop853 only";
+  if (s.local_error > 0 && s.local_error < 1e-20)
+    return "no step has an error below round-off: local_error must be at least 1e-20";
   if (row_of(s.integrator).projects && s.drift != Drift::projection)
     return "rattle includes the projection: it needs drift = projection";
   if (!accelerations) return nullptr;

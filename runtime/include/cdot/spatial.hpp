@@ -208,38 +208,6 @@ struct Spatial {
     return v.x * v.x + v.y * v.y + v.z * v.z < speed * speed && spatial::dot(angular(v), angular(v)) < speed * speed;
   }
 
-  // A spring with damping from a point of body a to a point of body b, given in their frames.
-  struct PointSpring {
-    int body_a, body_b;
-    Vector a, b;
-    T stiffness, rest_length, damping;
-  };
-  static PointSpring point_spring(const SpringDefinition& d) {
-    return {d.body_a,         d.body_b,    {T(d.ax), T(d.ay), T(d.az)}, {T(d.bx), T(d.by), T(d.bz)}, T(d.stiffness),
-            T(d.rest_length), T(d.damping)};
-  }
-  // Length, direction from a to b, and the arms.
-  struct Stretch {
-    T length;
-    Vector direction;     // of length 1; zero where the points coincide
-    Vector arm_a, arm_b;  // r x direction: the lever arms of the tension
-  };
-  static Stretch stretch(const PointSpring& spring, const Pose& a, const Pose& b) {
-    const Vector ra = spatial::to_world(a, spring.a), rb = spatial::to_world(b, spring.b);
-    const Vector d = Vector{b.x - a.x, b.y - a.y, b.z - a.z} + (rb - ra);
-    const T length = spatial::norm(d);
-    const Vector n = inverse(length) * d;
-    return {length, n, spatial::cross(ra, n), spatial::cross(rb, n)};
-  }
-  // The force on a along the direction; b gets the opposite. tension = stiffness (length - rest) + damping d(length)/dt
-  static T tension(const PointSpring& spring, const Stretch& s, const Velocity& a, const Velocity& b) {
-    const T rate = spatial::dot(s.direction, Vector{b.x - a.x, b.y - a.y, b.z - a.z}) +
-                   spatial::dot(s.arm_b, angular(b)) - spatial::dot(s.arm_a, angular(a));
-    return spring.stiffness * (s.length - spring.rest_length) + spring.damping * rate;
-  }
-  static Velocity pull_on_a(const Stretch& s, T f) { return impulse(f * s.direction, f * s.arm_a); }
-  static Velocity pull_on_b(const Stretch& s, T f) { return impulse(-f * s.direction, -f * s.arm_b); }
-
   // The part of a row block's d(J^T lambda)/dq that concerns one body's own rotation.
   using Stiffness = Symmetric;
   template <int width>

@@ -12,6 +12,7 @@ struct StepCounts {
   // Step ends that linearly implicit Euler took over: too many events, or no step short enough. With fixed steps also:
   // an error estimate above the motion itself even in the smallest parts.
   long long rescued = 0;
+  long long steered = 0;  // steps near a loss of rank of K, with projected stages
   long long retried = 0;  // failed steps that succeeded in parts
   long long direct = 0;   // of these: steps that needed the direct solver in place of the iterative one
   double shortest = std::numeric_limits<double>::infinity(), longest = 0;  // [s]

@@ -10,6 +10,7 @@ enum class StepProblem : char {
   bad_step,      // the step's length is not a finite number > 0
   not_finite,    // a pose or a velocity became infinite or NaN
   joints_apart,  // Newton did not converge, or left a larger C than the motion had
+  moved_far,     // the projection moves a body by more than the error of the joints explains
 };
 
 // The reaction of step() to a failed step, after the rollback.
@@ -24,11 +25,27 @@ struct StepResult {
   int island = -1;              // whose step failed
   int body = -1;                // the fastest in that step
   int joint = -1, row = -1;     // the likely culprit; -1: none
+  double misfit = 0;            // [m, rad] moved_far: error of the joints,
+  double moved = 0;             // [m] and the way of `body` that its projection takes; a rotation by its arc
   // How the step succeeded: number of parts; whether the direct solver replaced the iterative one.
   int parts = 1;
   bool direct = false;
 
   explicit operator bool() const { return problem == StepProblem::none; }
+};
+
+// The result of project(). True if all joints are satisfied.
+struct ProjectResult {
+  bool met = false;
+  // The joints are nearly redundant and contradict each other: closing them would move `body` by `moved`, far more than
+  // `misfit` explains. That is refused. The poses then satisfy the joints in the sense of least squares.
+  bool refused = false;
+  int joint = -1, row = -1;  // with the largest error before the projection
+  double misfit = 0;         // [m, rad], per second for velocities: that error
+  int body = -1;             // that would move most
+  double moved = 0;          // [m], [m/s]; a rotation by its arc
+
+  explicit operator bool() const { return met; }
 };
 
 // Describes a step that failed or needed a retry: the place and the cause, with the names of its body and its joint.

@@ -16,6 +16,7 @@
 #include <string_view>
 #include <vector>
 
+#include <cdot/balance.hpp>
 #include <cdot/joints.hpp>
 #include <cdot/kernel.hpp>
 #include <cdot/planar.hpp>
@@ -45,6 +46,14 @@ struct Inconsistency {
   double value;
 };
 
+// The row with the smallest pivot of K = L D L^T, as a share of its diagonal. Where it vanishes, K loses rank: the row
+// becomes redundant. joint is -1 if no factor is at hand.
+struct WeakestRow {
+  double share = 1;
+  int joint = -1;
+  int row = -1;
+};
+
 // S is a space: Planar<double>, Planar<float>, Spatial<double>, Spatial<float>; of long double: see cdot/spaces.hpp.
 template <class S>
 class BasicWorld {
@@ -67,15 +76,16 @@ class BasicWorld {
   int add_body(const BodyDefinition& definition);  // returns its index: 0, 1, ...
   int ground();                                    // the index of one static body at the origin, made by the first call
   int add_joint(const JointDefinition& definition);
+  // Adds a soft `distance` (of rest length 0: a soft `revolute` or `spherical`). Returns its number as a joint.
   int add_spring(const SpringDefinition& definition);
   void set_force(int body, const Wrench& force);
   void on_failure(OnFailure what);  // of step(); stop unless set
 
   // Joint rows that the present poses or velocities violate by more than the tolerance ([m] or [rad], and /s).
   std::vector<Inconsistency> inconsistencies(double tolerance) const;
-  // Projects the poses onto C = 0 and the velocities onto Cdot = 0 by the least mass-weighted change. Returns false if
-  // the projection fails because the joints contradict each other.
-  bool project(double tolerance);
+  // Projects the poses onto C = 0 and the velocities onto Cdot = 0 by the least mass-weighted change. Fails if the
+  // joints contradict each other. Refuses to move bodies far for a small error: see ProjectResult.
+  ProjectResult project(double tolerance);
   const std::vector<Note>& notes() const;
   // Analyses islands and sparsity patterns now. The next step() then allocates nothing.
   void prepare();
@@ -149,8 +159,13 @@ class BasicWorld {
   // included. A constant torque has a potential in the plane. In space it has none: its work is taken along the
   // shortest rotation from the first pose.
   double energy() const;
+  // The energy since the first step against the work done, and the momentum of free islands. Always kept; this call
+  // costs about as much as energy().
+  Balance balance() const;
   // Rows that the direct solver found redundant in its last factorisation.
   int redundant_rows() const;
+  // The weakest row of that factorisation.
+  WeakestRow weakest_row() const;
   // Counts of rk4 and dop853 since the World was made.
   const StepCounts& step_counts() const;
   int island_count() const;

@@ -115,6 +115,17 @@ Json island_json(const Scene& scene, const WorstOfIsland& worst) {
           {"spinning", named(island.spinning)}};
 }
 
+std::string losses_text(const Scene& scene, const std::vector<RankLoss>& losses) {
+  if (losses.empty()) return {};
+  std::string text = fmt::format("rank over the whole run: {}\n", rank_losses_text(scene, losses));
+  for (std::size_t k = 0; k < losses.size() && k < most_rows_listed; ++k)
+    text += fmt::format("  t = {:.4g} s      pivot {:.1e}, row {} of {}\n", losses[k].time, losses[k].row.share,
+                        losses[k].row.row, joint_name(scene, losses[k].row.joint));
+  if (losses.size() > most_rows_listed)
+    text += fmt::format("  and {} more, all in --json\n", losses.size() - most_rows_listed);
+  return text;
+}
+
 std::string diagnosis_text(const Scene& scene, const RunResult& result) {
   std::string text =
       fmt::format("{}\nmethod: {}\n", scene.title.empty() ? scene.file : scene.title, method_text(scene));
@@ -127,6 +138,7 @@ std::string diagnosis_text(const Scene& scene, const RunResult& result) {
     text += island_text(scene, result.diagnosis[k], static_cast<int>(k));
   if (result.diagnosis.size() > most_islands)
     text += fmt::format("and {} more islands, all in --json\n", result.diagnosis.size() - most_islands);
+  text += losses_text(scene, result.rank_losses);
   const std::vector<Concern> concerns = concerns_about(scene, result.diagnosis, false);
   for (const Concern& one : concerns) {
     text += fmt::format("{}: {}\n", one.warning ? "warning" : "note", one.what);
@@ -143,6 +155,7 @@ std::string diagnosis_json(const Scene& scene, const RunResult& result) {
                {"poses", result.diagnoses}, {"start", result.start}, {"time", result.time},
                {"islands", Json::array()}};
   for (const WorstOfIsland& one : result.diagnosis) json["islands"].push_back(island_json(scene, one));
+  json["rank_losses"] = rank_losses_json(scene, result.rank_losses);
   json["concerns"] = concerns_json(concerns_about(scene, result.diagnosis, false));
   json["failure"] = failure(scene, result);
   return json.dump(2) + "\n";
@@ -173,8 +186,9 @@ void add_options(Line& line, Options& options) {
 
 int show_matrix(const Options& options, const Scene& scene) {
   const SystemMatrix system = system_matrix(scene);
+  std::FILE* summary = summary_beside({options.svg});
   if (!options.svg.empty()) write_file(options.svg, matrix_svg(scene, system));
-  fmt::print("{}", options.json ? matrix_json(scene, system) : matrix_text(scene, system));
+  fmt::print(summary, "{}", options.json ? matrix_json(scene, system) : matrix_text(scene, system));
   return well;
 }
 

@@ -18,8 +18,14 @@ constexpr int most_columns = 60, most_rows = 60, most_bodies = 12;
 // The cosine of a quarter turn shows as 0, not 6e-17. The JSON has all digits.
 double without_round_off(double entry) { return std::fabs(entry) < 1e-15 ? 0.0 : entry; }
 
+// Springs follow the joints in the World.
 const SceneJoint& source_of(const Scene& scene, const SystemMatrix::Joint& joint) {
-  return scene.joints[static_cast<std::size_t>(joint.joint)];
+  static const SceneJoint spring = [] {
+    SceneJoint of_world;
+    of_world.name = "spring", of_world.definition.type = "distance";
+    return of_world;
+  }();
+  return joint.joint < std::ssize(scene.joints) ? scene.joints[static_cast<std::size_t>(joint.joint)] : spring;
 }
 
 const std::string& body_name(const Scene& scene, const SystemMatrix& system, int at) {
@@ -159,8 +165,7 @@ constexpr const char* palette[] = {"#3b82f6", "#f59e0b", "#10b981", "#ef4444",
 const char* colour(const ConflictGraph& graph, std::size_t joint) { return palette[graph.colour[joint] % 8]; }
 
 std::string name_of(const Scene& scene, const SystemMatrix& system, std::size_t joint) {
-  const auto index = static_cast<std::size_t>(system.joints[joint].joint);
-  return escaped(scene.joints[index].name);
+  return escaped(source_of(scene, system.joints[joint]).name);
 }
 
 // A square per entry that is not 0, the diagonal block of each joint in its colour, lines between joints.

@@ -23,7 +23,7 @@ void add_number(Line& line, SceneOptions& options, const std::string& flag, cons
   const std::function change = [&options](Number x) {
     options.changes.push_back([x](Scene& scene) { (scene.*....*path) = x; });
   };
-  line.add(flag, change, meaning).positive();
+  line.add(flag, change, meaning).positive().repeatable();
 }
 
 template <const auto& table, auto... path>
@@ -31,7 +31,7 @@ void add_choice(Line& line, SceneOptions& options, const std::string& flag, cons
   const std::function change = [&options](const std::string& name) {
     options.changes.push_back([name](Scene& scene) { (scene.*....*path) = method_called(table, name); });
   };
-  line.add(flag, change, meaning).one_of(names_of(table));
+  line.add(flag, change, meaning).one_of(names_of(table)).repeatable();
 }
 
 constexpr auto settings = &Scene::settings;
@@ -51,6 +51,7 @@ constexpr struct {
     {"drift",       add_choice<drifts, settings, &Settings::drift>},
     {"iterations",  add_number<settings, &Settings::iterations>},
     {"substeps",    add_number<settings, &Settings::substeps>},
+    {"on_failure",  add_choice<failure_answers, &Scene::on_failure>},
 };
 // clang-format on
 

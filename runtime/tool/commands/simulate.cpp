@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "runtime/tool/commands/options.hpp"
+#include "runtime/tool/run/advice.hpp"
 #include "runtime/tool/run/output.hpp"
 #include "runtime/tool/viewer/viewer.hpp"
 
@@ -14,7 +15,7 @@ constexpr int poses_diagnosed = 8;
 
 struct Options {
   SceneOptions scene;
-  double accuracy = 0, tolerance = 0, every = 0;
+  double accuracy = 0, tolerance = 0, energy_tolerance = 0, every = 0;
   bool project = false, json = false;
   std::string csv, html, svg, save_state, from_state;
   std::vector<double> times;
@@ -27,15 +28,20 @@ void add_options(Line& line, Options& options) {
   add_method(line, options.scene);
   line.add("--accuracy", &options.accuracy, "choose a method that reaches this trajectory error [m, rad]")
       .positive()
+      .repeatable()
       .excludes("--integrator")
       .excludes("--local-error")
       .excludes("--solver")
       .excludes("--kernels")
       .excludes("--precision");
   line.add("--tolerance", &options.tolerance, "joint error above which the run has failed [m, rad]").positive();
+  line.add("--energy-tolerance", &options.energy_tolerance,
+           "share of the motion's energies and momenta that the method may lose; of energies that it makes up a tenth")
+      .positive();
   line.add("--project", &options.project, "project an inconsistent start onto C = 0");
   line.add("-o,--output", &options.csv,
-           "write a CSV file: time, then x, y, angle, vx, vy, omega of each body by name; in space x, y, "
+           "write a CSV file (- is standard output, here and below): time, then x, y, angle, vx, vy, omega of each "
+           "body by name; in space x, y, "
            "z, e0..e3, vx, vy, vz, wx, wy, wz");
   line.add("--every", &options.every, "interval of CSV rows [s]; without it, one per step").positive();
   line.add("--times", &options.times, "CSV rows at these times: 0,0.5,2")
@@ -74,21 +80,25 @@ RunOptions run_options(const Options& options, const Scene& scene, OutputFile* c
 int run(const Options& options) {
   Scene scene = scene_of(options.scene);
   if (options.tolerance > 0) scene.tolerance = options.tolerance;
+  if (options.energy_tolerance > 0) scene.energy_tolerance = options.energy_tolerance;
   if (options.project) scene.project = true;
   if (options.accuracy > 0) scene.accuracy = options.accuracy;
+  std::FILE* summary = summary_beside({options.csv, options.html, options.svg, options.save_state});
   std::optional<OutputFile> csv;
   if (!options.csv.empty()) csv.emplace(options.csv);
 
   std::string warnings;
-  const RunResult result = simulate(scene, run_options(options, scene, csv ? &*csv : nullptr), warnings);
+  const RunOptions asked = run_options(options, scene, csv ? &*csv : nullptr);
+  RunResult result = simulate(scene, asked, warnings);
   fmt::print(stderr, "{}", warnings);
   if (result.interrupted) return stopped;
+  if (needs_advice(scene, result)) result.advice = find_advice(scene, asked, result);
 
   if (csv) csv->commit();
   if (!result.state.empty()) write_file(options.save_state, result.state.text());
   if (!options.html.empty()) write_file(options.html, html_page(scene, result.film));
   if (!options.svg.empty()) write_file(options.svg, svg_still(scene, result.film));
-  fmt::print("{}", options.json ? summary_json(scene, result) : summary_text(scene, result));
+  fmt::print(summary, "{}", options.json ? summary_json(scene, result) : summary_text(scene, result));
   return failure(scene, result).empty() ? well : answer_is_no;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdio>
+#include <initializer_list>
 #include <string>
 #include <string_view>
 
@@ -12,8 +13,8 @@
 
 namespace cdot {
 
-// Writes a temporary file and renames it when it is complete; writes to a device or a pipe directly. Throws cdot::Error
-// if the disk refuses.
+// Writes a temporary file and renames it when it is complete; writes to a device or a pipe directly. "-" is standard
+// output. Throws cdot::Error if the disk refuses.
 class OutputFile {
  public:
   explicit OutputFile(const std::string& path);
@@ -31,6 +32,8 @@ class OutputFile {
 };
 
 void write_file(const std::string& path, std::string_view text);
+// Where the summary goes: to standard output, unless one of the outputs takes that. Throws Error if two of them do.
+std::FILE* summary_beside(std::initializer_list<std::string_view> outputs);
 std::string read_file(const std::string& path);
 
 // time, then the state_columns() of every body by name: "rod.x". Numbers read back to the same bits.

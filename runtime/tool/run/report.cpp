@@ -4,17 +4,29 @@
 #include <cdot/methods.hpp>
 
 #include "runtime/text/json.hpp"
+#include "runtime/tool/run/advice.hpp"
+#include "runtime/tool/run/balance_report.hpp"
 #include "runtime/tool/run/simulate.hpp"
 
 namespace cdot {
 
 namespace {
 
-std::string failed_step_text(const Scene& scene, const StepResult& step) {
-  return fmt::format("{}. Likely fix: {}",
-                     in_words(step, fmt::format("body \"{}\"", name_in(scene.bodies, step.body)),
-                              fmt::format("joint \"{}\"", name_in(scene.joints, step.joint))),
-                     likely_fix(step.problem, scene.on_failure));
+// Springs follow the joints in the World.
+std::string joint_in_words(const Scene& scene, int joint) {
+  return joint < std::ssize(scene.joints) ? fmt::format("joint \"{}\"", name_in(scene.joints, joint)) : "a spring";
+}
+
+// The advice that was tried; without one, what usually helps.
+std::string fix_of(const RunResult& result, const std::string& usual) {
+  return result.advice ? in_words(*result.advice) : "Likely fix: " + usual;
+}
+
+std::string failed_step_text(const Scene& scene, const RunResult& result, const StepResult& step) {
+  return fmt::format(
+      "{}. {}",
+      in_words(step, fmt::format("body \"{}\"", name_in(scene.bodies, step.body)), joint_in_words(scene, step.joint)),
+      fix_of(result, likely_fix(step.problem, scene.on_failure)));
 }
 
 text::Json failed_step_json(const Scene& scene, const StepResult& step) {
@@ -30,14 +42,17 @@ text::Json failed_step_json(const Scene& scene, const StepResult& step) {
 }  // namespace
 
 std::string failure(const Scene& scene, const RunResult& result) {
-  if (result.failed_step) return failed_step_text(scene, *result.failed_step);
+  if (result.failed_step) return failed_step_text(scene, result, *result.failed_step);
   if (!result.finite)
-    return fmt::format("unstable: the state is not finite at t = {:.6g} s. Likely fix: a shorter step", result.time);
+    return fmt::format("unstable: the state is not finite at t = {:.6g} s. {}", result.time,
+                       fix_of(result, "a shorter step"));
   if (result.worst_error > scene.tolerance) {
-    return fmt::format(
-        "|C| of joint \"{}\" is {:.3g} at t = {:.6g} s, above the tolerance of {:.3g}. Likely fix: a shorter step",
-        result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance);
+    return fmt::format("|C| of joint \"{}\" is {:.3g} at t = {:.6g} s, above the tolerance of {:.3g}. {}",
+                       result.worst_joint, result.worst_error, result.worst_error_time, scene.tolerance,
+                       fix_of(result, "a shorter step"));
   }
+  if (const std::string lost = balance_failure(scene, result); !lost.empty())
+    return fmt::format("{}. {}", lost, fix_of(result, "a shorter step"));
   if (result.choice && !result.choice->reached)
     return fmt::format("accuracy {:.1e} not reached: two runs differ by {:.1e}. Likely fix: a shorter run",
                        scene.accuracy, result.choice->achieved);
@@ -92,7 +107,13 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
   }
   text += fmt::format("  energy          {:.6g} J at the start, {:.6g} J at the end, largest change {:.3g} J\n",
                       result.energy_start, result.energy_end, result.energy_drift);
+  text += balance_text(result.balance);
   if (result.redundant_rows > 0) text += fmt::format("  redundant rows  {}\n", result.redundant_rows);
+  const std::string losses = rank_losses_text(scene, result.rank_losses);
+  if (!losses.empty()) text += fmt::format("  rank            {}\n", losses);
+  if (result.counts.steered > 0)
+    text +=
+        fmt::format("                  {} steps near a loss of rank took projected stages\n", result.counts.steered);
   if (result.counts.retried > 0)
     text += fmt::format(
         "  retried         {} failed step{} succeeded in shorter parts, {} of them with the direct solver\n",
@@ -101,9 +122,21 @@ std::string summary_text(const Scene& scene, const RunResult& result) {
   for (const std::string& note : result.notes) text += fmt::format("  note            {}\n", note);
   for (const Concern& concern : concerns_about(scene, result.diagnosis, true))
     text += fmt::format("  warning         {}. Likely fix: {}\n", concern.what, concern.fix);
+  if (const std::string lost = balance_warning(scene, result); !lost.empty())
+    text += fmt::format("  warning         {}. {}\n", lost, fix_of(result, "a shorter step"));
   const std::string why = failure(scene, result);
   if (!why.empty()) text += fmt::format("  FAILED          {}\n", why);
   return text;
+}
+
+text::Json rank_losses_json(const Scene& scene, const std::vector<RankLoss>& losses) {
+  text::Json json = text::Json::array();
+  for (const RankLoss& one : losses)
+    json.push_back({{"time", one.time},
+                    {"pivot", one.row.share},
+                    {"joint", name_in(scene.joints, one.row.joint)},
+                    {"row", one.row.row}});
+  return json;
 }
 
 std::string summary_json(const Scene& scene, const RunResult& result) {
@@ -127,7 +160,10 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
       {"energy_start", result.energy_start},
       {"energy_end", result.energy_end},
       {"energy_drift", result.energy_drift},
+      {"balance", balance_json(result.balance)},
+      {"warning", balance_warning(scene, result)},
       {"redundant_rows", result.redundant_rows},
+      {"rank_losses", rank_losses_json(scene, result.rank_losses)},
       {"retried", {{"steps", result.counts.retried}, {"direct", result.counts.direct}}},
       {"broken_joints", result.broken_joints},
       {"notes", result.notes},
@@ -137,7 +173,9 @@ std::string summary_json(const Scene& scene, const RunResult& result) {
     json["own_steps"] = {{"taken", result.counts.taken},
                          {"rejected", result.counts.rejected},
                          {"events", result.counts.events},
-                         {"rescued", result.counts.rescued}};
+                         {"rescued", result.counts.rescued},
+                         {"steered", result.counts.steered}};
+  if (result.advice) json["advice"] = advice_json(*result.advice);
   if (result.failed_step) json["failed_step"] = failed_step_json(scene, *result.failed_step);
   if (result.choice) json["accuracy"] = choice_json(scene, *result.choice);
   return json.dump(2) + "\n";

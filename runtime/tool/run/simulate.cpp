@@ -37,8 +37,9 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
   result.redundant_rows = world.redundant_rows();
   result.counts = world.step_counts();
   for (const Note& note : world.notes()) {
-    const std::string& joint = scene.joints[static_cast<std::size_t>(note.joint)].name;
-    result.notes.push_back(fmt::format("joint \"{}\" {}", joint, note.text));
+    const bool spring = note.joint >= std::ssize(scene.joints);  // springs follow the joints
+    const std::string joint = spring ? "a spring" : fmt::format("joint \"{}\"", name_in(scene.joints, note.joint));
+    result.notes.push_back(fmt::format("{} {}", joint, note.text));
   }
   result.interrupted = Interrupt::asked();
 }
@@ -134,9 +135,12 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   Frame before = frame_of(world, result.start, bodies), after = before;
   result.energy_start = before.energy;
   auto next_diagnosis = options.diagnose_times.begin();
+  RankWatch rank;
   for (long long k = 0;; ++k) {
     judge(scene, after, result);
+    if (k > 0) rank.look(after.time, world.weakest_row());
     if (!result.finite) break;
+    result.balance.look(world.balance());
     if (every_step) options.row(after);
     rows.step(before, after);
     film.step(before, after);
@@ -163,8 +167,27 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
       progress.show(fmt::format("{:3.0f} %  {:.4g} s of {:.4g} s", 100 * after.time / scene.duration, after.time,
                                 scene.duration));
   }
+  rank.end();
+  result.rank_losses = rank.found();
   finish(scene, world, result);
   return result;
+}
+
+// Why the start was not projected onto the joints; empty if it was.
+std::string refusal(const Scene& scene, const ProjectResult& result) {
+  if (result) return {};
+  if (!result.refused)
+    return fmt::format("{}: warning: the start could not be projected onto C = 0: joints contradict each other\n",
+                       scene.file);
+  return fmt::format(
+      "{}: warning: the projection of the start was refused: row {} of {} is off by {:.3g} (m or rad, or per s), and "
+      "to "
+      "close it {} would move by {:.3g} (m, or m/s). The joints of that loop nearly contradict each other; they share "
+      "the "
+      "error.\n"
+      "  fix: correct the anchors, lengths or angles of the loop, or remove one of its joints\n",
+      scene.file, result.row + 1, joint_name(scene, result.joint), result.misfit, body_name(scene, result.body),
+      result.moved);
 }
 
 }  // namespace
@@ -172,10 +195,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
 template <class S>
 BasicWorld<S> world_at_start(const Scene& scene, std::string& warnings) {
   BasicWorld<S> world = build_world_in<S>(scene);
-  if (scene.project && !world.project(start_projected<typename S::Scalar>)) {
-    warnings += fmt::format("{}: warning: the start could not be projected onto C = 0: joints contradict each other\n",
-                            scene.file);
-  }
+  if (scene.project) warnings += refusal(scene, world.project(start_projected<typename S::Scalar>));
   warnings += inconsistency_report(scene, world, start_tolerance<typename S::Scalar>);
   world.prepare();
   return world;

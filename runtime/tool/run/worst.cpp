@@ -2,6 +2,7 @@
 #include "runtime/tool/run/worst.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "runtime/text/json.hpp"
 
@@ -18,6 +19,8 @@ void add_island(const Diagnosis::Island& now, double time, WorstOfIsland& worst)
     so_far.rows = now.rows, so_far.rank = now.rank, so_far.redundant = now.redundant;
     worst.rank_time = time;
   }
+  if (now.mobility < so_far.mobility || (now.mobility == so_far.mobility && so_far.nearly_redundant.empty()))
+    so_far.mobility = now.mobility, so_far.nearly_redundant = now.nearly_redundant;
   if (now.condition > so_far.condition) {
     so_far.condition = now.condition, so_far.smallest_pivot = now.smallest_pivot, so_far.weakest = now.weakest;
     worst.condition_time = time;
@@ -42,22 +45,21 @@ std::string joint_name(const Scene& scene, int joint) {
 }
 
 void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>& worst) {
+  const auto first = [](const WorstOfIsland& one) { return one.island.bodies.front(); };
   for (const Diagnosis::Island& island : now.islands) {
-    const auto known = std::find_if(worst.begin(), worst.end(), [&](const WorstOfIsland& one) {
-      return !one.island.bodies.empty() && !island.bodies.empty() && one.island.bodies.front() == island.bodies.front();
-    });
-    if (known != worst.end()) add_island(island, time, *known);
-    else worst.push_back({island, time, time, time, time});
+    const auto known = std::ranges::lower_bound(worst, island.bodies.front(), {}, first);
+    if (known != worst.end() && first(*known) == island.bodies.front()) add_island(island, time, *known);
+    else worst.insert(known, {island, time, time, time, time});
   }
 }
 
 std::vector<Concern> concerns_about(const Scene& scene, const std::vector<WorstOfIsland>& worst, bool warnings_only) {
   std::vector<Concern> all;
+  std::set<Concern> listed;
   for (const WorstOfIsland& one : worst)
     for (Concern& concern : concerns_about(one.island, scene.settings, scene.single,
                                            scene.step / scene.settings.substeps, names_of(scene)))
-      if ((concern.warning || !warnings_only) && std::find(all.begin(), all.end(), concern) == all.end())
-        all.push_back(std::move(concern));
+      if ((concern.warning || !warnings_only) && listed.insert(concern).second) all.push_back(std::move(concern));
   return all;
 }
 

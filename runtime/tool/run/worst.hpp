@@ -15,7 +15,7 @@ struct WorstOfIsland {
   double condition_time = 0, rank_time = 0, stiffest_time = 0, spin_time = 0;
 };
 
-// Adds the diagnosis at one time. Islands are identified by their first body.
+// Adds the diagnosis at one time. Islands are identified by their first body, and `worst` is in its order.
 void add_diagnosis(const Diagnosis& now, double time, std::vector<WorstOfIsland>& worst);
 
 // With the names of the scene, each once. `warnings_only`: without notes.

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <fmt/format.h>
 #include <limits>
+#include <span>
 
 #include "runtime/tool/scene/scene.hpp"
 
@@ -26,11 +27,11 @@ void add_spring(BasicWorld<S>& world, SpringDefinition spring) {
 }
 
 // "C2 = -0.25, Cdot1 = -3": positions first; several rows are numbered.
-std::string rows_text(const std::vector<Inconsistency>& rows, int joint, std::size_t joint_rows) {
+std::string rows_text(std::span<const Inconsistency> rows, std::size_t joint_rows) {
   std::string list;
   for (const bool velocity : {false, true}) {
     for (const Inconsistency& row : rows) {
-      if (row.joint != joint || row.velocity != velocity) continue;
+      if (row.velocity != velocity) continue;
       const std::string number = joint_rows > 1 ? std::to_string(row.row + 1) : "";
       list += fmt::format("{}{}{} = {:.3g}", list.empty() ? "" : ", ", velocity ? "Cdot" : "C", number, row.value);
     }
@@ -98,10 +99,14 @@ std::string inconsistency_report(const Scene& scene, const BasicWorld<S>& world,
   std::string report;
   const std::vector<Inconsistency> rows = world.inconsistencies(tolerance);
   int violated = 0;
-  for (int joint = 0; joint < world.joint_count(); ++joint) {
+  std::size_t begin = 0, end = 0;  // the rows of one joint
+  for (; begin < rows.size(); begin = end) {
+    const int joint = rows[begin].joint;
+    while (end < rows.size() && rows[end].joint == joint) ++end;
+    if (++violated > most_violated) continue;
     const SceneJoint& source = scene.joints[static_cast<std::size_t>(joint)];
-    const std::string list = rows_text(rows, joint, world.joint_type(joint).row_kinds.size());
-    if (list.empty() || ++violated > most_violated) continue;
+    const std::string list =
+        rows_text(std::span(rows).subspan(begin, end - begin), world.joint_type(joint).row_kinds.size());
     report += scene.source->paragraph(
         "warning", source.where,
         fmt::format("the start violates {} \"{}\": {}", source.definition.type, source.name, list),

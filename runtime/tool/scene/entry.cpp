@@ -264,6 +264,8 @@ std::optional<double> number_in_text(std::string_view text, bool angle) {
 }  // namespace
 
 std::optional<double> Entry::plain_number(const toml::node& node, const std::string& key, Quantity quantity) {
+  // value<double>() has no value for whole numbers that a double rounds.
+  if (const auto* whole = node.as_integer()) return static_cast<double>(whole->get());
   if (node.is_number()) return node.value<double>();
   if (!node.is_string()) {
     wrong_type(node, key, "a number");

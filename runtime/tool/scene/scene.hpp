@@ -59,6 +59,7 @@ struct Scene {
   double step = 0.001;                     // [s]
   double accuracy = 0;                     // [m], [rad] that the run chooses a method for; 0: the method as set
   double tolerance = 0.01;                 // [m], [rad] joint error above which a run has failed
+  double energy_tolerance = 0.1;           // share of the energies that the method may lose
   OnFailure on_failure = OnFailure::stop;  // of a step
   bool project = false;                    // project an inconsistent start onto C = 0
   std::vector<SceneBody> bodies;

@@ -60,6 +60,7 @@ constexpr Key<Scene> top_keys[] = {
     {"sleep_after", "bodies sleep after this time at rest [s]; 0: never", "0", read_number<Sign::not_negative, settings, &Settings::sleep_after>},
     {"sleep_speed", "largest speed at rest [m/s, rad/s]", "0.001", read_number<Sign::positive, settings, &Settings::sleep_speed>},
     {"tolerance", "joint error above which the run has failed [m, rad]", "0.01", read_number<Sign::positive, &Scene::tolerance>},
+    {"energy_tolerance", "share of the motion's energies and momenta that the method may lose; of energies that it makes up a tenth", "0.1", read_number<Sign::positive, &Scene::energy_tolerance>},
     {"project", "project an inconsistent start onto C = 0", "false", read_flag<&Scene::project>},
     {"on_failure", "reaction to a step that fails", "stop", read_choice<failure_answers, &Scene::on_failure>, Where::everywhere, choices_of<failure_answers>},
 };

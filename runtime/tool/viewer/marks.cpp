@@ -58,7 +58,7 @@ class Painter {
         start_(places_of(drawing.view, film.front())) {}
 
   void joints() {
-    for (int joint = 0; joint < world_.joint_count(); ++joint) {
+    for (int joint = 0; joint < static_cast<int>(scene_.joints.size()); ++joint) {
       const JointType& type = world_.joint_type(joint);
       const std::vector<JointPoint> all = points(joint);
       for (const JointPoint& point : all) {

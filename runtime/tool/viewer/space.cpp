@@ -80,7 +80,7 @@ class SpacePainter {
       : scene_(scene), size_(size), world_(build_world_in<Spatial<double>>(scene)) {}
 
   SpaceDrawing draw() {
-    for (int joint = 0; joint < world_.joint_count(); ++joint) draw_joint(joint);
+    for (int joint = 0; joint < static_cast<int>(scene_.joints.size()); ++joint) draw_joint(joint);
     for (const SpringDefinition& spring : scene_.springs)
       drawing_.links.push_back({{spring.body_a, {spring.ax, spring.ay, spring.az}},
                                 {spring.body_b, {spring.bx, spring.by, spring.bz}},

@@ -81,9 +81,11 @@ TEST(Diagnose, StiffestMotionOfAPendulum) {
   }
 }
 
-// omega^2 = k (1 / m_a + 1 / m_b), at the lighter body.
+// omega^2 = k (1 / m_a + 1 / m_b), at the lighter body, for a method with explicit spring forces.
 TEST(Diagnose, StiffestMotionOfASpring) {
-  World<double> world(settings(Solver::direct));
+  Settings s = settings(Solver::direct);
+  s.integrator = Integrator::rattle;
+  World<double> world(s);
   const int heavy = world.add_body({.mass = 3, .inertia = 1}),
             light = world.add_body({.x = 2, .mass = 0.5, .inertia = 1});
   world.add_spring({.body_a = heavy, .body_b = light, .stiffness = 200, .rest_length = 2});
@@ -224,6 +226,51 @@ TEST(Diagnose, ChangesNothing) {
     add_limit(world, 2, "angle", {.lower = -0.1, .upper = 0.1});
   });
   check_that_looking_is_free<Spatial<float>>([](auto& world) { add_free_mechanism(world); });
+}
+
+// A parallelogram of cranks of 1 m, 2 m apart, starts flat. Its tips have the accelerations -w_a^2 and -w_b^2 along the
+// coupler, which turns at (w_b - w_a) / 2: its length asks for w_a^2 - w_b^2 + 2 ((w_b - w_a) / 2)^2 = 0, that is
+// w_b = w_a or w_b = -3 w_a.
+TEST(Diagnose, TellsIfVelocitiesDecideNoBranch) {
+  const auto undecided = [](double wa, double wb) {
+    World<double> world;
+    const int a = add_bar(world, {0, 0, 1, 0}), b = add_bar(world, {2, 0, 3, 0}),
+              coupler = add_bar(world, {1, 0, 3, 0});
+    pin(world, world.ground(), a, 0, 0);
+    pin(world, a, coupler, 1, 0);
+    pin(world, coupler, b, 3, 0);
+    pin(world, world.ground(), b, 2, 0);
+    world.set_velocity(a, {0, wa / 2, wa});
+    world.set_velocity(b, {0, wb / 2, wb});
+    world.set_velocity(coupler, {0, (wa + wb) / 2, (wb - wa) / 2});
+    const Diagnosis found = diagnose(world, h);
+    EXPECT_EQ(found.islands[0].redundant.size(), 1u);
+    return std::abs(found.islands[0].redundant[0].undecided);
+  };
+  EXPECT_EQ(undecided(1, 1), 0);
+  EXPECT_EQ(undecided(1, -3), 0);
+  EXPECT_EQ(undecided(0, 0), 0);
+  EXPECT_NEAR(undecided(1, 0), 1.5, 1e-12);
+  EXPECT_NEAR(undecided(2, -1), 4 - 1 + 4.5, 1e-12);
+}
+
+// Hinges in a ring whose last axis is tilted: rigid, but only by the tilt.
+TEST(Diagnose, NamesARowThatAloneLocksAStructure) {
+  for (const double tilt : {1e-2, 1e-3, 1e-4, 0.0}) {
+    SpatialWorld<double> world;
+    add_tilted_ring(world, tilt);
+    const Diagnosis::Island found = diagnose(world, h).islands[0];
+    fmt::print("  tilted by {} rad: mobility {}, {} nearly redundant rows\n", tilt, found.mobility,
+               found.nearly_redundant.size());
+    EXPECT_EQ(found.mobility, tilt == 0 ? 1 : 0);
+    if (tilt == 0 || tilt > 5e-3) {
+      EXPECT_TRUE(found.nearly_redundant.empty());
+      continue;
+    }
+    ASSERT_EQ(found.nearly_redundant.size(), 1u);
+    EXPECT_LT(found.nearly_redundant[0].per_way, 2 * tilt);
+    EXPECT_GT(found.nearly_redundant[0].per_way, 0.1 * tilt);
+  }
 }
 
 }  // namespace

@@ -209,6 +209,88 @@ TEST(BreakingLoad, OfOneJointAmongMany) {
   }
 }
 
+// A soft rope with much damping, hardly stretched, whose end comes back fast: -k C - d dC/dt would push it outwards.
+TEST(SoftRope, NeverPushes) {
+  for (const IntegratorRow& row : integrator_rows) {
+    Settings s;
+    s.integrator = row.integrator;
+    World<double> world(s);
+    const int body = world.add_body({.x = 1.01, .vx = -5, .mass = 1});
+    world.add_joint({"max_distance",
+                     {world.ground(), body},
+                     {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {1}}},
+                     Softness{.by_frequency = false, .stiffness = 10, .damping = 100}});
+    run(world, 0.1, 1e-3);
+    EXPECT_LE(world.velocity(body).x, -5 + 1e-12) << row.name;
+    EXPECT_NEAR(world.velocity(body).x, -5, 1e-3) << row.name;  // the stretch pulls with 0.1 N, for 2 ms
+  }
+}
+
+// The springs of a joint that is gone store nothing.
+TEST(BreakingLoad, TheSpringsOfABrokenJointHaveNoEnergy) {
+  for (const bool breaks : {false, true}) {
+    World<double> world(settings(Solver::direct, Drift::projection, -10));
+    const int rod_of_it = add_chain(world, 1, 0.0).front();
+    add_spring(world, 0, "angle", {.softness = {.by_frequency = false, .stiffness = 100}, .rest = 0.3});
+    const double stretched = 0.5 * 100 * 0.3 * 0.3;
+    EXPECT_NEAR(world.energy(), stretched, 1e-12);
+    if (breaks) set_breaking_load(world, 0, 1e-3);
+    else world.remove_joint(0);
+    world.step(1e-9);
+    ASSERT_TRUE(world.broken(0));
+    EXPECT_NEAR(world.energy(), 0, 1e-6) << rod_of_it;
+  }
+}
+
+// A weight on two pins at one place. Each carries half of it. Without one of them the other carries all.
+struct WeightOnTwoPins {
+  WeightOnTwoPins(Integrator integrator, double load_1, double load_2) : world(method(integrator)) {
+    body = world.add_body({.mass = 1, .inertia = 1});
+    for (double load : {load_1, load_2})
+      set_breaking_load(world, revolute(world, world.ground(), body, 0, 0, 0, 0), load);
+    run(world, 0.2, 0.01);
+  }
+  static Settings method(Integrator integrator) {
+    Settings s = settings(Solver::direct, Drift::projection, -10);
+    s.integrator = integrator;
+    return s;
+  }
+  World<double> world;
+  int body;
+};
+
+TEST(BreakingLoad, RedundantJointsShareTheLoad) {
+  for (const IntegratorRow& row : integrator_rows) {
+    WeightOnTwoPins both_hold(row.integrator, 6, 6);
+    EXPECT_FALSE(both_hold.world.broken(0)) << row.name;
+    EXPECT_FALSE(both_hold.world.broken(1)) << row.name;
+    for (int joint : {0, 1}) EXPECT_NEAR(both_hold.world.reaction(joint, both_hold.body).force_y, 5, 1e-9) << row.name;
+    EXPECT_NEAR(both_hold.world.pose(both_hold.body).y, 0, 1e-9);
+  }
+}
+
+TEST(BreakingLoad, OneJointBreaksWhereTheOtherCarriesAll) {
+  for (const IntegratorRow& row : integrator_rows) {
+    for (int weak : {0, 1}) {
+      WeightOnTwoPins one_holds(row.integrator, weak == 0 ? 4 : 11, weak == 0 ? 11 : 4);
+      EXPECT_EQ(one_holds.world.broken(0), weak == 0) << row.name;
+      EXPECT_EQ(one_holds.world.broken(1), weak == 1) << row.name;
+      EXPECT_NEAR(one_holds.world.pose(one_holds.body).y, 0, 1e-9);
+      WeightOnTwoPins none_holds(row.integrator, weak == 0 ? 4 : 9, weak == 0 ? 9 : 4);
+      EXPECT_TRUE(none_holds.world.broken(0) && none_holds.world.broken(1)) << row.name;
+    }
+  }
+}
+
+// By sweeps, two pins that misfit pull at each other ever harder. When one is gone, the other carries little.
+TEST(BreakingLoad, OfJointsThatWorkAgainstEachOtherOneBreaks) {
+  World<double> world(settings(Solver::iterative, Drift::baumgarte));
+  const int body = world.add_body({.mass = 1, .inertia = 1});
+  for (double x : {-1e-5, 1e-5}) set_breaking_load(world, revolute(world, world.ground(), body, x, 0, 0, 0), 0.1);
+  run(world, 1, 0.01);
+  EXPECT_NE(world.broken(0), world.broken(1));
+}
+
 TEST(Effects, MistakesAreRefused) {
   World<double> world;
   int wheel;

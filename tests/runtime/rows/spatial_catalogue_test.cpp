@@ -26,7 +26,7 @@ TEST_P(Catalogue, RunsAndConservesMomentum) {
       joint.bodies.push_back(world.add_body(brick(0.8 * i, 0.3 * i, -0.2 * i, 1 + 0.5 * i)));
     world.add_joint(joint);
     for (int body : joint.bodies) world.apply_impulse(body, {0.2 * body, 0.1, -0.1, 0.02, -0.01 * body, 0.03});
-    const bool fits = world.project(1e-9);
+    const bool fits{world.project(1e-9)};
     EXPECT_TRUE(fits) << type.name;
     const SpatialMomentum before = momentum(world);
     run(world, 1, 0.002);

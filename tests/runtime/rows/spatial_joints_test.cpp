@@ -129,6 +129,24 @@ TEST(SpatialJoints, AnglesGoOnBeyondHalfATurn) {
   }
 }
 
+// The first attempt at a step turns a fast rotor many times and is taken back with its turns.
+TEST(SpatialJoints, StepsThatAreTakenBackCountNoTurns) {
+  for (const Integrator integrator : {Integrator::rk4, Integrator::dop853}) {
+    for (const double speed : {3.0, 30.0, 300.0}) {
+      SpatialWorld<double> world({.integrator = integrator, .local_error = 1e-10});
+      SpatialBodyDefinition d{.wz = speed, .mass = 1};
+      d.inertia = {1, 1, 2};
+      const int body = world.add_body(d);
+      const int hinge = join(world, "hinge", world.ground(), body, {{"pa", {0, 0, 0}}, {"fa", {0, 0, 1}}});
+      add_limit(world, hinge, "angle", {.lower = -1e6, .upper = 1e6});
+      for (int k = 1; k <= 3; ++k) {
+        world.step(1);
+        EXPECT_NEAR(world.coordinate(hinge, "angle"), speed * k, 1e-5) << speed;
+      }
+    }
+  }
+}
+
 // Two wheels on hinges and a gear between them, for many turns.
 TEST(SpatialJoints, AGearCountsTurns) {
   SpatialWorld<double> world(settings(Solver::direct));

@@ -100,6 +100,7 @@ TEST(Failure, LeavesTheStateInSpace) {
 TEST(Failure, RestoresAJointThatBrokeInTheSameStep) {
   Settings s = settings(Solver::direct, Drift::projection, -9.81);
   s.substeps = 2;
+  s.integrator = Integrator::rattle;  // its springs are explicit
   World<double> world(s);
   add_chain(world, 4, 0);
   add_limit(world, 1, "angle", {.lower = -1, .upper = 1});
@@ -116,8 +117,8 @@ TEST(Failure, RestoresAJointThatBrokeInTheSameStep) {
   EXPECT_EQ(result.island, 1);
   EXPECT_FALSE(world.broken(1) || world.broken(2));
   expect_same_state(before, world.snapshot(), "breaking");
-  EXPECT_TRUE(world.step(1e-9));  // too short to stretch it
-  EXPECT_TRUE(world.broken(1) && world.broken(2));
+  EXPECT_TRUE(world.step(1e-9));                // too short to stretch it
+  EXPECT_NE(world.broken(1), world.broken(2));  // without the first one the other carries nothing
 }
 
 TEST(Failure, IsDescribedInWords) {

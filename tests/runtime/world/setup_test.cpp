@@ -51,10 +51,46 @@ TEST(Setup, MistakesInBodiesAreNamed) {
   EXPECT_THROW(World<double>({.baumgarte = 2}), Error);
   EXPECT_THROW(World<double>({.local_error = 1e-6}), Error);
   EXPECT_THROW(World<double>({.integrator = Integrator::rk4, .local_error = -1}), Error);
+  EXPECT_THROW(World<double>({.integrator = Integrator::rk4, .local_error = 1e-300}), Error);
+  EXPECT_NO_THROW(World<double>({.integrator = Integrator::rk4, .local_error = 1e-18}));
   EXPECT_THROW(World<double>({.integrator = Integrator::rattle, .drift = Drift::none}), Error);
   EXPECT_THROW(World<double>({.integrator = Integrator::rk4, .drift = Drift::baumgarte}), Error);
   EXPECT_THROW(World<double>({.solver = Solver::iterative, .integrator = Integrator::dop853, .drift = Drift::none}),
                Error);
+}
+
+// A length below 0 and a pitch of 0 are known by what they do to the rows, whatever the joint.
+TEST(Setup, ParametersThatNoPoseSatisfiesAreRefused) {
+  World<double> world;
+  const int body = world.add_body({.x = 1, .mass = 1, .inertia = 1});
+  const auto refused = [&](auto& in, const JointDefinition& joint, const char* why) {
+    try {
+      in.add_joint(joint);
+      ADD_FAILURE() << joint.type << " was accepted";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  for (const char* type : {"distance", "max_distance"}) {
+    const auto of_length = [&](double l) {
+      return JointDefinition{type, {world.ground(), body}, {{"pa", {0, 0}}, {"pb", {0, 0}}, {"l", {l}}}, {}};
+    };
+    refused(world, of_length(-1), "can hold at no pose: C is ");
+    refused(world, of_length(-1e-3), "(l = -0.001)");
+    const int joint = world.add_joint(of_length(1e-3));  // far from its pose, but there is one
+    EXPECT_THROW(world.set_parameters(joint, {{"l", {-1}}}), Error);
+    EXPECT_EQ(world.joint_parameters(joint).back(), 1e-3);
+    world.add_joint(of_length(100));
+  }
+  SpatialWorld<double> space;
+  const int nut = space.add_body({.mass = 1, .inertia = {1, 1, 1}});
+  refused(
+      space,
+      {"screw", {space.ground(), nut}, {{"pa", {0, 0, 0}}, {"pb", {0, 0, 0}}, {"fa", {0, 0, 1}}, {"pitch", {0}}}, {}},
+      "has no meaning at pitch = 0, by which it divides");
+  EXPECT_THROW(
+      space.add_joint({"distance", {space.ground(), nut}, {{"pa", {1, 0, 0}}, {"pb", {0, 0, 0}}, {"l", {-1}}}, {}}),
+      Error);
 }
 
 TEST(Setup, MissingParametersTakeTheSpecsDefaults) {

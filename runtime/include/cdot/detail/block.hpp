@@ -88,6 +88,12 @@ struct Guard {
   T gap() const { return lower == T(0) ? off_by : -off_by; }
 };
 
+// Stiffness and damping of a row that is a spring: force = -k C - d dC/dt.
+template <class T>
+struct SpringNumbers {
+  T k, d;
+};
+
 // The largest numbers of rows and of bodies in a row block.
 inline constexpr int most_rows = 8, most_bodies = 8;
 
@@ -107,6 +113,8 @@ struct Law {
   // For one slot, by row, from C and its rate: a spring's force; if `force` is null, the guards.
   void (*force)(const Batch<S>&, int slot, const T* rate, T* force);
   void (*guard)(const Batch<S>&, int slot, Guard<T>* guards);
+  // Stiffness and damping of one slot, by row, from C and K; both 0 where no spring acts. Null: no row is a spring.
+  void (*spring)(const Batch<S>&, int slot, SpringNumbers<T>*) = nullptr;
 };
 
 template <class S>

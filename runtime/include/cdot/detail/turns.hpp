@@ -33,6 +33,8 @@ constexpr int turns_parameter(std::string_view coordinate) {
   return -1;
 }
 
+// An angle that is not finite, as in a stage that diverges, counts no turns.
+//
 // Counters of one slot of a row block: first those of the joint's parameters in the order of its coordinates, then, if
 // the block is a coordinate in radians, its own.
 template <class S, class Joint, class Block>
@@ -61,8 +63,9 @@ struct TurnCounters {
         [&]<class C>(std::type_identity<C>, T* counter) {
           T angle[1];
           C::position(q, *reinterpret_cast<const Parameters*>(parameters), time, angle);
-          T& turns = parameters[turns_parameter<Joint>(C::name)];
-          turns = whole_turns(angle[0], *counter);
+          const T turns = whole_turns(angle[0], *counter);
+          if (!std::isfinite(turns)) return;
+          parameters[turns_parameter<Joint>(C::name)] = turns;
           *counter = angle[0] + turns;
         },
         counters);
@@ -70,7 +73,8 @@ struct TurnCounters {
   // Called after the rows are evaluated.
   static void count_angle(T& C, T* counters) {
     T& counter = counters[of_parameters()];
-    counter = C += whole_turns(C, counter);
+    C += whole_turns(C, counter);
+    if (std::isfinite(C)) counter = C;
   }
   // Start values: the turns that the scene gives a parameter, and an angle within half a turn.
   static void start(Poses& q, const T* parameters, T time, T* counters) {

@@ -244,6 +244,33 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst;
 }
 
+// "-" is standard output, and the summary makes room for it. The text is that of a file.
+TEST(Command, AnOutputCalledDashIsStandardOutput) {
+  const TemporaryFolder folder;
+  for (const char* option : {"-o", "--html", "--svg", "--save-state"}) {
+    const std::string run = "simulate " + scene("four_bar") + " --until 0.1 ", file = folder / "output";
+    const CommandResult to_file = cdot_run(run + option + " '" + file + "'");
+    const CommandResult to_stdout = cdot_run(run + option + " -");
+    ASSERT_EQ(to_file.status, 0) << to_file.err;
+    ASSERT_EQ(to_stdout.status, 0) << to_stdout.err;
+    EXPECT_EQ(to_stdout.out, read_text(file)) << option;
+    EXPECT_NE(to_file.out.find("worst |C|"), std::string::npos);
+    EXPECT_NE(to_stdout.err.find("worst |C|"), std::string::npos) << to_stdout.err;
+    EXPECT_FALSE(std::filesystem::exists("-"));
+  }
+  const CommandResult picture = cdot_run("diagnose " + scene("four_bar") + " --matrix --svg -");
+  EXPECT_EQ(picture.status, 0) << picture.err;
+  EXPECT_EQ(picture.out.substr(0, 4), "<svg");
+  EXPECT_NE(picture.err.find("D v = 0"), std::string::npos) << picture.err;
+  const CommandResult two = cdot_run("simulate " + scene("four_bar") + " -o - --svg -");
+  EXPECT_EQ(two.status, 2);
+  EXPECT_NE(two.err.find("2 outputs cannot share standard output"), std::string::npos) << two.err;
+  const CommandResult full =
+      run_command(fmt::format("({} simulate {} --until 0.1 -o - >/dev/full)", CDOT_RUN, scene("four_bar")));
+  EXPECT_EQ(full.status, 2);
+  EXPECT_NE(full.err.find("standard output: cannot be written"), std::string::npos) << full.err;
+}
+
 // In float every number is a float, and the motion equals that in double up to float's round-off.
 TEST(Command, PrecisionIsFloatIfAsked) {
   const TemporaryFolder folder;

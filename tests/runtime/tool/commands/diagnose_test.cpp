@@ -58,10 +58,10 @@ TEST(DiagnoseCommand, SaysThatASpringIsTooStiffForTheStep) {
   const auto file = folder / "spring.toml";
   std::ofstream(file) << "duration = 20\nstep = 0.01\n[[body]]\nname = \"ball\"\nmass = 1\nshape = { disc = 1 }\n"
                          "position = [1, 0]\n[[spring]]\nbodies = [\"world\", \"ball\"]\nstiffness = 1e6\nrest = 0.5\n";
-  const CommandResult result = cdot_run(fmt::format("simulate '{}'", file.string()));
+  const CommandResult result = cdot_run(fmt::format("simulate '{}' --integrator rattle", file.string()));
   EXPECT_EQ(result.status, 1);
   EXPECT_TRUE(says(result.out,
-                   "a spring makes \"ball\" oscillate at 1e+03 rad/s, 10 rad per substep: euler is unstable above "
+                   "a spring makes \"ball\" oscillate at 1e+03 rad/s, 10 rad per substep: rattle is unstable above "
                    "2. Likely fix: substeps = 20 or more, or integrator"))
       << result.out;
 }
@@ -94,6 +94,19 @@ TEST(DiagnoseCommand, RefusesATimeAfterTheEnd) {
       cdot_run(fmt::format("diagnose '{}' --at 1e9", (scenes_dir() / "four_bar.toml").string()));
   EXPECT_EQ(result.status, 2);
   EXPECT_TRUE(says(result.err, "--at 1000000000: the run ends at 10 s")) << result.err;
+}
+
+// The crank of this hard case turns from 90 degrees by -30.34 rad and lies flat at every multiple of pi on the way.
+TEST(DiagnoseCommand, TellsWhenTheRankIsNearlyLost) {
+  const CommandResult text = cdot_run("diagnose " + hard("change_point/planar") + " --integrator dop853");
+  EXPECT_TRUE(says(text.out, "rank over the whole run: nearly lost 10 times, first at t = 0.7083 s")) << text.out;
+  const CommandResult result = cdot_run("diagnose " + hard("change_point/planar") + " --integrator dop853 --json");
+  const auto losses = nlohmann::json::parse(result.out)["rank_losses"];
+  ASSERT_EQ(losses.size(), 10u);
+  for (const auto& loss : losses) EXPECT_LT(loss["pivot"].get<double>(), 1e-3);
+  const CommandResult run = cdot_run("simulate " + hard("change_point/planar") + " --integrator dop853");
+  EXPECT_TRUE(says(run.out, "nearly lost 10 times")) << run.out;
+  EXPECT_TRUE(says(run.out, "took projected stages")) << run.out;
 }
 
 }  // namespace

@@ -31,6 +31,12 @@ TEST(Format, EverySceneOfTheCatalogueIsRead) {
   EXPECT_GE(scenes, 20);
 }
 
+// TOML calls 9107011641597973 a whole number, and a double rounds it.
+TEST(Format, AWholeNumberBeyondTheDoublesIsRounded) {
+  EXPECT_EQ(scene_of("duration = 9107011641597973\n" + body("inertia = 1")).duration, 9107011641597972.0);
+  EXPECT_EQ(scene_of(body("inertia = 9223372036854775807")).bodies[0].definition.inertia, 0x1p63);
+}
+
 TEST(Format, EveryExampleOfTheReadmeIsAScene) {
   const std::string readme = read_text(scenes_dir() / "README.md");
   int examples = 0;

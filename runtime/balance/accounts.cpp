@@ -1,0 +1,89 @@
+// Opens the accounts of a World, and books what changes it from outside.
+#include <cdot/spaces.hpp>
+
+#include "runtime/balance/balance.hpp"
+
+namespace cdot {
+namespace {
+
+// In space a torque may be set at any time.
+template <class S>
+bool may_work(const Island<S>& island) {
+  if (S::has_gyroscopes || !island.drags.empty()) return true;
+  for (const Segment<S>& segment : island.segments)
+    if (segment.batch->law || segment.batch->ops->explicit_time) return true;
+  return false;
+}
+
+template <class S>
+bool is_driven(const Island<S>& island) {
+  for (const Segment<S>& segment : island.segments)
+    if (!segment.batch->law && segment.batch->ops->explicit_time) return true;
+  return false;
+}
+
+}  // namespace
+
+template <class S>
+void prepare_accounts(WorldData<S>& world) {
+  bool works = false;
+  Bodies<S> at = world.bodies;
+  for (Island<S>& island : world.islands) {
+    island.works = may_work(island);
+    island.driven = is_driven(island);
+    works |= island.works;
+    find_free_motions(world, island, at);
+    if (island.floats) island.momentum.assign(7, -1.0);
+    if (works_on_accelerations(world.settings.integrator) && island.works) island.flow.work.assign(2, 0);
+  }
+  const auto bodies = static_cast<size_t>(works ? world.bodies.count() : 0);
+  world.start_of_kick.assign(bodies, {});
+  world.mean_of_kick.assign(bodies, {});
+  reserve(world, world.one_slot);
+  world.few.pose.resize(most_bodies);
+  world.few.effective_mass.resize(most_bodies);
+}
+
+template <class S>
+void begin_accounts(WorldData<S>& world) {
+  Accounts& accounts = world.accounts;
+  if (!accounts.open || accounts.changed) {
+    const Energy now = energy_of(world, world.one_slot);
+    const double energy = now.kinetic + now.potential;
+    if (accounts.open) accounts.put_in += energy - accounts.before_change;
+    else accounts.start = energy;
+    accounts.open = true, accounts.changed = false;
+  }
+  for (int index : world.awake) {
+    Island<S>& island = world.islands[index];
+    if (island.floats && island.momentum[6] < 0) measure_momentum(world, island);
+  }
+}
+
+// Later changes before the next step join the first.
+template <class S>
+void note_change(WorldData<S>& world) {
+  Accounts& accounts = world.accounts;
+  if (!accounts.open || accounts.changed) return;
+  const Energy now = energy_of(world, world.one_slot);
+  accounts.before_change = now.kinetic + now.potential;
+  accounts.changed = true;
+}
+
+template <class S>
+void book_work(WorldData<S>& world, Island<S>& island) {
+  if (island.flow.work.empty()) return;
+  world.accounts.put_in += double(island.flow.work[0]);
+  world.accounts.taken += double(island.flow.work[1]);
+  island.flow.work[0] = island.flow.work[1] = 0;
+}
+
+#define CDOT_INSTANTIATE(S)                      \
+  template void prepare_accounts(WorldData<S>&); \
+  template void begin_accounts(WorldData<S>&);   \
+  template void note_change(WorldData<S>&);      \
+  template void book_work(WorldData<S>&, Island<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,97 @@
+// Energy, work and momentum of a World, for <cdot/balance.hpp>. Steps tell what does work; the energy itself is a
+// function of the state, so only work needs accounts.
+//
+// An impulse p of a kick from v0 to v1 changes the kinetic energy by p (v0 + v1) / 2 exactly, whatever else acts in the
+// kick. Integrators at acceleration level integrate the power p' v as two more numbers of their state.
+#pragma once
+
+#include <cdot/balance.hpp>
+
+#include "runtime/state/world_data.hpp"
+
+namespace cdot {
+
+struct Energy {
+  double kinetic = 0;
+  double potential = 0;   // of gravity, constant forces, springs and rows that are springs
+  double of_torques = 0;  // in space: of constant torques along the shortest rotation, which is no potential
+};
+// `one_slot` is scratch.
+template <class S>
+Energy energy_of(const WorldData<S>& world, Batch<S>& one_slot);
+// Balance::small.
+template <class S>
+double small_energy(const WorldData<S>& world);
+template <class S>
+double kinetic_energy(const WorldData<S>& world, const Island<S>& island);
+// Of the rows of one joint that are springs.
+template <class S>
+double potential_of(const WorldData<S>& world, const JointRecord& joint, Batch<S>& one_slot);
+// dk/dt C^2 / 2 of the rows of a slot at the velocities `v`: a spring given by its frequency has k = (2 pi f)^2 / K,
+// and K changes with the pose. The spring's force does not do this work. `few` is scratch.
+template <class S>
+double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int slot, const typename S::Velocity* v,
+                          Batch<S>& one_slot, Bodies<S>& few);
+// Allocates what an evaluation in `one_slot` needs.
+template <class S>
+void reserve(const WorldData<S>& world, Batch<S>& one_slot);
+
+// --- accounts ---
+
+// Finds out what may do work in an island, and allocates for it.
+template <class S>
+void prepare_accounts(WorldData<S>& world);
+
+// Call at the start of each attempt of a step: opens the accounts at the first step, books what changed from outside,
+// and measures the momentum of islands that changed.
+template <class S>
+void begin_accounts(WorldData<S>& world);
+// Call before a change from outside.
+template <class S>
+void note_change(WorldData<S>& world);
+// Adds the work of the Runge-Kutta steps so far to the accounts.
+template <class S>
+void book_work(WorldData<S>& world, Island<S>& island);
+
+// --- velocity level ---
+
+enum class Impulses : char {
+  euler,         // `lambda` over h; springs and dampers act with the rate at the end of the kick
+  dampers,       // `lambda` of springs, which holds their dampers alone
+  rattle_start,  // `correction` over h, without dampers
+  rattle_end,    // `lambda` over h but that of springs, from Flow::velocity on; drag with the rate at begin_kick()
+  middle,        // `correction` over h, without dampers and drag; the velocities are the mean of the kick
+  end,           // `lambda` of a projection; that of springs holds their dampers
+  drift,         // `correction` of joints that depend on time
+};
+
+// Call at the start and at the end of a kick of h. C and J are those of the kick.
+template <class S>
+void begin_kick(WorldData<S>& world, const Island<S>& island);
+template <class S>
+void begin_kick(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* velocity);
+template <class S>
+void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h);
+// Call at the end of a step of Euler's method: a spring given by its frequency changes its stiffness with the pose.
+template <class S>
+void book_stiffness(WorldData<S>& world, Island<S>& island);
+
+// --- acceleration level ---
+
+// The power of forces without a potential, put in and taken. The rows' lambda are forces, C and J those of the present
+// poses.
+template <class S>
+void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar* power);
+
+// --- momentum ---
+
+// Whether the island's momentum is conserved. `at` is a copy of the bodies to move, and is restored.
+template <class S>
+void find_free_motions(const WorldData<S>& world, Island<S>& island, Bodies<S>& at);
+template <class S>
+void measure_momentum(const WorldData<S>& world, Island<S>& island);
+// Adds the errors of an island to the worst ones.
+template <class S>
+void compare_momentum(const WorldData<S>& world, const Island<S>& island, Balance& balance);
+
+}  // namespace cdot

@@ -1,0 +1,143 @@
+// The energy of a state.
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/balance/balance.hpp"
+
+namespace cdot {
+namespace {
+
+// The numbers of one slot, in a batch of its own: queries leave the World's rows unchanged, since the next step may
+// start from them.
+template <class S>
+void copy_slot(const Batch<S>& from, int slot, Batch<S>& to) {
+  const auto copy = [&](const auto& array, int width, auto& numbers) {
+    numbers.assign(array.begin() + slot * width, array.begin() + (slot + 1) * width);
+  };
+  to.ops = from.ops;
+  to.law = from.law;
+  to.kinds.assign(from.kinds.begin(), from.kinds.end());
+  copy(from.body, from.ops->bodies, to.body);
+  copy(from.parameters, from.ops->parameter_size, to.parameters);
+  copy(from.counters, from.counters.empty() ? 0 : from.ops->counters, to.counters);
+  copy(from.constants, from.law->constants, to.constants);
+  to.jacobian.resize(static_cast<size_t>(from.ops->jacobian_size));
+  to.factor.resize(static_cast<size_t>(from.triangle()));
+  to.C.resize(static_cast<size_t>(from.ops->rows));
+  to.bias.resize(static_cast<size_t>(from.ops->rows));
+}
+
+template <class S>
+double potential_of(const WorldData<S>& world, const Batch<S>& batch, int slot, Batch<S>& one_slot) {
+  if (!batch.law || !batch.law->energy) return 0;
+  copy_slot(batch, slot, one_slot);
+  batch.ops->evaluate(one_slot, 0, 1, world.bodies, typename S::Scalar(world.time));
+  batch.ops->effective_mass(one_slot, 0, 1, world.bodies);
+  return batch.law->energy(one_slot, 0);
+}
+
+}  // namespace
+
+// By the difference of k over 2 epsilon seconds.
+template <class S>
+double power_of_stiffness(const WorldData<S>& world, const Batch<S>& batch, int slot, const typename S::Velocity* v,
+                          Batch<S>& one_slot, Bodies<S>& few) {
+  using T = typename S::Scalar;
+  constexpr T epsilon = T(by_precision<T>(1e-3, 1e-6));
+  const int bodies = batch.ops->bodies, rows = batch.ops->rows;
+  const T time = T(world.time);
+  copy_slot(batch, slot, one_slot);
+  batch.ops->evaluate(one_slot, 0, 1, world.bodies, time);
+  T C[most_rows];
+  std::copy_n(one_slot.C.data(), rows, C);
+  double energy[2];
+  for (int side : {0, 1}) {
+    for (int k = 0; k < bodies; ++k) {
+      const int body = batch.body[slot * bodies + k];
+      one_slot.body[k] = k;
+      few.pose[k] = S::moved(world.bodies.pose[body], S::sum({}, v[body], side ? epsilon : -epsilon));
+      few.effective_mass[k] = world.bodies.effective_mass[body];
+    }
+    batch.ops->evaluate(one_slot, 0, 1, few, time);
+    batch.ops->effective_mass(one_slot, 0, 1, few);
+    std::copy_n(C, rows, one_slot.C.data());
+    energy[side] = batch.law->energy(one_slot, 0);
+  }
+  return (energy[1] - energy[0]) / (2 * double(epsilon));
+}
+
+template <class S>
+void reserve(const WorldData<S>& world, Batch<S>& one_slot) {
+  for (const auto& batch : world.batches)
+    if (batch->law && batch->law->energy && batch->count() > 0) copy_slot(*batch, 0, one_slot);
+}
+
+template <class S>
+double potential_of(const WorldData<S>& world, const JointRecord& joint, Batch<S>& one_slot) {
+  double energy = 0;
+  for (const Place& place : joint.places)
+    energy += potential_of(world, *world.batches[place.batch], slot_of(world, place), one_slot);
+  return energy;
+}
+
+template <class S>
+double kinetic_energy(const WorldData<S>& world, const Island<S>& island) {
+  const Bodies<S>& all = world.bodies;
+  double energy = 0;
+  for (int i : island.bodies) energy += 0.5 * S::dot(S::force(all.inverse_mass[i], all.velocity[i]), all.velocity[i]);
+  return energy;
+}
+
+template <class S>
+double small_energy(const WorldData<S>& world) {
+  using T = typename S::Scalar;
+  constexpr double motion = by_precision<T>(1e-3, 1e-6), of_weight = 0.1;
+  const Bodies<S>& all = world.bodies;
+  double small = 0;
+  for (const Island<S>& island : world.islands) {
+    const double size = double(island.size), square = motion * motion * size * size;
+    for (int i : island.bodies) {
+      const auto linear = S::damped(all.acceleration[i], 1, 0);
+      const double mass = 1 / double(all.inverse_mass[i].m);
+      small += of_weight * mass * std::sqrt(S::dot(linear, linear)) * size + 0.5 * mass * square;
+    }
+  }
+  return small;
+}
+
+template <class S>
+Energy energy_of(const WorldData<S>& world, Batch<S>& one_slot) {
+  const Bodies<S>& all = world.bodies;
+  Energy energy;
+  for (const auto& batch : world.batches) {
+    if (!batch->law || !batch->law->energy) continue;
+    for (int slot = 0; slot < batch->count(); ++slot)
+      if (!world.joints[batch->joint[slot]].broken) energy.potential += potential_of(world, *batch, slot, one_slot);
+  }
+  for (int i = 0; i < all.count(); ++i) {
+    if (all.immovable(i)) continue;
+    const auto& m = all.inverse_mass[i];
+    energy.kinetic += 0.5 * S::dot(S::force(m, all.velocity[i]), all.velocity[i]);
+    const auto force = S::force(m, all.acceleration[i]), moved = S::difference(all.pose[i], all.start[i]);
+    energy.potential -= S::dot(force, moved);
+    if constexpr (S::has_gyroscopes) {
+      const double by_torque = S::dot(force, S::damped(moved, 0, 1));
+      energy.potential += by_torque, energy.of_torques -= by_torque;
+    }
+  }
+  return energy;
+}
+
+#define CDOT_INSTANTIATE(S)                                                                                    \
+  template double power_of_stiffness(const WorldData<S>&, const Batch<S>&, int, const S::Velocity*, Batch<S>&, \
+                                     Bodies<S>&);                                                              \
+  template void reserve(const WorldData<S>&, Batch<S>&);                                                       \
+  template double potential_of(const WorldData<S>&, const JointRecord&, Batch<S>&);                            \
+  template double small_energy(const WorldData<S>&);                                                           \
+  template double kinetic_energy(const WorldData<S>&, const Island<S>&);                                       \
+  template Energy energy_of(const WorldData<S>&, Batch<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,249 @@
+// The work of forces without a potential, put in and taken: drag, dampers, motors, friction, limits, joints that depend
+// on time.
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/balance/balance.hpp"
+
+namespace cdot {
+namespace {
+
+struct Work {
+  double put_in = 0, taken = 0;
+  // Work of a force that can only take. A part with the other sign is the method's own error.
+  void take(double work) { taken += std::max(-work, 0.0); }
+};
+
+// dC/dt of one slot whose bias holds something else by now. C and J keep their values.
+template <class S>
+void find_drift(const WorldData<S>& world, Batch<S>& batch, int slot, typename S::Scalar time,
+                typename S::Scalar* drift) {
+  const int rows = batch.ops->rows;
+  auto* const bias = batch.bias.data() + slot * rows;
+  std::copy_n(bias, rows, drift);
+  batch.ops->evaluate(batch, slot, slot + 1, world.bodies, time);
+  std::swap_ranges(bias, bias + rows, drift);
+}
+
+// The force of dampers among the rows of a slot: that of the law at this rate, less that at rest.
+template <class S>
+void find_damping(const Batch<S>& batch, int slot, const typename S::Scalar* rate, typename S::Scalar* force) {
+  typename S::Scalar at_rest[most_rows] = {}, none[most_rows];
+  batch.law->force(batch, slot, at_rest, none);
+  batch.law->force(batch, slot, rate, force);
+  for (int r = 0; r < batch.ops->rows; ++r) force[r] -= none[r];
+}
+
+// Rows of springs whose impulse is that of dampers alone, or of springs without dampers. Batch::rate has J v of the
+// mean velocity.
+template <class S, class Lambda>
+void work_of_parted_springs(const WorldData<S>& world, Batch<S>& batch, int slot, Lambda lambda, bool dampers,
+                            typename S::Scalar time, Work& work) {
+  typename S::Scalar drift[most_rows] = {};
+  if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    const int i = slot * batch.ops->rows + r;
+    if (dampers) work.take(double(lambda(i)) * double(batch.rate[i] + drift[r]));
+    work.put_in -= double(lambda(i)) * double(drift[r]);
+  }
+}
+
+// Rows that are springs, given J v of the rate at which they acted and, in Batch::rate, of the mean velocity.
+template <class S, class Lambda>
+void work_of_springs(const WorldData<S>& world, Batch<S>& batch, int slot, const typename S::Scalar* acted,
+                     Lambda lambda, typename S::Scalar time, double h, Work& work) {
+  using T = typename S::Scalar;
+  const int rows = batch.ops->rows;
+  T drift[most_rows] = {}, rate[most_rows], force[most_rows];
+  if (batch.ops->explicit_time) find_drift(world, batch, slot, time, drift);
+  for (int r = 0; r < rows; ++r) rate[r] = acted[r] + drift[r];
+  find_damping(batch, slot, rate, force);
+  for (int r = 0; r < rows; ++r) {
+    const int i = slot * rows + r;
+    work.take(h * double(force[r]) * double(batch.rate[i] + drift[r]));
+    work.put_in -= double(lambda(i)) * double(drift[r]);
+  }
+}
+
+// Rows with bounds: motors put in, friction takes, limits and ropes take what hits them. Rows that are held on both
+// sides without a rate of their own do no work.
+template <class S, class Lambda>
+void work_of_bounded(const Batch<S>& batch, int slot, Lambda lambda, Work& work) {
+  Guard<typename S::Scalar> guards[most_rows];
+  batch.law->guard(batch, slot, guards);
+  const bool moves = !batch.law->error;  // a motor or dry friction
+  for (int r = 0; r < batch.ops->rows; ++r) {
+    const int i = slot * batch.ops->rows + r;
+    const double done = double(lambda(i)) * double(batch.rate[i]);
+    if (batch.ops->explicit_time || (moves && guards[r].rate != 0)) work.put_in += done;
+    else if (moves || guards[r].one_sided()) work.take(done);
+  }
+}
+
+// The parts of a spring in the impulses of its rows.
+enum class Springs : char { whole, dampers, without_dampers };
+
+// All rows that may do work, given J v of mean velocities by batch.ops->velocity(..., mean). `acted` finds J v at which
+// whole springs acted, into Batch::impulse.
+template <class S, class Lambda, class Acted>
+void work_of_rows(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* mean, Lambda lambda,
+                  Acted acted, Springs springs, typename S::Scalar time, double h, Work& work) {
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    const int begin = segment.begin, end = segment.end, rows = batch.ops->rows;
+    if (!batch.law && !batch.ops->explicit_time) continue;
+    batch.ops->velocity(batch, begin, end, mean, batch.rate.data());
+    const auto of_row = [&](int i) { return lambda(batch, i); };
+    if (!batch.law) {
+      for (int i = begin * rows; i < end * rows; ++i) work.put_in += double(of_row(i)) * double(batch.rate[i]);
+    } else if (batch.law->spring && springs != Springs::whole) {
+      for (int slot = begin; slot < end; ++slot)
+        work_of_parted_springs(world, batch, slot, of_row, springs == Springs::dampers, time, work);
+    } else if (batch.law->force) {
+      const auto* const rates = acted(batch, begin, end);
+      for (int slot = begin; slot < end; ++slot)
+        work_of_springs(world, batch, slot, rates + slot * rows, of_row, time, h, work);
+    } else if (batch.law->guard) {
+      for (int slot = begin; slot < end; ++slot) work_of_bounded(batch, slot, of_row, work);
+    }
+  }
+}
+
+// Springs given by their frequency, the first constant of their laws.
+template <class S>
+void work_of_stiffness(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* v, double h,
+                       Work& work) {
+  for (const Segment<S>& segment : island.segments) {
+    const Batch<S>& batch = *segment.batch;
+    if (!batch.law || !batch.law->energy || batch.law->constants < 3) continue;
+    for (int slot = segment.begin; slot < segment.end; ++slot)
+      if (batch.constants[slot * batch.law->constants] != 0)
+        work.put_in += h * power_of_stiffness(world, batch, slot, v, world.one_slot, world.few);
+  }
+}
+
+// Drag and, in space, torques: forces at the velocities `acted`, over h, work along `mean`.
+template <class S>
+void work_on_bodies(const WorldData<S>& world, const Island<S>& island, const typename S::Velocity* acted,
+                    const typename S::Velocity* mean, bool drags, bool implicit_drag, typename S::Scalar h,
+                    Work& work) {
+  using T = typename S::Scalar;
+  const Bodies<S>& all = world.bodies;
+  for (const Drag<S>& drag : island.drags) {
+    if (!drags) break;
+    const T linear = implicit_drag ? drag.linear / (T(1) + h * drag.linear) : drag.linear;
+    const T angular = implicit_drag ? drag.angular / (T(1) + h * drag.angular) : drag.angular;
+    const auto force = S::force(all.inverse_mass[drag.body], S::damped(acted[drag.body], linear, angular));
+    work.take(-double(h) * S::dot(force, mean[drag.body]));
+  }
+  if constexpr (S::has_gyroscopes)
+    for (int i : island.bodies) work.put_in += double(h) * S::dot(S::damped(all.force[i], 0, 1), mean[i]);
+}
+
+template <class S>
+void add(WorldData<S>& world, const Work& work) {
+  world.accounts.put_in += work.put_in;
+  world.accounts.taken += work.taken;
+}
+
+template <class S>
+typename S::Scalar impulse_of(Impulses impulses, const Batch<S>& batch, int i) {
+  const bool spring = batch.law && batch.law->spring;
+  if (impulses == Impulses::dampers ? !spring : impulses == Impulses::rattle_end && spring) return 0;
+  const bool corrected =
+      impulses == Impulses::rattle_start || impulses == Impulses::middle || impulses == Impulses::drift;
+  return corrected ? batch.correction[i] : batch.lambda[i];
+}
+
+constexpr Springs springs_of(Impulses impulses) {
+  if (impulses == Impulses::euler || impulses == Impulses::drift) return Springs::whole;
+  return impulses == Impulses::rattle_start || impulses == Impulses::middle ? Springs::without_dampers
+                                                                            : Springs::dampers;
+}
+
+}  // namespace
+
+template <class S>
+void begin_kick(WorldData<S>& world, const Island<S>& island) {
+  begin_kick(world, island, world.bodies.velocity.data());
+}
+
+template <class S>
+void begin_kick(WorldData<S>& world, const Island<S>& island, const typename S::Velocity* velocity) {
+  if (!island.works) return;
+  for (int i : island.bodies) world.start_of_kick[i] = velocity[i];
+}
+
+template <class S>
+void book_kick(WorldData<S>& world, Island<S>& island, Impulses impulses, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  if (!(impulses == Impulses::drift ? island.driven : island.works)) return;
+  const auto& v = world.bodies.velocity;
+  auto &start = world.start_of_kick, &mean = world.mean_of_kick;
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    const int i = island.bodies[k];
+    const auto& from = impulses == Impulses::rattle_end ? island.flow.velocity[k] : start[i];
+    mean[i] = S::damped(S::sum(from, v[i], T(1)), T(0.5), T(0.5));
+  }
+  const bool at_end = impulses == Impulses::euler;
+  const auto* const acted = at_end ? v.data() : start.data();
+  Work work;
+  if (impulses == Impulses::middle) std::copy(v.begin(), v.end(), mean.begin());
+  const bool of_rows = impulses == Impulses::drift || impulses == Impulses::dampers || impulses == Impulses::end;
+  if (!of_rows) work_on_bodies(world, island, start.data(), mean.data(), impulses != Impulses::middle, at_end, h, work);
+  work_of_rows(
+      world, island, mean.data(), [&](const Batch<S>& batch, int i) { return impulse_of(impulses, batch, i); },
+      [&](Batch<S>& batch, int begin, int end) {
+        batch.ops->velocity(batch, begin, end, acted, batch.impulse.data());
+        return batch.impulse.data();
+      },
+      springs_of(impulses), island.evaluated_at, double(h), work);
+  if (impulses == Impulses::rattle_start || impulses == Impulses::rattle_end)
+    work_of_stiffness(world, island, start.data(), double(h), work);
+  add(world, work);
+}
+
+template <class S>
+void find_power(WorldData<S>& world, Island<S>& island, typename S::Scalar time, typename S::Scalar* power) {
+  using T = typename S::Scalar;
+  Work work;
+  const auto* const v = world.bodies.velocity.data();
+  work_on_bodies(world, island, v, v, true, false, T(1), work);
+  work_of_rows(
+      world, island, v, [](const Batch<S>& batch, int i) { return batch.lambda[i]; },
+      [&](Batch<S>& batch, int begin, int end) {
+        batch.ops->effective_mass(batch, begin, end, world.bodies);
+        return batch.rate.data();
+      },
+      Springs::whole, time, 1, work);
+  work_of_stiffness(world, island, v, 1, work);
+  power[0] = T(work.put_in), power[1] = T(work.taken);
+}
+
+// The same over a step of Euler's method: K is still that of its start.
+template <class S>
+void book_stiffness(WorldData<S>& world, Island<S>& island) {
+  if (!island.works) return;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law || !batch.law->energy) continue;
+    double before = 0, after = 0;
+    for (int slot = segment.begin; slot < segment.end; ++slot) before += batch.law->energy(batch, slot);
+    batch.ops->effective_mass(batch, segment.begin, segment.end, world.bodies);
+    for (int slot = segment.begin; slot < segment.end; ++slot) after += batch.law->energy(batch, slot);
+    world.accounts.put_in += after - before;
+  }
+}
+
+#define CDOT_INSTANTIATE(S)                                                      \
+  template void begin_kick(WorldData<S>&, const Island<S>&);                     \
+  template void begin_kick(WorldData<S>&, const Island<S>&, const S::Velocity*); \
+  template void book_kick(WorldData<S>&, Island<S>&, Impulses, S::Scalar);       \
+  template void find_power(WorldData<S>&, Island<S>&, S::Scalar, S::Scalar*);    \
+  template void book_stiffness(WorldData<S>&, Island<S>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

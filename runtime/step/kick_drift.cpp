@@ -1,0 +1,119 @@
+#include "runtime/step/kick_drift.hpp"
+
+#include <algorithm>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/motion/motion.hpp"
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/solve/solver.hpp"
+#include "runtime/step/dampers.hpp"
+
+namespace cdot {
+namespace {
+
+// Velocity rows have no C for the first half of a step: it repeats their impulses from the second half of the last
+// step. A start from 0 would alternate between 0 and twice the impulse forever. The start is therefore half of their
+// impulse in h.
+template <class S>
+void exert_at_start(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    for (int i = segment.begin * batch.ops->rows; batch.law && i < segment.end * batch.ops->rows; ++i)
+      batch.softness[i] = batch.lower[i] = batch.upper[i] = T(0);
+  }
+  const T time = T(world.time);
+  accelerate(world, island, time);
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    for (int i = segment.begin * batch.ops->rows; i < segment.end * batch.ops->rows; ++i)
+      batch.lambda[i] *= batch.law ? T(0) : h / 2;
+  }
+  evaluate_anew(world, island, time);  // restores dC/dt, which gamma replaced
+}
+
+template <class S>
+bool has_velocity_rows(const Island<S>& island) {
+  return std::any_of(island.segments.begin(), island.segments.end(), [](const Segment<S>& segment) {
+    const auto& kinds = segment.batch->kinds;
+    return !segment.batch->law && std::find(kinds.begin(), kinds.end(), RowKind::velocity) != kinds.end();
+  });
+}
+
+// Motors, limits and friction are solved with the exact rows. Springs have acted as forces.
+template <class S>
+void bound_rows(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  for (const Segment<S>& segment : island.segments) {
+    Batch<S>& batch = *segment.batch;
+    if (!batch.law) continue;
+    const int begin = segment.begin * batch.ops->rows, end = segment.end * batch.ops->rows;
+    if (is_force(batch)) {
+      const auto pulled = [h](const Batch<S>& of, int i) { return h / 2 * of.impulse[i]; };  // in the last kick
+      bound_dampers(batch, segment.begin, segment.end, h, false, pulled);
+      continue;
+    }
+    batch.law->fill(batch, segment.begin, segment.end, h, world.settings);
+    for (int i = begin; i < end; ++i) {
+      batch.lower[i] *= T(0.5);  // the other half acts at the start of the next step
+      batch.upper[i] *= T(0.5);
+    }
+  }
+}
+
+}  // namespace
+
+template <class S>
+typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  if (island.evaluated) return world.last_step > 0 ? h / T(world.last_step) : T(0);
+  project_start(world, island);
+  evaluate_anew(world, island, typename S::Scalar(world.time));
+  clear_correction(world, island);
+  project_velocities(world, island);
+  fill_lambda(island, T(0));
+  island.evaluated = true;
+  if (has_velocity_rows(island)) exert_at_start(world, island, h);
+  return T(1);
+}
+
+template <class S>
+void note_start(const WorldData<S>& world, Island<S>& island) {
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    island.flow.pose[k] = world.bodies.pose[island.bodies[k]];
+    island.flow.velocity[k] = world.bodies.velocity[island.bodies[k]];
+  }
+}
+
+template <class S>
+void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  Bodies<S>& all = world.bodies;
+  const std::vector<typename S::Pose>& start = island.flow.pose;
+  for (size_t k = 0; k < start.size(); ++k) all.pose[island.bodies[k]] = start[k];
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island,
+                       [&](auto& gyroscope, int i) { S::lend_mean_spin(gyroscope, all.pose[i], all.velocity[i], h); });
+  for (int i : island.bodies) all.pose[i] = S::moved(all.pose[i], S::sum({}, all.velocity[i], h));
+  if constexpr (S::has_gyroscopes)
+    for_each_gyroscope(world, island, [&](auto& gyroscope, int i) { S::restore_spin(gyroscope, all.velocity[i]); });
+}
+
+template <class S>
+void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  factorize_rows(world, island);
+  bound_rows(world, island, h);
+  island.factored = false;
+  island.solver->velocities(world, island, world.bodies.velocity.data(), typename S::Scalar(1));
+}
+
+#define CDOT_INSTANTIATE(S)                                                  \
+  template S::Scalar begin_kick_drift(WorldData<S>&, Island<S>&, S::Scalar); \
+  template void note_start(const WorldData<S>&, Island<S>&);                 \
+  template void drift(WorldData<S>&, Island<S>&, S::Scalar);                 \
+  template void solve_end(WorldData<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

@@ -1,0 +1,26 @@
+// Stages that RATTLE and the implicit midpoint rule share: their steps are kicks by impulses and drifts by velocities.
+#pragma once
+
+#include "runtime/state/world_data.hpp"
+
+namespace cdot {
+
+// Prepares the start of a step of h. A state that is not the end of a step is projected, and its exact rows are
+// factored. Returns the factor that scales the present impulses to this step: h / last step.
+template <class S>
+typename S::Scalar begin_kick_drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+
+// Keeps poses and velocities in Flow::pose and Flow::velocity.
+template <class S>
+void note_start(const WorldData<S>& world, Island<S>& island);
+
+// poses = noted start + h velocity; bodies with a turning inertia tensor rotate by their mean spin.
+template <class S>
+void drift(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+
+// The velocities at the end of a step of h, after an evaluation of C and J: J v = -dC/dt. Motors, limits and friction
+// act with half of their impulse; the other half acts at the start of the next step. Springs have acted as forces.
+template <class S>
+void solve_end(WorldData<S>& world, Island<S>& island, typename S::Scalar h);
+
+}  // namespace cdot

@@ -1,0 +1,172 @@
+#include "runtime/step/rank_loss.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/solve/direct.hpp"
+#include "runtime/solve/longest_move.hpp"
+#include "runtime/solve/solver.hpp"
+
+namespace cdot {
+namespace {
+
+// The square root of a pivot over its diagonal is a distance from the loss of rank, in rad or in arms. A step comes
+// near one if the distance of a row is below `near` at a stage, falls to the share `changes` of its largest, and a
+// change of the row moves the bodies `far` times as far. (Light bodies and thin rods make pivots small as well, but
+// their rows move nothing far.)
+constexpr double near = 0.3, changes = 0.9, far = 2.5;
+// A stage within the distance `close`, and of the share `dip` of the largest, asks for another length, if that leads at
+// least `clearly` times further away.
+constexpr double close = 0.02, dip = 0.5, clearly = 1.5;
+constexpr int most_passings = 16;  // in one step, of several loops
+constexpr double shortest = 0.5, longest_share = 1.3;
+constexpr int lengths_tried = 52;
+
+// Where a row passes a loss of rank: `at` in units of the step, `slope` of the distance per step.
+struct Passing {
+  double at, slope;
+};
+
+// The zero of the line through the distances, which count negative before the smallest.
+template <class Real>
+Passing passing_of(const RungeKutta<Real>& method, const std::vector<double>& distance) {
+  const int n = method.stages - 1;
+  const auto time = [&](int j) { return double(method.c[j]); };
+  int least = 1;
+  for (int j = 2; j <= n; ++j)
+    if (distance[j] < distance[least]) least = j;
+  double t_mean = 0, d_mean = 0;
+  const auto signed_distance = [&](int j) { return time(j) < time(least) ? -distance[j] : distance[j]; };
+  for (int j = 1; j <= n; ++j) t_mean += time(j) / n, d_mean += signed_distance(j) / n;
+  double tt = 0, td = 0;
+  for (int j = 1; j <= n; ++j) {
+    tt += (time(j) - t_mean) * (time(j) - t_mean);
+    td += (time(j) - t_mean) * (signed_distance(j) - d_mean);
+  }
+  const double slope = td / tt;
+  return {t_mean - d_mean / slope, slope};
+}
+
+// The smallest distance of the stages of a step of `share` from all passings. A step that ends before a passing leaves
+// it to the next, whose length is taken as 1: otherwise ever shorter steps would approach the passing.
+template <class Real>
+double distance_of(const RungeKutta<Real>& method, const Passing* begin, const Passing* end, double share) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Passing* one = begin; one != end; ++one)
+    for (int j = 1; j < method.stages; ++j) {
+      const double c = double(method.c[j]), after = one->at - share;
+      least = std::min(least, one->slope * std::abs(share * c - one->at));
+      if (after > 0) least = std::min(least, one->slope * std::abs(c - after));
+    }
+  return least;
+}
+
+// The error of velocities after a step of `share` h: round-off in the accelerations is epsilon / d^3 at the distance d,
+// in units of the square of the slope in time. Measured on four-bars: up to 3 times that.
+template <class T>
+double noise_at(double d, double slope, double h, double share) {
+  return 3 * double(std::numeric_limits<T>::epsilon()) * slope * slope / h * share / (d * d * d);
+}
+
+// The way by which a change of the row by 1 m or 1 rad moves the bodies: M^-1 J^T K^-1 e, in the pose of the last
+// factor.
+template <class S>
+double way_of_row(WorldData<S>& world, Island<S>& island, int row) {
+  System<S>& system = island.system;
+  auto& moves = world.bodies.increment;
+  std::fill(system.b.begin(), system.b.end(), 0);
+  system.b[static_cast<size_t>(row)] = 1;
+  system.solve_factored(system.b.data());
+  system.each_row([&](int r, Batch<S>& batch, int i) {
+    const bool acts = !system.fixed[r] && !system.broken[r] && !system.dependent(r);
+    batch.impulse[i] = acts ? typename S::Scalar(system.b[r]) : typename S::Scalar(0);
+  });
+  exert(world, island, system, &BatchWorkspace<S>::impulse, moves.data());
+  const double way = longest_move<S>(island, moves).way;
+  for (int i : island.bodies) moves[i] = {};
+  return way;
+}
+
+// The distance of that pose over the distance at the stage with the pivot `least`: ways grow by it.
+template <class S>
+double now_over(const Island<S>& island, int row, double least) {
+  if (island.system.dependent(row)) return std::numeric_limits<double>::infinity();
+  return std::sqrt(double(island.system.pivot(row) / island.system.diagonal(row)) / std::max(least, 1e-300));
+}
+
+}  // namespace
+
+template <class S>
+void prepare_rank_loss(Island<S>& island, const RungeKuttaOf<S>& method) {
+  const auto rows = static_cast<size_t>(island.system.rows());
+  island.flow.pivots.assign(rows * static_cast<size_t>(method.stages), 0.0);
+  island.flow.of_row.assign(static_cast<size_t>(method.stages), 0.0);
+}
+
+template <class S>
+void note_pivots(Island<S>& island, int stage) {
+  const System<S>& system = island.system;
+  if (!island.solver->exact) return;
+  const int rows = system.rows();
+  double* to = island.flow.pivots.data() + static_cast<size_t>(stage) * static_cast<size_t>(rows);
+  for (int r = 0; r < rows; ++r) {
+    const bool counts = !system.fixed[r] && !system.broken[r];
+    to[r] = !counts ? 1.0 : system.dependent(r) ? 0.0 : double(system.pivot(r) / system.diagonal(r));
+  }
+}
+
+template <class S>
+Passage<typename S::Scalar> passage_of(WorldData<S>& world, Island<S>& island, const RungeKuttaOf<S>& method,
+                                       typename S::Scalar h, typename S::Scalar longest) {
+  using T = typename S::Scalar;
+  // In floats round-off of the projection exceeds what it corrects.
+  if (!island.solver->exact || std::is_same_v<T, float>) return {};
+  const auto rows = static_cast<size_t>(island.system.rows());
+  auto& distance = island.flow.of_row;
+  Passing passings[most_passings];
+  int count = 0;
+  Passage<T> passage;
+  double steepest = 0;
+  for (size_t r = 0; r < rows && count < most_passings; ++r) {
+    double least = 1, most = 0;
+    for (int j = 1; j < method.stages; ++j) {
+      const double share = island.flow.pivots[static_cast<size_t>(j) * rows + r];
+      least = std::min(least, share), most = std::max(most, share);
+    }
+    if (!(least < near * near && least < changes * changes * most)) continue;
+    if (!(way_of_row(world, island, static_cast<int>(r)) * now_over(island, static_cast<int>(r), least) > far))
+      continue;
+    passage.near = true;
+    for (int j = 1; j < method.stages; ++j)
+      distance[j] = std::sqrt(island.flow.pivots[static_cast<size_t>(j) * rows + r]);
+    const Passing one = passing_of(method, distance);
+    if (!std::isfinite(one.at) || !(one.slope > 0)) continue;
+    const bool asks = least < close * close && least < dip * dip * most;
+    if (asks) passings[count++] = one, steepest = std::max(steepest, one.slope);
+    else passage.noise = std::max(passage.noise, noise_at<T>(std::sqrt(least), one.slope, double(h), 1));
+  }
+  if (count == 0) return passage;
+  double best = clearly * distance_of(method, passings, passings + count, 1), share = 0;
+  for (int k = 0; k <= lengths_tried; ++k) {
+    const double other = shortest + (longest_share - shortest) * k / lengths_tried;
+    if (!(T(other) * h <= longest)) break;
+    const double d = distance_of(method, passings, passings + count, other);
+    if (d > best) best = d, share = other;
+  }
+  passage.length = T(share) * h;
+  passage.noise = std::max(passage.noise, share > 0 ? noise_at<T>(best, steepest, double(h), share)
+                                                    : noise_at<T>(best / clearly, steepest, double(h), 1));
+  return passage;
+}
+
+#define CDOT_INSTANTIATE(S)                                            \
+  template void prepare_rank_loss(Island<S>&, const RungeKuttaOf<S>&); \
+  template void note_pivots(Island<S>&, int);                          \
+  template Passage<S::Scalar> passage_of(WorldData<S>&, Island<S>&, const RungeKuttaOf<S>&, S::Scalar, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

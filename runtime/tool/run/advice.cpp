@@ -1,0 +1,165 @@
+// Candidates for a better method, run one after the other over the same scene.
+#include "runtime/tool/run/advice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <functional>
+
+#include <cdot/methods.hpp>
+
+#include "runtime/tool/run/balance_report.hpp"
+#include "runtime/tool/run/process.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr double most_cpu = 2;  // [s] of all trials
+constexpr double most_cpu_of_a_trial = 0.5;
+constexpr double cpu_of_a_trial = 0.25;  // [s] by the run's own method; a longer run is tried up to an earlier time
+
+// Options of `cdot-run simulate`, and the same change of a scene.
+struct Candidate {
+  std::string options;
+  std::function<void(Scene&)> change;
+};
+
+Candidate by_step(double step) {
+  return {fmt::format("--step {:.6g}", step),
+          [step = std::stod(fmt::format("{:.6g}", step))](Scene& scene) { scene.step = step; }};
+}
+
+Candidate by_integrator(const Scene& scene, Integrator integrator, double local_error) {
+  std::string options = fmt::format("--integrator {}", name_of(integrators, integrator));
+  if (sweeps(scene.settings.solver)) options += " --solver direct";
+  if (scene.settings.drift != Drift::projection) options += " --drift projection";
+  if (local_error > 0) options += fmt::format(" --local-error {:.0e}", local_error);
+  return {options, [=](Scene& changed) {
+            changed.settings.integrator = integrator;
+            changed.settings.solver = Solver::direct;
+            changed.settings.drift = Drift::projection;
+            changed.settings.local_error = local_error;
+          }};
+}
+
+Candidate both(const Candidate& a, const Candidate& b) {
+  return {a.options + " " + b.options, [=](Scene& scene) { a.change(scene), b.change(scene); }};
+}
+
+// `fails`: the run ended at a step that failed.
+std::vector<Candidate> candidates_for(const Scene& scene, bool fails) {
+  std::vector<Candidate> all;
+  const Candidate project{"--project", [](Scene& changed) { changed.project = true; }};
+  const Settings& settings = scene.settings;
+  if (scene.on_failure == OnFailure::stop && fails)
+    all.push_back({"--on-failure retry", [](Scene& changed) { changed.on_failure = OnFailure::retry; }});
+  if (sweeps(settings.solver))
+    all.push_back({"--solver direct", [](Scene& changed) { changed.settings.solver = Solver::direct; }});
+  if (settings.local_error > 0) {
+    for (const double share : {1e-2, 1e-4})
+      all.push_back({fmt::format("--local-error {:.0e}", share * settings.local_error), [=](Scene& changed) {
+                       changed.settings.local_error = std::stod(fmt::format("{:.0e}", share * settings.local_error));
+                     }});
+  } else {
+    for (const Integrator integrator : {Integrator::rattle, Integrator::implicit})
+      if (settings.integrator != integrator) all.push_back(by_integrator(scene, integrator, 0));
+    all.push_back(by_step(scene.step / 2));
+  }
+  for (const double local_error : {1e-6, 1e-9}) all.push_back(by_integrator(scene, Integrator::dop853, local_error));
+  if (settings.local_error == 0) all.push_back(by_step(scene.step / 8));
+  if (settings.local_error == 0)
+    all.push_back(both(by_integrator(scene, Integrator::rattle, 0), by_step(scene.step / 8)));
+  if (!scene.project && !scene.joints.empty()) {
+    all.push_back(project);
+    all.push_back(both(by_integrator(scene, Integrator::dop853, 1e-6), project));
+  }
+  return all;
+}
+
+std::vector<Candidate> finer_accuracies(const Scene& scene) {
+  std::vector<Candidate> all;
+  for (const double share : {1e-1, 1e-3})
+    all.push_back({fmt::format("--accuracy {:.0e}", share * scene.accuracy), [=](Scene& changed) {
+                     changed.accuracy = std::stod(fmt::format("{:.0e}", share * scene.accuracy));
+                   }});
+  return all;
+}
+
+}  // namespace
+
+bool needs_advice(const Scene& scene, const RunResult& result) {
+  return !failure(scene, result).empty() || !balance_warning(scene, result).empty();
+}
+
+namespace {
+
+// Of a run by a candidate.
+struct Trial {
+  bool done = false, cures = false;  // done: it ended within its time
+  double share = 0, cpu = 0;
+};
+
+Trial try_out(const Scene& scene, const RunOptions& options, double most) {
+  const std::vector<double> numbers = in_child(most, [&]() -> std::vector<double> {
+    std::string warnings;
+    try {
+      const RunResult result = simulate(scene, options, warnings);
+      const bool cures = !result.interrupted && !needs_advice(scene, result);
+      return {cures ? 1.0 : 0.0, worst_share(result.balance), result.cpu};
+    } catch (const std::exception&) {
+      return {};  // for example a state of another method
+    }
+  });
+  if (numbers.size() != 3) return {};
+  return {true, numbers[0] != 0, numbers[1], numbers[2]};
+}
+
+}  // namespace
+
+TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result) {
+  const Interrupt interrupt;
+  TriedFix advice;
+  const double share = result.cpu > cpu_of_a_trial ? cpu_of_a_trial / result.cpu : 1;
+  if (share < 1) advice.until = result.start + share * (result.time - result.start);
+  RunOptions trial_options;
+  trial_options.from = options.from;
+  double left = most_cpu;
+  for (const Candidate& candidate :
+       scene.accuracy > 0 ? finer_accuracies(scene) : candidates_for(scene, result.failed_step.has_value())) {
+    Scene changed = scene;
+    candidate.change(changed);
+    if (mistake_in_methods(changed.settings)) continue;
+    if (advice.until > 0) changed.duration = advice.until;
+    const double most = std::min(left, most_cpu_of_a_trial);
+    if (!(most > 0) || Interrupt::asked()) break;
+    const Trial trial = try_out(changed, trial_options, most);
+    left -= trial.done ? trial.cpu : most;
+    advice.tried.push_back(candidate.options);
+    if (!trial.cures) continue;
+    advice.options = candidate.options;
+    advice.share = trial.share;
+    advice.cost = trial.cpu / std::max(share * result.cpu, 1e-9);
+    break;
+  }
+  return advice;
+}
+
+std::string in_words(const TriedFix& advice) {
+  if (advice.tried.empty()) return "Nothing could be tried within the time";
+  if (advice.options.empty()) return fmt::format("Tried in vain: `{}`", fmt::join(advice.tried, "`, `"));
+  return fmt::format("Tried: `{}` keeps energy and momentum to {:.1e} at {} times the cost{}", advice.options,
+                     advice.share,
+                     advice.cost < 10 ? fmt::format("{:.2g}", advice.cost) : fmt::format("{:.0f}", advice.cost),
+                     advice.until > 0 ? fmt::format(", up to t = {:.6g} s", advice.until) : std::string());
+}
+
+text::Json advice_json(const TriedFix& advice) {
+  return {{"options", advice.options},
+          {"share", advice.share},
+          {"cost", advice.cost},
+          {"until", advice.until},
+          {"tried", advice.tried}};
+}
+
+}  // namespace cdot

@@ -1,0 +1,26 @@
+// A run that went wrong -> advice that was tried: the options that cure it, and their cost. Nothing is advised that was
+// not run.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/text/json.hpp"
+#include "runtime/tool/run/simulate.hpp"
+
+namespace cdot {
+
+// True if the run failed, or its balance warns.
+bool needs_advice(const Scene& scene, const RunResult& result);
+
+// Searches the candidates in a fixed order for the first whose run over the same time passes without a failure and
+// without a warning of its balance. The trials have a bounded CPU time; a candidate that does not end within it is
+// none.
+TriedFix find_advice(const Scene& scene, const RunOptions& options, const RunResult& result);
+
+// "Tried: `--integrator rattle` keeps its energy to 1e-09 at 0.9 times the cost", or what was tried in vain.
+std::string in_words(const TriedFix& advice);
+text::Json advice_json(const TriedFix& advice);
+
+}  // namespace cdot

@@ -1,0 +1,90 @@
+// The shares of a BalanceWatch -> words.
+#include "runtime/tool/run/balance_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+namespace cdot {
+namespace {
+
+// Of what fails a run: a warning comes at this share, a failure by energy that rises without a source too.
+constexpr double small_share = 0.1;
+
+std::string percent(double share) {
+  if (!std::isfinite(share)) return "all";
+  return share < 0.1 ? fmt::format("{:.2g} %", 100 * share) : fmt::format("{:.0f} %", 100 * share);
+}
+
+// The account that is most above its limit.
+struct Wrong {
+  double excess = 1;
+  std::string what;
+  void take(double share, double limit, const std::string& words) {
+    if (share / limit > excess) excess = share / limit, what = words;
+  }
+};
+
+std::string energy_words(const BalanceWatch::Worst& worst, const char* verb) {
+  return fmt::format("the method {} {:.3g} J, {} of the motion's {:.3g} J, by t = {:.6g} s", verb,
+                     std::abs(worst.amount), percent(worst.share()), worst.scale, worst.time);
+}
+
+std::string momentum_words(const Scene& scene, const BalanceWatch::Worst& worst, const char* what, const char* unit) {
+  return fmt::format("the method changed the {} of the bodies with {} by {:.3g} {}, {} of its size, by t = {:.6g} s",
+                     what, body_name(scene, worst.body), worst.amount, unit, percent(worst.share()), worst.time);
+}
+
+Wrong wrong_with(const Scene& scene, const BalanceWatch& seen, double limit) {
+  Wrong wrong;
+  wrong.take(seen.energy.share(), limit, energy_words(seen.energy, seen.energy.amount < 0 ? "lost" : "made up"));
+  wrong.take(seen.linear.share(), limit, momentum_words(scene, seen.linear, "momentum", "kg m/s"));
+  wrong.take(seen.angular.share(), limit, momentum_words(scene, seen.angular, "angular momentum", "kg m^2/s"));
+  return wrong;
+}
+
+std::string if_any(const BalanceWatch::Worst& worst, const char* what) {
+  if (worst.scale == 0) return {};
+  return fmt::format("{} within {:.2g} of its size", what, worst.share());
+}
+
+text::Json json_of(const BalanceWatch::Worst& worst) {
+  return {{"error", worst.amount}, {"scale", worst.scale}, {"time", worst.time}};
+}
+
+}  // namespace
+
+double worst_share(const BalanceWatch& seen) {
+  return std::max({seen.energy.share(), seen.linear.share(), seen.angular.share()});
+}
+
+std::string balance_failure(const Scene& scene, const RunResult& result) {
+  Wrong wrong = wrong_with(scene, result.balance, scene.energy_tolerance);
+  const BalanceWatch::Worst& risen = result.balance.risen;
+  wrong.take(risen.share(), small_share * scene.energy_tolerance, energy_words(risen, "made up"));
+  return wrong.what;
+}
+
+std::string balance_warning(const Scene& scene, const RunResult& result) {
+  if (!balance_failure(scene, result).empty()) return {};
+  return wrong_with(scene, result.balance, small_share * scene.energy_tolerance).what;
+}
+
+std::string balance_text(const BalanceWatch& seen) {
+  std::string text = fmt::format(
+      "  balance         {:.6g} J put in, {:.6g} J taken; the method's own at most {:.3g} J ({}), at t = {:.6g} s\n",
+      seen.last.put_in, seen.last.taken, seen.energy.amount, percent(seen.energy.share()), seen.energy.time);
+  const std::string linear = if_any(seen.linear, "linear"), angular = if_any(seen.angular, "angular");
+  if (!linear.empty() || !angular.empty())
+    text += fmt::format("  momentum        {}{}{}\n", linear, linear.empty() || angular.empty() ? "" : ", ", angular);
+  return text;
+}
+
+text::Json balance_json(const BalanceWatch& seen) {
+  text::Json json = {{"put_in", seen.last.put_in}, {"taken", seen.last.taken}, {"method", json_of(seen.energy)}};
+  if (seen.linear.scale > 0) json["momentum"] = json_of(seen.linear);
+  if (seen.angular.scale > 0) json["angular_momentum"] = json_of(seen.angular);
+  return json;
+}
+
+}  // namespace cdot

@@ -1,0 +1,94 @@
+// Whole runs of cdot-run over many islands: callgrind counts all instructions, from reading the scene to the summary.
+// They must grow in proportion to the islands.
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <string>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace {
+
+struct Many {
+  const char* name;
+  const char* entries;  // each entry repeated
+  const char* options;
+};
+
+#define BODY "[[body]]\nrepeat = N\nname = \"l{i}\"\nmass = 1\nshape = { rod = 1 }\nshift = { position = [3, 0] }\n"
+#define AT "shift = { at = [3, 0] }\nat = [0, 0]\n"
+#define JOINT "[[joint]]\nrepeat = N\nname = \"j{i}\"\ntype = \"revolute\"\nbodies = [\"world\", \"l{i}\"]\n"
+#define PENDULUM BODY "position = [0.5, 0]\n" JOINT AT
+#define ASTRAY "shift = { pa = [3, 0] }\npa = [0, 0.1]\npb = [-0.5, 0]\n"
+
+const Many all[] = {
+    {"FreeBodies", BODY, ""},
+    {"Pendulums", PENDULUM, ""},
+    {"PendulumsByDop853", PENDULUM, "--integrator dop853"},
+    {"PendulumsByImplicitSteps", PENDULUM, "--integrator implicit"},
+    {"PendulumsByRattleAndSweeps", PENDULUM, "--integrator rattle --solver iterative"},
+    {"PendulumsWrittenToFiles", PENDULUM, "-o OUT.csv --html OUT.html --svg OUT.svg --save-state OUT.state"},
+    {"BreakableJoints", PENDULUM "breaking = 1e6\n", ""},
+    {"EffectsOnCoordinates", PENDULUM "angle.motor = { speed = 1, max = 10 }\nangle.limit = { lower = -1 }\n", ""},
+    {"RedundantJoints", PENDULUM "[[joint]]\nrepeat = N\ntype = \"revolute\"\nbodies = [\"world\", \"l{i}\"]\n" AT, ""},
+    {"StartsThatViolateJoints", BODY "position = [0.5, 0]\n" JOINT ASTRAY, "--tolerance 1"},
+    {"StartsThatAreProjected", BODY "position = [0.5, 0]\n" JOINT ASTRAY, "--project"},
+    {"SpringsBetweenPoints",
+     BODY
+     "[[spring]]\nrepeat = N\nbodies = [\"world\", \"l{i}\"]\nstiffness = 10\npa = [0, 1]\nshift = { pa = [3, 0] }\n",
+     ""},
+    {"BodiesThatTurnInSpace",
+     "dimension = 3\n[[body]]\nrepeat = N\nname = \"l{i}\"\nmass = 1\nshape = { box = [1, 0.2, 0.1] }\n"
+     "shift = { position = [3, 0, 0] }\nspin = [1, 1, 1]\n",
+     ""},
+};
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  for (std::size_t at = 0; (at = text.find(what, at)) != std::string::npos; at += by.size())
+    text.replace(at, what.size(), by);
+  return text;
+}
+
+class ManyIslands : public testing::TestWithParam<Many> {
+ protected:
+  ManyIslands() { std::filesystem::create_directory(folder_); }
+  ~ManyIslands() override { std::filesystem::remove_all(folder_); }
+
+  // Instructions of one run of two steps.
+  double count(int islands) const {
+    const std::string scene = folder_ / "scene.toml";
+    std::ofstream(scene) << "title = \"many\"\nduration = 0.02\nstep = 0.01\n"
+                         << replaced(GetParam().entries, "repeat = N", "repeat = " + std::to_string(islands));
+    const std::string command = std::string(CDOT_VALGRIND) + " --tool=callgrind --callgrind-out-file=/dev/null " +
+                                CDOT_RUN + " simulate " + scene + " " +
+                                replaced(GetParam().options, "OUT", folder_ / "out") + " 2>&1";
+    std::string output;
+    std::array<char, 512> line;
+    FILE* pipe = popen(command.c_str(), "r");
+    while (std::fgets(line.data(), line.size(), pipe)) output += line.data();
+    EXPECT_EQ(pclose(pipe), 0) << command << "\n" << output;
+    const auto at = output.find("Collected : ");
+    return at == std::string::npos ? 0 : std::stod(output.substr(at + 12));
+  }
+
+ private:
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() / ("cdot_many_islands_" + std::to_string(getpid()));
+};
+
+// I(n) = a + b n + c n^2 has (I(4n) - I(2n)) / (I(2n) - I(n)) = 2 if c = 0. Sorted tables of names cost n log n: 2.008
+// at most.
+TEST_P(ManyIslands, CostInProportionToTheirNumber) {
+  const double few = count(100), more = count(200), most = count(400);
+  const double ratio = (most - more) / (more - few);
+  std::printf("%s: %.0f instructions an island, ratio %.4f\n", GetParam().name, (most - more) / 200, ratio);
+  EXPECT_GT(more - few, 1e6);
+  EXPECT_NEAR(ratio, 2, 0.03);  // sorting and trees may add one per cent a doubling; a quadratic part adds 60 and more
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ManyIslands, testing::ValuesIn(all),
+                         [](const auto& one) { return std::string(one.param.name); });
+
+}  // namespace

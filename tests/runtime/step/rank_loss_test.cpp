@@ -1,0 +1,129 @@
+// Mechanisms that pass poses where K loses rank, with steps that land on both sides of them at random.
+#include <cmath>
+#include <fmt/core.h>
+
+#include "tests/runtime/mechanisms.hpp"
+#include "tests/runtime/support.hpp"
+
+namespace cdot::test {
+namespace {
+
+constexpr double gravity = 9.81, duration = 10;
+
+Settings runge_kutta(Integrator integrator, double local_error = 0) {
+  Settings s = settings(Solver::direct, Drift::projection, -gravity);
+  s.integrator = integrator;
+  s.local_error = local_error;
+  return s;
+}
+
+// n windows: n + 1 cranks of 1 m and n level couplers, all of 1 kg, at right angles, turning at -1 rad/s. (N-four-bar
+// mechanism of the IFToMM library of computational benchmark problems.) Flat at 0 and 180 degrees.
+int add_windows(World<double>& world, int n) {
+  std::vector<int> cranks;
+  for (int k = 0; k <= n; ++k) {
+    cranks.push_back(world.add_body(rod(k, 0, pi / 2)));
+    world.set_velocity(cranks.back(), {0.5, 0, -1});
+    revolute(world, world.ground(), cranks.back(), k, 0, -0.5, 0);
+  }
+  for (int k = 0; k < n; ++k) {
+    const int coupler = world.add_body(rod(k, 1, 0));
+    world.set_velocity(coupler, {1, 0, 0});
+    revolute(world, cranks[k], coupler, 0.5, 0, -0.5, 0);
+    revolute(world, coupler, cranks[k + 1], 0.5, 0, 0.5, 0);
+  }
+  return cranks.front();
+}
+
+// All bodies move as one: ((n + 1) / 3 + n) angle'' = -g cos(angle) ((n + 1) / 2 + n). RK4 with steps of 1e-5 s.
+double angle_of_windows(int n) {
+  const double rate = gravity * ((n + 1) / 2.0 + n) / ((n + 1) / 3.0 + n), h = 1e-4;
+  double angle = pi / 2, spin = -1;
+  for (long k = 0; k < std::lround(duration / h); ++k) {
+    const auto f = [&](double at) { return -rate * std::cos(at); };
+    const double a1 = f(angle), a2 = f(angle + h / 2 * spin), a3 = f(angle + h / 2 * spin + h * h / 4 * a1),
+                 a4 = f(angle + h * spin + h * h / 2 * a2);
+    angle += h * spin + h * h / 6 * (a1 + a2 + a3);
+    spin += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+  }
+  return angle;
+}
+
+double error_of_windows(const Settings& s, int n, double h) {
+  World<double> world(s);
+  const int crank = add_windows(world, n);
+  run(world, duration, h);
+  EXPECT_EQ(world.step_counts().rescued, 0) << "n = " << n << ", h = " << h;
+  return std::abs(world.pose(crank).angle - angle_of_windows(n));
+}
+
+TEST(RankLoss, EveryFixedStepPassesTheFlatPosesOfParallelograms) {
+  for (const int n : {1, 2, 5}) {
+    for (const double h : {0.05, 0.02, 0.01, 0.005, 0.002}) {
+      const double off = error_of_windows(runge_kutta(Integrator::dop853), n, h);
+      fmt::print("  {} windows, steps of {} s: {:.1e} rad off\n", n, h, off);
+      EXPECT_LT(off, 1e-6);
+    }
+  }
+}
+
+TEST(RankLoss, EveryAdaptiveStepPassesTheFlatPosesOfParallelograms) {
+  for (const int n : {1, 2, 5}) {
+    for (const double allowed : {1e-6, 1e-8, 1e-10, 1e-12}) {
+      const double off = error_of_windows(runge_kutta(Integrator::dop853, allowed), n, 1.0 / 240);
+      fmt::print("  {} windows, local error {:.0e}: {:.1e} rad off\n", n, allowed, off);
+      EXPECT_LT(off, std::max(1e3 * allowed, 1e-8));
+    }
+  }
+}
+
+// Lengths 1 + 4 = 2 + 3: a four-bar that is no parallelogram and lies flat once per turn of its crank. The two branches
+// cross there.
+struct FourBar {
+  explicit FourBar(const Settings& s) : world(s) {
+    const double t = 1, w = 6, px = std::cos(t), py = std::sin(t), dx = 2 - px, dy = -py, r = std::hypot(dx, dy);
+    const double along = (r * r + 16 - 9) / (2 * r), beside = std::sqrt(16 - along * along);
+    const double qx = px + (along * dx - beside * dy) / r, qy = py + (along * dy + beside * dx) / r;
+    crank = add_bar(world, {0, 0, px, py});
+    const int coupler = add_bar(world, {px, py, qx, qy}), rocker = add_bar(world, {2, 0, qx, qy});
+    pin(world, world.ground(), crank, 0, 0);
+    pin(world, crank, coupler, px, py);
+    pin(world, coupler, rocker, qx, qy);
+    pin(world, world.ground(), rocker, 2, 0);
+    // (q - p) (q' - p') = 0 and (q - d) q' = 0
+    const double ax = qx - px, ay = qy - py, bx = qx - 2, by = qy, vx = -w * py, vy = w * px;
+    const double right = ax * vx + ay * vy, det = ax * by - ay * bx, ux = right * by / det, uy = -right * bx / det;
+    world.set_velocity(crank, {vx / 2, vy / 2, w});
+    world.set_velocity(coupler, {(vx + ux) / 2, (vy + uy) / 2, (ax * (uy - vy) - ay * (ux - vx)) / 16});
+    world.set_velocity(rocker, {ux / 2, uy / 2, (bx * uy - by * ux) / 9});
+  }
+  World<double> world;
+  int crank;
+};
+
+TEST(RankLoss, EveryStepPassesTheChangePointOfAGeneralFourBar) {
+  double angle = 0;
+  const auto check = [&](const Settings& s, double h, double energy_off, double angle_off) {
+    FourBar bar(s);
+    const double start = bar.world.energy();
+    double worst = 0;
+    for (long k = 0; k < std::lround(duration / h); ++k) {
+      bar.world.step(h);
+      worst = std::max(worst, std::abs(bar.world.energy() - start));
+    }
+    const double end = bar.world.pose(bar.crank).angle;
+    if (angle == 0) angle = end;
+    fmt::print("  steps of {} s, local error {:.0e}: energy {:.1e} of {:.1f} J off, crank at {:.10f} rad\n", h,
+               s.local_error, worst, start, end);
+    EXPECT_EQ(bar.world.step_counts().rescued, 0);
+    EXPECT_LT(worst, energy_off);
+    EXPECT_NEAR(end, angle, angle_off);
+  };
+  check(runge_kutta(Integrator::dop853, 1e-12), 1.0 / 240, 1e-5, 0);
+  for (const double h : {0.01, 0.005, 0.002, 0.001}) check(runge_kutta(Integrator::dop853), h, 1e-3, 1e-4);
+  for (const double allowed : {1e-6, 1e-8, 1e-10})
+    check(runge_kutta(Integrator::dop853, allowed), 1.0 / 240, 1e4 * allowed, 1e4 * allowed);
+}
+
+}  // namespace
+}  // namespace cdot::test

@@ -1,0 +1,187 @@
+// The balance of runs at the command line, and advice: each is pasted behind the command that gave it, and must cure.
+#include <fmt/format.h>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "runtime/tool/run/output.hpp"
+#include "tests/runtime/tool/support.hpp"
+
+namespace cdot::test::advice_test {
+namespace {
+
+struct Ran {
+  int status = -1;
+  nlohmann::json summary;
+};
+
+Ran run(const std::string& file, const std::string& options) {
+  const CommandResult result = cdot_run(fmt::format("simulate '{}' {} --json", file, options));
+  Ran ran{result.status, {}};
+  if (!result.out.empty()) ran.summary = nlohmann::json::parse(result.out);
+  return ran;
+}
+
+bool silent(const Ran& ran) { return ran.status == 0 && ran.summary["warning"] == ""; }
+
+// Follows the advice of one run, if it gives one. Returns whether it did.
+bool follow(const std::string& file, const std::string& options) {
+  const Ran first = run(file, options);
+  if (silent(first)) {
+    EXPECT_FALSE(first.summary.contains("advice")) << file << options;
+    return false;
+  }
+  if (!first.summary.contains("advice")) {
+    ADD_FAILURE() << file << " " << options << ": neither silent nor with advice";
+    return false;
+  }
+  const auto& advice = first.summary["advice"];
+  const std::string pasted = advice["options"];
+  if (pasted.empty()) return false;
+  const double until = advice["until"];
+  const Ran second =
+      run(file, fmt::format("{} {}{}", options, pasted, until > 0 ? fmt::format(" --until {}", until) : ""));
+  EXPECT_TRUE(silent(second)) << file << " " << options << ": " << pasted << "\n" << second.summary.dump(2);
+  const double promised = advice["share"], energy = second.summary["balance"]["method"]["error"];
+  EXPECT_LE(std::abs(energy), (1.001 * promised + 1e-15) * double(second.summary["balance"]["method"]["scale"]))
+      << file << " " << options << ": " << pasted;
+  return true;
+}
+
+TEST(Advice, CuresWhatItWasGivenForInEveryScene) {
+  int runs = 0, followed = 0;
+  for (const auto& file : all_scene_files())
+    for (const char* options : {"", "--integrator implicit", "--solver iterative"}) {
+      // The step stays coarse where a scene names none, so that there is something to cure.
+      ++runs;
+      followed += follow(file.string(), options);
+    }
+  fmt::print("{} runs, {} pieces of advice followed\n", runs, followed);
+  EXPECT_GE(followed, 10);
+}
+
+constexpr const char* two_bodies = R"(
+duration = 20
+step = "1/60"
+gravity = [0, 0]
+[[body]]
+name = "a"
+mass = 1
+shape = { disc = 0.1 }
+position = [-1, 0]
+velocity = [0, -2]
+[[body]]
+name = "b"
+mass = 1
+shape = { disc = 0.1 }
+position = [1, 0]
+velocity = [0, 2]
+[[spring]]
+bodies = ["a", "b"]
+stiffness = 4
+rest = 1.5
+)";
+
+std::string damped(double stiffness, double damping) {
+  return fmt::format(R"(
+duration = 2
+step = "1/60"
+[[body]]
+name = "a"
+mass = 1
+shape = {{ disc = 0.1 }}
+position = [0, -1]
+[[spring]]
+bodies = ["world", "a"]
+stiffness = {}
+damping = {}
+rest = 1
+)",
+                     stiffness, damping);
+}
+
+std::string written(const TemporaryFolder& folder, const std::string& text) {
+  const auto file = folder / "scene.toml";
+  std::ofstream(file) << text;
+  return file.string();
+}
+
+// 100 N/m with 200 N s/m on 1 kg at 1/60 s: c h / m = 3.3 is beyond what an explicit damper bears.
+TEST(Balance, AnEnergyWithoutASourceFailsTheRunAndKeepsItsOutput) {
+  const TemporaryFolder folder;
+  const std::string file = written(folder, damped(100, 200));
+  const auto csv = folder / "rows.csv", state = folder / "end.state";
+  const Ran broken =
+      run(file, fmt::format("--integrator rattle --until 0.5 -o '{}' --save-state '{}'", csv.string(), state.string()));
+  if (broken.status == 0) {  // a method that takes dampers implicitly holds it
+    EXPECT_LT(std::abs(double(broken.summary["energy_end"])), 1.0);
+    return;
+  }
+  EXPECT_EQ(broken.status, 1);
+  EXPECT_NE(std::string(broken.summary["failure"]).find("the method made up"), std::string::npos) << broken.summary;
+  EXPECT_TRUE(std::filesystem::exists(csv));
+  EXPECT_NEAR(read_state(state.string()).time(), 0.5, 0.02);
+  EXPECT_TRUE(follow(file, "--integrator rattle --until 0.5"));
+}
+
+// Coarse steps of Euler let the energy of an orbit swing: the share decides between silence, a warning and a failure.
+TEST(Balance, ASharePassesWarnsOrFailsByTheToleranceOfTheScene) {
+  const TemporaryFolder folder;
+  const std::string file = written(folder, two_bodies);
+  const Ran coarse = run(file, "--integrator euler --step 0.05 --energy-tolerance 100");
+  const double error = coarse.summary["balance"]["method"]["error"];
+  const double scale = coarse.summary["balance"]["method"]["scale"];
+  const double share = std::abs(error) / scale;
+  ASSERT_GT(share, 1e-3);
+  const auto with = [&](double tolerance) {
+    return run(file, fmt::format("--integrator euler --step 0.05 --energy-tolerance {}", tolerance));
+  };
+  EXPECT_TRUE(silent(with(101 * share)));
+  const Ran warned = with(9 * share);
+  // Energy that rises fails the run at a tenth of the tolerance.
+  if (error < 0) {
+    EXPECT_EQ(warned.status, 0);
+    EXPECT_NE(warned.summary["warning"], "");
+  } else {
+    EXPECT_EQ(warned.status, 1);
+  }
+  EXPECT_EQ(with(0.5 * share).status, 1);
+}
+
+// Scenes that once gained or lost their energy with exit 0 and no word. No source of energy is in them, so the energy
+// itself tells, without the balance: it may not rise, and where nothing takes it, it may not fall.
+TEST(Balance, KnownScenesAreNotWrongInSilence) {
+  struct Known {
+    const char *name, *options;
+    bool conserves;
+  };
+  for (const Known& known : {Known{"two_bodies_and_a_rod", "--integrator implicit", true},
+                             Known{"two_bodies_and_a_rod", "--integrator rattle", true},
+                             Known{"ragdoll_at_20_rad_per_s", "--solver iterative", false},
+                             Known{"pivot_off_by_1_mm", "--integrator dop853", true},
+                             Known{"damper_beyond_explicit_steps", "--integrator rattle", false}}) {
+    const auto file = source_dir() / "tests/runtime/tool/run/silent" / (std::string(known.name) + ".toml");
+    const Ran now = run(file.string(), known.options);
+    const auto& summary = now.summary;
+    ASSERT_FALSE(summary.is_null()) << known.name;
+    const double start = summary["energy_start"], end = summary["energy_end"], drift = summary["energy_drift"];
+    const double scale = summary["balance"]["method"]["scale"];
+    const bool wrong = end - start > 0.02 * scale || (known.conserves && drift > 0.02 * scale);
+    EXPECT_FALSE(silent(now) && wrong) << known.name << " " << known.options << "\n" << summary.dump(2);
+    if (known.name == std::string("two_bodies_and_a_rod") && known.options == std::string("--integrator rattle")) {
+      EXPECT_TRUE(silent(now)) << summary.dump(2);
+    }
+  }
+}
+
+TEST(Balance, MomentaOfFreeBodiesAreWatched) {
+  const TemporaryFolder folder;
+  const Ran held = run(written(folder, two_bodies), "--integrator dop853 --local-error 1e-9");
+  EXPECT_TRUE(silent(held)) << held.summary;
+  EXPECT_LT(double(held.summary["balance"]["momentum"]["error"]), 1e-12);
+  EXPECT_LT(double(held.summary["balance"]["angular_momentum"]["error"]), 1e-7);
+  EXPECT_GT(double(held.summary["balance"]["angular_momentum"]["scale"]), 3);
+}
+
+}  // namespace
+}  // namespace cdot::test::advice_test
