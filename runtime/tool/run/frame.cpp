@@ -45,9 +45,6 @@ void turn(const BodyState& a, const BodyState& b, double h, double s, BodyState&
   to.wx = linear(a.wx, b.wx, s), to.wy = linear(a.wy, b.wy, s), to.wz = linear(a.wz, b.wz, s);
 }
 
-// Relative to a step: closer times count as equal.
-constexpr double time_tolerance = 1e-6;
-
 }  // namespace
 
 std::span<const StateColumn> state_columns(Dimension dimension) {
@@ -103,20 +100,6 @@ Frame between(const Frame& before, const Frame& after, double time) {
   }
   frame.energy = linear(before.energy, after.energy, s);
   return frame;
-}
-
-Sampler::Sampler(std::vector<double> ascending_times, Take take)
-    : times_(std::move(ascending_times)), take_(std::move(take)) {}
-
-void Sampler::step(const Frame& before, const Frame& after) {
-  const double slack = time_tolerance * (after.time - before.time);
-  for (; next_ < times_.size() && times_[next_] <= after.time + slack; ++next_) {
-    const double time = times_[next_];
-    const bool at_end = std::abs(time - after.time) <= slack;
-    Frame frame = at_end ? after : between(before, after, time);
-    frame.time = time;
-    take_(frame);
-  }
 }
 
 std::vector<double> every(double dt, double until) {

@@ -1,8 +1,6 @@
-// The state of a scene at one time, and frames at requested times. Interpolation gives these: output never shortens a
-// step.
+// The state of a scene at one time, and between the ends of a step.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -37,20 +35,6 @@ bool finite(const Frame& frame);
 // Between two steps: positions by the cubic through both ends' positions and velocities, the rest linear. The error is
 // of fourth order in the step.
 Frame between(const Frame& before, const Frame& after, double time);
-
-// Calls back with the frames at given times as the run proceeds.
-class Sampler {
- public:
-  using Take = std::function<void(const Frame&)>;
-  Sampler(std::vector<double> ascending_times, Take take);
-  // `before` and `after` are the ends of a step; at the start they are equal.
-  void step(const Frame& before, const Frame& after);
-
- private:
-  std::vector<double> times_;
-  std::size_t next_ = 0;
-  Take take_;
-};
 
 // 0, dt, 2 dt, … up to `until`.
 std::vector<double> every(double dt, double until);

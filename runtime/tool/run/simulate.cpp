@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "runtime/tool/run/process.hpp"
+#include "runtime/tool/run/requested_frames.hpp"
 
 namespace cdot {
 namespace {
@@ -44,23 +45,17 @@ void finish(const Scene& scene, const BasicWorld<S>& world, RunResult& result) {
   result.interrupted = Interrupt::asked();
 }
 
-// A method that chooses its steps interpolates by itself: its steps end at every requested time.
-std::vector<double> own_ends(const Scene& scene, const RunOptions& options) {
+constexpr double same_time = 1e-9;  // of the duration
+
+// Multiples of the scene's step, and the end of the run, at which a method that chooses its steps interpolates.
+std::vector<double> ends_of_steps(const Scene& scene) {
   std::vector<double> ends = every(scene.step, scene.duration);
-  ends.push_back(scene.duration);
-  for (const auto* times : {&options.row_times, &options.film_times})
-    for (double time : *times)
-      if (time <= scene.duration) ends.push_back(time);
-  std::sort(ends.begin(), ends.end());
-  // Times that differ by round-off count as one.
-  const double same = 1e-9 * scene.duration;
-  ends.erase(std::unique(ends.begin(), ends.end(), [&](double a, double b) { return b - a < same; }), ends.end());
+  if (scene.duration - ends.back() >= same_time * scene.duration) ends.push_back(scene.duration);
   return ends;
 }
 
-constexpr double same_time = 1e-9;  // of the duration
-
-// The times at which steps end. A run that continues from a state keeps the times of the run that saved it.
+// The times at which steps end, whatever outputs are requested. A run that continues from a state keeps the times of
+// the run that saved it.
 class Steps {
  public:
   Steps(const Scene& scene, const RunOptions& options) : step_(scene.step), start_(options.from.time()) {
@@ -68,7 +63,7 @@ class Steps {
       throw Error(fmt::format("the state is from {:.6g} s, but the run ends at {:.6g} s. Likely fix: a later --until",
                               start_, scene.duration));
     if (scene.settings.local_error > 0) {
-      ends_ = own_ends(scene, options);
+      ends_ = ends_of_steps(scene);
       const auto later = std::upper_bound(ends_.begin(), ends_.end(), start_ + same_time * scene.duration);
       first_ = later - ends_.begin() - 1;
       count_ = static_cast<long long>(ends_.size()) - first_ - 1;
@@ -123,10 +118,10 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
   BasicWorld<S> world = world_of_run<S>(scene, options, warnings);
   const Steps steps(scene, options);
   result.start = steps.time(0);
-  Sampler rows(
-      from_time(options.row_times, result.start, scene.step), options.row ? options.row : [](const Frame&) {});
-  Sampler film(from_time(options.film_times, result.start, scene.step),
-               [&](const Frame& frame) { result.film.push_back(frame); });
+  RequestedFrames<S> requested(scene);
+  if (options.row) requested.request(from_time(options.row_times, result.start, scene.step), options.row);
+  requested.request(from_time(options.film_times, result.start, scene.step),
+                    [&](const Frame& frame) { result.film.push_back(frame); });
   const bool every_step = options.row && options.row_times.empty();
   ProgressLine progress(options.progress);
   const Interrupt interrupt;
@@ -142,8 +137,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (!result.finite) break;
     result.balance.look(world.balance());
     if (every_step) options.row(after);
-    rows.step(before, after);
-    film.step(before, after);
+    requested.after_step(before, after);
     if (options.save_at && result.state.empty() && after.time >= *options.save_at * (1 - 1e-12))
       result.state = world.snapshot();
     const auto due =
@@ -151,6 +145,7 @@ RunResult simulate_in(const Scene& scene, const RunOptions& options, std::string
     if (due != next_diagnosis) look(scene, world, result);
     next_diagnosis = due;
     if (k == steps.count() || Interrupt::asked()) break;
+    requested.before_step(world, after, steps.time(k + 1));
     const double start = cpu_now();
     const StepResult step = world.step(steps.length(k + 1));
     result.cpu += cpu_now() - start;

@@ -1,0 +1,67 @@
+#include "runtime/tool/run/requested_frames.hpp"
+
+#include <algorithm>
+
+namespace cdot {
+namespace {
+
+constexpr double same_time = 1e-6;  // of a step
+
+}  // namespace
+
+template <class S>
+RequestedFrames<S>::RequestedFrames(const Scene& scene)
+    : scene_(scene),
+      slack_(same_time * scene.step),
+      adaptive_(scene.settings.local_error > 0),
+      takes_parts_(!sweeps(scene.settings.solver) && scene.settings.drift != Drift::baumgarte) {}
+
+template <class S>
+void RequestedFrames<S>::request(const std::vector<double>& times, Take take) {
+  for (const double time : times) requests_.push_back({time, takes_.size()});
+  takes_.push_back(std::move(take));
+  std::stable_sort(requests_.begin(), requests_.end(),
+                   [](const Request& a, const Request& b) { return a.time < b.time; });
+}
+
+template <class S>
+void RequestedFrames<S>::before_step(const BasicWorld<S>& run, const Frame& at, double end) {
+  last_.reset();
+  const bool lies_inside =
+      next_ < requests_.size() && requests_[next_].time > at.time + slack_ && requests_[next_].time < end - slack_;
+  if (takes_parts_ && lies_inside) run.snapshot_into(start_);
+}
+
+template <class S>
+void RequestedFrames<S>::after_step(const Frame& before, const Frame& after) {
+  for (; next_ < requests_.size() && requests_[next_].time <= after.time + slack_; ++next_) {
+    const double time = requests_[next_].time;
+    const bool at_end = time >= after.time - slack_;
+    Frame frame = at_end ? after : inside(before, after, time);
+    frame.time = time;
+    takes_[requests_[next_].take](frame);
+  }
+}
+
+template <class S>
+Frame RequestedFrames<S>::inside(const Frame& before, const Frame& after, double time) {
+  if (!takes_parts_) return between(before, after, time);
+  if (!last_ || last_->time != time) last_ = part_of_step(before, after, time);
+  return *last_;
+}
+
+template <class S>
+Frame RequestedFrames<S>::part_of_step(const Frame& before, const Frame& after, double time) {
+  if (!part_) part_ = build_world_in<S>(scene_);
+  const bool goes_on = adaptive_ && last_;
+  if (!goes_on) part_->restore(start_);
+  // The step itself succeeded, so a part of it hardly ever fails.
+  if (!part_->step(time - (goes_on ? last_->time : before.time))) return between(before, after, time);
+  return frame_of(*part_, time, static_cast<int>(before.bodies.size()));
+}
+
+#define CDOT_INSTANTIATE(S) template class RequestedFrames<S>;
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
