@@ -1,5 +1,7 @@
 // The momentum of islands that nothing holds.
-#include <array>
+#include "runtime/motion/momentum.hpp"
+
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -11,75 +13,16 @@
 namespace cdot {
 namespace {
 
-using Three = std::array<double, 3>;
-
-Three cross(const Three& a, const Three& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Three plus(const Three& a, const Three& b, double scale) {
-  return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
-}
-double norm(const Three& a) { return std::hypot(a[0], a[1], a[2]); }
-
-// The linear and the angular part of a velocity, force or impulse.
-template <class S>
-void split(const typename S::Velocity& v, Three& linear, Three& angular) {
-  typename S::Scalar numbers[S::freedom];
-  S::write(v, numbers);
-  linear = {double(numbers[0]), double(numbers[1]), 0}, angular = {0, 0, 0};
-  if constexpr (S::lengths == 3) linear[2] = double(numbers[2]);
-  if constexpr (S::lengths == 3) angular = {double(numbers[3]), double(numbers[4]), double(numbers[5])};
-  else angular[2] = double(numbers[2]);
-}
-
-template <class S>
-Three position(const typename S::Pose& pose) {
-  typename S::Scalar numbers[S::pose_numbers];
-  S::write(pose, numbers);
-  return {double(numbers[0]), double(numbers[1]), S::lengths == 3 ? double(numbers[2]) : 0};
-}
-
-struct Motion {
-  Three linear{}, angular{};                 // momentum, the angular one about the centre of mass
-  Three force{}, torque{};                   // constant ones
-  double linear_size = 0, angular_size = 0;  // sums of the bodies' |momentum|
-};
-
-// L = sum (x - X) x m (v - V) + I w
-template <class S>
-Motion motion_of(const WorldData<S>& world, const Island<S>& island) {
-  const Bodies<S>& all = world.bodies;
-  Motion motion;
-  double mass = 0;
-  Three centre{};
-  for (int i : island.bodies) {
-    const double m = 1 / double(all.inverse_mass[i].m);
-    Three p, spin, force, torque;
-    split<S>(S::force(all.inverse_mass[i], all.velocity[i]), p, spin);
-    split<S>(S::force(all.inverse_mass[i], all.acceleration[i]), force, torque);
-    mass += m, centre = plus(centre, position<S>(all.pose[i]), m);
-    motion.linear = plus(motion.linear, p, 1), motion.linear_size += norm(p);
-    motion.force = plus(motion.force, force, 1), motion.torque = plus(motion.torque, torque, 1);
-  }
-  const Three X = plus({}, centre, 1 / mass), V = plus({}, motion.linear, 1 / mass);
-  for (int i : island.bodies) {
-    Three p, spin;
-    split<S>(S::force(all.inverse_mass[i], all.velocity[i]), p, spin);
-    const Three orbit = cross(plus(position<S>(all.pose[i]), X, -1), plus(p, V, -1 / double(all.inverse_mass[i].m)));
-    motion.angular = plus(plus(motion.angular, orbit, 1), spin, 1);
-    motion.angular_size += norm(orbit) + norm(spin);
-  }
-  return motion;
+using Vector = spatial::Vector<double>;
+template <class R>
+Vector doubles(const spatial::Vector<R>& a) {
+  return {double(a.x), double(a.y), double(a.z)};
 }
 
 template <class S>
 bool pushed(const WorldData<S>& world, const Island<S>& island) {
-  for (int i : island.bodies) {
-    Three force, torque;
-    split<S>(world.bodies.force[i], force, torque);
-    if (norm(force) > 0) return true;
-  }
-  return false;
+  return std::any_of(island.bodies.begin(), island.bodies.end(),
+                     [&](int i) { return norm(twist<double>(world.bodies.force[i]).linear) > 0; });
 }
 
 // A rigid motion of all bodies: along or about the axis `c`.
@@ -87,13 +30,9 @@ template <class S>
 typename S::Velocity rigid_motion(const typename S::Pose& pose, int c) {
   typename S::Scalar v[S::freedom] = {};
   v[c] = 1;
-  if (c >= S::lengths) {
-    Three axis{}, x = position<S>(pose);
-    axis[S::lengths == 3 ? static_cast<size_t>(c - S::lengths) : 2] = 1;
-    const Three arm = cross(axis, x);
-    for (int k = 0; k < S::lengths; ++k) v[k] = typename S::Scalar(arm[static_cast<size_t>(k)]);
-  }
-  return S::read_velocity(v);
+  Twist<double> motion = twist<double>(S::read_velocity(v));
+  motion.linear = motion.linear + spatial::cross(motion.angular, position<double>(pose));
+  return velocity<S>(motion);
 }
 
 // True if no row of the slot resists rigid motions along, or about, the axes [first, last). Displacements are tried at
@@ -164,10 +103,8 @@ void find_free_motions(const WorldData<S>& world, Island<S>& island, Bodies<S>& 
   island.floats = island.spins_freely = !touches_the_world(world, island);
   for (int i : island.bodies) {
     // A body that cannot turn absorbs torques.
-    Three linear, angular;
-    split<S>(S::weighted(world.bodies.inverse_mass[i], rigid_motion<S>(typename S::Pose{}, S::freedom - 1)), linear,
-             angular);
-    island.spins_freely = island.spins_freely && (norm(angular) > 0 || island.bodies.size() == 1);
+    const auto turned = S::weighted(world.bodies.inverse_mass[i], rigid_motion<S>(typename S::Pose{}, S::freedom - 1));
+    island.spins_freely = island.spins_freely && (norm(twist<double>(turned).angular) > 0 || island.bodies.size() == 1);
   }
   if (!island.floats) return;
   scatter(island, at);
@@ -184,28 +121,28 @@ void find_free_motions(const WorldData<S>& world, Island<S>& island, Bodies<S>& 
 
 template <class S>
 void measure_momentum(const WorldData<S>& world, Island<S>& island) {
-  const Motion motion = motion_of(world, island);
-  std::copy(motion.linear.begin(), motion.linear.end(), island.momentum.begin());
-  std::copy(motion.angular.begin(), motion.angular.end(), island.momentum.begin() + 3);
-  island.momentum[6] = world.time;
+  const auto now = momentum_of(world, island);
+  const Vector p = doubles(now.linear), L = doubles(now.spin);
+  const double numbers[] = {p.x, p.y, p.z, L.x, L.y, L.z, world.time};
+  std::copy(std::begin(numbers), std::end(numbers), island.momentum.begin());
 }
 
 template <class S>
 void compare_momentum(const WorldData<S>& world, const Island<S>& island, Balance& balance) {
   if (island.momentum.empty() || island.momentum[6] < 0) return;
-  const Motion now = motion_of(world, island);
+  const auto now = momentum_of(world, island);
   const double time = world.time - island.momentum[6];
-  const auto compare = [&](const double* start, const Three& sum, const Three& given, double size,
+  const auto compare = [&](const double* start, const auto& sum, const auto& given, auto size,
                            Balance::Momentum& worst) {
-    const Three change = plus(plus(sum, {start[0], start[1], start[2]}, -1), given, -time);
-    const Balance::Momentum mine{norm(change), size, island.bodies.front()};
+    const Vector change = doubles(sum) - Vector{start[0], start[1], start[2]} - time * doubles(given);
+    const Balance::Momentum mine{norm(change), double(size), island.bodies.front()};
     // By share; 0 / 0 is no error.
     if (worst.body < 0 || !(mine.error * worst.scale <= worst.error * mine.scale)) worst = mine;
   };
   compare(island.momentum.data(), now.linear, now.force, now.linear_size, balance.linear);
   // Constant forces at moving places have a torque that is not constant.
   if (island.spins_freely && !pushed(world, island))
-    compare(island.momentum.data() + 3, now.angular, now.torque, now.angular_size, balance.angular);
+    compare(island.momentum.data() + 3, now.spin, now.torque, now.spin_size, balance.angular);
 }
 
 #define CDOT_INSTANTIATE(S)                                                     \

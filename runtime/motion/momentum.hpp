@@ -2,8 +2,9 @@
 // wrench on a mechanism that is free in space; restore_momentum() takes it back as a rigid motion.
 #pragma once
 
-#include <cdot/rotation.hpp>
+#include <cdot/precision.hpp>
 
+#include "runtime/motion/vectors.hpp"
 #include "runtime/state/world_data.hpp"
 
 namespace cdot {
@@ -13,15 +14,19 @@ template <class T>
 struct Momentum {
   T mass = 0;                                     // [kg]
   spatial::Vector<T> centre{}, linear{}, spin{};  // [m], [N s], [N m s]
+  T linear_size = 0, spin_size = 0;               // sums of the bodies' magnitudes
+  spatial::Vector<T> force{}, torque{};           // sums of constant ones [N], [N m]
   spatial::Symmetric<T> inertia{};                // about the centre of mass [kg m^2]
 };
 template <class S>
-Momentum<typename S::Scalar> momentum_of(const WorldData<S>& world, const Island<S>& island);
+using MomentumOf = Momentum<ExactNumber<typename S::Scalar>>;
+
+template <class S>
+MomentumOf<S> momentum_of(const WorldData<S>& world, const Island<S>& island);
 
 // Adds the rigid motion that gives a free island the momentum of `start`, plus that of constant forces over h. The
 // poses of the start are those in Flow::pose.
 template <class S>
-void restore_momentum(WorldData<S>& world, const Island<S>& island, const Momentum<typename S::Scalar>& start,
-                      typename S::Scalar h);
+void restore_momentum(WorldData<S>& world, const Island<S>& island, const MomentumOf<S>& start, typename S::Scalar h);
 
 }  // namespace cdot

@@ -48,8 +48,8 @@ const std::vector<std::string> rooms = {
     "runtime/rows",        // joints as blocks of rows, and the laws of their impulses
     "runtime/direct",      // the sparse system of an island
     "runtime/state",       // all data of a World
+    "runtime/motion",      // forces, poses and momentum, without joints
     "runtime/balance",     // energy, work and momentum of a World
-    "runtime/motion",      // forces and poses, without joints
     "runtime/solve",       // rows of an island, their forces and projection
     "runtime/step",        // integrators
     "runtime/world",       // step() itself; islands, sleep, queries

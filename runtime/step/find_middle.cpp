@@ -1,0 +1,236 @@
+// Newton's matrix has the stiffness G = -d(J^T lambda)/dq of tension, whose part between bodies stands as rows in the
+// direct solver's system (runtime/solve/tension.hpp). With the rule's equations (midpoint.cpp),
+//
+//   (M + h G / 4) w - J^T y = M r,   J w = -C(q') / h,   y = (change of lambda) / 2,
+//
+// w being the change of v_m and r what it lacks.
+#include "runtime/step/find_middle.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <cdot/spaces.hpp>
+
+#include "runtime/motion/motion.hpp"
+#include "runtime/solve/direct.hpp"
+#include "runtime/solve/projection.hpp"
+#include "runtime/solve/solve.hpp"
+#include "runtime/step/dampers.hpp"
+#include "runtime/step/kick_drift.hpp"
+
+namespace cdot {
+namespace {
+
+constexpr int most_rounds = 25;
+constexpr double slow = 0.2;  // share of the error that a round may leave without a new factor
+// Goals of Newton: C, in units of Island::scale, and the change of a pose in units of Island::size and [rad].
+template <class T>
+constexpr T closed = T(by_precision<T>(1e-7, 1e-15));
+template <class T>
+constexpr T settled = T(by_precision<T>(1e-6, 1e-12));
+// A larger change of a pose in one round means that the step is too long, in the same units.
+template <class T>
+constexpr T furthest = T(2);
+// Round-off may stop Newton before its goals; these errors are still small.
+template <class T>
+constexpr T nearly = T(1e4);
+
+// C, J and dC/dt at the middle of the step. Of springs, into Batch::impulse and Batch::softness: their impulse without
+// dampers, and the softness of their rows of y. With u = h^2 k K, a spring acts at the share theta of the step,
+//   lambda = -h k (C + (theta - 1/2) h dC/dt),   theta = max(1/2, 1 - 1/(2 u)),   softness = 2 / (theta h^2 k):
+// in the middle, or near the end if it is too stiff for the step.
+template <class S>
+void look_at_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  drift(world, island, h / 2);
+  for (const auto& [segment, begin, end, whole] : island.segments) {
+    Batch<S>& batch = *segment;
+    batch.ops->evaluate(batch, begin, end, world.bodies, T(world.time) + h / 2);
+    if (!is_force(batch)) continue;
+    find_spring_impulses(batch, begin, end, h);
+    each_row(batch, begin, end, [&](int i) {
+      batch.softness[i] = 0;
+      batch.lower[i] = batch.upper[i] = batch.impulse[i];
+    });
+    batch.ops->velocity(batch, begin, end, world.bodies.velocity.data(), batch.rate.data());
+    each_spring(batch, begin, end, [&](int i, const SpringNumbers<T>& spring, T K) {
+      if (!(spring.k > T(0))) return;
+      const T stiff = h * h * spring.k, theta = std::max(T(0.5), T(1) - T(0.5) * inverse(stiff * K));
+      batch.impulse[i] -= (theta - T(0.5)) * stiff * (batch.rate[i] + batch.bias[i]);
+      batch.softness[i] = T(2) / (theta * stiff);
+      batch.lower[i] = pulls_only(batch, i) ? T(0) : -std::numeric_limits<T>::infinity();
+      batch.upper[i] = std::numeric_limits<T>::infinity();
+    });
+  }
+}
+
+// The error of limits, motors and friction in the step, as a rate into Batch::impulse, and the bounds of their impulse.
+// The middle has the speed of a motor; the end has the C of a limit, which must not pass its end.
+template <class S>
+void find_misses_of_bounded(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  for (const auto& [segment, begin, end, whole] : island.segments) {
+    Batch<S>& batch = *segment;
+    if (!is_bounded(batch)) continue;
+    const bool of_rate = !batch.law->error;
+    if (of_rate) batch.ops->velocity(batch, begin, end, world.bodies.velocity.data(), batch.rate.data());
+    each_row(batch, begin, end, [&](int i) {
+      batch.impulse[i] = batch.bias[i];
+      if (!of_rate) batch.bias[i] = 0;
+    });
+    batch.law->fill(batch, begin, end, h, world.settings);
+    each_row(batch, begin, end, [&](int i) {
+      std::swap(batch.impulse[i], batch.bias[i]);
+      if (of_rate) batch.impulse[i] += batch.rate[i];
+      else if (batch.error[i] != T(0)) batch.impulse[i] = batch.error[i] / h;
+    });
+  }
+}
+
+// Velocity rows have no C. Their error is what they miss in the middle, as a displacement.
+template <class S>
+void find_errors_of_rates(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    const auto& kinds = batch->kinds;
+    if (batch->law || std::find(kinds.begin(), kinds.end(), RowKind::velocity) == kinds.end()) continue;
+    batch->ops->velocity(*batch, begin, end, world.bodies.velocity.data(), batch->rate.data());
+    each_row(*batch, begin, end, [&, of = batch](int i) {
+      if (kinds[static_cast<size_t>(i % of->ops->rows)] != RowKind::velocity) return;
+      of->error[i] = h * (of->rate[i] + of->bias[i]);
+      island.residual = std::max<typename S::Scalar>(island.residual, std::abs(of->error[i]));
+    });
+  }
+}
+
+// A spring whose force changes with C is solved with the joints. Others (a slack rope, a constant force) take their
+// present force.
+template <class S>
+bool is_soft(const Batch<S>& batch, int i) {
+  return is_force(batch) && batch.softness[i] > 0;
+}
+
+// r = (v + h a / 2 + M^-1 J^T lambda / 2) - v_m, as (M + h G / 4)^-1 M r, into Bodies::increment; J r into Batch::rate.
+template <class S>
+void find_lack(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  for (size_t k = 0; k < island.bodies.size(); ++k) {
+    const int i = island.bodies[k];
+    const auto wanted = S::sum(island.flow.velocity[k], all.acceleration[i], h / 2);
+    const auto lack = S::sum(wanted, all.velocity[i], T(-1));
+    all.increment[i] = S::weighted(all.effective_mass[i], S::force(all.inverse_mass[i], lack));
+  }
+  for (const auto& [batch, begin, end, whole] : island.segments) {
+    each_row(*batch, begin, end, [of = batch](int i) { of->rate[i] = T(0.5) * of->correction[i]; });
+    batch->ops->apply(*batch, begin, end, all, batch->rate.data(), all.increment.data());
+  }
+  for (const auto& [batch, begin, end, whole] : island.segments)
+    batch->ops->velocity(*batch, begin, end, all.increment.data(), batch->rate.data());
+}
+
+// Adds w to v_m. Returns the largest change of a pose.
+template <class S>
+typename S::Scalar move_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  Bodies<S>& all = world.bodies;
+  T largest = 0;
+  for (int i : island.bodies) {
+    T w[S::freedom];
+    S::write(all.increment[i], w);
+    for (int c = 0; c < S::freedom; ++c)
+      largest = std::max(largest, std::abs(h * w[c]) / (c < S::lengths ? T(island.size) : T(1)));
+    all.velocity[i] = S::sum(all.velocity[i], all.increment[i], T(1));
+    all.increment[i] = {};
+  }
+  return largest;
+}
+
+// Softness and bounds of y, for rows under a law: the bounds of lambda = present lambda + 2 y.
+template <class S>
+void bound_changes(Island<S>& island) {
+  using T = typename S::Scalar;
+  island.at_work().load_laws();
+  island.at_work().each_row([&](int row, const Batch<S>& batch, int i) {
+    if (!batch.law) return;
+    island.at_work().lower[row] = T(0.5) * (batch.lower[i] - batch.correction[i]);
+    island.at_work().upper[row] = T(0.5) * (batch.upper[i] - batch.correction[i]);
+  });
+}
+
+// Solves for y and w; adds 2 y to lambda. `renew`: with a new factor. Returns the largest change of a pose.
+template <class S>
+typename S::Scalar improve(WorldData<S>& world, Island<S>& island, typename S::Scalar h, bool renew) {
+  using T = typename S::Scalar;
+  System<S>& system = island.at_work();
+  find_lack(world, island, h);
+  system.load([&](const Batch<S>& batch, int i) {
+    const T missed = is_soft(batch, i) ? T(0.5) * batch.softness[i] * (batch.correction[i] - batch.impulse[i])
+                     : batch.law       ? batch.impulse[i]
+                                       : batch.error[i] / h;
+    return -(batch.rate[i] + missed);
+  });
+  system.load_tensions(world.bodies.increment.data());
+  if (renew) system.assemble(world.bodies);
+  if (system.lawful()) {
+    bound_changes(island);
+    island.redundant_rows = system.solve_bounded();
+  } else {
+    if (renew) {
+      system.choose([](const Batch<S>&, int) { return true; });
+      island.redundant_rows = system.factor();
+    }
+    system.solve();
+  }
+  system.store([&](Batch<S>& batch, int i, auto y) {
+    batch.rate[i] = T(y);
+    batch.correction[i] += T(2 * y);
+  });
+  exert(world, island, system, &BatchWorkspace<S>::rate, world.bodies.increment.data());
+  return move_middle(world, island, h);
+}
+
+// The error that contradicting rows keep, as a motor and the limit it runs into.
+template <class S>
+typename S::Scalar shared_error(const Island<S>& island, typename S::Scalar at_start) {
+  using T = typename S::Scalar;
+  T shared = std::isfinite(at_start) ? at_start : T(0);
+  for (int r = 0; r < island.at_work().rows(); ++r) shared = std::max(shared, T(std::abs(island.at_work().unmet(r))));
+  return T(2) * shared;
+}
+
+}  // namespace
+
+template <class S>
+bool find_middle(WorldData<S>& world, Island<S>& island, typename S::Scalar h) {
+  using T = typename S::Scalar;
+  const T time = T(world.time) + h;
+  const T goal = std::max(closed<T> * island.scale, T(0.01) * round_off_of(world, island));
+  const T at_start = island.residual;
+  T before = std::numeric_limits<T>::infinity();
+  bool renew = true;
+  for (int round = 0; round < most_rounds; ++round) {
+    look_at_middle(world, island, h);
+    if (renew) stiffen_masses(world, island, h / 4);
+    drift(world, island, h);
+    island.residual = find_errors(world, island, time);
+    find_errors_of_rates(world, island, h);
+    if (!std::isfinite(island.residual)) return false;
+    find_misses_of_bounded(world, island, h);
+    const T change = improve(world, island, h, renew), miss = std::max(change / settled<T>, island.residual / goal);
+    if (!(change < furthest<T>)) return false;
+    const bool shared = change <= settled<T> && island.residual <= shared_error(island, at_start);
+    if (miss <= T(1) || shared || (miss <= nearly<T> && miss > T(0.5) * before)) {
+      drift(world, island, h);
+      return true;
+    }
+    renew = !(miss < T(slow) * before);
+    before = miss;
+  }
+  return false;
+}
+
+#define CDOT_INSTANTIATE(S) template bool find_middle(WorldData<S>&, Island<S>&, S::Scalar);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot
