@@ -101,7 +101,8 @@ double largest_error(Island<S>& island, ProjectResult& result, F value) {
 // Many short ways must not add up to a long one either: that leaves the poses as they were.
 template <class S>
 void project_poses(WorldData<S>& world, Island<S>& island, ProjectResult& result) {
-  const std::vector<typename S::Pose> start(world.bodies.pose.begin(), world.bodies.pose.end());
+  std::vector<typename S::Pose> start;
+  for (int i : island.bodies) start.push_back(world.bodies.pose[i]);
   LongestMove sum;
   double before = std::numeric_limits<double>::infinity(), first = 0;
   for (int round = 0; round < newton_rounds; ++round) {
@@ -119,7 +120,7 @@ void project_poses(WorldData<S>& world, Island<S>& island, ProjectResult& result
     if (!too_far(island, sum, first)) continue;
     if (!result.refused) result.body = sum.body, result.moved = sum.way, result.misfit = first;
     result.refused = true;
-    for (int i : island.bodies) world.bodies.pose[i] = start[i];
+    for (size_t k = 0; k < start.size(); ++k) world.bodies.pose[island.bodies[k]] = start[k];
     keep_velocities(world, island);
     return;
   }
