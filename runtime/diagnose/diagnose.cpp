@@ -192,15 +192,6 @@ void measure_rows(WorldData<S>& world, Island<S>& island, Equations<S>& equation
 }
 
 template <class S>
-double spin_of(const typename S::Velocity& velocity) {
-  typename S::Scalar numbers[S::freedom];
-  S::write(velocity, numbers);
-  double square = 0;
-  for (int k = S::lengths; k < S::freedom; ++k) square += double(numbers[k]) * double(numbers[k]);
-  return std::sqrt(square);
-}
-
-template <class S>
 void measure_bodies(const WorldData<S>& world, const Island<S>& island, Diagnosis::Island& found) {
   found.bodies = island.bodies;
   found.size = double(island.size);

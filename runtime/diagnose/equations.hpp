@@ -90,6 +90,16 @@ class Equations {
   int rows_ = 0, dependent_ = 0;
 };
 
+// [rad/s]
+template <class S>
+double spin_of(const typename S::Velocity& velocity) {
+  typename S::Scalar numbers[S::freedom];
+  S::write(velocity, numbers);
+  double square = 0;
+  for (int k = S::lengths; k < S::freedom; ++k) square += double(numbers[k]) * double(numbers[k]);
+  return std::sqrt(square);
+}
+
 // The stiffest motion of the island in steps of h: the linearly implicit step reduces its stiffness.
 template <class S>
 Diagnosis::Stiffest stiffest_motion(WorldData<S>& world, Island<S>& island, Equations<S>& equations,

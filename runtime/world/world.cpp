@@ -310,6 +310,15 @@ void BasicWorld<S>::prepare() {
 }
 
 template <class S>
+void BasicWorld<S>::use(const Settings& settings) {
+  require(!data_->accounts.open, "settings are chosen before the first step");
+  check(settings);
+  data_->settings = settings;
+  for (int body = 0; body < body_count(); ++body) set_acceleration(*data_, body);
+  data_->prepared = false;
+}
+
+template <class S>
 void BasicWorld<S>::on_failure(OnFailure what) {
   data_->on_failure = what;
   data_->prepared = false;

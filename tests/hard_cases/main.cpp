@@ -30,6 +30,23 @@ class HardCase : public testing::Test {
   Case case_;
 };
 
+// The method that the runtime chooses by itself holds the case.
+class ByDefault : public testing::Test {
+ public:
+  explicit ByDefault(Case hard_case) : case_(std::move(hard_case)) {}
+  void TestBody() override {
+    std::string chosen;
+    for (const Finding& found : findings_of(case_, by_default, &chosen)) {
+      fmt::print("  {:36} {:.3e}  at most {:.3e}\n", found.what, found.value, found.bound);
+      EXPECT_TRUE(found.held()) << found.what << " is " << found.value << ", not at most " << found.bound;
+    }
+    fmt::print("  by {}\n", chosen);
+  }
+
+ private:
+  Case case_;
+};
+
 // Every way that claims nothing for a case reports the reason or stays together.
 class Silence : public testing::Test {
  public:
@@ -101,6 +118,9 @@ int main(int count, char** arguments) {
   for (const Case& hard_case : all_cases())
     testing::RegisterTest("HardCases", name_of(hard_case).c_str(), nullptr, nullptr, __FILE__, __LINE__,
                           [hard_case]() -> testing::Test* { return new HardCase(hard_case); });
+  for (const Case& hard_case : all_cases())
+    testing::RegisterTest("ByDefault", name_of(hard_case).c_str(), nullptr, nullptr, __FILE__, __LINE__,
+                          [hard_case]() -> testing::Test* { return new ByDefault(hard_case); });
   for (const Case& hard_case : all_cases())
     if (!hard_case.large && hard_case.ways.size() < all_ways().size())
       testing::RegisterTest("NoSilence", name_of(hard_case).c_str(), nullptr, nullptr, __FILE__, __LINE__,

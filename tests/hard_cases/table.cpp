@@ -20,10 +20,13 @@ ten iterations, unless the case states otherwise; each folder's .cpp has its cri
 A way that does not hold a case reports the reason before or during the run, like `cdot-run diagnose` and
 `cdot-run simulate`, or is merely inaccurate: `NoSilence.*` tests that no way fails without a report.
 
+Nobody needs to know the way: `ByDefault.*` tests that the method which the runtime chooses by itself
+([recommended.hpp](../../runtime/include/cdot/recommended.hpp)) holds every case.
+
 The last command wrote this page. It shows the worst of each number over the ways, and its bound.
 
-| case | held by | in double | in float |
-|---|---|---|---|
+| case | held by | by default | in double | in float |
+|---|---|---|---|---|
 )";
 
 // The worst number of one finding over the ways of one precision.
@@ -50,6 +53,14 @@ std::string text_of(const std::vector<Worst>& worst) {
   return text;
 }
 
+// "rattle holds"; "holds" of a case that only asks whether something is refused.
+std::string text_by_default(const Case& hard_case) {
+  std::string chosen;
+  const std::vector<Finding> found = findings_of(hard_case, by_default, &chosen);
+  const bool held = std::all_of(found.begin(), found.end(), [](const Finding& one) { return one.held(); });
+  return fmt::format("{}{}{}", chosen, chosen.empty() ? "" : " ", held ? "holds" : "**fails**");
+}
+
 }  // namespace
 
 std::string table_row_start(const Case& hard_case) {
@@ -64,7 +75,8 @@ std::string table(const std::vector<Case>& cases) {
     std::vector<Worst> exact, single;
     for (const Way& way : hard_case.ways)
       for (const Finding& found : findings_of(hard_case, way)) take(way.single ? single : exact, found);
-    text += fmt::format("{}{} | {} |\n", table_row_start(hard_case), text_of(exact), text_of(single));
+    text += fmt::format("{}{} | {} | {} |\n", table_row_start(hard_case), text_by_default(hard_case), text_of(exact),
+                        text_of(single));
   }
   return text;
 }

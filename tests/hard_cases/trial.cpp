@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cdot/methods.hpp>
+#include <cdot/recommended.hpp>
 
 #include "runtime/tool/run/worst.hpp"
 
@@ -15,10 +19,12 @@ std::vector<Case>& registered() {
 }
 
 template <class S>
-std::unique_ptr<AnyWorld> started(const Scene& scene) {
-  auto world = std::make_unique<AnyWorld>(build_world_in<S>(scene));
-  if (scene.project) std::get<BasicWorld<S>>(*world).project(1e-9);
-  return world;
+std::unique_ptr<AnyWorld> started(const Scene& scene, bool chooses) {
+  auto any = std::make_unique<AnyWorld>(build_world_in<S>(scene));
+  auto& world = std::get<BasicWorld<S>>(*any);
+  if (scene.project) world.project(1e-9);
+  if (chooses) world.use(recommended(world, scene.step).settings);
+  return any;
 }
 
 template <class T>
@@ -44,14 +50,18 @@ bool Finding::together() const {
 
 Trial::Trial(const std::string& scene_file, const Way& the_way)
     : file(scene_file), way(the_way), scene(read_scene(std::string(CDOT_HARD_CASES) + "/" + scene_file + ".toml")) {
+  if (way.chosen) return;
   scene.settings.solver = way.solver;
   scene.settings.integrator = way.integrator;
 }
 
 void Trial::start() {
   const bool planar = scene.dimension == Dimension::planar, single = way.single && !another_engine;
-  if (planar) world_ = single ? started<Planar<float>>(scene) : started<Planar<double>>(scene);
-  else world_ = single ? started<Spatial<float>>(scene) : started<Spatial<double>>(scene);
+  if (planar) world_ = single ? started<Planar<float>>(scene, way.chosen) : started<Planar<double>>(scene, way.chosen);
+  else world_ = single ? started<Spatial<float>>(scene, way.chosen) : started<Spatial<double>>(scene, way.chosen);
+  if (way.chosen)
+    chosen_.insert(
+        std::string(name_of(integrators, ask([](const auto& world) { return world.settings().integrator; }))));
   if (another_engine) mover_ = another_engine(scene, *world_);
 }
 
@@ -181,10 +191,11 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-std::vector<Finding> findings_of(const Case& hard_case, const Way& way) {
+std::vector<Finding> findings_of(const Case& hard_case, const Way& way, std::string* chosen) {
   try {
     Trial trial(hard_case.fault + "/" + hard_case.scene, way);
     hard_case.run(trial);
+    if (chosen) *chosen = fmt::format("{}", fmt::join(trial.chosen(), ", "));
     return trial.findings();
   } catch (const std::exception& error) {
     return {{fmt::format("thrown: {}", error.what()), finite_only, 0}};

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -98,6 +99,7 @@ class Trial {
   void near(const std::string& what, double value, double right, double within, double within_in_float);
 
   const std::vector<Finding>& findings() const { return findings_; }
+  const std::set<std::string>& chosen() const { return chosen_; }  // integrators, by default
 
   // Thrown at the runtime's first warning: about the method, before or during the run, or about steps that failed or
   // fell back to another method. It ends the trial.
@@ -113,6 +115,7 @@ class Trial {
   std::unique_ptr<AnyWorld> world_;
   std::unique_ptr<Mover> mover_;
   std::vector<Finding> findings_;
+  std::set<std::string> chosen_;
   bool listening_ = false;
   long steps_ = 0, next_diagnosis_ = 1;
 };
@@ -136,8 +139,8 @@ struct Register {
   explicit Register(Case hard_case);
 };
 
-// Runs the case; an exception becomes a finding that fails.
-std::vector<Finding> findings_of(const Case& hard_case, const Way& way);
+// Runs the case; an exception becomes a finding that fails. `chosen`: the integrators of a run by default.
+std::vector<Finding> findings_of(const Case& hard_case, const Way& way, std::string* chosen = nullptr);
 // The result of a way that claims nothing: it holds the case, or the runtime gives a reason, or neither.
 struct Verdict {
   bool held = false;

@@ -47,6 +47,7 @@ std::string integrators_text(const Ways& ways, Solver solver) {
 }  // namespace
 
 std::string name_of(const Way& way) {
+  if (way.chosen) return "by default";
   return fmt::format("{} {} {}", name_of(solvers, way.solver), name_of(integrators, way.integrator),
                      way.single ? "float" : "double");
 }

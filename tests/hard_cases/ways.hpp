@@ -1,4 +1,4 @@
-// The ways to run a scene, solver x integrator x precision, and sets of them.
+// The ways to run a scene, solver x integrator x precision, and sets of them; and the way that the runtime chooses.
 #pragma once
 
 #include <string>
@@ -11,11 +11,13 @@ namespace cdot::hard {
 struct Way {
   Solver solver;
   Integrator integrator;
-  bool single;  // in float
+  bool single;          // in float
+  bool chosen = false;  // by the runtime, in place of solver and integrator
   bool operator==(const Way&) const = default;
 };
 
 std::string name_of(const Way& way);  // "direct rattle float"
+inline constexpr Way by_default{Solver::direct, Integrator::euler, false, true};
 
 using Ways = std::vector<Way>;
 

@@ -80,6 +80,8 @@ class BasicWorld {
   int add_spring(const SpringDefinition& definition);
   void set_force(int body, const Wrench& force);
   void on_failure(OnFailure what);  // of step(); stop unless set
+  // Replaces all settings, for example by recommended() ones. Throws cdot::Error after the first step.
+  void use(const Settings& settings);
 
   // Joint rows that the present poses or velocities violate by more than the tolerance ([m] or [rad], and /s).
   std::vector<Inconsistency> inconsistencies(double tolerance) const;

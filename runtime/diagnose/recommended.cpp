@@ -1,0 +1,176 @@
+// What each island is -> the integrator for fixed steps.
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+
+#include <cdot/recommended.hpp>
+#include <cdot/spaces.hpp>
+
+#include "runtime/diagnose/equations.hpp"
+#include "runtime/motion/motion.hpp"
+
+namespace cdot {
+namespace {
+
+// The tension at the lowest point of a pendulum that falls from the height of its pivot, in units of its weight.
+constexpr double swing = 3;
+// [rad] per substep. Methods that take forces at the ends of a step are inaccurate above.
+constexpr double stiff = 0.5, sharp_turn = 0.5;
+// A body that rotates about a pivot beside its centre oscillates about that rotation no faster than this, in units of
+// its rate: its stiffness is that of the spin, not of a load.
+constexpr double of_own_spin = 1.5;
+// Heaviest over lightest body: a light one between heavy ones turns round within a step whenever its load vanishes.
+constexpr double uneven = 100;
+constexpr std::size_t large = 300;  // [bodies]: looking for the stiffest motion would cost more than the method saves
+
+struct Traits {
+  int island = -1;
+  std::size_t bodies = 0;
+  double lightest = 0, heaviest = 0;  // [kg]
+  bool bounded = false;               // limits, motors, friction, ropes
+  double radians = 0, turn = 0;       // per substep, of the stiffest oscillation and of the fastest rotation
+  int oscillating = -1, turning = -1;
+  bool by_tension = false;
+};
+
+struct Words {
+  const Traits& of;
+  const std::function<std::string(int)>& name_of_body;
+  std::string body(int index) const { return name_of_body ? name_of_body(index) : fmt::format("body {}", index); }
+};
+
+// In this order: the first rule that applies to an island of the World decides. The last one applies to every island.
+// clang-format off
+constexpr struct {
+  Integrator integrator;
+  bool (*applies)(const Traits&);
+  std::string (*why)(const Words&);
+} rules[] = {
+    {Integrator::implicit,
+     [](const Traits& t) { return t.radians > stiff && !(t.by_tension && t.radians < of_own_spin * t.turn); },
+     [](const Words& w) {
+       return fmt::format("{} can make {} oscillate by {:.2g} rad per substep",
+                          w.of.by_tension ? "the tension of the joints" : "a spring", w.body(w.of.oscillating), w.of.radians);
+     }},
+    {Integrator::dop853,
+     [](const Traits& t) { return t.turn > sharp_turn && t.radians > stiff; },
+     [](const Words& w) {
+       return fmt::format("{} rotates by {:.2g} rad per substep about a pivot beside its centre", w.body(w.of.turning), w.of.turn);
+     }},
+    {Integrator::implicit,
+     [](const Traits& t) { return t.bounded; },
+     [](const Words&) { return std::string("limits, motors, friction or ropes act"); }},
+    {Integrator::implicit,
+     [](const Traits& t) { return t.heaviest > uneven * t.lightest; },
+     [](const Words& w) { return fmt::format("bodies from {:.3g} to {:.3g} kg hang together", w.of.lightest, w.of.heaviest); }},
+    {Integrator::implicit,
+     [](const Traits& t) { return t.bodies > large; },
+     [](const Words& w) { return fmt::format("{} bodies hang together", w.of.bodies); }},
+    {Integrator::rattle,
+     [](const Traits&) { return true; },
+     [](const Words& w) { return fmt::format("nothing is stiff: no motion turns by more than {:.2g} rad per substep", std::max(w.of.radians, w.of.turn)); }},
+};
+// clang-format on
+
+// Adds the difference between another gravity and the present one to all accelerations.
+template <class S>
+void turn_gravity(WorldData<S>& world, const Settings& from, const Settings& to) {
+  using T = typename S::Scalar;
+  for (int i = 0; i < world.bodies.count(); ++i) {
+    if (world.bodies.immovable(i)) continue;
+    auto& a = world.bodies.acceleration[i];
+    a = S::sum(S::sum(a, S::gravity(from), T(-1)), S::gravity(to), T(1));
+  }
+}
+
+template <class S>
+void look_at_stiffest(WorldData<S>& world, Island<S>& island, double h, Traits& traits) {
+  Equations<S> equations(world, island);
+  const Diagnosis::Stiffest found = stiffest_motion(world, island, equations, typename S::Scalar(h));
+  const double radians = h * std::sqrt(std::max(0.0, found.square));
+  if (!(radians > traits.radians)) return;
+  traits.radians = radians, traits.oscillating = found.body;
+  traits.by_tension = found.tension > 0.5 * found.square;
+}
+
+// The same with `swing` times the weight from every side.
+template <class S>
+void look_at_every_side(WorldData<S>& world, Island<S>& island, double h, Traits& traits) {
+  const Settings& s = world.settings;
+  const double weight = swing * std::hypot(s.gravity_x, s.gravity_y, s.gravity_z);
+  if (weight == 0 || island.floats) return;
+  Settings now = s;
+  for (double Settings::*side : {&Settings::gravity_x, &Settings::gravity_y, &Settings::gravity_z}) {
+    if (S::dimension == Dimension::planar && side == &Settings::gravity_z) continue;
+    for (const double sign : {-1.0, 1.0}) {
+      Settings turned = s;
+      turned.gravity_x = turned.gravity_y = turned.gravity_z = 0;
+      turned.*side = sign * weight;
+      turn_gravity(world, now, turned);
+      now = turned;
+      look_at_stiffest(world, island, h, traits);
+    }
+  }
+  turn_gravity(world, now, s);
+}
+
+template <class S>
+Traits traits_of(WorldData<S>& world, int index, double h) {
+  Island<S>& island = world.islands[index];
+  Traits traits{.island = index, .bodies = island.bodies.size()};
+  for (const Segment<S>& segment : island.segments)
+    traits.bounded |= segment.batch->law && segment.batch->law->guard && segment.begin < segment.end;
+  for (int body : island.bodies) {
+    const double turn = h * spin_of<S>(world.bodies.velocity[body]);
+    if (turn > traits.turn) traits.turn = turn, traits.turning = body;
+    const double mass = 1 / double(world.bodies.inverse_mass[body].m);
+    traits.heaviest = std::max(traits.heaviest, mass);
+    traits.lightest = traits.lightest > 0 ? std::min(traits.lightest, mass) : mass;
+  }
+  if (island.segments.empty() || island.bodies.size() > large) return traits;
+  look_at_stiffest(world, island, h, traits);
+  look_at_every_side(world, island, h, traits);
+  return traits;
+}
+
+// Of all islands, the one to which the first rule applies; of these the stiffest.
+struct Decision {
+  std::size_t rule = std::size(rules) - 1;
+  Traits traits;
+};
+void take(Decision& worst, const Traits& traits) {
+  const auto rule = static_cast<std::size_t>(
+      std::find_if(std::begin(rules), std::end(rules), [&](const auto& one) { return one.applies(traits); }) -
+      std::begin(rules));
+  const bool worse = rule < worst.rule || (rule == worst.rule && traits.radians >= worst.traits.radians);
+  if (worst.traits.island < 0 || worse) worst = {rule, traits};
+}
+
+}  // namespace
+
+template <class S>
+Recommendation recommended(BasicWorld<S>& world, double step, const std::function<std::string(int)>& name_of_body) {
+  WorldData<S>& data = world.data();
+  const Settings given = data.settings;
+  Settings chosen = given;
+  chosen.solver = Solver::direct, chosen.drift = Drift::projection, chosen.local_error = 0;
+  chosen.integrator = Integrator::rattle;  // takes springs as forces, so that their stiffness counts
+  world.use(chosen);
+  world.prepare();
+  const Snapshot before = world.snapshot();
+  Decision worst;
+  for (int k = 0; k < static_cast<int>(data.islands.size()); ++k)
+    take(worst, traits_of(data, k, step / given.substeps));
+  world.restore(before);
+  world.use(given);
+  const auto& rule = rules[worst.rule];
+  chosen.integrator = rule.integrator;
+  return {chosen, worst.traits.island, worst.traits.radians, rule.why({worst.traits, name_of_body})};
+}
+
+#define CDOT_INSTANTIATE(S) \
+  template Recommendation recommended(BasicWorld<S>&, double, const std::function<std::string(int)>&);
+CDOT_FOR_EACH_SPACE(CDOT_INSTANTIATE)
+#undef CDOT_INSTANTIATE
+
+}  // namespace cdot

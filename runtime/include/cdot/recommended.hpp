@@ -1,0 +1,27 @@
+// The method for fixed steps of a World: the cheapest that holds what its islands are.
+//
+//   const cdot::Recommendation found = cdot::recommended(world, 1.0 / 60);
+//   world.use(found.settings);
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <cdot/world.hpp>
+
+namespace cdot {
+
+struct Recommendation {
+  Settings settings;   // those of the World with the direct solver, the projection and the chosen integrator
+  int island = -1;     // that decided; -1: there is none
+  double radians = 0;  // of its stiffest oscillation per substep
+  std::string reason;  // "the tension of the joints can make body 3 oscillate by 9.9 rad per substep"
+};
+
+// For steps of `step` [s]. Looks at the World as it stands before its first step, and as it may come to hang: with
+// three times its weight from every side, as at the lowest point of a swing. Costs some hundred steps, and leaves the
+// state as it is. `name_of_body` names bodies in the reason. Throws cdot::Error after the first step.
+template <class S>
+Recommendation recommended(BasicWorld<S>& world, double step, const std::function<std::string(int)>& name_of_body = {});
+
+}  // namespace cdot
